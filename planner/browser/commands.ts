@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Everything that can be asked for by name: the palette, the keys and the menus read this one table.
-import {add_step, change_history, edit, evaluate, free_id, try_to} from "./actions";
+import {add_step, change_history, edit, evaluate, free_id, open_plan, try_to} from "./actions";
 import {ask_text} from "./base/dialog";
-import {makes_shape, objects_of_plan} from "./drawn_objects";
+import {objects_of_plan} from "./drawn_objects";
+import {makes_shape} from "./operations";
 import {all_panes, fit_all, show_in} from "./pane/pane_grid";
 import {change_pane} from "./pane/panes";
 import {Step} from "./protocol";
 import {guess_landmarks} from "./tool/point_tools";
 import {cut_selected} from "./tool/region_tool";
-import {new_step, operations} from "./panel/schema_form";
+import {new_step} from "./panel/schema_form";
+import {operations} from "./operations";
 import {notify, selected_step, set, state, step_of, usual_panes} from "./state";
 import {change_theme} from "./base/theme";
 import {all_tools, take_tool} from "./tool/tool";
@@ -64,7 +66,7 @@ export function mirror_selected(): void {
   const step = selected_step();
   if (!step || !makes_shape(step)) return notify("Select the object to mirror first.", "warning");
   const id = free_id(`${step.id}_mirrored`);
-  void add_step({id, do: "mirror", object: step.id}, `mirror image of ${step.id}`)
+  void add_step({id, do: "mirror", object: step.id, fit: true}, `mirror image of ${step.id}`)
       .then(() => set({looks: {...state.looks, [id]: {visible: true, opacity: 0.6}}}));
 }
 
@@ -140,6 +142,11 @@ export function all_commands(): Command[] {
     {name: "New branch", says: "Tries something beside the present plan.", run: () => void new_branch()},
     {name: "Name this version", run: () => void name_version()},
     {name: "Save", key: "ctrl+s", run: () => void save()},
+    {
+      name: "Load the plan's file again",
+      says: "Takes what another program wrote into it as an edit.",
+      run: () => void (state.plan && open_plan({path: state.plan.path}))
+    },
     {
       name: "Certify",
       says: "Asks both kernels and compares their answers.",

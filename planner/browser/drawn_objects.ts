@@ -2,47 +2,15 @@
 // Which objects of the plan are drawn, in what colour: by default the pieces as they end up, and what they
 // have in common.
 import {DrawnObject, Step} from "./protocol";
+import {makes_shape, moves_object, operands} from "./operations";
 import {is_elsewhere, shown_scan, state, steps} from "./state";
 
 const bone = ["#ede3cc", "#d9c7a0", "#cfd3d6"];
 const moved = ["#e08a3c", "#3fa7a0", "#a678de", "#d0649b", "#7fae3e"];
 export const mask_colour = "#5b9dff";
 export const overlap_colour = "#e5484d";
-const shape_steps = new Set([
-  "window",
-  "segment",
-  "mask",
-  "combine",
-  "move",
-  "mirror",
-  "saw",
-  "register",
-  "autorotate",
-  "warp",
-  "import",
-  "repair",
-  "parts",
-  "fill",
-  "offset",
-  "shell",
-  "smooth",
-  "decimate",
-]);
-
-export const makes_shape = (step: Step): boolean => shape_steps.has(step.do);
-
-/// The names that a step uses: its object, or those of its expression.
-export function operands(step: Step): string[] {
-  const names: string[] = [];
-  for (const field of ["object", "onto", "against", "to", "a", "b"]) {
-    const value = step[field];
-    if (typeof value === "string") names.push(value);
-  }
-  if (typeof step.expression === "string") names.push(...(step.expression.match(/[A-Za-z_]\w*/g) ?? []));
-  return names;
-}
-
-const moves = new Set(["move", "register", "autorotate", "warp"]);
+/// A warp displaces its object, too, though not rigidly.
+const is_displaced = (step: Step): boolean => moves_object(step) || step.do === "warp";
 const is_union = (step: Step): boolean =>
     step.do === "combine" && typeof step.expression === "string" && !/[&^~-]/.test(step.expression);
 
@@ -50,7 +18,7 @@ const is_union = (step: Step): boolean =>
 export function is_overlap(step: Step, all: Step[]): boolean {
   if (step.do !== "combine" || typeof step.expression !== "string" || !/^[\w\s&()]+$/.test(step.expression))
     return false;
-  return operands(step).some((name) => moves.has(all.find((other) => other.id === name)?.do ?? ""));
+  return operands(step).some((name) => all.some((other) => other.id === name && is_displaced(other)));
 }
 
 /// What lies inside a mask: a piece, which has its colour before it moves.
@@ -88,14 +56,14 @@ export function look_of(id: string): Shown {
   if (step) {
     const earlier = all.slice(0, index);
     const number = Math.max(
-        earlier.filter((other) => moves.has(other.do)).length,
+        earlier.filter(is_displaced).length,
         is_piece(step) ? earlier.filter((other) => is_piece(other) && !is_left_out(other, all)).length : 0);
     const visible = !is_used_up(id, all);
     if (step.do === "mask")
       usual = {colour: mask_colour, opacity: 0.35, visible};
     else if (is_overlap(step, all))
       usual = {colour: overlap_colour, opacity: 1, visible};
-    else if (moves.has(step.do))
+    else if (is_displaced(step))
       usual = {colour: moved[number % moved.length]!, opacity: 1, visible};
     else if (step.do === "mirror")
       usual = {colour: "#8fb8de", opacity: 1, visible: false};

@@ -17,7 +17,7 @@ export interface Certificate {
   resolved?: boolean;
 }
 export interface Measured {
-  value: number;
+  value: number|null;  // null where there is no answer yet
   unit: string;
   half_width?: number|null;
   coverage?: number;
@@ -102,7 +102,7 @@ export interface ProcedureSays {
   says: string;
   landmarks: {name: string; says: string; scan?: string}[];
   scans: {name: string; says: string}[];
-  values: {name: string; unit?: string; default: number; says: string; low: number; high: number}[];
+  values: {name: string; unit: string; default: number; says: string; low: number; high: number}[];
 }
 export interface Tissue {
   name: string;
@@ -128,6 +128,9 @@ export interface Schema {
   maxItems?: number;
   examples?: Step[];
   "x-unit"?: string;
+  "x-makes"?: "object"|"tool"|"scan"|"measurement"|"file"|"names";
+  "x-moves"?: string;  // the field whose object it moves
+  "x-names"?: "object";
 }
 export interface Hello {
   version: string;

@@ -94,6 +94,7 @@ Operation advance_operation() {
                  .to(500.0))
       .example(R"({"id": "met", "do": "advance", "object": "maxilla", "against": "rest",
         "towards": "back", "gap_mm": 0.5})")
+      .motion()
       .of_head()
       .check(check)
       .settle(settle)

@@ -106,6 +106,7 @@ Operation autorotate_operation() {
                  .to(60.0))
       .example(R"({"id": "closed", "do": "autorotate", "object": "rest", "against": "advanced",
         "condyles": [[-50, -5, -15], [50, -5, -15]]})")
+      .motion()
       .check(check)
       .settle(settle)
       .object(definition, moved_voxels<Autorotate>, moved_triangles<Autorotate>, bound);

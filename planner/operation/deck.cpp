@@ -32,9 +32,10 @@ std::vector<std::string> region_names(const Deck& deck) {
 void check_held(const Deck& deck, const Place& place) {
   if (place.scope != nullptr)
     for (const ObjectName& moved : deck.moved)
-      if (const Operation& maker = place.scope->maker_of(moved.name); maker.name != "move")
-        place.at("moved").refuse("'" + moved.name + "' is a " + maker.name +
-                                 " step: name the result of a move step, or list it as fixed");
+      if (const Operation& maker = place.scope->maker_of(moved.name); !maker.is_motion)
+        place.at("moved").refuse("'" + moved.name + "' was made by '" + maker.name +
+                                 "', which moves nothing: name the result of a step that moves an object, or "
+                                 "list it as fixed");
   if ((deck.element_mm || deck.material) && !deck.is_held())
     place.refuse("'element_mm' and 'material' are of an object that others hold: add 'moved' or 'fixed'");
 }

@@ -182,10 +182,10 @@ void check(const Move& move, const Place& place) {
           .refuse("is wanted in two places: keep 'to', or the millimetres");
   }
   if (move.with && place.scope != nullptr) {
-    const std::string maker = place.scope->maker_of(move.with->name).name;
-    if (maker != "move" && maker != "register" && maker != "autorotate")
-      place.at("with").refuse("'" + move.with->name + "' is a " + maker +
-                              " step, which moves nothing: name a move or register step");
+    const Operation& maker = place.scope->maker_of(move.with->name);
+    if (!maker.is_motion)
+      place.at("with").refuse("'" + move.with->name + "' was made by '" + maker.name +
+                              "', which moves nothing: name the result of a step that moves an object");
     return;
   }
   // What depends on earlier steps' motions is known once those are.
@@ -351,6 +351,7 @@ Operation move_operation() {
       .takes(field("with", &Move::with, "The motion of this earlier move or register step."))
       .example(R"({"id": "advanced", "do": "move", "object": "maxilla", "translate_mm": [0, -6, 2],
         "rotate": {"degrees": 5, "axis": [1, 0, 0], "about_mm": [0, -40, -30]}})")
+      .motion()
       .of_head()
       .check(check)
       .object(definition, voxels, triangles, bound);

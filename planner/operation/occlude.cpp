@@ -192,6 +192,7 @@ Operation occlude_operation() {
                  .to(200.0))
       .example(R"({"id": "seated", "do": "occlude", "object": "rest", "against": "advanced",
         "places": [[-25, -40, -58], [25, -40, -58], [0, -80, -58]]})")
+      .motion()
       .of_head()
       .check(check)
       .settle(settle)

@@ -251,6 +251,7 @@ Operation register_operation() {
       .verb_takes(field("out", &Register::out, "A moved to B: a .stl, .ply, .obj, .off, .vtp or .glb file."))
       .example(R"({"id": "laid", "do": "register", "object": "maxilla", "onto": "skull", "overlap": 0.9})")
       .on_files("octotomy register before.stl after.stl -o moved.stl --json", on_files)
+      .motion()
       .check(check)
       .settle(settle)
       .object(definition, voxels, triangles, bound);

@@ -167,7 +167,24 @@ Step step_of(const SortedJson& value, std::size_t index, Scope& scope) {
   return step;
 }
 
-/// The schema of one operation's step.
+const char* word(Makes makes) {
+  switch (makes) {
+    case Makes::Object:
+      return "object";
+    case Makes::Scan:
+      return "scan";
+    case Makes::Measurement:
+      return "measurement";
+    case Makes::File:
+      return "file";
+    case Makes::Names:
+      return "names";
+  }
+  return "";
+}
+
+/// The schema of one operation's step. `x-makes` says what it leaves behind; a tool is an object that only
+/// helps to make others. `x-moves` names the field whose object it moves rigidly.
 Json step_schema(const Operation& operation) {
   Json schema{{"title", operation.name}, {"description", operation.says}};
   schema.update(fields_schema(operation.fields, operation.fresh().get()));
@@ -179,6 +196,8 @@ Json step_schema(const Operation& operation) {
   for (const Json& name : schema.value("required", Json::array())) required.push_back(name);
   schema["required"] = required;
   schema["examples"] = Json::array({Json::parse(operation.example)});
+  schema["x-makes"] = operation.is_tool ? "tool" : word(operation.makes);
+  if (operation.is_motion) schema["x-moves"] = "object";
   return schema;
 }
 
@@ -268,7 +287,7 @@ Json plan_schema() {
   }
   return {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
           {"title", "Octotomy plan"},
-          {"description", "Json steps on scans. Lengths are in mm, angles in degrees, coordinates LPS."},
+          {"description", "Ordered steps on scans. Lengths are in mm, angles in degrees, coordinates LPS."},
           {"type", "object"},
           {"properties",
            {{"octotomy_plan", {{"const", plan_version}}},

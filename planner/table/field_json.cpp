@@ -298,7 +298,9 @@ struct Schema {
   }
   Json operator()(const std::filesystem::path*) const { return {{"type", "string"}, {"minLength", 1}}; }
   Json operator()(const glm::dvec3*) const { return vector_schema; }
-  Json operator()(const ObjectName*) const { return {{"type", "string"}, {"minLength", 1}}; }
+  Json operator()(const ObjectName*) const {
+    return {{"type", "string"}, {"minLength", 1}, {"x-names", "object"}};
+  }
   Json operator()(const ScanName*) const { return {{"type", "string"}, {"minLength", 1}}; }
   Json operator()(const SampleWindow*) const { return {{"type", "string"}, {"minLength", 1}}; }
   Json operator()(const Site*) const {

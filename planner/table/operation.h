@@ -70,6 +70,8 @@ struct Operation {
   bool reads_scans = false;
   /// An object that only helps to make others, as a mask: it has no certificate of its own.
   bool is_tool = false;
+  /// Its object is the one that its field `object` names, under a rigid motion (Object::moved).
+  bool is_motion = false;
   /// Its answer depends on how the head is held: on views or on words as "forward".
   bool is_of_head = false;
 };
@@ -100,6 +102,7 @@ class Describe {
   Describe&& reads_scans() && { return entry_.reads_scans = true, std::move(*this); }
   Describe&& of_head() && { return entry_.is_of_head = true, std::move(*this); }
   Describe&& tool() && { return entry_.is_tool = true, std::move(*this); }
+  Describe&& motion() && { return entry_.is_motion = true, std::move(*this); }
   Describe&& check(void (*part)(const Value&, const Place&)) && { return bind(entry_.check, part); }
   using Definition = std::string (*)(const Value&, const Objects&);
   using Voxels = void (*)(const Value&, const VoxelBench&, VoxelSide&);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What a pane asks the server to draw, and what its pictures depend on besides.
-import {drawn_objects, is_overlap, makes_shape} from "../drawn_objects";
+import {drawn_objects, is_overlap} from "../drawn_objects";
+import {makes_shape} from "../operations";
 import type {Pane} from "./panes";
 import {PaneRequest} from "../protocol";
 import {is_elsewhere, PaneSetting, shown_scan, state, step_of, steps} from "../state";

@@ -3,7 +3,8 @@
 // how far each piece and landmark moves.
 import {add_step, replace_step} from "../actions";
 import {badge, measured_text} from "./certificate_badge";
-import {is_piece, makes_shape} from "../drawn_objects";
+import {is_piece} from "../drawn_objects";
+import {makes_shape} from "../operations";
 import {button, Child, el, fill, fill_tabs} from "../base/html";
 import {icon, is_icon} from "../base/icons";
 import {movement_fields} from "./move_fields";

@@ -2,8 +2,9 @@
 // How far each piece and landmark moves, in words.
 import {try_to} from "../actions";
 import {Child, el} from "../base/html";
+import {moves_object} from "../operations";
 import {Json} from "../protocol";
-import {set, state, steps} from "../state";
+import {on_leaving_plan, set, state, steps} from "../state";
 
 interface MovementRow {
   name?: string;
@@ -12,13 +13,17 @@ interface MovementRow {
 }
 const movements = new Map<string, MovementRow[]>();
 let fetched_edit = -1;
+on_leaving_plan(() => {
+  movements.clear();
+  fetched_edit = -1;
+});
 
 export async function fetch_movement(): Promise<void> {
   const plan = state.plan;
   if (!plan || state.right_tab !== "movement" || fetched_edit === plan.edit) return;
   fetched_edit = plan.edit;
   movements.clear();
-  for (const step of steps().filter((one) => ["move", "register", "autorotate"].includes(one.do))) {
+  for (const step of steps().filter((one) => moves_object(one))) {
     const answer = await try_to<{rows: MovementRow[]}>("movement", {object: step.id});
     if (answer) movements.set(step.id, answer.rows ?? []);
   }

@@ -2,28 +2,11 @@
 // Forms for the plan's steps, made from the JSON schema: fields with their units, ranges, defaults and
 // sentences.
 import {object_ids} from "../drawn_objects";
+import {schema_of} from "../operations";
 import {button, Child, el} from "../base/html";
 import {Json, Schema, Step} from "../protocol";
 import {state} from "../state";
 
-/// The schema of a step's operation; of an export the one for its path.
-export function schema_of(step: Step): Schema|undefined {
-  const all = operations();
-  if (step.do !== "export") return all.find((one) => one.properties?.do?.const === step.do);
-  const path = String(step.path ?? "");
-  const as = /\.(inp|feb|vtu|msh|node)$/.test(path) ? "deck" :
-      /\.(stl|ply|obj|off|vtp|glb|vtk)$/.test(path) ? "surface" :
-                                                      "label_map";
-  return all.find((one) => one.title === `export, as ${as}`);
-}
-
-/// The schemas of all operations.
-export function operations(): Schema[] {
-  const items = state.hello?.schema.properties?.steps?.items;
-  return items && "anyOf" in items ? items.anyOf : [];
-}
-
-const object_fields = new Set(["object", "onto", "against", "to", "a", "b", "with"]);
 const label_of = (field: string): string => field.replace(/_(mm|deg|mm2|mm3)$/, "").replace(/_/g, " ");
 
 /// A form for a step's fields; `changed` gets the whole step anew. `elsewhere` are fields that stand in
@@ -107,7 +90,7 @@ function input_for(
       placeholder: about.default === undefined ? "" : String(about.default),
       onchange: (e: Event) => set_value(on_text(e) === "" ? undefined : Number(on_text(e))),
     });
-  if (about.type === "string" && object_fields.has(field))
+  if (about["x-names"] === "object")
     return choice(shared, object_ids(), value, set_value);
   if (about.type === "string" && field === "scan")
     return choice(shared, state.plan?.scans.map((scan) => scan.name) ?? [], value, set_value);
@@ -185,7 +168,7 @@ export function new_step(schema: Schema, id: string): Step {
     if (field === "id" || field === "do") continue;
     if (field === "scan")
       step[field] = state.plan?.scans[0]?.name ?? "ct";
-    else if (object_fields.has(field))
+    else if (schema.properties?.[field]?.["x-names"] === "object")
       step[field] = (state.selected && objects.includes(state.selected) ? state.selected :
                                                                           objects[objects.length - 1]) ??
           "";

@@ -4,7 +4,7 @@ import {try_to} from "../actions";
 import {button, Child, el} from "../base/html";
 import {ink, label} from "../base/ink";
 import {Vec2} from "../base/vector";
-import {makes_shape, operands} from "../drawn_objects";
+import {makes_shape, operands} from "../operations";
 import {is_drawn} from "../pane/overlay";
 import type {Pane} from "../pane/panes";
 import {LandmarkGuess, Step} from "../protocol";

@@ -2,7 +2,8 @@
 // The piece that moves: which one it is, how it moves now, a motion tried, and one kept as a step.
 import {add_steps, free_id, replace_step} from "../actions";
 import {directions, lps, motion_words} from "../base/anatomical";
-import {is_overlap, look_of, makes_shape} from "../drawn_objects";
+import {is_overlap, look_of} from "../drawn_objects";
+import {makes_shape} from "../operations";
 import {mark_mm} from "../pane/overlay";
 import {Json, Motion, Step} from "../protocol";
 import {selected_step, set, state, steps} from "../state";

@@ -2,7 +2,8 @@
 // Regions: polygons drawn in a view or on a slice, whose back-projections enclose a mask. Click adds a
 // corner, Enter or the first corner closes; corners are dragged, Delete takes one away.
 import {add_step, add_steps, edit, free_id, replace_step} from "../actions";
-import {look_of, makes_shape, operands} from "../drawn_objects";
+import {look_of} from "../drawn_objects";
+import {makes_shape, operands} from "../operations";
 import {button, el} from "../base/html";
 import {dot_at, ink, line, text} from "../base/ink";
 import {is_of_panes, region_view, regions_of, uv_pixel} from "../pane/overlay";

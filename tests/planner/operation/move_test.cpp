@@ -102,7 +102,7 @@ TEST_F(MoveStep, RefusalsPointAtThePlace) {
   says(R"(, "from": "front@none", "to": "rear")", "no earlier step is called 'none'");
   says(R"(, "by": {"forward_mm": 1}, "along": ["front", "rear", [0, 0, 0]])", "on one line");
   says(R"(, "translate_mm": [1, 0, 0], "along": ["front", "rear", "left"])", "along: says along which plane");
-  says(R"(, "with": "ball")", "with: 'ball' is a window step");
+  says(R"(, "with": "ball")", "with: 'ball' was made by 'window'");
   says(R"(, "with": "ball", "translate_mm": [1, 0, 0])", "stand alone");
   says(R"(, "rotate": {"degrees": 3})", "rotate: 'axis' is missing");
   says(R"(, "rotate": {"degrees": 3, "axis": [1, 0, 0]}, "turn": {"about_mm": "rear"})", "twice");
