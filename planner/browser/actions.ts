@@ -2,7 +2,7 @@
 // What a person does to the plan: each is a request to the server, whose answer is the plan's new state.
 import {objects_of_plan} from "./drawn_objects";
 import {Hello, Measured, Measurement, PlanState, Step} from "./protocol";
-import {first_scan, kept_view, notify, PaneSetting, set, State, state, steps, usual_panes} from "./state";
+import {first_scan, kept_view, leave_plan, notify, PaneSetting, set, State, state, steps, usual_panes} from "./state";
 import {add, scaled, Vec3} from "./base/vector";
 import {Refusal, Wire} from "./wire";
 
@@ -42,33 +42,24 @@ export const first_greeting = (): Promise<void> => state.hello ? Promise.resolve
 /// Takes a plan's state; the first of a plan also takes how this browser last looked at it, or fits the
 /// panes.
 export function take_plan(plan: PlanState|null): void {
-  if (!plan) return set({plan: null, page: "start"});
+  if (!plan) {
+    leave_plan();
+    return set({plan: null, page: "start"});
+  }
   const is_new = plan.path !== state.plan?.path || state.page === "start";
   if (!is_new)
     return set({
       plan: {...plan, measurements: plan.measurements ?? known_measurements(plan)},
       jobs: plan.jobs ?? state.jobs
     });
+  leave_plan();
   const kept = kept_view(plan.path);
-  const before: Partial<State> = kept ? {...kept, panes: with_usual(kept.panes)} : {
-    ...fitted(plan),
-    looks: {},
-    selected: null,
-    cut_plane: null,
-    compare: null,
-    arch_mm: [],
-    maximised: null,
-  };
+  const before: Partial<State> = kept ? {...kept, panes: with_usual(kept.panes)} : fitted(plan);
   const needs_audit = kept ? kept.page === "audit" : plan.plan.steps.length <= 1 && plan.history.length <= 1;
   set({
     ...before,
     plan,
-    scan: null,
     page: needs_audit ? "audit" : "plan",
-    preview: null,
-    overlap_mm3: null,
-    marked: null,
-    guesses: [],
     jobs: plan.jobs ?? []
   });
   void evaluate();

@@ -157,6 +157,33 @@ export function watch(keys: Key[], call: () => void): void {
   watchers.push({keys: new Set(keys), call});
 }
 
+const plan_leavers: (() => void)[] = [];
+/// Calls back when the window leaves a plan, so that no part of the page carries a value of one patient into
+/// the next plan.
+export function on_leaving_plan(call: () => void): void {
+  plan_leavers.push(call);
+}
+/// Empties everything in this window that belongs to the plan shown so far, the tool in hand included.
+export function leave_plan(): void {
+  for (const call of plan_leavers) call();
+  set({
+    looks: {},
+    selected: null,
+    draft_window: null,
+    draft_step: null,
+    preview: null,
+    overlap_mm3: null,
+    compare: null,
+    cut_plane: null,
+    arch_mm: [],
+    marked: null,
+    guesses: [],
+    scan: null,
+    maximised: null,
+    pointer: ""
+  });
+}
+
 // How a window looks at a plan is kept in the browser, by the plan's path; the plan itself is the server's.
 const kept: Key[] = [
   "page",

@@ -8,11 +8,14 @@ import {open_picker} from "./files";
 import {button, Child, el} from "../base/html";
 import {ask_for_landmarks} from "../tool/point_tools";
 import {ProcedureSays} from "../protocol";
-import {set, state} from "../state";
+import {on_leaving_plan, set, state} from "../state";
 import {Vec3} from "../base/vector";
 
 const values: {[name: string]: number} = {};
 let pending_procedure: string|null = null;
+on_leaving_plan(() => {
+  pending_procedure = null;
+});
 
 /// Chooses a procedure, has its landmarks placed, takes its values and adds its steps.
 export function open_procedure(name?: string): void {
@@ -84,11 +87,7 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays): Child {
                                 Number((event.target as HTMLInputElement).value);
                           }
                         }),
-                        el("i", {},
-                           one.unit ??
-                               (one.name.endsWith("_mm")      ? "mm" :
-                                    one.name.endsWith("_deg") ? "°" :
-                                                                ""))))),
+                        el("i", {}, one.unit)))),
           el("div", {class: "row end"},
              button(
                  "Plan it", "Adds the procedure's steps to the plan", () => void perform(),

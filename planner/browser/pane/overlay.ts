@@ -122,7 +122,9 @@ const is_near = (pane: Pane, p_mm: Vec3): boolean => !pane.is_slice ||
 const is_handled = (): boolean => state.tool === "move";
 
 const measured_words = (found: Measurement): string =>
-    found.unit === "deg" ? `${found.value.toFixed(1)}°` : `${found.value.toFixed(2)} ${found.unit}`;
+    found.value === null   ? "–" :
+    found.unit === "deg" ? `${found.value.toFixed(1)}°` :
+                             `${found.value.toFixed(2)} ${found.unit}`;
 
 function draw_measures(pane: Pane, context: CanvasRenderingContext2D): void {
   const drawn: {step: Step; at: Vec2[]}[] = [];

@@ -6,7 +6,7 @@ import {button, Child, el, fill} from "../base/html";
 import {icon} from "../base/icons";
 import {change_pane, Pane} from "./panes";
 import {FrameHeader} from "../protocol";
-import {first_scan, PaneSetting, set, shown_scan, State, state, watch} from "../state";
+import {first_scan, on_leaving_plan, PaneSetting, set, shown_scan, State, state, watch} from "../state";
 import {active_tool} from "../tool/tool";
 import {Vec2, Vec3} from "../base/vector";
 import {plane_names, PlaneName, turned, view_names, ViewName} from "../base/view_frame";
@@ -102,6 +102,7 @@ export function fit_all(): void {
 }
 
 const left_at = new Map<string, Pick<State, "panes"|"cross_mm"|"grey">>();
+on_leaving_plan(() => left_at.clear());
 /// Shows a scan of the plan in all panes, as it was looked at last; null: the patient's.
 export function show_scan(name: string|null): void {
   const before = shown_scan();

@@ -200,6 +200,13 @@ export class Pane {
         point_of(header.view_frame, [header.width, header.height], [pixel.x + 0.5, pixel.y + 0.5], depth);
     return {point, object: number ? header.objects?.[number - 1] ?? null : null};
   }
+  /// Whether a position of a picture at rest lies beside all surfaces. A picture without depth, as a
+  /// radiograph, has no such place.
+  is_beside(at: Vec2): boolean {
+    const {header, planes} = this.picture ?? {};
+    if (this.is_slice || !header || header.quality !== "rest" || !planes?.depth) return false;
+    return Number.isNaN(planes.depth[this.picture_pixel(header, at).index] ?? Number.NaN);
+  }
   private picture_pixel(header: FrameHeader, at: Vec2): {x: number; y: number; index: number} {
     const x = Math.floor((at[0] * header.width) / this.canvas.width);
     const y = Math.floor((at[1] * header.height) / this.canvas.height);

@@ -47,7 +47,7 @@ export function badge(id: string, certificate: Certificate|null|undefined): Chil
 
 /// "56 764 ± 310 mm³", grouped and with as many digits as the half-width leaves.
 export function measured_text(measured: Measured|null|undefined): string {
-  if (!measured || !Number.isFinite(measured.value)) return "–";
+  if (!measured || measured.value === null || !Number.isFinite(measured.value)) return "–";
   const unit = measured.unit.replace("mm3", "mm³").replace("mm2", "mm²").replace("deg", "°");
   const half = measured.half_width ?? null;
   const is_length = unit === "mm" || unit === "°";

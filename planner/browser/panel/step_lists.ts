@@ -4,12 +4,13 @@ import {change_history, try_to} from "../actions";
 import {motion_words} from "../base/anatomical";
 import {badge} from "./certificate_badge";
 import {copy_command, name_version, new_branch, remove_step} from "../commands";
-import {look_of, makes_shape, object_ids} from "../drawn_objects";
+import {look_of, object_ids} from "../drawn_objects";
+import {makes_shape} from "../operations";
 import {button, Child, el, fill, fill_tabs} from "../base/html";
 import {icon} from "../base/icons";
 import {show_scan} from "../pane/pane_grid";
 import {Json, Motion, ObjectState, Step} from "../protocol";
-import {ObjectLook, set, shown_scan, state, steps, watch} from "../state";
+import {ObjectLook, on_leaving_plan, set, shown_scan, state, steps, watch} from "../state";
 
 const object_of = (id: string): ObjectState|undefined =>
     state.plan?.objects.find((object) => object.id === id);
@@ -198,6 +199,9 @@ function step_menu(step: Step): Child {
 }
 
 let diff_rows: {from: number; rows: string[]}|null = null;
+on_leaving_plan(() => {
+  diff_rows = null;
+});
 
 function history(): Child {
   const plan = state.plan;

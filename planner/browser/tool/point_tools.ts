@@ -38,6 +38,13 @@ function landmark_at(pane: Pane, at: Vec2): {name: string; point: Vec3}|undefine
     return Math.hypot(p[0] - at[0], p[1] - at[1]) < near_px * pane.ratio;
   });
 }
+/// The place under the pointer. A view shows no depth beside its surfaces: nothing is placed there, and the
+/// person is told.
+function place_at(pane: Pane, at: Vec2): Vec3|null {
+  if (!pane.is_beside(at)) return hundredths(pane.point_at(at));
+  notify("No surface lies there, so the point has no depth: click on an object, or in a slice.", "warning");
+  return null;
+}
 /// Points of slices stay where they are clicked; a donor's surface is no object of the plan.
 const snaps = (pane: Pane): boolean => is_snapping && !pane.is_slice && !is_elsewhere();
 
@@ -52,7 +59,9 @@ function point_tool(
     cursor: "crosshair",
     is_pointed: true,
     down({pane, at}) {
-      taken.push(landmark_at(pane, at)?.point ?? hundredths(pane.point_at(at)));
+      const point = landmark_at(pane, at)?.point ?? place_at(pane, at);
+      if (!point) return true;
+      taken.push(point);
       pointed = null;
       if (taken.length === count) {
         const points = taken;
@@ -189,14 +198,15 @@ export const landmark_tool: Tool = {
       held = {...known};
       return true;
     }
-    const point = hundredths(pane.point_at(at));
+    const point = place_at(pane, at);
+    if (!point) return true;
     const name =
         landmark_name.trim().replace(/\s+/g, "_") || `point_${(state.plan?.landmarks.length ?? 0) + 1}`;
     void place(name, point, snaps(pane));
     return true;
   },
   move({pane, at}) {
-    if (!held) return;
+    if (!held || pane.is_beside(at)) return;
     held.point = hundredths(pane.point_at(at));
     pane.redraw();
   },
@@ -259,6 +269,7 @@ export const landmark_tool: Tool = {
   left() {
     procedure_wants = [];
     held = null;
+    landmark_name = "";
   },
 };
 
@@ -271,7 +282,8 @@ export const segment_tool: Tool = {
   cursor: "crosshair",
   is_pointed: true,
   down({pane, at}) {
-    const seed = hundredths(pane.point_at(at));
+    const seed = place_at(pane, at);
+    if (!seed) return true;
     const base = [selected_step(), ...(state.plan?.plan.steps ?? [])].find((step) => step?.do === "window");
     const window_text =
         base ? `${String(base.low)}:${base.high === undefined ? "" : String(base.high)}` : "bone";

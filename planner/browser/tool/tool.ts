@@ -3,7 +3,7 @@
 // own navigation takes.
 import type {Child} from "../base/html";
 import type {Pane} from "../pane/panes";
-import {set, state} from "../state";
+import {on_leaving_plan, set, state} from "../state";
 import {Vec2} from "../base/vector";
 
 export interface Pointer {
@@ -44,3 +44,9 @@ export function take_tool(name: string): void {
   set({tool: name});
   active_tool()?.taken?.();
 }
+
+// A tool's draft belongs to the plan that it was begun on.
+on_leaving_plan(() => {
+  active_tool()?.left?.();
+  set({tool: "navigate"});
+});
