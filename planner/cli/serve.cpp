@@ -3,10 +3,13 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <unistd.h>
 
 #include "planner/cli/verbs.h"
+#include "planner/plan/dependence.h"
+#include "planner/plan/plan.h"
 #include "planner/serve/folders.h"
 #include "planner/serve/gate.h"
 #include "planner/serve/server.h"
@@ -26,10 +29,15 @@ struct ServeText {
   bool open = false;
 };
 
-/// Starts the desktop's browser; nothing is said where there is none.
-void open_browser(const std::string& url) {
+/// Starts the desktop's browser; nothing is said where there is none. Every user of the machine can read the
+/// arguments of a process, and the URL holds the token: a page in a folder closed to others leads there.
+void open_browser(const std::string& url, const fs::path& closed_folder) {
+  const fs::path page = closed_folder / "planner.html";
+  std::ofstream(page) << "<!doctype html><meta charset=utf-8><meta name=referrer content=no-referrer>"
+                         "<meta http-equiv=refresh content='0;url="
+                      << url << "'>\n";
   if (::fork() != 0) return;
-  ::execlp("xdg-open", "xdg-open", url.c_str(), nullptr);
+  ::execlp("xdg-open", "xdg-open", page.c_str(), nullptr);
   ::_exit(1);
 }
 
@@ -42,6 +50,13 @@ std::optional<fs::path> beginning_of(const std::vector<fs::path>& paths) {
     beginning = fs::canonical(path);
   }
   return beginning;
+}
+
+/// A plan that was named on the command line reads its own scans and files, wherever they lie.
+void allow_reading_of(const Plan& plan, serve::Folders& folders) {
+  for (const auto& [name, scan] : plan.scans) folders.allow_reading(scan_path(plan, scan));
+  for (const Step& step : plan.steps)
+    for (const fs::path& file : files_read(step)) folders.allow_reading(plan.folder / file);
 }
 
 /// Ends the program after the server: every edit is on the disk, and work that is under way is nobody's any
@@ -61,6 +76,7 @@ int run(Program& program, ServeText& text) {
   // All that can be refused comes before a plan is written.
   const std::optional<fs::path> beginning = beginning_of(text.paths);
   text.options.token = text.token_file.empty() ? serve::new_token() : serve::token_in(text.token_file);
+  std::optional<voxel::UnfinishedFolder> closed_folder;
   text.options.ready = [&](const std::string& url) {
     Json json = answer({});
     json.erase("timings_ms");
@@ -68,7 +84,8 @@ int run(Program& program, ServeText& text) {
     const std::string line = program.json ? json_text(json) + "\n" : "Open " + url + "\nCtrl-C ends it.\n";
     std::fputs(line.c_str(), stdout);
     std::fflush(stdout);
-    if (text.open) open_browser(url);
+    if (text.open)
+      open_browser(url, closed_folder.emplace(fs::temp_directory_path(), ".octotomy-open-").path());
   };
   serve::Server server(text.options);
   if (text.options.address != "127.0.0.1" && text.options.address != "::1")
@@ -76,6 +93,7 @@ int run(Program& program, ServeText& text) {
          ": others on the network reach this server, and read what they send and get: nothing is encrypted");
   serve::Desk desk(fs::current_path());
   for (const fs::path& path : text.paths) desk.folders.open(path);
+  if (beginning && serve::is_plan(*beginning)) allow_reading_of(read_plan(*beginning), desk.folders);
   if (beginning) desk.open(*beginning, {program.stop.get_token(), program.progress()});
   serve::Service service(desk, line_of);
   server.run(service, desk, program.stop.get_token());

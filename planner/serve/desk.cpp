@@ -24,10 +24,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t most_answers = 512;
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
 
-bool is_plan(const fs::path& path) {
-  return path.extension() == ".json";
-}
-
 bool makes_object(const Step& step) {
   return step.action.operation().makes == Makes::Object;
 }
@@ -107,6 +103,10 @@ std::vector<std::string> steps_without(const Plan& plan, const std::vector<std::
 
 }  // namespace
 
+bool is_plan(const fs::path& path) {
+  return path.extension() == ".json";
+}
+
 Desk::Desk(fs::path working_folder)
     : cache(most_answers, most_bytes), working_folder_(std::move(working_folder)) {
   folders.open(working_folder_);
@@ -119,7 +119,6 @@ void Desk::open(const fs::path& path, const Watched& watched) {
   const fs::path plan = is_plan(path) ? path : plan_of_scan(path, working_folder_, progress);
   auto document = std::make_unique<Document>(plan, folders);
   folders.open(plan);
-  for (const auto& [name, scan] : document->plan()->scans) folders.open(scan_path(*document->plan(), scan));
   {
     const std::lock_guard lock(mutex_);
     document_ = std::move(document);

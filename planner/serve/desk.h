@@ -36,6 +36,9 @@ struct Snapshot {
   Json measurements = Json::array();          ///< of the plan's steps that measure
 };
 
+/// Whether a path is a plan's, by its name; any other is taken for a scan's.
+bool is_plan(const std::filesystem::path& path);
+
 /// The one plan that all windows work on, its objects and its files. All members may be called from any
 /// thread.
 class Desk {

@@ -61,7 +61,14 @@ void need_landmarks_within(const Json& plan, const std::filesystem::path& folder
   for (const Json& step : *steps)
     if (step.is_object() && step.value("do", Json()) == "landmarks" && step.contains("file") &&
         step["file"].is_string())
-      folders.need_within(folder / step["file"].get<std::string>());
+      folders.need_readable(folder / step["file"].get<std::string>());
+}
+
+/// Refuses a plan that reads what the page may not: its path is no permission.
+void need_readable_files(const Plan& plan, const Folders& folders) {
+  for (const auto& [name, scan] : plan.scans) folders.need_readable(scan_path(plan, scan));
+  for (const Step& step : plan.steps)
+    for (const std::filesystem::path& file : files_read(step)) folders.need_readable(plan.folder / file);
 }
 
 /// Refuses names that are new and that no list could show; those of the plan stay as they are.
@@ -83,7 +90,9 @@ void need_short_names(const std::vector<NamedPoint>& landmarks, const std::vecto
 
 Document::Document(const std::filesystem::path& path, const Folders& folders)
     : path_(path), folders_(folders) {
-  read_plan(path_);  // refuses what is no plan before a history is begun
+  // What is no plan, and what reads a file that it may not, is refused before a history is begun.
+  need_landmarks_within(Json(read_json(path_)), path_.parent_path(), folders_);
+  need_readable_files(read_plan(path_), folders_);
   history_ = std::make_unique<PlanHistory>(path_);
   read_again();
 }
@@ -97,9 +106,7 @@ void Document::read_again() {
 Plan Document::parsed(const Json& json) const {
   need_landmarks_within(json, path_.parent_path(), folders_);
   Plan plan = parse_plan(json_text(json, 2) + "\n", path_.parent_path());
-  for (const auto& [name, scan] : plan.scans) folders_.need_within(scan_path(plan, scan));
-  for (const Step& step : plan.steps)
-    for (const std::filesystem::path& file : files_read(step)) folders_.need_within(plan.folder / file);
+  need_readable_files(plan, folders_);
   return plan;
 }
 

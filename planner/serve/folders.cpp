@@ -76,6 +76,20 @@ fs::path first_free(const fs::path& path, const Test& is_free) {
   return tried;
 }
 
+/// The path without links, made absolute against the first of `places`. Throws where it is in none of them.
+fs::path need_below(const std::vector<fs::path>& places, const fs::path& path) {
+  if (path.native().find('\0') == std::string::npos && path.native().size() < 4096 && !places.empty()) {
+    const std::optional<fs::path> real = reached(places.front() / path);
+    for (const fs::path& place : places)
+      if (real && holds(place, *real)) return *real;
+  }
+  std::string shown = path.string();
+  std::erase(shown, '\0');
+  throw voxel::Error(
+      voxel::ErrorCode::Input,
+      shown + ": lies in no folder that is open; start the server with it: octotomy serve PATH");
+}
+
 }  // namespace
 
 void Folders::open(const fs::path& path) {
@@ -92,18 +106,21 @@ std::vector<fs::path> Folders::opened() const {
   return opened_;
 }
 
+void Folders::allow_reading(const fs::path& path) {
+  const std::lock_guard lock(mutex_);
+  readable_.push_back(fs::weakly_canonical(fs::absolute(path)));
+}
+
 fs::path Folders::need_within(const fs::path& path) const {
   const std::lock_guard lock(mutex_);
-  if (path.native().find('\0') == std::string::npos && path.native().size() < 4096 && !opened_.empty()) {
-    const std::optional<fs::path> real = reached(opened_.front() / path);
-    for (const fs::path& folder : opened_)
-      if (real && holds(folder, *real)) return *real;
-  }
-  std::string shown = path.string();
-  std::erase(shown, '\0');
-  throw voxel::Error(
-      voxel::ErrorCode::Input,
-      shown + ": lies in no folder that is open; start the server with it: octotomy serve PATH");
+  return need_below(opened_, path);
+}
+
+fs::path Folders::need_readable(const fs::path& path) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<fs::path> places = opened_;
+  places.insert(places.end(), readable_.begin(), readable_.end());
+  return need_below(places, path);
 }
 
 fs::path need_plain_name(const std::string& name) {

@@ -14,14 +14,18 @@ class Folders {
   /// Opens a folder, or the folder of a file. A folder within an open one is open already.
   void open(const std::filesystem::path& path);
   std::vector<std::filesystem::path> opened() const;
+  /// Lets plans read a file, or what lies in a folder, without opening its folder to the page.
+  void allow_reading(const std::filesystem::path& path);
 
   /// The path without links, made absolute against the first folder. Throws voxel::Error, Input, where it is
   /// in none of the folders, or its links lead in a circle.
   std::filesystem::path need_within(const std::filesystem::path& path) const;
+  /// The same of a path that a plan reads, which may also be one that allow_reading() has named.
+  std::filesystem::path need_readable(const std::filesystem::path& path) const;
 
  private:
   mutable std::mutex mutex_;
-  std::vector<std::filesystem::path> opened_;
+  std::vector<std::filesystem::path> opened_, readable_;
 };
 
 /// A name that stays below whatever folder it is put in: its parts are no "..", none begins with a dot, and

@@ -46,6 +46,15 @@ TEST_F(FoldersTest, NoWayLeadsOut) {
   EXPECT_THROW(Folders().need_within("a"), voxel::Error);
 }
 
+TEST_F(FoldersTest, WhatAPlanMayReadIsNotOpenToThePage) {
+  folders_.allow_reading(root_ / "shut/b.nrrd");
+  EXPECT_EQ(folders_.need_readable(root_ / "shut/b.nrrd"), root_ / "shut/b.nrrd");
+  EXPECT_EQ(folders_.need_readable("a.nrrd"), root_ / "open/a.nrrd");
+  EXPECT_THROW(folders_.need_readable(root_ / "shut/c.nrrd"), voxel::Error);
+  EXPECT_THROW(folders_.need_within(root_ / "shut/b.nrrd"), voxel::Error);
+  EXPECT_EQ(folders_.opened(), std::vector{root_ / "open"});
+}
+
 TEST_F(FoldersTest, ALinkToNothingIsJudgedByWhatAWriteWouldMake) {
   fs::create_symlink(root_ / "shut/new.json", root_ / "open/out");
   fs::create_symlink("../open/out", root_ / "open/out_twice");
