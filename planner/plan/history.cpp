@@ -172,6 +172,17 @@ class PlanHistory::Database {
     });
     return current_;
   }
+  void need_no_other_writer() {
+    Query state = query("SELECT current, branch, written FROM state");
+    state.next();
+    const std::string again = ": open it again and repeat the change";
+    if (state.number(0) != current_ || state.text(1) != branch_)
+      throw std::runtime_error(plan_.string() + ": another program changed this plan, which is now at edit " +
+                               std::to_string(state.number(0)) + again);
+    const std::string sum = sha256_of(read_text(plan_));
+    if (sum != state.text(2) && sum != sum_of(current_))
+      throw std::runtime_error(plan_.string() + ": another program wrote this file" + again);
+  }
   bool undo() {
     const std::optional<std::int64_t> parent = parent_of(current_);
     if (parent) change([&] { current_ = *parent; });
@@ -413,17 +424,6 @@ class PlanHistory::Database {
     }
     locked([&] { write_file(); });
   }
-  void need_no_other_writer() {
-    Query state = query("SELECT current, branch, written FROM state");
-    state.next();
-    const std::string again = ": open it again and repeat the change";
-    if (state.number(0) != current_ || state.text(1) != branch_)
-      throw std::runtime_error(plan_.string() + ": another program changed this plan, which is now at edit " +
-                               std::to_string(state.number(0)) + again);
-    const std::string sum = sha256_of(read_text(plan_));
-    if (sum != state.text(2) && sum != sum_of(current_))
-      throw std::runtime_error(plan_.string() + ": another program wrote this file" + again);
-  }
   void write_file() {
     const std::string text = text_of(current_), sum = sha256_of(text);
     if (sum == written_ && sha256_of(read_text(plan_)) == sum) return;
@@ -528,6 +528,9 @@ fs::path PlanHistory::path_of(const fs::path& plan) {
 
 std::int64_t PlanHistory::record(const std::string& text, const std::string& what) {
   return database_->record(text, what);
+}
+void PlanHistory::need_no_other_writer() {
+  database_->need_no_other_writer();
 }
 bool PlanHistory::undo() {
   return database_->undo();

@@ -54,6 +54,8 @@ class PlanHistory {
 
   /// Makes a text the current state, after the present one. The same text is no edit.
   std::int64_t record(const std::string& text, const std::string& what);
+  /// Throws where another program has changed the plan's file or its history since.
+  void need_no_other_writer();
   /// The state before the current one becomes current; false where that is the first.
   bool undo();
   /// The state on the current branch that undo() left; false where there is none.

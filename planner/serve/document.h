@@ -38,6 +38,8 @@ class Document {
   void place_landmark(const std::string& name, const Json& point_mm);
   /// Puts a plan in the place of this one, as an edit of that name.
   void record(const Json& json, const std::string& what);
+  /// Throws std::runtime_error where the plan's file is no longer this plan: another program wrote it.
+  void need_saved() { history_->need_no_other_writer(); }
   bool undo();
   bool redo();
   void go_to(const std::string& where);

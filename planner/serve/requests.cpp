@@ -36,7 +36,7 @@ Json procedures_json() {
       json["scans"].push_back({{"name", scan.name}, {"says", scan.says}});
     for (const ProcedureValue& value : procedure.values)
       json["values"].push_back({{"name", value.name},
-                                {"unit", value.name.ends_with("_deg") ? "deg" : "mm"},
+                                {"unit", unit_of_name(value.name)},
                                 {"default", value.preset},
                                 {"says", value.says},
                                 {"low", value.least},
@@ -114,8 +114,12 @@ auto change(const Change& work) {
 }
 
 Json save(Desk& desk, const Json& said, const Watched&) {
-  const auto plan = desk.with_document([](const Document& document) { return document.plan(); });
-  if (!said.contains("path") || said["path"].is_null()) return {{"path", plan->file.string()}};
+  const bool is_own = !said.contains("path") || said["path"].is_null();
+  const auto plan = desk.with_document([&](Document& document) {
+    if (is_own) document.need_saved();
+    return document.plan();
+  });
+  if (is_own) return {{"path", plan->file.string()}};
   const fs::path to = desk.folders.need_within(said["path"].get<std::string>());
   if (to.extension() != ".json")
     throw voxel::Error(voxel::ErrorCode::Input, to.string() + ": a plan's name ends in .plan.json");

@@ -5,7 +5,7 @@
 
 namespace octotomy::planner {
 
-std::string Field::unit() const {
+std::string unit_of_name(const std::string& name) {
   static const std::array<std::pair<const char*, const char*>, 6> endings{{{"_mm", "mm"},
                                                                            {"_mm2", "mm\u00b2"},
                                                                            {"_mm3", "mm\u00b3"},
@@ -14,7 +14,12 @@ std::string Field::unit() const {
                                                                            {"degrees", "\u00b0"}}};
   for (const auto& [ending, unit] : endings)
     if (name.ends_with(ending)) return unit;
+  // Thresholds are in the scan's own samples, and switches have no unit.
   return "";
+}
+
+std::string Field::unit() const {
+  return unit_of_name(name);
 }
 
 }  // namespace octotomy::planner

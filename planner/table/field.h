@@ -61,6 +61,9 @@ using Slot = std::variant<
     std::vector<int>*, std::vector<std::string>*, std::vector<glm::dvec3>*, std::vector<ObjectName>*, Mark*,
     std::optional<Mark>*, std::vector<Mark>*, std::optional<glm::dmat4>*, Polygons*, NamePairs*, Records>;
 
+/// The unit that a name ends in, for people: "mm", "mm³", "°"; empty for what has none.
+std::string unit_of_name(const std::string& name);
+
 /// One field of an operation or of a record within it.
 struct Field {
   std::string name;  ///< as in a plan; a measured value's name ends in its unit: "kerf_mm"
@@ -99,8 +102,7 @@ struct Field {
   Field a_file() && { return is_input = true, std::move(*this); }
   Field called(std::string as) && { return option = std::move(as), std::move(*this); }
 
-  /// The unit that the name ends in, for people: "mm", "mm³", "°"; empty for what has none.
-  std::string unit() const;
+  std::string unit() const;  ///< unit_of_name() of its name
 };
 
 /// A field that holds a value of a type of Slot.

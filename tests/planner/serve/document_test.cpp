@@ -50,6 +50,36 @@ TEST_F(DocumentTest, StepsAreAddedReplacedAndRemoved) {
   EXPECT_EQ(Json::parse(std::ifstream(folder_ / "a.plan.json")), document_->json()) << "the file is the plan";
 }
 
+TEST_F(DocumentTest, APlanThatReadsOutsideOfTheOpenFoldersIsNotOpenedUnlessItMayReadThere) {
+  const auto plan = [&](const std::string& scan, const std::string& steps) {
+    const std::filesystem::path path = folder_ / "elsewhere.plan.json";
+    std::ofstream(path) << R"({"octotomy_plan": 1, "name": "a", "scans": {"ct": {"path": ")" << scan
+                        << R"("}}, "steps": [)" << steps << "]}";
+    return path;
+  };
+  const std::string bone = R"({"id": "bone", "do": "window", "scan": "ct", "low": 300})";
+  EXPECT_THROW(Document(plan("/etc/passwd", bone), folders_), voxel::Error);
+  EXPECT_THROW(Document(plan("a.nrrd", R"({"id": "l", "do": "landmarks", "file": "/etc/passwd"})"), folders_),
+               voxel::Error);
+  EXPECT_FALSE(std::filesystem::exists(PlanHistory::path_of(folder_ / "elsewhere.plan.json")))
+      << "no history was begun";
+  folders_.allow_reading("/etc/passwd");
+  EXPECT_NO_THROW(Document(plan("/etc/passwd", bone), folders_));
+}
+
+TEST_F(DocumentTest, APlanThatAnotherProgramWroteIsNotCalledSaved) {
+  EXPECT_NO_THROW(document_->need_saved());
+  document_->edit({{"add", {{"step", skin_}}}, {"what", "add the skin"}});
+  EXPECT_NO_THROW(document_->need_saved());
+  Json other = document_->json();
+  other["name"] = "b";
+  std::ofstream(folder_ / "a.plan.json") << other.dump();
+  EXPECT_THROW(document_->need_saved(), std::runtime_error);
+  document_ = std::make_unique<Document>(folder_ / "a.plan.json", folders_);
+  EXPECT_NO_THROW(document_->need_saved());
+  EXPECT_EQ(document_->json()["name"], "b") << "opened again, it goes on with what was written";
+}
+
 TEST_F(DocumentTest, WhatIsNoPlanChangesNothing) {
   const std::string before = document_->plan()->text;
   for (const Json& wrong :
