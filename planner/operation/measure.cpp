@@ -149,7 +149,10 @@ Json surface_json(const Measure& asked, const AnswerBench& bench) {
   const Object& object = bench.objects.at(asked.object->name);
   Json json = size_json(asked, bench);
   if (!object.mesh.within || object.mesh.within->empty()) {
-    for (const char* key : {"section", "along", "thickness", "curvature"}) json[key] = nullptr;
+    for (const auto& [key, is_asked] :
+         {std::pair("section", !asked.section.empty()), std::pair("along", !asked.along.empty()),
+          std::pair("thickness", asked.thickness), std::pair("curvature", asked.curvature)})
+      if (is_asked) json[key] = nullptr;
     json["finding"] = "'" + object.id + "' has no mesh, see its findings";
     return json;
   }
