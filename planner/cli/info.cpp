@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
 
-#include "brep/io/read_mesh.h"
 #include "brep/mesh/health.h"
 #include "planner/cli/verbs.h"
+#include "planner/file/mesh_in.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/mesh_options.h"
 #include "planner/verb/octree_out.h"
 #include "planner/verb/scan_in.h"
 
@@ -17,7 +18,7 @@ int info_of_mesh(const Program& program, const std::filesystem::path& path) {
   brep::Triangles triangles;
   {
     const Stopwatch watch(timings, "read");
-    triangles = brep::read_triangles(path);
+    triangles = read_mesh_in(path);
   }
   brep::Health health;
   {
@@ -28,6 +29,9 @@ int info_of_mesh(const Program& program, const std::filesystem::path& path) {
   json["kind"] = "mesh";
   json["source"] = path.string();
   json.update(to_json(health));
+  std::vector<brep::MeshFinding> audit;
+  for (const MeshRecord& mesh : meshes_read()) audit = mesh.audit;
+  json["audit"] = to_json(audit);
   std::string text =
       lines({{"mesh", path.string()},
              {"vertices", grouped(static_cast<double>(health.vertices), 0)},
@@ -40,6 +44,8 @@ int info_of_mesh(const Program& program, const std::filesystem::path& path) {
              {"crossings", std::to_string(health.self_intersections)},
              {"open edges", grouped(static_cast<double>(health.boundary_edges), 0)},
              {"coincident", grouped(static_cast<double>(health.coincident_points), 0) + " points"}});
+  for (const brep::MeshFinding& finding : audit)
+    text += "  " + brep::to_string(finding.verdict) + "  " + finding.check + ": " + finding.detail + "\n";
   for (const std::string& finding : health.findings) text += "  " + finding + "\n";
   program.say(json, text);
   return done;
@@ -93,18 +99,23 @@ int info_of_scan(const Program& program, const std::filesystem::path& path, cons
 void add_info(Program& program) {
   const auto path = std::make_shared<std::filesystem::path>();
   const auto in = std::make_shared<ScanIn>();
+  const auto self = std::make_shared<CLI::App*>(nullptr);
   CLI::App& verb = program.verb(
       "info",
       "What a file is: a scan's geometry, range and audit; an octree's levels; a mesh's counts and health",
-      "octotomy info head.nrrd --json", [&program, path, in] {
+      "octotomy info head.nrrd --json", [&program, path, in, self] {
+        choose_mesh_options(**self);
         if (is_octree(*path)) return info_of_octree(program, *path);
         return is_mesh(*path) ? info_of_mesh(program, *path) : info_of_scan(program, *path, *in);
       });
-  verb.add_option("file", *path,
-                  "A DICOM folder or file, NIfTI, NRRD, MetaImage; .octree; STL, PLY, OBJ, OFF, VTK")
+  verb.add_option(
+          "file", *path,
+          "A DICOM folder or file, NIfTI, NRRD, MetaImage; .octree; STL, PLY, OBJ, OFF, VTK, GLB, 3MF")
       ->required()
       ->check(scan_path());
   add_scan_options(verb, *in);
+  add_mesh_options(verb);
+  *self = &verb;
 }
 
 }  // namespace octotomy::planner::cli

@@ -19,10 +19,12 @@
 #include "planner/measure/result_json.h"
 #include "planner/operation/certify.h"
 #include "planner/operation/trace.h"
+#include "planner/table/field_json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "planner/verb/field_options.h"
+#include "planner/verb/mesh_options.h"
 #include "planner/verb/numbers.h"
 #include "planner/verb/octree_out.h"
 #include "planner/verb/scan_in.h"
@@ -39,6 +41,7 @@ struct OperationText {
   std::optional<double> voxel_mm;
   bool certify = false, mend = false;
   ScanIn scan;
+  CLI::App* verb = nullptr;
 };
 
 /// The fields that the command line has: positionals and options.
@@ -267,20 +270,30 @@ void add_object_options(CLI::App& verb, const Operation& operation, OperationTex
   if (!by_both) certify->group("");  // hidden: it is refused with the reason
 }
 
+/// Whether the command line names objects, which are files of meshes or octrees.
+bool names_files(const Operation& operation, const std::vector<Field>& fields) {
+  const std::shared_ptr<void> fresh = operation.fresh();
+  return std::any_of(fields.begin(), fields.end(),
+                     [&](const Field& field) { return names_objects(field, fresh.get()); });
+}
+
 void add_verb(Program& program, const Operation& operation) {
   const auto text = std::make_shared<OperationText>();
   std::string says = operation.says;
   says.pop_back();
   CLI::App& verb = program.verb(operation.name, says, operation.verb_example, [&program, &operation, text] {
     const Action action = read_action(operation, text->words);
+    choose_mesh_options(*text->verb);
     return operation.on_files ? answer_from_files(program, action, *text)
                               : OperationRun(program, action, *text).run();
   });
+  text->verb = &verb;
   if (!program.is_asked(operation.name)) return;
   const std::vector<Field> fields = fields_of(operation);
   add_field_options(verb, operation, fields, text->words);
   if (!operation.on_files) add_object_options(verb, operation, *text);
   if (operation.reads_scans) add_scan_options(verb, text->scan);
+  if (names_files(operation, fields)) add_mesh_options(verb);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 #include <sys/statvfs.h>
 
+#include "brep/io/read_mesh.h"
 #include "planner/table/control_character.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/space/file_text.h"
@@ -29,7 +30,7 @@ bool has_extension(const fs::path& path, std::initializer_list<const char*> know
 }  // namespace
 
 bool is_mesh(const fs::path& path) {
-  return has_extension(path, {".stl", ".ply", ".obj", ".off", ".vtk", ".vtp"});
+  return brep::is_mesh_file(path);
 }
 
 bool is_octree(const fs::path& path) {

@@ -5,11 +5,11 @@
 #include <tbb/parallel_for.h>
 #include <utility>
 
-#include "brep/io/read_mesh.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/health.h"
 #include "brep/mesh/split_fans.h"
 #include "brep/shape/repair.h"
+#include "planner/file/mesh_in.h"
 #include "planner/table/number_format.h"
 #include "voxel/space/disk_need.h"
 #include "voxel/space/staged_files.h"
@@ -18,7 +18,7 @@ namespace octotomy::planner {
 namespace {
 
 brep::Linked joined(const std::filesystem::path& path, std::vector<std::string>& findings) {
-  brep::Triangles triangles = brep::read_triangles(path);
+  brep::Triangles triangles = read_mesh_in(path);
   try {
     brep::JoinedSurface joined = brep::joined_surface(std::move(triangles));
     for (const std::string& finding : joined.findings)
@@ -33,7 +33,7 @@ brep::Linked joined(const std::filesystem::path& path, std::vector<std::string>&
 
 brep::Solid read_solid(const std::filesystem::path& path, Timings& timings) {
   const Stopwatch watch(timings, "read");
-  const brep::Triangles triangles = brep::read_triangles(path);
+  const brep::Triangles triangles = read_mesh_in(path);
   try {
     return brep::solid_of(triangles);
   } catch (const brep::Error& error) {
@@ -49,7 +49,7 @@ brep::Solid read_mended_solid(const std::filesystem::path& path, Timings& timing
   brep::Health health;
   {
     const Stopwatch watch(timings, "read");
-    triangles = brep::read_triangles(path);
+    triangles = read_mesh_in(path);
     health = brep::health(triangles);
     if (health.solid()) return brep::trusted_solid(triangles, brep::Proof::Health);
   }

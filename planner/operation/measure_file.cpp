@@ -3,13 +3,13 @@
 
 #include <tbb/parallel_invoke.h>
 
-#include "brep/io/read_mesh.h"
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/components.h"
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
 #include "convert/surface/isosurface.h"
 #include "planner/file/mesh_file.h"
+#include "planner/file/mesh_in.h"
 #include "planner/file/octree_in.h"
 #include "planner/measure/recommended.h"
 #include "planner/measure/result_json.h"
@@ -112,7 +112,7 @@ FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked,
   brep::Triangles triangles;
   {
     const Stopwatch watch(timings, "read");
-    triangles = brep::read_triangles(file);
+    triangles = read_mesh_in(file);
   }
   auto watch = std::make_unique<Stopwatch>(timings, "measure");
   const brep::Health health = brep::health(triangles, {false});

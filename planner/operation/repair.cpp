@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brep/io/read_mesh.h"
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/health.h"
 #include "planner/file/mesh_file.h"
+#include "planner/file/mesh_in.h"
 #include "planner/file/outputs.h"
 #include "planner/measure/result_json.h"
 #include "planner/operation/trace.h"
@@ -21,6 +21,7 @@ namespace {
 
 struct Repair {
   std::filesystem::path path, out;
+  std::optional<std::string> frame, unit;
   std::optional<double> weld_mm, longest_hole_mm, cell_mm;
   bool duplicates = false, orient = false, flat = false, holes = false, intersections = false, solid = false,
        hull = false;
@@ -55,7 +56,7 @@ Mended mended(const Repair& repair, const std::filesystem::path& path, const vox
   Mended made;
   {
     const Stopwatch watch(timings, "read");
-    made.read = brep::read_triangles(path);
+    made.read = read_mesh_in(path, {repair.frame, repair.unit});
   }
   const Stopwatch watch(timings, "repair");
   brep::RepairOptions options;
@@ -184,10 +185,16 @@ Operation repair_operation() {
   return Describe<Repair>("repair", "Mends a mesh in the ways asked for and lists each change.",
                           Makes::Object)
       .takes(field("path", &Repair::path,
-                   "A mesh: .stl, .ply, .obj, .off, .vtk or .vtp, relative to the plan's folder.")
+                   std::string("A mesh: ") + brep::mesh_formats_read + ", relative to the plan's folder.")
                  .required()
                  .positional("mesh")
                  .a_file())
+      .takes(field("frame", &Repair::frame,
+                   "Where x, y and z of the file point, whatever it says: LPS, RAS, or three other letters. "
+                   "Default: what the file says, else LPS."))
+      .takes(field("unit", &Repair::unit,
+                   "The file's unit, whatever it says. Default: what the file says, else mm.")
+                 .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
       .takes(field("weld_mm", &Repair::weld_mm,
                    "Points no further apart than this become one; 0 joins equal points.")
                  .from(0.0)

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brep/io/read_mesh.h"
 #include "brep/mesh/components.h"
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
@@ -21,6 +20,7 @@
 #include "planner/file/file_kind.h"
 #include "planner/file/landmarks_file.h"
 #include "planner/file/mesh_file.h"
+#include "planner/file/mesh_in.h"
 #include "planner/file/octree_in.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
@@ -70,7 +70,7 @@ std::vector<convert::Refinement> refinements(const Tet& asked) {
     else if (const std::vector<double> p = comma_numbers(where); p.size() == 3)
       place.points_mm = {{p[0], p[1], p[2]}};
     else if (std::filesystem::exists(where))
-      place.surface = brep::read_triangles(where);
+      place.surface = read_mesh_in(where);
     else
       throw std::runtime_error("--finer: '" + where +
                                "' is no point x,y,z, no mesh file, and no landmark of --landmarks");
@@ -174,7 +174,7 @@ CheckedMesh checked_mesh(const FileBench& bench, const Tet& asked, std::vector<s
         read_mended_solid(asked.file.name, bench.timings, findings, {progress.stop, progress.report}));
   } else {
     const Stopwatch watch(bench.timings, "read");
-    surface.triangles = brep::read_triangles(asked.file.name);
+    surface.triangles = read_mesh_in(asked.file.name);
   }
   if (surface.triangles.faces.empty()) throw std::runtime_error(asked.file.name + ": holds no triangles");
   const Stopwatch watch(bench.timings, "health");

@@ -2,12 +2,12 @@
 // Octrees and label maps of meshes in files; in a plan it is the voxels of import.
 #include "convert/voxel/voxelise.h"
 
-#include "brep/io/read_mesh.h"
 #include "brep/mesh/health.h"
 #include "brep/mesh/split_fans.h"
 #include "convert/voxel/voxelise_partial.h"
 #include "convert/voxel/winding_number.h"
 #include "planner/file/file_kind.h"
+#include "planner/file/mesh_in.h"
 #include "planner/file/octree_in.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
@@ -42,7 +42,7 @@ Subject read_subject(const std::filesystem::path& path, const std::string& digit
   {
     const Stopwatch watch(timings, "read");
     // Welded, as each open edge is a rim that costs.
-    subject.triangles = brep::joined_surface(brep::read_triangles(path)).surface;
+    subject.triangles = brep::joined_surface(read_mesh_in(path)).surface;
   }
   if (subject.triangles.faces.empty()) throw std::runtime_error(path.string() + ": holds no triangles");
   {
@@ -68,6 +68,18 @@ voxel::Box box_of(const std::vector<Subject>& subjects) {
       box.high_mm = glm::max(box.high_mm, p);
     }
   return box;
+}
+
+/// Meshes whose size or place does not suit the universe that they are to be combined in.
+void add_findings_beside(const ObjectName& like, const std::vector<Subject>& subjects, Timings& timings,
+                         std::vector<std::string>& findings) {
+  const voxel::Box all = voxel::bounds(voxel::universe(read_timed(like.name, timings)).lattice());
+  for (const Subject& subject : subjects) {
+    const voxel::Box box = box_of({subject});
+    for (const brep::MeshFinding& finding : brep::findings_beside(
+             {box.low_mm, box.high_mm}, {all.low_mm, all.high_mm}, "the universe of " + like.name))
+      findings.push_back(subject.path.string() + ": " + finding.check + ": " + finding.detail);
+  }
 }
 
 voxel::Universe universe_of(const Voxelise& asked, const std::vector<Subject>& subjects, Timings& timings) {
@@ -181,6 +193,7 @@ FileAnswer on_files(const Voxelise& asked, const FileBench& bench) {
   std::vector<Subject> subjects;
   for (const ObjectName& path : asked.meshes)
     subjects.push_back(read_subject(path.name, asked.digitise, bench.timings, findings));
+  if (asked.like) add_findings_beside(*asked.like, subjects, bench.timings, findings);
   return labels ? write_labels(bench, asked, subjects, findings)
                 : write_octree(bench, asked, subjects.front(), findings);
 }
@@ -190,7 +203,8 @@ FileAnswer on_files(const Voxelise& asked, const FileBench& bench) {
 Operation voxelise_operation() {
   return Describe<Voxelise>("voxelise", "Makes an octree of a mesh, or a label map of several.", Makes::File)
       .takes(field("meshes", &Voxelise::meshes,
-                   "One or more .stl, .ply, .obj, .off or .vtk files; where one is no solid, its holes and "
+                   "One or more mesh files (.stl, .ply, .obj, .vtp, .glb, ...); where one is no solid, its "
+                   "holes and "
                    "crossings are bridged by the winding number.")
                  .required()
                  .from(1)

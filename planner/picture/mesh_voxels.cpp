@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "brep/io/read_mesh.h"
 #include "brep/mesh/split_fans.h"
 #include "convert/voxel/winding_number.h"
+#include "planner/file/mesh_in.h"
 
 namespace octotomy::planner {
 namespace {
@@ -35,7 +35,7 @@ voxel::Octree voxels_of_mesh(const std::filesystem::path& path,
   {
     const Stopwatch watch(bench.timings, "read");
     // Welded, as each open edge is a rim that costs.
-    triangles = brep::joined_surface(brep::read_triangles(path)).surface;
+    triangles = brep::joined_surface(read_mesh_in(path)).surface;
   }
   const auto refuse = [&](const std::string& why) { throw std::runtime_error(path.string() + ": " + why); };
   if (triangles.faces.empty()) refuse("has no triangles to be drawn");

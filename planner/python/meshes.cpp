@@ -152,7 +152,7 @@ void add_meshes(py::module_& module) {
         return without_lock(
             [&](const std::stop_token&) { return std::make_shared<Triangles>(brep::read_triangles(path)); });
       },
-      py::arg("path"), "Reads .stl, .ply, .obj, .off, .vtk or .vtp.");
+      py::arg("path"), "Reads .stl, .ply, .obj, .off, .vtk, .vtp, .vtu, .glb or .3mf.");
   module.def("isosurface", &isosurface, py::arg("scan"), py::arg("low"), py::arg("high") = 32767.0,
              "The surface on which a scan's samples enter low..high.");
 }

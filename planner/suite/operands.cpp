@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "brep/io/read_mesh.h"
 #include "planner/file/mesh_file.h"
+#include "planner/file/mesh_in.h"
 #include "planner/suite/suites.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
@@ -125,7 +125,7 @@ std::vector<verify::Certificate> judged(const fs::path& answer, const verify::Ke
     brep::Triangles triangles;
     {
       const Stopwatch watch(timings, "read");
-      triangles = brep::read_triangles(answer);
+      triangles = read_mesh_in(answer);
     }
     const Stopwatch watch(timings, "judge");
     return verify::judge_mesh(kernels, triangles, {program.stop.get_token(), {}});

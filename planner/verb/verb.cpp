@@ -11,6 +11,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "planner/file/mesh_in.h"
 #include "planner/table/control_character.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
@@ -95,6 +96,9 @@ void Program::say(const Json& answer, const std::string& text) const {
       if (finding.verdict != voxel::Verdict::Pass)
         warn(scan.path.string() + ": " + to_string(finding.verdict) + ", " + finding.check + ": " +
              finding.detail);
+  const std::vector<MeshRecord> meshes = meshes_read();
+  for (const MeshRecord& mesh : meshes)
+    for (const std::string& line : warnings_of(mesh.audit)) warn(mesh.path.string() + ": WARN, " + line);
   for (const std::string& name : *tissues_) {
     const voxel::Tissue tissue = *voxel::tissue(name);
     warn(voxel::described(tissue) + ": " + std::string(tissue.source));
@@ -113,6 +117,9 @@ void Program::say(const Json& answer, const std::string& text) const {
                               {"unit", "HU"},
                               {"source", std::string(tissue.source)}};
   }
+  if (!meshes.empty() && !whole.contains("audit") && !whole.contains("meshes"))
+    for (const MeshRecord& mesh : meshes)
+      whole["meshes"].push_back({{"path", mesh.path.generic_string()}, {"audit", to_json(mesh.audit)}});
   if (!scans_->empty() && !whole.contains("audit") && !whole.contains("scans")) {
     whole["scans"] = Json::array();
     for (const ScanRecord& scan : *scans_) {

@@ -407,5 +407,36 @@ TEST_F(MeshVerbs, SeveralMeshesBecomeALabelMapAndTellWhereTheyOverlap) {
   expect_refused(run("voxelise " + at("a.off") + " -o " + at("a.nrrd") + " --digitise partial"), "shares");
 }
 
+TEST_F(MeshVerbs, WhatAMeshFileSaysOfItselfIsShownAndOverriddenByOptions) {
+  const brep::Triangles box = brep::shapes::box({10, 30, -5}, {20, 50, 25});
+  std::ostringstream obj;
+  obj << "# 3D Slicer output. SPACE=RAS\n";
+  for (const glm::dvec3& p : box.points_mm) obj << "v " << -p.x << " " << -p.y << " " << p.z << "\n";
+  for (const auto& f : box.faces) obj << "f " << f[0] + 1 << " " << f[1] + 1 << " " << f[2] + 1 << "\n";
+  write("ras.obj", obj.str());
+  const auto line = [](const SortedJson& audit, const std::string& check) -> SortedJson {
+    for (const SortedJson& each : audit)
+      if (each["check"] == check) return each;
+    return nullptr;
+  };
+  const SortedJson info = SortedJson::parse(run("info " + at("ras.obj") + " --json").out);
+  EXPECT_EQ(line(info["audit"], "frame")["verdict"], "PASS");
+  EXPECT_EQ(line(info["audit"], "unit")["verdict"], "WARN");
+  EXPECT_EQ(line(info["audit"], "writer")["detail"], "3D Slicer output. SPACE=RAS");
+  const CommandAnswer measured = run("measure " + at("ras.obj") + " --json");
+  EXPECT_EQ(SortedJson::parse(measured.out)["centroid_mm"], SortedJson::parse("[15.0, 40.0, 10.0]"));
+  EXPECT_EQ(line(SortedJson::parse(measured.out)["meshes"][0]["audit"], "frame")["verdict"], "PASS");
+  EXPECT_NE(measured.errors.find("ras.obj: WARN, unit"), std::string::npos) << measured.errors;
+  const CommandAnswer turned = run("measure " + at("ras.obj") + " --json --frame LPS --unit cm");
+  EXPECT_EQ(SortedJson::parse(turned.out)["centroid_mm"], SortedJson::parse("[-150.0, -400.0, 100.0]"));
+  EXPECT_NE(turned.errors.find("WARN, frame"), std::string::npos) << turned.errors;
+  // Of two files one.
+  const CommandAnswer both = run("boolean " + at("ras.obj") + " union " + at("ras.obj") + " -o " +
+                                 at("u.stl") + " --json --unit ras.obj=cm");
+  EXPECT_NEAR(SortedJson::parse(both.out)["volume_mm3"].get<double>(), 6e6, 1.0) << both.errors;
+  expect_refused(run("measure " + at("ras.obj") + " --unit ell"), "'ell' is no unit");
+  expect_refused(run("compare " + at("ras.obj") + " " + at("ras.obj") + " --frame up"), "'up' is no frame");
+}
+
 }  // namespace
 }  // namespace octotomy::planner

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <fstream>
 #include <gtest/gtest.h>
 
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/triangles.h"
 #include "tests/brep/shapes.h"
+#include "tests/brep/told.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {
@@ -19,6 +21,46 @@ TEST(ImportStep, AMeshBesideThePlanCutsTheBallInBothKernels) {
       {"id": "rest", "do": "combine", "expression": "ball - block"})"));
   EXPECT_FALSE(evaluation.object("block").certificate);
   expect_certified(evaluation.object("rest"), cap_mm3(ball_radius_mm, 5.0), 0.05);
+}
+
+TEST(ImportStep, WhatTheFileSaysOfItsFrameAndWhatTheStepSaysOfItsUnitAreApplied) {
+  const ScratchFolder folder;
+  // The block above, turned to RAS and in metres, as text.
+  std::ofstream file(folder / "block.obj");
+  file << "# SPACE=RAS\n";
+  const brep::Triangles block = brep::shapes::box({-30, -30, -5.0}, {30, 20, 30});
+  for (const glm::dvec3& p : block.points_mm)
+    file << "v " << -p.x / 1000.0 << " " << -p.y / 1000.0 << " " << p.z / 1000.0 << "\n";
+  for (const auto& f : block.faces) file << "f " << f[0] + 1 << " " << f[1] + 1 << " " << f[2] + 1 << "\n";
+  file.close();
+  const Evaluation evaluation =
+      evaluate(ball_plan(folder, R"({"id": "block", "do": "import", "path": "block.obj", "unit": "m"})"));
+  const Object& made = evaluation.object("block");
+  EXPECT_NEAR(made.mesh.whole->size().high_mm.y, 20.0, 1e-6);
+  EXPECT_NEAR(made.mesh.whole->size().low_mm.y, -30.0, 1e-6);
+  EXPECT_NEAR(made.mesh.whole->measures().volume_mm3, 60.0 * 50.0 * 35.0, 1e-3);
+  EXPECT_TRUE(made.findings.empty()) << made.findings.front();
+  EXPECT_NE(made.mesh.details.at("audit").dump().find("SPACE=RAS"), std::string::npos);
+}
+
+TEST(ImportStep, AMeshThatIsAThousandTimesTooSmallIsToldWithTheUnitThatFits) {
+  const ScratchFolder folder;
+  brep::write_mesh(brep::mesh_of(brep::shapes::box({-0.03, -0.03, -0.005}, {0.03, 0.03, 0.03})),
+                   folder / "block.stl");
+  const Evaluation evaluation =
+      evaluate(ball_plan(folder, R"({"id": "block", "do": "import", "path": "block.stl"})"));
+  EXPECT_NE(told(evaluation.object("block").findings).find("try --unit m"), std::string::npos)
+      << told(evaluation.object("block").findings);
+}
+
+TEST(ImportStep, AnUnknownFrameIsRefusedWhenThePlanIsRead) {
+  const ScratchFolder folder;
+  try {
+    ball_plan(folder, R"({"id": "block", "do": "import", "path": "block.stl", "frame": "up"})");
+    FAIL() << "was taken";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("'up' is no frame"), std::string::npos) << error.what();
+  }
 }
 
 TEST(ImportStep, AFileThatIsNotThereIsNamed) {
