@@ -2,7 +2,6 @@
 #include "convert/deck/deck.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "convert/deck/deck_format.h"
+#include "convert/deck/deck_names.h"
 #include "convert/deck/second_order.h"
 #include "voxel/space/disk_need.h"
 #include "voxel/space/file_text.h"
@@ -26,11 +26,7 @@ namespace {
 }
 
 void check_name(const std::filesystem::path& path, const std::string& what, const std::string& name) {
-  const auto fits = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
-  };
-  if (name.empty() || name.size() > 80 || std::isalpha(static_cast<unsigned char>(name.front())) == 0 ||
-      !std::all_of(name.begin(), name.end(), fits))
+  if (!is_solver_name(name))
     refuse_to_write(
         path, what + " '" + name +
                   "' is no name that Abaqus and CalculiX take: a letter, then letters, digits, '_', '-', at "
@@ -243,6 +239,8 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
   check_nodes(tetrahedra, path);
   check_materials(tetrahedra, path, options);
   check_sets(tetrahedra, path, options);
+  if (const auto clash = name_clash(tetrahedra, options))
+    refuse_to_write(path, *clash + " have one name for solvers, which do not tell capitals apart");
   if (options.second_order) {
     if (parts.size() > 1) refuse_to_write(path, "TetGen's files are of linear elements: choose another deck");
     const SecondOrder made = second_order(tetrahedra, options);

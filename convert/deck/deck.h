@@ -50,7 +50,8 @@ struct ElementField {
 };
 
 /// The content of a deck beside its nodes and elements. Units are mm, N, MPa; frame LPS. Names are letters,
-/// digits, '_' and '-', at most 80, beginning with a letter, as both Abaqus and CalculiX accept.
+/// digits, '_' and '-', at most 80, beginning with a letter, as both Abaqus and CalculiX accept, and differ
+/// by more than case (deck_names.h).
 struct DeckOptions {
   std::string title;
   std::string element_set = "SOLID";

@@ -6,11 +6,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/distance.h"
+#include "convert/deck/deck_names.h"
 #include "planner/table/nearest_name.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner {
 namespace {
@@ -114,22 +117,45 @@ std::vector<double> comma_numbers(const std::string& text) {
   }
 }
 
-std::vector<NodeSet> picked_node_sets(const std::vector<std::string>& words,
-                                      const std::vector<brep::Landmark>& landmarks,
-                                      const convert::Tetrahedra& tetrahedra) {
-  std::vector<NodeSet> sets;
-  if (words.empty()) return sets;
-  const Picker picker(landmarks, tetrahedra);
+void check_set_names(const std::vector<std::string>& words) {
+  std::map<std::string, std::string> known;
   for (const std::string& word : words) {
     const std::size_t equals = word.find('=');
     if (equals == std::string::npos || equals == 0)
       throw std::runtime_error("--nodes: '" + word + "' names no set: for example CUT=0,0,-40,0,0,1");
+    const std::string name = word.substr(0, equals);
+    if (!convert::is_solver_name(name))
+      throw std::runtime_error("--nodes: '" + name +
+                               "' is no name that solvers take: a letter, then letters, digits, '_', '-', at "
+                               "most 80 in all");
+    if (convert::is_own_node_set_name(name))
+      throw std::runtime_error("--nodes: '" + name +
+                               "' is the name of a set that every deck has, in small or capital letters: "
+                               "choose another, as MY_" +
+                               name);
+    const auto [earlier, is_new] = known.emplace(voxel::lower_case(name), name);
+    if (!is_new)
+      throw std::runtime_error("--nodes: " + name +
+                               (earlier->second == name ? " comes twice"
+                                                        : " and " + earlier->second +
+                                                              " are one name for solvers, which do not tell "
+                                                              "capitals apart: choose another"));
+  }
+}
+
+std::vector<NodeSet> picked_node_sets(const std::vector<std::string>& words,
+                                      const std::vector<brep::Landmark>& landmarks,
+                                      const convert::Tetrahedra& tetrahedra) {
+  std::vector<NodeSet> sets;
+  check_set_names(words);
+  if (words.empty()) return sets;
+  const Picker picker(landmarks, tetrahedra);
+  for (const std::string& word : words) {
+    const std::size_t equals = word.find('=');
     NodeSet set{word.substr(0, equals), picker.nodes_at(word.substr(equals + 1))};
     if (set.nodes.empty())
       throw std::runtime_error("--nodes: no node of the surface is at " + word.substr(equals + 1) +
                                ", so that " + set.name + " would be empty");
-    if (std::any_of(sets.begin(), sets.end(), [&](const NodeSet& known) { return known.name == set.name; }))
-      throw std::runtime_error("--nodes: " + set.name + " comes twice");
     sets.push_back(std::move(set));
   }
   return sets;

@@ -12,13 +12,17 @@ namespace octotomy::planner {
 /// Finite numbers between commas; none where the text is anything else.
 std::vector<double> comma_numbers(const std::string& text);
 
+/// Throws std::runtime_error where a word NAME=WHERE has no name, a name that solvers do not take or that a
+/// deck's own sets have, or two names differ by case at most. For refusals before the work.
+void check_set_names(const std::vector<std::string>& words);
+
 /// Sets of nodes of the elements' surface, in LPS millimetres, each as NAME=WHERE:
 ///   x,y,z          the node nearest to a point, as x,y,z,0
 ///   x,y,z,r        the nodes within r mm of a point
 ///   x,y,z,u,v,w    the nodes on a plane through a point with a normal, as a saw left them
 ///   TEXT           the node nearest to a landmark of that name, or the nodes on the surface of a mesh file
 /// On a plane or surface means nearer than a quarter of the mean side of the elements' surface triangles.
-/// Throws std::runtime_error where the text is none of these, a name comes twice, or a set is empty.
+/// Throws std::runtime_error as check_set_names(), where the text is none of these, or a set is empty.
 std::vector<convert::NodeSet> picked_node_sets(const std::vector<std::string>& words,
                                                const std::vector<brep::Landmark>& landmarks,
                                                const convert::Tetrahedra& tetrahedra);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "convert/deck/deck_names.h"
 #include "convert/tet/midline.h"
 #include "planner/deck/cut_surfaces.h"
 #include "planner/deck/deck_step.h"
@@ -134,6 +135,8 @@ void write_elements(const convert::Tetrahedra& tetrahedra, convert::DeckOptions 
   options.second_order = deck.order == 2;
   options.progress = bench.progress("writing " + made.path);
   add_midline(tetrahedra, deck, options, made);
+  for (std::string& changed : convert::make_names_unique(tetrahedra, options))
+    made.findings.push_back(std::move(changed));
   options.notes.insert(options.notes.begin(), bench.origins.begin(), bench.origins.end());
   for (std::string& note : quality_notes(quality)) options.notes.push_back(std::move(note));
   options.notes.insert(options.notes.end(), made.findings.begin(), made.findings.end());

@@ -295,6 +295,7 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
     throw std::runtime_error("--region, --size and --contact are of octrees: make one of " + asked.file.name +
                              " by octotomy voxelise");
   refinements(asked);
+  check_set_names(asked.nodes);
   if (!asked.finer.empty() && of_voxels && !asked.size_mm)
     throw std::runtime_error("--finer is not of voxels' own elements: give --size, too");
   Filled filled = of_voxels ? of_octrees(bench, asked) : of_mesh(bench, asked);
