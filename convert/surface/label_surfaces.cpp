@@ -173,6 +173,7 @@ const std::array<std::array<Pieces, 64>, 6>& pieces() {
   return table;
 }
 
+/// Of a scene whose samples are int16 and do not overlap.
 class Extraction {
  public:
   Extraction(const voxel::Scene& scene, const LabelSurfaceOptions& options)
@@ -204,9 +205,6 @@ class Extraction {
     std::vector<char> wanted(std::size_t{1} << 15, 0);
     for (const voxel::Label& label : voxel::labels(scene)) {
       if (!options_.labels.empty() && !options_.labels.contains(label.number)) continue;
-      if (label.number >= static_cast<int>(wanted.size()))
-        throw std::invalid_argument("label surfaces: label " + std::to_string(label.number) +
-                                    " is over 32767");
       wanted[static_cast<std::size_t>(label.number)] = 1;
       made_.names[label.number];
     }
@@ -221,18 +219,12 @@ class Extraction {
         std::int16_t* row = &labels_[at(0, y, z)];
         std::fill_n(row, size_.x, std::int16_t{0});
         if (z == 0 || z + 1 == size_.z || y == 0 || y + 1 == size_.y) continue;
-        std::visit(
-            [&](const auto& samples) {
-              const auto* from =
-                  &samples[(static_cast<std::size_t>(z - 1) * static_cast<std::size_t>(lattice_.dims.y) +
+        const std::int16_t* from = &std::get<voxel::Int16Samples>(
+            scene.samples)[(static_cast<std::size_t>(z - 1) * static_cast<std::size_t>(lattice_.dims.y) +
                             static_cast<std::size_t>(y - 1)) *
                            static_cast<std::size_t>(lattice_.dims.x)];
-              for (int x = 0; x < lattice_.dims.x; ++x) {
-                const auto label = static_cast<std::int16_t>(from[x]);
-                if (label > 0 && wanted[static_cast<std::size_t>(label)] != 0) row[x + 1] = label;
-              }
-            },
-            scene.samples);
+        for (int x = 0; x < lattice_.dims.x; ++x)
+          if (from[x] > 0 && wanted[static_cast<std::size_t>(from[x])] != 0) row[x + 1] = from[x];
       }
     });
   }
@@ -445,6 +437,27 @@ class Extraction {
   brep::PartedSurface made_;
 };
 
+/// Adds the surfaces of a layer, whose parts are ranks.
+void append(const voxel::LabelLayer& layer, const brep::PartedSurface& ranks, brep::PartedSurface& made) {
+  const std::size_t first = made.triangles.points_mm.size();
+  if (first + ranks.triangles.points_mm.size() > std::numeric_limits<std::uint32_t>::max())
+    throw voxel::Error(voxel::ErrorCode::Resource,
+                       "the labels' surfaces have more points than 32-bit numbers can name: crop or resample "
+                       "the label map");
+  const auto label_of = [&](std::int32_t rank) {
+    return rank == 0 ? 0 : layer.labels[static_cast<std::size_t>(rank - 1)];
+  };
+  made.triangles.points_mm.insert(made.triangles.points_mm.end(), ranks.triangles.points_mm.begin(),
+                                  ranks.triangles.points_mm.end());
+  for (std::array<std::uint32_t, 3> face : ranks.triangles.faces) {
+    for (std::uint32_t& corner : face) corner += static_cast<std::uint32_t>(first);
+    made.triangles.faces.push_back(face);
+  }
+  for (const brep::PartedSurface::Sides& sides : ranks.sides)
+    made.sides.push_back({label_of(sides.behind), label_of(sides.front)});
+  for (const auto& [rank, name] : ranks.names) made.names[label_of(rank)] = name;
+}
+
 }  // namespace
 
 brep::PartedSurface label_surfaces(const voxel::Scene& scene, const LabelSurfaceOptions& options) {
@@ -452,7 +465,26 @@ brep::PartedSurface label_surfaces(const voxel::Scene& scene, const LabelSurface
   if (options.smooth_voxels < 0 || options.smooth_voxels > 4)
     throw std::invalid_argument("label surfaces: smooth_voxels must be from 0 to 4, not " +
                                 std::to_string(options.smooth_voxels));
-  return Extraction(scene, options).run();
+  if (scene.overlaps.empty() && std::holds_alternative<voxel::Int16Samples>(scene.samples))
+    return Extraction(scene, options).run();
+  std::set<int> left = options.labels;
+  brep::PartedSurface made;
+  const std::vector<voxel::LabelLayer> layers = voxel::label_layers(scene);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    LabelSurfaceOptions own = options;
+    own.labels.clear();
+    const auto count = static_cast<double>(layers.size());
+    own.progress =
+        voxel::part_of(options.progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count);
+    for (std::size_t rank = 1; rank <= layers[i].labels.size(); ++rank)
+      if (left.erase(layers[i].labels[rank - 1]) > 0) own.labels.insert(static_cast<int>(rank));
+    if (!options.labels.empty() && own.labels.empty()) continue;
+    append(layers[i], Extraction(layers[i].ranks, own).run(), made);
+  }
+  if (!left.empty())
+    throw voxel::Error(voxel::ErrorCode::Input, "no sample has label " + std::to_string(*left.begin()) +
+                                                    ": choose among those there are");
+  return made;
 }
 
 }  // namespace octotomy::convert

@@ -18,7 +18,8 @@ struct LabelSurfaceOptions {
 };
 
 /// The surfaces of all labels of a label map at once, in LPS millimetres. A part without a name is in
-/// `names` with an empty one.
+/// `names` with an empty one. Labels that overlap (Scene::overlaps) each get their whole surface, and what
+/// follows holds for each of voxel::label_layers() by itself.
 ///
 /// The surfaces cut space: two labels that touch share the triangles between them, three meet in lines and
 /// four in points, so there is no gap and no overlap, and the parts' volumes add up to that within the
@@ -27,10 +28,11 @@ struct LabelSurfaceOptions {
 /// more; samples that only touch across a cell's diagonal are joined along one of its diagonals, apart along
 /// the others. A part that reaches the scan's border is closed half a voxel beyond its outermost samples.
 ///
-/// Throws std::invalid_argument if the scene fails check(), a sample is negative or no integer, or an option
-/// is out of range; voxel::Error (Input) if a label that was asked for has no sample, (Resource) if 32 bits
-/// do not number the triangles; voxel::Stopped. Parallel; same bits on any thread count. Memory: two bytes a
-/// sample and 80 a triangle. Cost: linear in samples, and in triangles but for their numbering, n log n.
+/// Throws std::invalid_argument if the scene fails check(), a sample is no label, or an option is out of
+/// range; std::length_error as voxel::label_layers(); voxel::Error (Input) if a label that was asked for has
+/// no sample, (Resource) if 32 bits do not number the triangles; voxel::Stopped. Parallel; same bits on any
+/// thread count. Memory: two bytes a sample, four where labels are no int16 or overlap, and 80 a triangle.
+/// Cost: linear in samples, and in triangles but for their numbering, n log n.
 brep::PartedSurface label_surfaces(const voxel::Scene& scene, const LabelSurfaceOptions& options = {});
 
 }  // namespace octotomy::convert

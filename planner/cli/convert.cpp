@@ -2,11 +2,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "planner/cli/verbs.h"
 #include "planner/file/label_table.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
+#include "planner/table/same_patient.h"
 #include "planner/verb/octree_out.h"
 #include "planner/verb/scan_in.h"
 #include "voxel/filter/label_map.h"
@@ -22,7 +24,7 @@ struct ConvertText {
   fs::path in, out, source;
   std::string label;
   ScanIn scan;
-  bool dicom = false;
+  bool dicom = false, other_identity = false;
 };
 
 bool is_volume(const fs::path& path) {
@@ -32,11 +34,26 @@ bool is_volume(const fs::path& path) {
                      [&](const char* extension) { return name.ends_with(extension); });
 }
 
-/// The DICOM series that what is written refers to; none where it was made from none.
-std::optional<voxel::DicomSource> source_of(const Program& program, const ConvertText& text,
-                                            bool reads_dicom) {
+/// The DICOM series that what is written refers to; none where it was made from none. Refuses one of another
+/// patient than what is converted, and adds to the findings what could not be compared.
+std::optional<voxel::DicomSource> source_of(const Program& program, const ConvertText& text, bool reads_dicom,
+                                            const voxel::Identity& identity,
+                                            std::vector<std::string>& findings) {
   if (text.source.empty() && !reads_dicom) return std::nullopt;
-  return voxel::dicom_source(text.source.empty() ? text.in : text.source, read_options(program, text.scan));
+  voxel::DicomSource source =
+      voxel::dicom_source(text.source.empty() ? text.in : text.source, read_options(program, text.scan));
+  if (!text.source.empty())
+    for (std::string& finding :
+         need_same_patient({text.source.string(), source.identity}, {text.in.string(), identity},
+                           text.other_identity, "--other-identity"))
+      findings.push_back(std::move(finding));
+  return source;
+}
+
+/// Findings in the answer, and as warnings.
+void tell(const std::vector<std::string>& findings, Json& json) {
+  json["findings"] = findings;
+  for (const std::string& finding : findings) warn_finding(finding);
 }
 
 int convert_octree(const Program& program, const ConvertText& text) {
@@ -53,13 +70,14 @@ int convert_octree(const Program& program, const ConvertText& text) {
     throw std::runtime_error(text.in.string() +
                              ": only a binary octree is a segmentation: choose an object of the samples with "
                              "octotomy octree --window LOW:HIGH");
+  std::vector<std::string> findings;
   voxel::DicomSegOptions options;
   options.label = !text.label.empty() ? text.label : file.name.empty() ? "Object" : file.name.substr(0, 64);
   options.series_description = "Octotomy, segmented";
   options.progress.stop = program.stop.get_token();
   {
     const Stopwatch watch(timings, "source");
-    options.source = source_of(program, text, false);
+    options.source = source_of(program, text, false, {}, findings);
   }
   if (!options.source) warn("no --source: the segmentation is of a study of its own and refers to no images");
   {
@@ -70,6 +88,7 @@ int convert_octree(const Program& program, const ConvertText& text) {
   json["path"] = text.out.string();
   json["label"] = options.label;
   json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
+  tell(findings, json);
   program.say(json, lines({{"written", text.out.string()},
                            {"segment", options.label},
                            {"voxels", std::to_string(octree->voxel_count())}}));
@@ -86,7 +105,11 @@ int convert_labels(const Program& program, const ConvertText& text) {
   if (labels.empty() || labels.size() > most_labels)
     throw std::runtime_error(text.in.string() + ": holds " + std::to_string(labels.size()) +
                              " labels, which is no label map: octotomy segment makes objects of a scan");
-  const LabelTable table = label_table_of(text.in);
+  std::set<int> occurring;
+  for (const voxel::Label& label : labels) occurring.insert(label.number);
+  const LabelTable table = label_table_of(text.in, occurring);
+  std::vector<std::string> findings = table.passed_over;
+  for (std::string& line : findings_of_labels(labels)) findings.push_back(std::move(line));
   const voxel::Universe universe = voxel::universe_on(scene.lattice);
   std::vector<voxel::DicomSegment> segments;
   Json said = Json::array();
@@ -104,7 +127,7 @@ int convert_labels(const Program& program, const ConvertText& text) {
   options.label = text.label.empty() ? "Objects" : text.label;
   options.series_description = "Octotomy, segmented";
   options.progress.stop = program.stop.get_token();
-  options.source = source_of(program, text, false);
+  options.source = source_of(program, text, false, scene.identity, findings);
   if (!options.source) warn("no --source: the segmentation is of a study of its own and refers to no images");
   {
     const Stopwatch watch(timings, "write");
@@ -114,6 +137,7 @@ int convert_labels(const Program& program, const ConvertText& text) {
   json["path"] = text.out.string();
   json["segments"] = std::move(said);
   json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
+  tell(findings, json);
   program.say(json, lines(rows));
   return done;
 }
@@ -128,12 +152,13 @@ int convert(const Program& program, const ConvertText& text) {
   Timings timings;
   const voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
   if (program.stop.stop_requested()) throw Stopped("stopped before " + text.out.string() + " was written");
+  std::vector<std::string> findings;
   {
     const Stopwatch watch(timings, "write");
     if (folder) {
       voxel::DicomOptions options;
       options.series_description = "Octotomy, derived";
-      options.source = source_of(program, text, is_dicom(scene));
+      options.source = source_of(program, text, is_dicom(scene), scene.identity, findings);
       voxel::write_dicom_series(scene, text.out, options);
     } else {
       voxel::write_scene(scene, text.out);
@@ -141,6 +166,7 @@ int convert(const Program& program, const ConvertText& text) {
   }
   Json json = scan_answer(scene, timings);
   json["path"] = text.out.string();
+  tell(findings, json);
   program.say(json, lines({{"written", text.out.string()}, {"samples", dims_text(scene.lattice.dims)}}));
   return done;
 }
@@ -172,6 +198,9 @@ void add_convert(Program& program) {
   verb.add_option("--source", text->source,
                   "The DICOM series that DICOM written here refers to; default: the scan, where it is DICOM")
       ->check(CLI::ExistingPath);
+  verb.add_flag("--other-identity", text->other_identity,
+                "Take a source that states another patient, study or frame of reference than the scan, and "
+                "report a FAIL");
   verb.add_option("--label", text->label, "Of a segmentation; default: the octree's name");
   add_scan_options(verb, text->scan);
 }

@@ -77,7 +77,8 @@ class OperationRun {
     Object made("answer", operation_.name, universe_);
     made.definition = operation_.definition(action_.value(), objects_);
     if (with_voxels)
-      operation_.voxel(action_.value(), {universe_, objects_, no_scan_, timings_, progress()}, made.voxel);
+      operation_.voxel(action_.value(), {universe_, objects_, no_scan_, timings_, progress(), {}, no_scans_},
+                       made.voxel);
     if (!wants_octree || !with_voxels || text_.certify) answer_by_mesh(made);
     if (wants_octree && !with_voxels) voxelise_answer(made);
     if (text_.certify) certify_answer(made);
@@ -230,6 +231,7 @@ class OperationRun {
   const Action& action_;
   const Operation& operation_;
   const OperationText& text_;
+  const std::vector<ScanRecord> no_scans_;
   const Scans no_scan_ = [](const std::string& name) -> const LoadedScan& {
     throw std::invalid_argument("there is no scan called '" + name + "'");
   };

@@ -248,8 +248,9 @@ int segment(const Program& program, const SegmentText& text) {
   program.note_tissues(text.windows);
   const voxel::Scene scene = read_scan(program, text.scan, text.in, timings);
   for (const std::string& window : text.windows) need_hounsfield(window_of(window), scene);
-  if (asked.named) asked.label = label_of_name(asked, text.scan, {});
   Json json{{"source", text.scan.string()}, {"unit", voxel::unit(scene)}};
+  std::vector<std::string> findings;
+  if (asked.named) asked.label = label_of_name(asked, text.scan, scene, {}, findings);
   if (asked.otsu) {
     const Stopwatch watch(timings, "otsu");
     OtsuWindow otsu = otsu_window(scene, *asked.otsu, asked.otsu_class.value_or(*asked.otsu));
@@ -262,7 +263,10 @@ int segment(const Program& program, const SegmentText& text) {
     const std::vector<Named> segments = segments_of(program, text, asked, scene, timings);
     write_segments(program, text, scene, segments, outputs, timings, json);
     json["objects"] = Json::array();
-    for (const Named& each : segments) json["objects"].push_back(said_of(each));
+    for (const Named& each : segments) {
+      json["objects"].push_back(said_of(each));
+      findings.insert(findings.end(), each.made.findings.begin(), each.made.findings.end());
+    }
     written = text.out.string();
   }
   if (!text.contours.empty()) {
@@ -270,6 +274,7 @@ int segment(const Program& program, const SegmentText& text) {
     written += (written.empty() ? "" : ", ") + text.contours.string();
   }
   outputs.commit();
+  for (const std::string& finding : findings) json["findings"].push_back(finding);
   Json whole = answer(timings);
   for (const auto& [key, value] : json.items())
     if (key != "octotomy" && key != "timings_ms") whole[key] = value;

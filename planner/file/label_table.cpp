@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/file/label_table.h"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <fstream>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,6 +16,7 @@
 #include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
+#include "planner/table/number_format.h"
 #include "voxel/scan/label_names.h"
 #include "voxel/space/file_text.h"
 
@@ -20,13 +24,22 @@ namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
+
 std::optional<int> whole(const std::string& text) {
   const std::string digits = voxel::trimmed(text);
   int number = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (error != std::errc() || end != digits.data() + digits.size() || number < 0 || number > 32767)
+  if (error != std::errc() || end != digits.data() + digits.size() || number < 0 ||
+      number > voxel::most_label)
     return std::nullopt;
   return number;
+}
+
+/// "0.5" or "1e3": a value and no name. Whole numbers can be names, as teeth have them.
+bool is_decimal(const std::string& text) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() && !whole(text);
 }
 
 /// The names of labels while a table is read.
@@ -35,6 +48,9 @@ class Names {
   /// `where` is for refusals.
   void add(int label, const std::string& name, const std::string& where) {
     if (label == 0 || name.empty()) return;
+    if (label < 0 || label > voxel::most_label)
+      refuse(where, "must have a label from 0 to " + std::to_string(voxel::most_label));
+    if (is_decimal(name)) refuse(where, "has the number " + name + " where a name should be");
     const auto [own, is_new_label] = names_.emplace(label, name);
     if (!is_new_label)
       refuse(where,
@@ -51,26 +67,93 @@ class Names {
   std::map<std::string, int> labels_;
 };
 
+/// The value of the first of the keys that an object has; null where it has none.
+const SortedJson* one_of(const SortedJson& object, const std::vector<const char*>& keys) {
+  for (const char* key : keys)
+    if (object.is_object() && object.contains(key)) return &object[key];
+  return nullptr;
+}
+
 void add_json(Names& table, const SortedJson& json, const std::string& where) {
   if (json.is_array()) {
     for (const SortedJson& entry : json) {
       const std::string at = where + "[" + std::to_string(&entry - &json.front()) + "]";
-      table.add(static_cast<int>(count_of(need(entry, "label", at), at + ".label")),
-                word_of(need(entry, "name", at), at + ".name"), at);
+      if (entry.is_array()) {  // dcmqi lists the segments of each file
+        add_json(table, entry, at);
+        continue;
+      }
+      const SortedJson* const label =
+          one_of(entry, {"label", "labelID", "LabelValue", "value", "index", "id"});
+      const SortedJson* const name = one_of(entry, {"name", "Name", "SegmentLabel"});
+      const std::size_t number =
+          count_of(label != nullptr ? *label : need(entry, "label", at), at + ".label");
+      table.add(static_cast<int>(std::min(number, std::size_t{voxel::most_label} + 1)),
+                word_of(name != nullptr ? *name : need(entry, "name", at), at + ".name"), at);
     }
     return;
   }
   if (!json.is_object()) refuse(where, "must be an object or a list of labels and names");
-  if (json.contains("labels")) return add_json(table, json["labels"], where + ": labels");
+  if (const SortedJson* const inner = one_of(json, {"labels", "Labels", "LabelMap", "segmentAttributes"});
+      inner != nullptr && inner->is_structured())
+    return add_json(table, *inner, where + ": labels");
   for (const auto& [key, value] : json.items()) {
     const std::string at = where + ": " + key;
     if (const std::optional<int> label = whole(key); label && value.is_string())
       table.add(*label, value.get<std::string>(), at);
-    else if (value.is_number_integer() && value >= 0 && value <= 32767)
+    else if (value.is_number_integer() && value >= 0 && value <= voxel::most_label)
       table.add(value.get<int>(), key, at);
+    else if (value.is_array() && !value.empty() && value.front().is_number_integer())
+      continue;  // nnU-Net's regions are unions of labels
     else
       refuse(at, "must be a name with its label, or a label with its name");
   }
+}
+
+/// Whether a key is the name of a number that files beside scans state of the acquisition (BIDS, dcm2niix):
+/// one word of several parts in capitals, the last of which is a quantity.
+bool is_of_acquisition(const std::string& key) {
+  static const std::set<std::string> known{"KVP",
+                                           "KVp",
+                                           "Rows",
+                                           "Columns",
+                                           "Exposure",
+                                           "ExposureInuAs",
+                                           "Modality",
+                                           "PixelBandwidth",
+                                           "XRayTubeCurrent",
+                                           "GantryDetectorTilt",
+                                           "Resolution",
+                                           "SAR",
+                                           "BitsStored",
+                                           "BitsAllocated",
+                                           "HighBit",
+                                           "SamplesPerPixel",
+                                           "PixelRepresentation",
+                                           "SmallestImagePixelValue",
+                                           "LargestImagePixelValue",
+                                           "WindowCenter",
+                                           "WindowWidth",
+                                           "RescaleSlope",
+                                           "RescaleIntercept",
+                                           "EchoTrainLength",
+                                           "NumberOfAverages",
+                                           "NumberOfFrames",
+                                           "ReconMatrixPE",
+                                           "PercentPhaseFOV",
+                                           "PercentSampling",
+                                           "ImagesInAcquisition"};
+  if (known.contains(key)) return true;
+  static const std::vector<std::string> quantities{
+      "Number",    "Time",    "Thickness", "Angle",  "Spacing",  "Length",   "Width",    "Strength",
+      "Frequency", "Factor",  "Size",      "Dose",   "Diameter", "Distance", "Height",   "Current",
+      "Voltage",   "Tilt",    "Pitch",     "Rate",   "Steps",    "Delay",    "Duration", "Bandwidth",
+      "Lines",     "Samples", "Averages",  "Slices", "Shift",    "Pixels"};
+  const bool is_one_word =
+      std::all_of(key.begin(), key.end(), [](unsigned char c) { return std::isalnum(c); });
+  return is_one_word && std::any_of(quantities.begin(), quantities.end(), [&](const std::string& end) {
+           return key.size() > end.size() && key.ends_with(end) &&
+                  std::isupper(static_cast<unsigned char>(key.front()));
+         });
 }
 
 /// The column whose heading is one of the words; none where there is none.
@@ -97,12 +180,13 @@ void add_rows(Names& table, const std::vector<std::vector<std::string>>& rows, c
   for (std::size_t i = first; i < rows.size(); ++i) {
     const std::string at = where + ":" + std::to_string(i + 1);
     const std::optional<int> label = label_at < rows[i].size() ? whole(rows[i][label_at]) : std::nullopt;
-    if (!label || name_at >= rows[i].size()) refuse(at, "has no label from 0 to 32767 and a name");
+    if (!label || name_at >= rows[i].size())
+      refuse(at, "has no label from 0 to " + std::to_string(voxel::most_label) + " and a name");
     table.add(*label, voxel::trimmed(rows[i][name_at]), at);
   }
 }
 
-/// "5 255 0 0 1 1 1 "liver"" of ITK-SNAP, "5 liver 255 0 0 255" of 3D Slicer.
+/// "5 255 0 0 1 1 1 "liver"" of ITK-SNAP, "5 liver 255 0 0 255" of 3D Slicer and FreeSurfer.
 void add_lines(Names& table, std::istream& in, const std::string& where) {
   std::string line;
   for (std::size_t number = 1; std::getline(in, line); ++number) {
@@ -110,14 +194,91 @@ void add_lines(Names& table, std::istream& in, const std::string& where) {
     if (text.empty() || text[0] == '#') continue;
     const std::size_t blank = text.find_first_of(" \t");
     const std::optional<int> label = whole(text.substr(0, blank));
-    if (!label || blank == std::string::npos) refuse(at, "begins with no label from 0 to 32767");
+    if (!label || blank == std::string::npos)
+      refuse(at, "begins with no label from 0 to " + std::to_string(voxel::most_label));
     const std::string rest = voxel::trimmed(text.substr(blank));
     const std::size_t quote = rest.find('"'), last = rest.rfind('"');
+    if (quote == last && whole(rest.substr(0, rest.find_first_of(" \t"))))
+      refuse(at, "has a number and no name behind its label");
     table.add(
         *label,
         quote != last ? rest.substr(quote + 1, last - quote - 1) : rest.substr(0, rest.find_first_of(" \t")),
         at);
   }
+}
+
+/// The parts of a BIDS name: "sub-01", "space-T1w", "dseg".
+std::set<std::string> entities_of(const std::string& stem) {
+  std::set<std::string> parts;
+  std::istringstream in(stem);
+  for (std::string part; std::getline(in, part, '_');) parts.insert(part);
+  return parts;
+}
+
+/// The "dseg.tsv" of a folder and those above whose entities are all the label map's, the nearest and most
+/// particular first.
+std::vector<fs::path> inherited_tables(const fs::path& label_map, const std::string& stem) {
+  std::vector<fs::path> found;
+  const std::set<std::string> own = entities_of(stem);
+  if (!own.contains("dseg")) return found;
+  constexpr int most_folders = 4;
+  fs::path folder = fs::absolute(label_map).parent_path();
+  for (int i = 0; i < most_folders; ++i, folder = folder.parent_path()) {
+    std::vector<std::pair<std::size_t, fs::path>> here;
+    std::error_code unreadable;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, unreadable)) {
+      const std::string name = entry.path().filename().string();
+      if (!name.ends_with("dseg.tsv") || !entry.is_regular_file(unreadable)) continue;
+      const std::set<std::string> parts = entities_of(entry.path().stem().string());
+      if (std::includes(own.begin(), own.end(), parts.begin(), parts.end()) && parts != own)
+        here.emplace_back(own.size() - parts.size(), entry.path());
+    }
+    std::sort(here.begin(), here.end());
+    for (const auto& [distance, path] : here) found.push_back(path);
+  }
+  return found;
+}
+
+/// The files that may be a label map's table, the likeliest first.
+std::vector<fs::path> tables_beside(const fs::path& label_map) {
+  std::string stem = label_map.filename().string();
+  for (const char* extension :
+       {".nii.gz", ".nii", ".seg.nrrd", ".seg.nhdr", ".nrrd", ".nhdr", ".mha", ".mhd", ".img", ".hdr"})
+    if (voxel::lower_case(stem).ends_with(extension)) {
+      stem.resize(stem.size() - std::string(extension).size());
+      break;
+    }
+  std::vector<std::string> extensions{".json", ".csv", ".tsv", ".txt", ".ctbl", ".label", ".lut"};
+  // BIDS names labels in .tsv, and states other facts in .json.
+  if (stem.ends_with("dseg")) std::swap(extensions[0], extensions[2]);
+  std::vector<fs::path> found;
+  for (const char* more : {"", "_labels", "-labels", "_ColorTable", "-ColorTable"})
+    for (const std::string& extension : extensions)
+      if (fs::path beside = label_map.parent_path() / (stem + more + extension); fs::is_regular_file(beside))
+        found.push_back(std::move(beside));
+  for (fs::path& table : inherited_tables(label_map, stem)) found.push_back(std::move(table));
+  return found;
+}
+
+/// A table, or why the file is none of this label map's.
+LabelTable table_or_why(const fs::path& path, const std::set<int>& occurring, std::string& why) {
+  LabelTable table;
+  try {
+    table = read_label_table(path);
+  } catch (const std::runtime_error& error) {
+    why = error.what();
+    if (why.starts_with(path.string() + ": ")) why.erase(0, path.string().size() + 2);
+    return table;
+  }
+  const auto occurs = [&](const auto& entry) { return occurring.contains(entry.first); };
+  if (table.names.empty())
+    why = "it names no label";
+  else if (!occurring.empty() && std::none_of(table.names.begin(), table.names.end(), occurs))
+    why = "none of its labels occurs";
+  if (voxel::extension_of(path) == ".json")
+    for (const auto& [label, name] : table.names)
+      if (is_of_acquisition(name)) why = "'" + name + "' is a number of an acquisition";
+  return table;
 }
 
 }  // namespace
@@ -142,32 +303,48 @@ LabelTable read_label_table(const fs::path& path) {
   }
   std::ifstream in = voxel::opened(path);
   if (!in) refuse(where, "cannot be read");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   if (extension == ".csv" || extension == ".tsv") {
-    std::string text{std::istreambuf_iterator<char>(in), {}};
-    if (extension == ".tsv")
-      for (char& letter : text)
-        if (letter == '\t') letter = ',';
-    add_rows(table, parse_csv(text), where);
+    add_rows(table, extension == ".tsv" ? parse_tsv(text) : parse_csv(text), where);
   } else {
-    add_lines(table, in, where);
+    std::istringstream lines(text);
+    add_lines(table, lines, where);
   }
   return {std::move(table).all(), path};
 }
 
-LabelTable label_table_of(const fs::path& label_map) {
+LabelTable label_table_of(const fs::path& label_map, const std::set<int>& occurring) {
   if (LabelTable own{voxel::label_names(label_map), label_map}; !own.names.empty()) return own;
-  std::string stem = label_map.filename().string();
-  for (const char* extension : {".nii.gz", ".nii", ".seg.nrrd", ".nrrd", ".nhdr", ".mha", ".mhd"})
-    if (voxel::lower_case(stem).ends_with(extension)) {
-      stem.resize(stem.size() - std::string(extension).size());
-      break;
-    }
-  for (const char* more : {"", "_labels", "-labels"})
-    for (const char* extension : {".json", ".csv", ".tsv", ".txt", ".ctbl"})
-      if (const fs::path beside = label_map.parent_path() / (stem + more + extension);
-          fs::is_regular_file(beside))
-        return read_label_table(beside);
-  return {};
+  std::vector<std::string> passed_over;
+  for (const fs::path& beside : tables_beside(label_map)) {
+    std::string why;
+    LabelTable table = table_or_why(beside, occurring, why);
+    table.passed_over = std::move(passed_over);
+    if (why.empty()) return table;
+    passed_over = std::move(table.passed_over);
+    passed_over.push_back(beside.string() + ": passed over, as it is no table of this label map's names: " +
+                          why + "; --names takes a table as it is");
+  }
+  LabelTable none;
+  none.passed_over = std::move(passed_over);
+  return none;
+}
+
+std::vector<std::string> findings_of_labels(const std::vector<voxel::Label>& labels) {
+  double off = 0.0;
+  std::string numbers;
+  std::size_t count = 0;
+  for (const voxel::Label& label : labels) {
+    if (label.off == 0.0) continue;
+    off = std::max(off, label.off);
+    constexpr std::size_t most = 8;
+    if (++count <= most) numbers += (numbers.empty() ? "" : ", ") + std::to_string(label.number);
+  }
+  if (count == 0) return {};
+  return {"labels are stored up to " + three_figures(off) +
+          " off whole numbers, and taken as the nearest: " + numbers + (count > 8 ? " and more" : "")};
 }
 
 }  // namespace octotomy::planner

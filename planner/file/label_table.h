@@ -3,7 +3,11 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
+#include <vector>
+
+#include "voxel/filter/label_map.h"
 
 namespace octotomy::planner {
 
@@ -11,21 +15,30 @@ namespace octotomy::planner {
 struct LabelTable {
   std::map<int, std::string> names;
   std::filesystem::path file;  ///< that has them; empty where there are none
+  /// Files beside a label map that look like its table and are none, each with the reason.
+  std::vector<std::string> passed_over = {};
 
   /// The label of a name. Throws std::runtime_error with the names that there are.
   int label(const std::string& name) const;
 };
 
 /// A table of labels: JSON ({"liver": 5}, {"5": "liver"}, {"labels": either}, [{"label": 5, "name": "liver"}]
-/// as TotalSegmentator and nnU-Net write them); .csv or .tsv, with a header that names a column of labels and
-/// one of names, or two columns; ITK-SNAP's .txt and 3D Slicer's .ctbl. Label 0 is left out. Throws
-/// std::runtime_error with path and line where a file is none of these, has two names for one label, or two
-/// labels of one name.
+/// as TotalSegmentator and nnU-Net write them, or dcmqi's "segmentAttributes"); .csv or .tsv, with a header
+/// that names a column of labels and one of names, as BIDS has them, or two columns; ITK-SNAP's .txt and
+/// .label, FreeSurfer's .txt and 3D Slicer's .ctbl. Label 0 is left out. Throws std::runtime_error with path
+/// and line where a file is none of these, has two names for one label, or two labels of one name.
 LabelTable read_label_table(const std::filesystem::path& path);
 
-/// The names of a label map: its own, else of the table beside it whose name is its own up to the extension,
-/// with or without "_labels" or "-labels". Empty where neither is there. Throws as read_label_table() and
+/// The names of a label map: its own, else of the first table beside it whose name is its own up to the
+/// extension, with or without "_labels", "-labels" or "_ColorTable"; of a BIDS "_dseg" file also the
+/// "dseg.tsv" of its folder or one of three above whose entities are all the file's. A file that
+/// read_label_table() refuses, that has a number of an acquisition such as "SliceThickness", or none of whose
+/// labels is one of `occurring` if there are any, is no table: it is passed over. Throws as
 /// voxel::label_names().
-LabelTable label_table_of(const std::filesystem::path& label_map);
+LabelTable label_table_of(const std::filesystem::path& label_map, const std::set<int>& occurring = {});
+
+/// A line on labels that are stored as numbers with a fraction: which, and how far off they are. None where
+/// all are whole.
+std::vector<std::string> findings_of_labels(const std::vector<voxel::Label>& labels);
 
 }  // namespace octotomy::planner

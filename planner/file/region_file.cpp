@@ -64,6 +64,12 @@ constexpr double off_plane_mm() {
   return 0.01;
 }
 
+/// Points of one plane may be this far apart along its normal, where planes are ten times as far apart: some
+/// programs turn or resample contours and write what single precision left of their planes.
+constexpr double jitter_mm() {
+  return 0.1;
+}
+
 /// Twice the contour's area, along its normal.
 glm::dvec3 area_of(const std::vector<glm::dvec3>& contour) {
   glm::dvec3 area(0.0);
@@ -99,26 +105,72 @@ std::string too_near(double gap_mm) {
          " mm count as one: draw it on planes that are further apart, or check that positions are in mm";
 }
 
+/// A contour's places along the view.
+struct Span {
+  double low_mm = std::numeric_limits<double>::infinity(), high_mm = -low_mm;
+
+  double middle_mm() const { return 0.5 * (low_mm + high_mm); }
+  double length_mm() const { return high_mm - low_mm; }
+};
+
+Span span_of(const std::vector<glm::dvec3>& contour, const voxel::View& view) {
+  Span span;
+  for (const glm::dvec3& p : contour) {
+    span.low_mm = std::min(span.low_mm, glm::dot(p, view.look));
+    span.high_mm = std::max(span.high_mm, glm::dot(p, view.look));
+  }
+  return span;
+}
+
+struct PlaneDistances {
+  double least_mm = std::numeric_limits<double>::infinity();  ///< of planes that are told apart
+  double nearest_mm = least_mm;                               ///< of those that count as one as well
+  double one_plane_mm = 2.0 * off_plane_mm();                 ///< places that are no farther apart are one
+};
+
+/// Of the planes of all structures that lie across the view; infinite where there is but one.
+PlaneDistances distances_of_planes(const std::vector<voxel::Structure>& structures, const voxel::View& view) {
+  std::vector<double> positions;
+  for (const voxel::Structure& structure : structures)
+    for (const auto& contour : structure.contours_mm)
+      if (const Span span = span_of(contour, view); span.length_mm() <= jitter_mm())
+        positions.push_back(span.middle_mm());
+  std::sort(positions.begin(), positions.end());
+  PlaneDistances distances;
+  // Gaps this small come from rounding to three decimals.
+  constexpr double in_plane_mm = 0.1 * off_plane_mm();
+  double coarse_mm = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < positions.size(); ++i) {
+    const double gap = positions[i] - positions[i - 1];
+    if (gap > in_plane_mm) distances.nearest_mm = std::min(distances.nearest_mm, gap);
+    if (gap > 2.0 * off_plane_mm()) distances.least_mm = std::min(distances.least_mm, gap);
+    if (gap > jitter_mm()) coarse_mm = std::min(coarse_mm, gap);
+  }
+  if (std::isfinite(coarse_mm) && coarse_mm >= 10.0 * jitter_mm())
+    distances = {coarse_mm, coarse_mm, jitter_mm()};
+  return distances;
+}
+
 /// A structure's contours by plane, ascending. `source` names it in refusals.
-Slices planes_of(const voxel::Structure& structure, const voxel::View& view, const std::string& source) {
+Slices planes_of(const voxel::Structure& structure, const voxel::View& view, const PlaneDistances& distances,
+                 const std::string& source, std::vector<std::string>& findings) {
   std::vector<voxel::SliceMask::Slice> single;
+  double worst_mm = 0.0;
   for (const std::vector<glm::dvec3>& contour : structure.contours_mm) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    voxel::SliceMask::Slice slice;
-    slice.polygons_mm.emplace_back();
-    for (const glm::dvec3& p : contour) {
-      low = std::min(low, glm::dot(p, view.look));
-      high = std::max(high, glm::dot(p, view.look));
-      slice.polygons_mm.back().push_back(view.project(p));
-    }
-    if (!(high - low <= 2.0 * off_plane_mm()))
-      refuse(source, "has contours in planes that are not parallel: by " + three_figures(high - low) +
+    const Span span = span_of(contour, view);
+    if (!(span.length_mm() <= distances.one_plane_mm))
+      refuse(source, "has contours in planes that are not parallel: by " + three_figures(span.length_mm()) +
                          " mm near " + plain(contour.front().x) + ", " + plain(contour.front().y) + ", " +
                          plain(contour.front().z) + " mm");
-    slice.position_mm = 0.5 * (low + high);
+    worst_mm = std::max(worst_mm, 0.5 * span.length_mm());
+    voxel::SliceMask::Slice slice{span.middle_mm(), {{}}};
+    for (const glm::dvec3& p : contour) slice.polygons_mm.back().push_back(view.project(p));
     // A line there and back encloses nothing.
     if (std::abs(voxel::signed_area(slice.polygons_mm.back())) > 0.0) single.push_back(std::move(slice));
   }
+  if (worst_mm > off_plane_mm())
+    findings.push_back(source + ": points lie up to " + three_figures(worst_mm) +
+                       " mm off their contour's plane: they are taken in it");
   std::stable_sort(single.begin(), single.end(),
                    [](const auto& a, const auto& b) { return a.position_mm < b.position_mm; });
   Slices planes;
@@ -126,8 +178,8 @@ Slices planes_of(const voxel::Structure& structure, const voxel::View& view, con
   for (voxel::SliceMask::Slice& slice : single) {
     const double gap_mm = slice.position_mm - before_mm;
     before_mm = slice.position_mm;
-    if (planes.empty() || slice.position_mm - planes.back().position_mm > 2.0 * off_plane_mm()) {
-      if (gap_mm <= 2.0 * off_plane_mm()) refuse(source, "has planes " + too_near(gap_mm));
+    if (planes.empty() || slice.position_mm - planes.back().position_mm > distances.one_plane_mm) {
+      if (gap_mm <= distances.one_plane_mm) refuse(source, "has planes " + too_near(gap_mm));
       planes.push_back(std::move(slice));
     } else {
       planes.back().polygons_mm.push_back(std::move(slice.polygons_mm.front()));
@@ -136,44 +188,73 @@ Slices planes_of(const voxel::Structure& structure, const voxel::View& view, con
   return planes;
 }
 
-struct PlaneDistances {
-  double least_mm = std::numeric_limits<double>::infinity();  ///< of planes that are told apart
-  double nearest_mm = least_mm;                               ///< of those that count as one as well
-};
-
-/// Of the planes of all structures that lie across the view; infinite where there is but one.
-PlaneDistances distances_of_planes(const std::vector<voxel::Structure>& structures, const voxel::View& view) {
-  std::vector<double> positions;
-  for (const voxel::Structure& structure : structures)
-    for (const auto& contour : structure.contours_mm)
-      if (glm::length(glm::cross(area_of(contour), view.look)) <= 1e-3 * glm::length(area_of(contour)))
-        positions.push_back(glm::dot(contour.front(), view.look));
-  std::sort(positions.begin(), positions.end());
-  PlaneDistances distances;
-  // What strings of three decimals round is no distance.
-  constexpr double in_plane_mm = 0.1 * off_plane_mm();
-  for (std::size_t i = 1; i < positions.size(); ++i) {
-    const double gap = positions[i] - positions[i - 1];
-    if (gap > in_plane_mm) distances.nearest_mm = std::min(distances.nearest_mm, gap);
-    if (gap > 2.0 * off_plane_mm()) distances.least_mm = std::min(distances.least_mm, gap);
-  }
-  return distances;
+/// How far apart a structure is usually drawn: the median distance of its planes.
+double usual_distance_mm(const Slices& planes) {
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < planes.size(); ++i)
+    gaps.push_back(planes[i].position_mm - planes[i - 1].position_mm);
+  if (gaps.empty()) return 0.0;
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  return *middle;
 }
 
-/// The planes with empty ones where the set has one and the structure has no contour.
-Slices with_empty(const Slices& planes, double apart_mm) {
-  Slices all{{planes.front().position_mm - apart_mm, {}}};
+/// A gap of one and a half distances misses a plane.
+constexpr double misses_plane = 1.5;
+
+/// The planes with empty ones where the set has one and the structure has no contour. Gaps up to `bridge_mm`
+/// are left to be interpolated.
+Slices with_empty(const Slices& planes, double apart_mm, double bridge_mm) {
+  const double usual_mm = usual_distance_mm(planes);
+  const double end_mm = usual_mm > apart_mm && usual_mm <= bridge_mm ? usual_mm : apart_mm;
+  Slices all{{planes.front().position_mm - end_mm, {}}};
   for (const voxel::SliceMask::Slice& plane : planes) {
-    // A gap of one and a half distances misses a plane.
-    if (!all.back().polygons_mm.empty() && plane.position_mm - all.back().position_mm > 1.5 * apart_mm) {
+    const double gap_mm = plane.position_mm - all.back().position_mm;
+    if (!all.back().polygons_mm.empty() && gap_mm > misses_plane * apart_mm && gap_mm > bridge_mm) {
       all.push_back({all.back().position_mm + apart_mm, {}});
-      if (plane.position_mm - all.back().position_mm > 1.5 * apart_mm)
+      if (plane.position_mm - all.back().position_mm > misses_plane * apart_mm)
         all.push_back({plane.position_mm - apart_mm, {}});
     }
     all.push_back(plane);
   }
-  all.push_back({planes.back().position_mm + apart_mm, {}});
+  all.push_back({planes.back().position_mm + end_mm, {}});
   return all;
+}
+
+/// The largest gap that the file says to be interpolated, or that is asked for; with a hundredth more, as
+/// positions are rounded.
+double bridge_of(const voxel::Structure& structure, const std::optional<double>& asked_mm) {
+  constexpr double rounding = 1.01;
+  if (asked_mm) return rounding * *asked_mm;
+  if (structure.is_interpolated) return std::numeric_limits<double>::infinity();
+  return rounding * structure.slab_mm;
+}
+
+/// Tells of planes of the set that lie between the structure's and have none of its contours.
+void tell_gaps(const Slices& planes, double apart_mm, double bridge_mm, const std::string& where,
+               std::vector<std::string>& findings) {
+  // Parts that lie farther apart are drawn as parts.
+  constexpr double most_planes = 4.5;
+  std::size_t gaps = 0, first = 0;
+  double widest_mm = 0.0;
+  for (std::size_t i = 1; i < planes.size(); ++i) {
+    const double gap_mm = planes[i].position_mm - planes[i - 1].position_mm;
+    if (gap_mm <= misses_plane * apart_mm || gap_mm <= bridge_mm || gap_mm > most_planes * apart_mm) continue;
+    if (gaps++ == 0) first = i;
+    widest_mm = std::max(widest_mm, gap_mm);
+  }
+  if (gaps == 0) return;
+  const bool is_regular = 2 * gaps > planes.size() - 1;
+  findings.push_back(
+      where +
+      (is_regular ? ": is drawn every " + plain(std::round(1000.0 * usual_distance_mm(planes)) / 1000.0) +
+                        " mm, while the set's planes are " + plain(std::round(1000.0 * apart_mm) / 1000.0) +
+                        " mm apart"
+                  : ": has " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
+                        " where planes of the set have none of its contours") +
+      ": it is empty between its planes, first between " + plain(planes[first - 1].position_mm) + " and " +
+      plain(planes[first].position_mm) + " mm; if it goes on there, --bridge " +
+      plain(std::ceil(1000.0 * widest_mm) / 1000.0) + " (bridge_mm in a plan) interpolates");
 }
 
 /// Names in quotes; with the number of those that several have.
@@ -215,27 +296,52 @@ const voxel::Structure& chosen(const std::vector<voxel::Structure>& structures, 
                      numbers + ": say which by its number as 'structure'");
 }
 
-voxel::SliceMask slices_of(const std::vector<voxel::Structure>& structures, const std::string& name,
-                           const std::string& source) {
-  const voxel::Structure* found = &chosen(structures, name, source);
-  const std::string where = source + ": '" + found->name + "'";
-  glm::dvec3 largest(0.0);
-  for (const auto& contour : found->contours_mm)
+/// The normal of a structure's contours, weighted by their areas; zero where none encloses anything.
+glm::dvec3 normal_of(const voxel::Structure& structure) {
+  glm::dvec3 largest(0.0), sum(0.0);
+  for (const auto& contour : structure.contours_mm)
     if (const glm::dvec3 area = area_of(contour); glm::length(area) > glm::length(largest)) largest = area;
-  if (!(glm::length(largest) > 0.0))
-    refuse(where, "has no closed contour" +
-                      (found->others > 0 ? ", but " + std::to_string(found->others) + " points or lines"
-                                         : std::string()));
-  voxel::SliceMask mask;
-  mask.view = view_across(largest);
-  const PlaneDistances distances = distances_of_planes(structures, mask.view);
+  for (const auto& contour : structure.contours_mm) {
+    const glm::dvec3 area = area_of(contour);
+    sum += glm::dot(area, largest) < 0.0 ? -area : area;
+  }
+  return sum;
+}
+
+/// What a structure has beside contours, for people: "2 points or lines".
+std::string others_of(const voxel::Structure& structure) {
+  std::string text;
+  if (structure.others > 0) text = std::to_string(structure.others) + " points or lines";
+  if (structure.degenerate > 0)
+    text += (text.empty() ? "" : " and ") + std::to_string(structure.degenerate) +
+            " contours of fewer than three points";
+  return text;
+}
+
+DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& options,
+                      const std::string& source) {
+  const voxel::Structure& found = chosen(set.structures, options.structure, source);
+  const std::string where = source + ": '" + found.name + "'";
+  if (!found.flaw.empty()) refuse(where, found.flaw);
+  const glm::dvec3 normal = normal_of(found);
+  const std::string others = others_of(found);
+  if (!(glm::length(normal) > 0.0))
+    refuse(where, "has no closed contour" + (others.empty() ? others : ", but " + others));
+  DrawnSlices drawn{{}, set.identity, {}};
+  if (!found.frame_uids.empty()) drawn.identity->frame_uids = found.frame_uids;
+  if (found.degenerate > 0) drawn.findings.push_back(where + ": left out what encloses nothing: " + others);
+  drawn.mask.view = view_across(normal);
+  const PlaneDistances distances = distances_of_planes(set.structures, drawn.mask.view);
+  const Slices planes = planes_of(found, drawn.mask.view, distances, where, drawn.findings);
   if (!std::isfinite(distances.nearest_mm))
     refuse(where, "lies in one plane, as the whole set does: how thick it is cannot be told");
   if (!std::isfinite(distances.least_mm))
     refuse(where, "lies in planes, as the whole set does, that are " + too_near(distances.nearest_mm));
-  mask.slices = with_empty(planes_of(*found, mask.view, where), distances.least_mm);
-  voxel::check(mask);
-  return mask;
+  const double bridge_mm = bridge_of(found, options.bridge_mm);
+  tell_gaps(planes, distances.least_mm, bridge_mm, where, drawn.findings);
+  drawn.mask.slices = with_empty(planes, distances.least_mm, bridge_mm);
+  voxel::check(drawn.mask);
+  return drawn;
 }
 
 /// "10, 12 and 3 more".
@@ -267,7 +373,7 @@ std::string place(const voxel::View& view, const glm::dvec2& p, double position_
 
 /// Takes contours that are drawn again in their plane once: by the even-odd rule they would delete each
 /// other.
-void take_once(voxel::SliceMask& mask, const std::string& where, std::vector<std::string>* findings) {
+void take_once(voxel::SliceMask& mask, const std::string& where, std::vector<std::string>& findings) {
   std::size_t count = 0;
   std::string first;
   Listed planes;
@@ -283,10 +389,10 @@ void take_once(voxel::SliceMask& mask, const std::string& where, std::vector<std
       if (!left.contains(i)) kept.push_back(std::move(slice.polygons_mm[i]));
     slice.polygons_mm = std::move(kept);
   }
-  if (count > 0 && findings != nullptr)
-    findings->push_back(where + ": " + contours(count) + (count == 1 ? " repeats" : " repeat") +
-                        " another of the same plane, which is taken once: planes at " + planes.text() +
-                        " mm, first " + first);
+  if (count > 0)
+    findings.push_back(where + ": " + contours(count) + (count == 1 ? " repeats" : " repeat") +
+                       " another of the same plane, which is taken once: planes at " + planes.text() +
+                       " mm, first " + first);
 }
 
 /// The even-odd rule leaves out what two contours enclose, which is a hole where one lies in the other. Of
@@ -316,23 +422,6 @@ void tell_crossings(const voxel::SliceMask& mask, const std::string& where,
                        unknown.text() + " mm");
 }
 
-voxel::SliceMask slices_of_file(const std::filesystem::path& path, const std::string& structure,
-                                std::vector<std::string>* findings) {
-  const bool is_set = voxel::is_rtstruct(path);
-  if (!is_set && !structure.empty())
-    refuse(path.string(), "is no DICOM structure set, which 'structure' chooses of");
-  try {
-    voxel::SliceMask mask = is_set ? slices_of(voxel::read_rtstruct(path), structure, path.string())
-                                   : slices_of(read_json(path), path.string());
-    const std::string where = path.string() + (structure.empty() ? "" : ": '" + structure + "'");
-    take_once(mask, where, findings);
-    if (findings != nullptr) tell_crossings(mask, where, *findings);
-    return mask;
-  } catch (const std::invalid_argument& error) {
-    refuse(path.string(), error.what());
-  }
-}
-
 }  // namespace
 
 voxel::Region read_region(const voxel::View& view, const std::filesystem::path& path) {
@@ -342,13 +431,34 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
   return {view, polygons_of(need(json, "polygons_mm", path.string()), path.string() + ": polygons_mm")};
 }
 
+DrawnSlices read_slices(const std::filesystem::path& path, const SlicesOptions& options) {
+  const bool is_set = voxel::is_rtstruct(path);
+  if (!is_set && !options.structure.empty())
+    refuse(path.string(), "is no DICOM structure set, which 'structure' chooses of");
+  if (!is_set && options.bridge_mm)
+    refuse(path.string(), "is no DICOM structure set, whose gaps 'bridge_mm' fills");
+  try {
+    DrawnSlices drawn = is_set ? slices_of(voxel::read_rtstruct(path), options, path.string())
+                               : DrawnSlices{slices_of(read_json(path), path.string())};
+    const std::string where =
+        path.string() + (options.structure.empty() ? "" : ": '" + options.structure + "'");
+    take_once(drawn.mask, where, drawn.findings);
+    tell_crossings(drawn.mask, where, drawn.findings);
+    return drawn;
+  } catch (const std::invalid_argument& error) {
+    refuse(path.string(), error.what());
+  }
+}
+
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure) {
-  return slices_of_file(path, structure, nullptr);
+  return read_slices(path, SlicesOptions{structure}).mask;
 }
 
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure,
                              std::vector<std::string>& findings) {
-  return slices_of_file(path, structure, &findings);
+  DrawnSlices drawn = read_slices(path, SlicesOptions{structure});
+  findings.insert(findings.end(), drawn.findings.begin(), drawn.findings.end());
+  return std::move(drawn.mask);
 }
 
 }  // namespace octotomy::planner

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "voxel/solid/region_mask.h"
 #include "voxel/solid/slice_mask.h"
+#include "voxel/space/scene.h"
 
 // Regions drawn elsewhere, as JSON files and structure sets. Points are [u, v] in the view's millimetres.
 namespace octotomy::planner {
@@ -22,17 +24,35 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 /// Of a DICOM structure set, the region of this name, or of this ROI number where no name or several are it:
 /// its closed contours as polygons of its planes, holes by the even-odd rule. Planes as far apart as the
 /// set's nearest ones; where one of them has no contour, nothing is there, and the first and last plane speak
-/// for half a distance beyond. Throws std::runtime_error if the name is not one of the set's or several have
-/// it, or none is given and there are several; if contours lie in no parallel planes, or all in one plane or
-/// in planes within 0.02 mm, which tell no distance.
+/// for half a distance beyond. A region that the file says to be interpolated, by the type
+/// INTERPOLATED_PLANAR or by slabs as thick as its planes are apart, goes on between its planes. Throws
+/// std::runtime_error if the name is not one of the set's or several have it, or none is given and there are
+/// several; if the region's contours cannot be read, lie in no parallel planes, or all in one plane or in
+/// planes within 0.02 mm, which tell no distance.
 ///
-/// A contour that is drawn again in its plane, within 0.01 mm, is taken once.
+/// A contour that is drawn again in its plane, within 0.01 mm, is taken once. Where planes are ten times as
+/// far apart, points up to 0.1 mm off a plane belong to it.
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure = {});
 
-/// The same; adds to `findings` a line on contours that are drawn again, and one on contours that cross
-/// another of their plane or themselves, so that the even-odd rule leaves a part out: how many, in which
-/// planes and where.
+/// The same; adds to `findings` a line on contours that are drawn again, one on contours that cross another
+/// of their plane or themselves, so that the even-odd rule leaves a part out: how many, in which planes and
+/// where; and of structure sets one on planes without a contour between others, on contours that enclose
+/// nothing and on points off their plane.
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure,
                              std::vector<std::string>& findings);
+
+struct SlicesOptions {
+  std::string structure = {};  ///< of a structure set
+  /// Of a structure set: neighbouring planes of the region up to this distance are interpolated between, and
+  /// not left empty. None: as the file says.
+  std::optional<double> bridge_mm = std::nullopt;
+};
+struct DrawnSlices {
+  voxel::SliceMask mask;
+  std::optional<voxel::Identity> identity = std::nullopt;  ///< of a structure set
+  std::vector<std::string> findings = {};
+};
+/// The same with all that is known of the file.
+DrawnSlices read_slices(const std::filesystem::path& path, const SlicesOptions& options);
 
 }  // namespace octotomy::planner

@@ -5,6 +5,7 @@
 #include "brep/mesh/line_volume.h"
 #include "planner/file/mesh_file.h"
 #include "planner/file/outputs.h"
+#include "planner/measure/compare_labels.h"
 #include "planner/measure/distance_histogram.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
@@ -24,6 +25,7 @@ struct Compare {
   // Of the verb.
   std::filesystem::path out, picture;
   std::optional<double> range_mm;
+  bool other_identity = false;
 };
 
 Json one_way_json(const brep::OneWay& way, const std::vector<double>& tolerances) {
@@ -174,6 +176,15 @@ void write_pictures(const Compare& asked, const brep::Triangles& a, const brep::
 }
 
 FileAnswer on_files(const Compare& asked, const FileBench& bench) {
+  if (is_label_map(asked.a.name) != is_label_map(asked.b.name))
+    throw std::runtime_error(
+        "one of " + asked.a.name + " and " + asked.b.name +
+        " is a label map and the other a surface: make surfaces of the labels by octotomy surfaces");
+  if (is_label_map(asked.a.name)) {
+    if (!asked.out.empty() || !asked.picture.empty())
+      throw std::runtime_error("--out and --picture are of surfaces: leave them out of two label maps");
+    return compare_label_maps(asked.a.name, asked.b.name, asked.other_identity, bench);
+  }
   if (!asked.out.empty()) need_extension(asked.out, {".ply", ".vtp", ".glb"}, "the coloured mesh is");
   if (!asked.picture.empty()) need_extension(asked.picture, {".png"}, "the histogram is");
   need_outputs({asked.out, asked.picture}, {asked.a.name, asked.b.name});
@@ -215,10 +226,16 @@ Operation compare_operation() {
           field("picture", &Compare::picture, "The histogram of distances in those colours: a .png file."))
       .verb_takes(field("range_mm", &Compare::range_mm, "Distance of full colour. Default: the Hausdorff 95.")
                       .greater_than(0.0))
+      .verb_takes(
+          field("other_identity", &Compare::other_identity,
+                "Compares segmentations that state different patients, studies or frames of reference, "
+                "and reports a FAIL."))
       .example(
           R"({"id": "apart", "do": "compare", "a": "maxilla", "b": "advanced", "tolerances_mm": [1, 2]})")
-      .on_files("octotomy compare planned.stl after.stl -o difference.ply --picture difference.png --json",
-                on_files)
+      .on_files(
+          "octotomy compare planned.stl after.stl -o difference.ply --picture difference.png --json\n"
+          "  octotomy compare mine.nii.gz theirs.nii.gz --json      # two label maps, label by label",
+          on_files)
       .measure(measure);
 }
 

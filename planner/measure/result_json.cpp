@@ -214,6 +214,21 @@ Json to_json(const Object& object) {
       {"findings", object.findings}};
 }
 
+namespace {
+
+/// As DICOM states it; null where the file does not.
+Json identity_json(const voxel::Identity& identity) {
+  const auto or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
+  const auto first = [](const std::vector<std::string>& uids) {
+    return uids.empty() ? Json(nullptr) : Json(uids.front());
+  };
+  return {{"patient_id", or_null(identity.patient_id)},
+          {"study_uid", first(identity.study_uids)},
+          {"frame_of_reference_uid", first(identity.frame_uids)}};
+}
+
+}  // namespace
+
 Json scan_answer(const voxel::Scene& scene, const Timings& timings) {
   Json json = answer(timings);
   const voxel::Range range = voxel::range(scene);
@@ -225,6 +240,7 @@ Json scan_answer(const voxel::Scene& scene, const Timings& timings) {
   json["range"] = {finite(range.low), finite(range.high)};
   json["modality"] = scene.modality;
   json["unit"] = voxel::unit(scene);
+  json["identity"] = identity_json(scene.identity);
   json["audit"] = to_json(scene.audit);
   if (!scene.holes.empty()) json["interpolated"] = to_json(scene.holes, scene.lattice);
   return json;

@@ -37,7 +37,8 @@ constexpr const char* name_mark = "{name}";
 void check(const Surfaces& surfaces, const Place& place) {
   if (place.scope != nullptr) check_output_path(surfaces.path, {".vtp", ".obj", ".glb"}, place.at("path"));
   for (const int label : surfaces.labels)
-    if (label < 1 || label > 32767) place.at("labels").refuse("a label is from 1 to 32767");
+    if (label < 1 || label > voxel::most_label)
+      place.at("labels").refuse("a label is from 1 to " + std::to_string(voxel::most_label));
 }
 
 /// Of labels.
@@ -64,6 +65,15 @@ Names names_of(const Surfaces& asked, const voxel::Scene& scene, const LabelTabl
         known == table.names.end() ? "label " + std::to_string(label.number) : known->second;
   }
   return names;
+}
+
+/// The given table, or the label map's own.
+LabelTable table_of(const Surfaces& asked, const fs::path& label_map, const voxel::Scene& scene) {
+  if (!asked.names.empty()) return read_label_table(asked.names);
+  std::set<int> occurring;
+  for (const voxel::Label& label : of_label_map(scene, [&] { return voxel::labels(scene); }))
+    occurring.insert(label.number);
+  return label_table_of(label_map, occurring);
 }
 
 brep::PartedSurface surfaces_of(const Surfaces& asked, const voxel::Scene& scene, const Names& names,
@@ -128,10 +138,13 @@ Json parted_json(const brep::PartedSurface& made, const Sizes& sizes, const voxe
 }
 
 /// Parts whose surface holds another volume than their samples: layers between others, which are thin.
-std::vector<std::string> findings_of(const Json& json) {
+/// Before them the files that are no table of names, and labels stored with a fraction.
+std::vector<std::string> findings_of(const Json& json, const LabelTable& table, const voxel::Scene& scene) {
   constexpr double told_share = 0.1;
   constexpr std::size_t most_told = 8;
-  std::vector<std::string> findings;
+  std::vector<std::string> findings = table.passed_over;
+  for (std::string& finding : findings_of_labels(voxel::labels(scene)))
+    findings.push_back(std::move(finding));
   std::size_t more = 0;
   for (const Json& part : json["parts"]) {
     const double surface = part["volume_mm3"].get<double>(),
@@ -215,7 +228,7 @@ void write_each(const brep::PartedSurface& made, const fs::path& out, Timings& t
 void write(const Surfaces& asked, const AnswerBench& bench, Exported& made) {
   made.path = output_path(asked.path).generic_string();
   const voxel::Scene& scene = bench.samples(asked.scan.name);
-  const LabelTable table = asked.names.empty() ? label_table_of(scene.source) : read_label_table(asked.names);
+  const LabelTable table = table_of(asked, scene.source, scene);
   const brep::PartedSurface parted = surfaces_of(asked, scene, names_of(asked, scene, table),
                                                  bench.progress("surfaces of " + asked.scan.name));
   if (parted.triangles.faces.empty())
@@ -225,7 +238,7 @@ void write(const Surfaces& asked, const AnswerBench& bench, Exported& made) {
   made.content = grouped(static_cast<double>(parted.names.size()), 0) + " labels, " +
                  grouped(static_cast<double>(parted.triangles.faces.size()), 0) + " triangles";
   made.details = parted_json(parted, sizes_of(parted), scene);
-  made.findings = findings_of(made.details);
+  made.findings = findings_of(made.details, table, scene);
 }
 
 FileAnswer on_files(const Surfaces& asked, const FileBench& bench) {
@@ -236,8 +249,8 @@ FileAnswer on_files(const Surfaces& asked, const FileBench& bench) {
   need_mesh_extension(asked.out);
   need_folder_of(asked.out);
   const fs::path file = asked.scan.name;
-  const LabelTable table = asked.names.empty() ? label_table_of(file) : read_label_table(asked.names);
   const voxel::Scene scene = bench.read_scan(file);
+  const LabelTable table = table_of(asked, file, scene);
   const Names names = names_of(asked, scene, table);
   const std::vector<fs::path> files = need_files(asked, names);
   brep::PartedSurface made;
@@ -253,7 +266,7 @@ FileAnswer on_files(const Surfaces& asked, const FileBench& bench) {
   answer.json["files"] = Json::array();
   for (const fs::path& each : files) answer.json["files"].push_back(each.string());
   answer.json.update(parted_json(made, sizes_of(made), scene));
-  answer.findings = findings_of(answer.json);
+  answer.findings = findings_of(answer.json, table, scene);
   for (const std::string& finding : answer.findings) answer.json["findings"].push_back(finding);
   answer.rows.emplace_back("written",
                            files.size() == 1 ? files[0].string() : std::to_string(files.size()) + " files");

@@ -9,6 +9,7 @@
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "planner/table/same_patient.h"
 #include "verify/witness.h"
 #include "voxel/solid/region_mask.h"
 #include "voxel/space/view.h"
@@ -73,12 +74,38 @@ std::string definition(const Mask& mask, const Objects&) {
          mask.slices.filename().string();
 }
 
+/// A structure set is of one of the plan's scans, whose steps may be in several frames of reference. Held
+/// against the first scan that it agrees with, or the first at all.
+std::vector<std::string> checked_identity(const Mask& mask, const voxel::Identity& of_set,
+                                          const std::vector<ScanRecord>& scans) {
+  const ScanRecord* nearest = nullptr;
+  voxel::Verdict best = voxel::Verdict::Fail;
+  for (const ScanRecord& scan : scans) {
+    if (!scan.made_by.empty()) continue;
+    const voxel::Verdict verdict = identity_finding({scan.name, scan.identity}, {"", of_set}).verdict;
+    if (nearest != nullptr && verdict >= best) continue;
+    nearest = &scan;
+    best = verdict;
+  }
+  if (nearest == nullptr) return {};
+  return need_same_patient({"scan '" + nearest->name + "'", nearest->identity},
+                           {mask.slices.generic_string(), of_set}, mask.other_identity,
+                           "\"other_identity\": true");
+}
+
 void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
   if (!mask.regions.empty()) made.symbol = voxel::Expression(mask_of(mask));
   if (const auto turned = held(mask, bench.objects); turned && made.symbol)
     made.symbol = moved(*made.symbol, *turned);
   if (!mask.slices.empty()) {
-    const voxel::Expression slices = read_slices(bench.folder / mask.slices, mask.structure, made.findings);
+    DrawnSlices drawn =
+        read_slices(bench.folder / mask.slices, SlicesOptions{mask.structure, mask.bridge_mm});
+    if (drawn.identity) {
+      const auto found = checked_identity(mask, *drawn.identity, bench.scans);
+      made.findings.insert(made.findings.end(), found.begin(), found.end());
+    }
+    made.findings.insert(made.findings.end(), drawn.findings.begin(), drawn.findings.end());
+    const voxel::Expression slices = std::move(drawn.mask);
     made.symbol = made.symbol ? *made.symbol & slices : slices;
   }
   made.octree = bench.combined(*made.symbol);
@@ -143,6 +170,14 @@ Operation mask_operation() {
       .takes(field(
           "structure", &Mask::structure,
           "The name or ROI number of the structure that is meant, where the slices are a structure set."))
+      .takes(
+          field("bridge_mm", &Mask::bridge_mm,
+                "Of a structure set: interpolates between planes of the structure up to this distance apart. "
+                "Default: as the file says.")
+              .greater_than(0.0))
+      .takes(field("other_identity", &Mask::other_identity,
+                   "Takes a structure set that states another patient, study or frame of reference than the "
+                   "scan, and reports a FAIL."))
       .verb_takes(
           field("region", &Mask::region_files,
                 "VIEW:FILE, repeated: the mask is what all of their back-projections enclose. The file "

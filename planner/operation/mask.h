@@ -18,9 +18,11 @@ struct Mask {
     Polygons polygons_mm;
   };
   std::vector<Region> regions;
-  std::string views_of = "head";  ///< as it is held; or "scan", whatever holds the head
-  std::filesystem::path slices;   ///< a file of regions on parallel slices, which cut the others
-  std::string structure;          ///< the region of a structure set in that file
+  std::string views_of = "head";    ///< as it is held; or "scan", whatever holds the head
+  std::filesystem::path slices;     ///< a file of regions on parallel slices, which cut the others
+  std::string structure;            ///< the region of a structure set in that file
+  std::optional<double> bridge_mm;  ///< gaps between the structure's planes that are filled
+  bool other_identity = false;  ///< the structure set may be of another patient, study or frame of reference
   // Of the verb.
   std::vector<std::string> region_files;   ///< VIEW:FILE
   std::vector<std::string> region_pixels;  ///< PICTURE.png:X,Y X,Y X,Y

@@ -11,6 +11,7 @@
 #include "planner/measure/octree_summary.h"
 #include "planner/table/json_file.h"
 #include "planner/table/plan_universe.h"
+#include "planner/table/same_patient.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
@@ -53,10 +54,28 @@ class Bounds {
   voxel::Box box_{glm::dvec3(-far), glm::dvec3(far)};
 };
 
-voxel::Universe universe_of_file(const fs::path& path, const std::optional<double>& voxel_mm,
-                                 const FileBench& bench) {
-  if (is_octree(path)) return voxel::universe(voxel::read_octree(path));
-  return universe_of(bench.read_scan(path).lattice, voxel_mm);
+/// Whose voxels the mask has; an octree states no identity.
+struct Like {
+  voxel::Universe universe;
+  voxel::Identity identity = {};
+};
+
+Like like_file(const fs::path& path, const std::optional<double>& voxel_mm, const FileBench& bench) {
+  if (is_octree(path)) return {voxel::universe(voxel::read_octree(path))};
+  const voxel::Scene scene = bench.read_scan(path);
+  return {universe_of(scene.lattice, voxel_mm), scene.identity};
+}
+
+/// The slices that cut the mask; refuses those of another patient than the scan.
+voxel::SliceMask slices_of(const Mask& asked, const std::optional<Like>& like,
+                           std::vector<std::string>& findings) {
+  DrawnSlices drawn = read_slices(asked.slices, SlicesOptions{asked.structure, asked.bridge_mm});
+  if (drawn.identity && like)
+    findings =
+        need_same_patient({asked.like.string(), like->identity}, {asked.slices.string(), *drawn.identity},
+                          asked.other_identity, "--other-identity");
+  findings.insert(findings.end(), drawn.findings.begin(), drawn.findings.end());
+  return std::move(drawn.mask);
 }
 
 /// The universe about what regions and slices enclose.
@@ -107,12 +126,14 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
   std::optional<voxel::SliceMask> slices;
   std::optional<voxel::Expression> expression;
   std::optional<voxel::Universe> universe;
-  if (!asked.like.empty()) universe = universe_of_file(asked.like, asked.voxel_mm, bench);
+  std::optional<Like> like;
+  if (!asked.like.empty()) like = like_file(asked.like, asked.voxel_mm, bench);
+  if (like) universe = like->universe;
   {
     const Stopwatch watch(bench.timings, "read");
     for (const std::string& region : asked.region_files) drawn.push_back(read_drawn_region(region));
     for (const std::string& pixels : asked.region_pixels) drawn.push_back(region_of_pixels(pixels));
-    if (!asked.slices.empty()) slices = read_slices(asked.slices, asked.structure, findings);
+    if (!asked.slices.empty()) slices = slices_of(asked, like, findings);
     if (!asked.edit.empty()) {
       const voxel::OctreeFile old = voxel::read_octree(asked.edit);
       const auto* octree = std::get_if<voxel::Octree>(&old.tree);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "brep/mesh/triangles.h"
 #include "convert/surface/fill_cavities.h"
@@ -17,6 +18,7 @@
 #include "planner/table/json.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "planner/table/same_patient.h"
 #include "verify/witness.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/label_map.h"
@@ -53,6 +55,15 @@ std::vector<glm::ivec3> seed_voxels(const Segment& segment, const voxel::Univers
   return seeds;
 }
 
+/// None where the samples are no labels: a number may be chosen of any scan.
+std::vector<voxel::Label> labels_or_none(const voxel::Scene& scene) {
+  try {
+    return voxel::labels(scene);
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+}
+
 /// One object on its way.
 class Segmenter {
  public:
@@ -74,14 +85,23 @@ class Segmenter {
   const voxel::Octree& base() {
     begin();
     if (!segment_.regions.empty())
-      become(voxel::combine(source_.universe,
-                            voxel::Expression(made_.octree) & read_slices(source_.folder / segment_.regions)),
+      become(voxel::combine(source_.universe, voxel::Expression(made_.octree) & regions()),
              {{"do", "regions"}, {"path", segment_.regions.string()}});
     if (!segment_.tolerance) made_.base = made_.octree;
     return made_.octree;
   }
 
  private:
+  voxel::SliceMask regions() {
+    DrawnSlices drawn = read_slices(source_.folder / segment_.regions, SlicesOptions{segment_.structure});
+    if (drawn.identity)
+      made_.findings = need_same_patient({source_.name, source_.scene.identity},
+                                         {segment_.regions.generic_string(), *drawn.identity},
+                                         segment_.other_identity, "'other_identity'");
+    made_.findings.insert(made_.findings.end(), drawn.findings.begin(), drawn.findings.end());
+    return std::move(drawn.mask);
+  }
+
   std::string name() const {
     if (segment_.named) return *segment_.named;
     if (segment_.label) return "label " + std::to_string(*segment_.label);
@@ -95,9 +115,12 @@ class Segmenter {
   }
 
   void begin() {
-    if (segment_.label)
+    if (segment_.label) {
+      for (const voxel::Label& label : labels_or_none(source_.scene))
+        if (label.number == *segment_.label) made_.findings = findings_of_labels({label});
       return become(voxel::octree_of_label(source_.universe, source_.scene, *segment_.label),
                     {{"do", "label"}, {"label", *segment_.label}});
+    }
     if (segment_.tolerance) {
       voxel::GrowOptions options;
       options.seeds = seed_voxels(segment_, source_.universe);
@@ -177,7 +200,8 @@ void check(const Segment& segment, const Place& place) {
 Segment settle(const Segment& segment, const SettleBench& bench) {
   Segment settled = segment;
   if (segment.named) {
-    settled.label = label_of_name(segment, bench.scan(segment.scan.name).scene().source, bench.folder);
+    const voxel::Scene& scene = bench.scan(segment.scan.name).scene();
+    settled.label = label_of_name(segment, scene.source, scene, bench.folder, bench.findings);
     bench.details["label"] = *settled.label;
   }
   if (!segment.otsu) return settled;
@@ -224,9 +248,10 @@ void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
   const LoadedScan& scan = bench.loaded(segment.scan.name);
   const Stopwatch watch(bench.timings, "segment");
   const auto grey = [&]() -> const voxel::GreyOctree& { return scan.grey; };
-  made.octree = segmented(segment, {"scan '" + segment.scan.name + "'", scan.scene(), bench.universe, grey,
-                                    bench.folder, bench.progress.stop})
-                    .octree;
+  Segmented chosen = segmented(segment, {"scan '" + segment.scan.name + "'", scan.scene(), bench.universe,
+                                         grey, bench.folder, bench.progress.stop});
+  made.octree = std::move(chosen.octree);
+  made.findings.insert(made.findings.end(), chosen.findings.begin(), chosen.findings.end());
   made.lineage = "voxels of a window on a grey octree of the scan";
   if (why_voxels_alone(segment) != nullptr) {
     made.symbol = voxel::Expression(made.octree);
@@ -308,10 +333,14 @@ OtsuWindow otsu_window(const voxel::Scene& scene, int classes, int number) {
   return otsu;
 }
 
-int label_of_name(const Segment& segment, const std::filesystem::path& label_map,
-                  const std::filesystem::path& folder) {
-  return (segment.names.empty() ? label_table_of(label_map) : read_label_table(folder / segment.names))
-      .label(*segment.named);
+int label_of_name(const Segment& segment, const std::filesystem::path& label_map, const voxel::Scene& scene,
+                  const std::filesystem::path& folder, std::vector<std::string>& findings) {
+  if (!segment.names.empty()) return read_label_table(folder / segment.names).label(*segment.named);
+  std::set<int> occurring;
+  for (const voxel::Label& label : labels_or_none(scene)) occurring.insert(label.number);
+  const LabelTable table = label_table_of(label_map, occurring);
+  findings.insert(findings.end(), table.passed_over.begin(), table.passed_over.end());
+  return table.label(*segment.named);
 }
 
 Operation segment_operation() {
@@ -330,7 +359,9 @@ Operation segment_operation() {
                    "Grows from the seeds through samples no farther from theirs.")
                  .from(0)
                  .to(65535))
-      .takes(field("label", &Segment::label, "The object of that number in a label map.").from(1).to(32767))
+      .takes(field("label", &Segment::label, "The object of that number in a label map.")
+                 .from(1)
+                 .to(voxel::most_label))
       .takes(
           field("named", &Segment::named,
                 "The object of that name in a label map with names: DICOM's or 3D Slicer's segmentations, or "
@@ -339,9 +370,15 @@ Operation segment_operation() {
                    "The table of names, in place of the one found: .json, .csv, .tsv, ITK-SNAP's .txt, 3D "
                    "Slicer's .ctbl.")
                  .a_file())
-      .takes(
-          field("regions", &Segment::regions, "Keeps the voxels within regions drawn on slices, a JSON file.")
-              .a_file())
+      .takes(field("regions", &Segment::regions,
+                   "Keeps the voxels within regions drawn on slices, a JSON file or a DICOM structure set.")
+                 .a_file())
+      .takes(field("structure", &Segment::structure,
+                   "The name or ROI number of the structure that is meant, where the regions are a structure "
+                   "set."))
+      .takes(field("other_identity", &Segment::other_identity,
+                   "Takes a structure set that states another patient, study or frame of reference than the "
+                   "scan, and reports a FAIL."))
       .takes(
           field("open_mm", &Segment::open_mm, "Takes away what a ball of that radius does not reach inside.")
               .greater_than(0.0))

@@ -25,7 +25,9 @@ struct Segment {
   std::optional<std::string> named;  ///< of a label; `names` is its table
   std::filesystem::path names;
   std::optional<double> tolerance;
-  std::filesystem::path regions;
+  std::filesystem::path regions;  ///< drawn on slices; `structure` is the one meant of a structure set
+  std::string structure;
+  bool other_identity = false;  ///< the structure set may be of another patient, study or frame of reference
   std::optional<double> open_mm;
   std::vector<glm::dvec3> seeds_mm;
   bool largest = false;
@@ -51,6 +53,7 @@ struct Segmented {
   voxel::Octree octree;
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();
   std::optional<voxel::Octree> base = std::nullopt;
+  std::vector<std::string> findings = {};
 };
 
 /// The voxel kernel's answer. Precondition: `window` in place of `otsu`, see otsu_window(). Throws
@@ -63,10 +66,11 @@ Segmented segmented(const Segment& segment, const SegmentSource& source);
 /// voxel::chosen_samples().
 voxel::Octree on_own_samples(const Segment& segment, const SegmentSource& source, const Segmented& made);
 
-/// The label of the name that is asked for, of the given table or that of the label map. Throws
-/// std::runtime_error with the names that there are.
-int label_of_name(const Segment& segment, const std::filesystem::path& label_map,
-                  const std::filesystem::path& folder);
+/// The label of the name that is asked for, of the given table or that of the label map, whose scene is
+/// given. Adds to `findings` the files that were passed over. Throws std::runtime_error with the names that
+/// there are.
+int label_of_name(const Segment& segment, const std::filesystem::path& label_map, const voxel::Scene& scene,
+                  const std::filesystem::path& folder, std::vector<std::string>& findings);
 
 /// The window of one of the classes of least variance (Otsu 1979), from the darkest, 1, and the thresholds
 /// with the histogram that they part.

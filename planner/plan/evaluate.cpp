@@ -26,6 +26,7 @@
 #include "planner/plan/in_step.h"
 #include "planner/plan/sha256.h"
 #include "planner/table/number_format.h"
+#include "planner/table/same_patient.h"
 #include "verify/witness.h"
 #include "voxel/scan/read_image_stack.h"
 #include "voxel/scan/read_scene.h"
@@ -56,6 +57,7 @@ ScanRecord record_of(const std::string& name, const std::filesystem::path& path,
   record.range = voxel::range(scene);
   record.audit = scene.audit;
   record.holes = scene.holes;
+  record.identity = scene.identity;
   return record;
 }
 
@@ -175,6 +177,36 @@ class Evaluator {
       if (options_.cache != nullptr)
         options_.cache->keep(scan_keys_[name] = scan_key(name, source),
                              {loaded_.at(name), result_.scans.back()});
+    }
+    check_identities();
+  }
+
+  /// Adds to the scans' audits whether they are of one patient. A label map is held against the scans that it
+  /// may lie on, and refused where it differs from all; another scan against the first, as plans may take
+  /// donors and later scans.
+  void check_identities() {
+    for (ScanRecord& laid : result_.scans) {
+      std::erase_if(laid.audit, [](const voxel::Finding& finding) { return finding.check == "identity"; });
+      const bool is_label = laid.meaning == voxel::Meaning::Label;
+      std::optional<voxel::Finding> best;
+      for (const ScanRecord& scan : result_.scans) {
+        if (&scan == &laid || (is_label ? scan.meaning == voxel::Meaning::Label : &scan != &result_.scans[0]))
+          continue;
+        voxel::Finding found = identity_finding({"scan '" + scan.name + "'", scan.identity},
+                                                {"scan '" + laid.name + "'", laid.identity});
+        if (!best || found.verdict < best->verdict) best = std::move(found);
+      }
+      if (!best || best->verdict == voxel::Verdict::Pass) continue;
+      if (is_label && best->verdict == voxel::Verdict::Fail && !plan_.scans.at(laid.name).other_identity)
+        throw std::runtime_error(best->detail +
+                                 "; where that is meant, \"other_identity\": true beside the path of '" +
+                                 laid.name + "' goes on and reports it as a FAIL");
+      if (!is_label && best->verdict != voxel::Verdict::Fail) continue;
+      if (!is_label) {
+        best->verdict = voxel::Verdict::Warn;
+        best->detail += "; objects of both lie in one place only where a step moves them there";
+      }
+      laid.audit.push_back(std::move(*best));
     }
   }
 
@@ -318,10 +350,15 @@ class Evaluator {
     object.is_tool = operation.is_tool;
     object.definition = operation.definition(value, result_.objects);
     if (operation.voxel)
-      operation.voxel(
-          value,
-          {result_.universe, result_.objects, scan_, result_.timings, {options_.stop, {}}, plan_.folder},
-          object.voxel);
+      operation.voxel(value,
+                      {result_.universe,
+                       result_.objects,
+                       scan_,
+                       result_.timings,
+                       {options_.stop, {}},
+                       plan_.folder,
+                       result_.scans},
+                      object.voxel);
     object.findings.insert(object.findings.end(), object.voxel.findings.begin(), object.voxel.findings.end());
     if (with_mesh_.contains(step.id)) make_mesh(step, value, object);
     object.mesh.details.update(told);

@@ -103,9 +103,11 @@ std::map<std::string, ScanSource> scans_of(const Keys& top) {
     refuse("scans", "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}");
   std::map<std::string, ScanSource> scans;
   for (const auto& [name, entry] : value.items()) {
-    const Keys keys(entry, "scans, " + name,
-                    {"path", "sha256", "series", "slices", "frame", "unit", "spacing_mm", "raw"});
+    const Keys keys(
+        entry, "scans, " + name,
+        {"path", "sha256", "series", "slices", "frame", "unit", "spacing_mm", "raw", "other_identity"});
     ScanSource source{keys.text("path"), std::nullopt, read_options_of(keys)};
+    if (keys.find("other_identity") != nullptr) source.other_identity = keys.flag("other_identity");
     if (keys.find("sha256") != nullptr) {
       source.sha256 = keys.text("sha256");
       const bool hex = source.sha256->size() == 64 &&
@@ -271,7 +273,8 @@ Json plan_schema() {
                     {"frame", {{"type", "string"}}},
                     {"unit", {{"type", "string"}}},
                     {"spacing_mm", vector},
-                    {"raw", raw}}},
+                    {"raw", raw},
+                    {"other_identity", {{"type", "boolean"}}}}},
                   {"required", {"path"}},
                   {"additionalProperties", false}};
   Json steps = Json::array();

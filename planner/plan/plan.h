@@ -17,6 +17,9 @@ struct ScanSource {
   std::filesystem::path path;         ///< relative paths are relative to the plan's folder
   std::optional<std::string> sha256;  ///< checked where given
   voxel::ReadOptions read = {};       ///< the series, and what the file does not say of itself
+  /// Of a label map: taken, with a FAIL in its audit, though it states another patient, study or frame of
+  /// reference than the other scans.
+  bool other_identity = false;
 };
 
 /// A step: an operation with its values, and the name of what it makes.

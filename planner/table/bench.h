@@ -30,6 +30,23 @@ struct LoadedScan {
 /// Answers a scan by its name in the document.
 using Scans = std::function<const LoadedScan&(const std::string& name)>;
 
+/// A scan without its samples: what a report says of it.
+struct ScanRecord {
+  std::string name;
+  std::filesystem::path path;
+  std::string sha256;
+  voxel::Lattice lattice;
+  voxel::Meaning meaning = voxel::Meaning::Raw;
+  std::string modality;
+  std::string unit;
+  voxel::Range range;
+  std::vector<voxel::Finding> audit;
+  std::vector<voxel::Hole> holes;
+  voxel::Identity identity = {};
+  std::string made_by = {};  ///< the step that made it, in words; empty: it was read
+  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< what that step tells of it
+};
+
 /// The bench of operations that make a scan of another one.
 struct ScanBench {
   /// The samples of an earlier scan.
@@ -70,6 +87,7 @@ struct VoxelBench {
   Timings& timings;
   voxel::Progress progress;
   std::filesystem::path folder = {};  ///< paths of files are relative to it
+  const std::vector<ScanRecord>& scans;
 
   /// An earlier object's answer in this kernel.
   const VoxelSide& object(const std::string& name) const { return objects.at(name).voxel; }
@@ -104,22 +122,6 @@ struct BoundBench {
   const voxel::Universe& universe;
   const Objects& objects;
   const Scans& scan;
-};
-
-/// A scan without its samples: what a report says of it.
-struct ScanRecord {
-  std::string name;
-  std::filesystem::path path;
-  std::string sha256;
-  voxel::Lattice lattice;
-  voxel::Meaning meaning = voxel::Meaning::Raw;
-  std::string modality;
-  std::string unit;
-  voxel::Range range;
-  std::vector<voxel::Finding> audit;
-  std::vector<voxel::Hole> holes;
-  std::string made_by = {};  ///< the step that made it, in words; empty: it was read
-  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< what that step tells of it
 };
 
 /// The bench of operations that make numbers or files from objects.

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "voxel/space/error.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner {
 namespace {
@@ -79,6 +80,28 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
     }
   }
   end_row();
+  return rows;
+}
+
+std::vector<std::vector<std::string>> parse_tsv(std::string_view text) {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // as spreadsheets begin UTF-8
+  if (text.find('\0') != std::string_view::npos) refuse(1, "a byte 0: it is no text, or not UTF-8");
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+    const std::string_view line = text.substr(at, end - at);
+    at = end + 1;
+    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+    std::vector<std::string>& cells = rows.emplace_back();
+    for (std::size_t from = 0; from <= line.size();) {
+      const std::size_t to = std::min(line.find('\t', from), line.size());
+      std::string cell = voxel::trimmed(std::string(line.substr(from, to - from)));
+      if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
+        cell = cell.substr(1, cell.size() - 2);
+      cells.push_back(std::move(cell));
+      from = to + 1;
+    }
+  }
   return rows;
 }
 

@@ -19,4 +19,8 @@ std::string csv_number(const std::optional<double>& number);
 /// row's number where a quote is not closed, text follows a closed one, or a byte 0 shows that it is no text.
 std::vector<std::vector<std::string>> parse_csv(std::string_view text);
 
+/// All rows of a table whose cells tabs part, as BIDS has them: without blanks at cells' ends and quotes
+/// about a whole cell. Blank lines are passed over. Throws as parse_csv() of a byte 0.
+std::vector<std::vector<std::string>> parse_tsv(std::string_view text);
+
 }  // namespace octotomy::planner

@@ -15,9 +15,11 @@
 #include "planner/table/control_character.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
+#include "planner/table/same_patient.h"
 #include "planner/verb/numbers.h"
 #include "planner/verb/progress_line.h"
 #include "voxel/filter/tissue.h"
+#include "voxel/scan/identity.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -69,6 +71,22 @@ bool Program::is_asked(const std::string& name) const {
          std::find(words_.begin(), words_.end(), name) != words_.end();
 }
 
+namespace {
+
+/// That a scan is not of the first one's patient, or a label map not of its study or frame. Scans of one
+/// patient may be of several studies.
+std::optional<voxel::Finding> doubt_of(const ScanRecord& scan, const std::vector<ScanRecord>& earlier) {
+  if (earlier.empty()) return std::nullopt;
+  const ScanRecord& first = earlier.front();
+  const voxel::IdentityComparison found = voxel::compared(first.identity, scan.identity);
+  const bool is_laid = first.meaning == voxel::Meaning::Label || scan.meaning == voxel::Meaning::Label;
+  if (found.differing.empty() || (!is_laid && !found.differing.front().starts_with("patient")))
+    return std::nullopt;
+  return identity_finding({first.path.string(), first.identity}, {scan.path.string(), scan.identity});
+}
+
+}  // namespace
+
 void Program::note_scan(const ScanRecord& scan) const {
   scans_->push_back(scan);
 }
@@ -79,6 +97,9 @@ void Program::note_scan(const std::filesystem::path& path, const voxel::Scene& s
   record.lattice = scene.lattice;
   record.audit = scene.audit;
   record.holes = scene.holes;
+  record.identity = scene.identity;
+  record.meaning = scene.meaning;
+  if (const auto finding = doubt_of(record, *scans_)) record.audit.push_back(*finding);
   note_scan(record);
 }
 

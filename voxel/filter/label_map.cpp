@@ -105,31 +105,58 @@ LabelMap label_map(const Lattice& lattice, std::span<const Octree> objects, cons
   return map;
 }
 
+std::optional<int> label_of(double sample) {
+  constexpr double most_off = 0.01;
+  const double number = std::floor(sample + 0.5);
+  if (!(std::abs(sample - number) <= most_off) || number < 0.0 || number > most_label) return std::nullopt;
+  return static_cast<int>(number);
+}
+
 std::vector<Label> labels(const Scene& scene) {
   check(scene);
-  std::map<int, std::uint64_t> counts;
+  std::map<int, Label> found;
   std::visit(
       [&](const auto& samples) {
+        auto last = found.end();
         for (const auto sample : samples) {
           const auto value = static_cast<double>(sample);
-          if (value < 0.0 || value != std::floor(value) || value > 32767.0)
+          const std::optional<int> number = label_of(value);
+          if (!number)
             throw std::invalid_argument(scene.source + ": holds " + std::to_string(value) +
-                                        ", which is no label: labels are integers from 0 to 32767");
-          ++counts[static_cast<int>(value)];
+                                        ", which is no label: labels are whole numbers from 0 to " +
+                                        std::to_string(most_label));
+          if (last == found.end() || last->first != *number)
+            last = found.emplace(*number, Label{*number}).first;
+          ++last->second.samples;
+          last->second.off = std::max(last->second.off, std::abs(value - *number));
         }
       },
       scene.samples);
-  std::vector<Label> found;
-  for (const auto& [number, samples] : counts)
-    if (number != 0) found.push_back({number, samples});
-  return found;
+  for (const auto& [number, several] : scene.overlaps) {
+    const auto shared = found.find(number);
+    if (shared == found.end()) continue;
+    for (const int label : several) {
+      found.emplace(label, Label{label}).first->second.samples += shared->second.samples;
+    }
+    found.erase(shared);
+  }
+  found.erase(0);
+  std::vector<Label> all;
+  for (const auto& [number, label] : found) all.push_back(label);
+  return all;
 }
 
 Octree octree_of_label(const Universe& universe, const Scene& scene, int label) {
   check(scene);
   const glm::ivec3 dims = scene.lattice.dims;
   const glm::dmat4 index_from_voxel = glm::inverse(scene.lattice.lps_from_voxel) * universe.lps_from_voxel;
-  const auto wanted = static_cast<float>(label);
+  std::vector<int> wanted{label};
+  for (const auto& [number, several] : scene.overlaps)
+    if (std::find(several.begin(), several.end(), label) != several.end()) wanted.push_back(number);
+  const auto is_wanted = [&](double sample) {
+    const std::optional<int> number = label_of(sample);
+    return number && std::find(wanted.begin(), wanted.end(), *number) != wanted.end();
+  };
   const int side = universe.side();
   return octree_of_blocks(universe, [&](const glm::ivec3& block) -> Block {
     std::array<std::uint64_t, 64> words{};
@@ -141,15 +168,62 @@ Octree octree_of_label(const Universe& universe, const Scene& scene, int label) 
           const glm::ivec3 at = nearest(glm::dvec3(index_from_voxel * glm::dvec4(voxel, 1)));
           if (!holds(dims, at)) continue;
           const std::size_t sample = sample_index(dims, at);
-          const bool is_it =
-              std::visit([&](const auto& samples) { return static_cast<float>(samples[sample]) == wanted; },
-                         scene.samples);
-          if (is_it)
+          if (std::visit([&](const auto& samples) { return is_wanted(samples[sample]); }, scene.samples))
             words[static_cast<std::size_t>(child_index(x >> 2, y >> 2, z >> 2))] |=
                 std::uint64_t{1} << child_index(x & 3, y & 3, z & 3);
         }
     return make_leaf_block(0, all_children, words.data());
   });
+}
+
+std::vector<LabelLayer> label_layers(const Scene& scene) {
+  const std::vector<Label> all = labels(scene);
+  if (all.size() > 32767)
+    throw std::length_error(scene.source + ": holds " + std::to_string(all.size()) +
+                            " labels, more than 32767: choose some of them");
+  const auto overlap = [&](int a, int b) {
+    return std::any_of(scene.overlaps.begin(), scene.overlaps.end(), [&](const auto& each) {
+      return std::count(each.second.begin(), each.second.end(), a) > 0 &&
+             std::count(each.second.begin(), each.second.end(), b) > 0;
+    });
+  };
+  std::vector<LabelLayer> layers;
+  for (const Label& label : all) {
+    const auto is_free = [&](const LabelLayer& layer) {
+      return std::none_of(layer.labels.begin(), layer.labels.end(),
+                          [&](int other) { return overlap(other, label.number); });
+    };
+    auto layer = std::find_if(layers.begin(), layers.end(), is_free);
+    if (layer == layers.end()) layer = layers.insert(layers.end(), LabelLayer{});
+    layer->labels.push_back(label.number);
+  }
+  for (LabelLayer& layer : layers) {
+    std::map<int, std::int16_t> rank;
+    for (const int label : layer.labels) {
+      const auto number = static_cast<std::int16_t>(rank.size() + 1);
+      rank[label] = number;
+    }
+    for (const auto& [number, several] : scene.overlaps)
+      for (const int label : several)
+        if (const auto own = rank.find(label); own != rank.end()) rank[number] = own->second;
+    layer.ranks.lattice = scene.lattice;
+    layer.ranks.meaning = Meaning::Label;
+    layer.ranks.source = scene.source;
+    Int16Samples samples(scene.lattice.sample_count());
+    for_each_slice(scene.lattice.dims.z, {}, [&](int z) {
+      const std::size_t area = samples.size() / static_cast<std::size_t>(scene.lattice.dims.z);
+      std::visit(
+          [&](const auto& from) {
+            for (std::size_t i = area * static_cast<std::size_t>(z), end = i + area; i < end; ++i) {
+              const auto own = rank.find(label_of(from[i]).value_or(0));
+              samples[i] = own == rank.end() ? std::int16_t{0} : own->second;
+            }
+          },
+          scene.samples);
+    });
+    layer.ranks.samples = std::move(samples);
+  }
+  return layers;
 }
 
 }  // namespace octotomy::voxel

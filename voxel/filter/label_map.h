@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,16 +35,34 @@ struct LabelMap {
 };
 LabelMap label_map(const Lattice& lattice, std::span<const Octree> objects, const Progress& progress = {});
 
-/// The labels of a scene except 0, ascending, with their numbers of samples. Throws std::invalid_argument if
-/// a sample is negative or no integer.
+/// The largest label: up to here a sample of single precision holds every whole number.
+constexpr int most_label = 1 << 24;
+
+/// The label that a sample stores: its nearest whole number, if the sample is within a hundredth of it. Scale
+/// factors and single precision shift stored labels by less; interpolation between labels shifts them by
+/// more. None if that number is negative or over most_label.
+std::optional<int> label_of(double sample);
+
+/// The labels of a scene except 0, ascending, with their numbers of samples; a sample in several labels
+/// counts for each (Scene::overlaps). Throws std::invalid_argument if label_of() a sample is none.
 struct Label {
   int number = 0;
   std::uint64_t samples = 0;
+  double off = 0.0;  ///< largest distance of a sample from the number
 };
 std::vector<Label> labels(const Scene& scene);
 
 /// The voxels of a universe whose nearest sample has that label; voxels beyond the scan are empty. Parallel
 /// over blocks.
 Octree octree_of_label(const Universe& universe, const Scene& scene, int label);
+
+/// A label map whose samples are int16 ranks: i + 1 for `labels[i]`. No two of its labels overlap.
+struct LabelLayer {
+  std::vector<int> labels;  ///< ascending
+  Scene ranks;
+};
+/// The labels of a scene as few layers: each label in the first one where it overlaps no other. Throws as
+/// labels(); std::length_error for more than 32767 labels. Memory: two bytes a sample and layer.
+std::vector<LabelLayer> label_layers(const Scene& scene);
 
 }  // namespace octotomy::voxel

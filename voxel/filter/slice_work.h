@@ -35,9 +35,10 @@ inline void check_values(const Scene& scene, const std::string& refusal) {
   if (scene.meaning == Meaning::Label) throw std::invalid_argument("labels have no order: " + refusal);
 }
 
-/// A scene's meaning, modality, source and audit on a lattice, without samples.
+/// All of a scene but samples and holes, on a lattice.
 inline Scene empty_scene_like(const Scene& scene, const Lattice& lattice) {
-  return {lattice, {}, scene.meaning, scene.modality, scene.source, scene.audit};
+  return {lattice,     {}, scene.meaning,  scene.modality, scene.source,
+          scene.audit, {}, scene.identity, scene.overlaps};
 }
 
 /// A sample of a value: rounded to the nearest integer, halves upwards, and clamped to int16's range.

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "voxel/scan/dicom_codec.h"
+#include "voxel/scan/identity.h"
 #include "voxel/scan/inflate.h"
 #include "voxel/space/file_text.h"
 
@@ -275,6 +276,7 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
   slice.series_uid = file.text(0x0020000e);
   slice.series_description = file.readable_text(0x0008103e);
   slice.modality = file.readable_text(0x00080060);
+  slice.identity = identity_of(file);
   const auto number = [&](DicomTag tag) {
     const double value = file.decimal(tag).value_or(0.0);
     return std::abs(value) < 1e9 ? static_cast<int>(value) : 0;

@@ -12,6 +12,7 @@
 
 #include "voxel/scan/dicom_file.h"
 #include "voxel/scan/dicom_traits.h"
+#include "voxel/space/scene.h"
 
 namespace octotomy::voxel {
 
@@ -42,6 +43,7 @@ struct DicomSlice {
   std::string series_uid;
   std::string series_description;  ///< UTF-8
   std::string modality;
+  Identity identity;
   std::string rescale_type;
   int series_number = 0;
   int instance_number = 0;

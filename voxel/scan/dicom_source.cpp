@@ -47,6 +47,7 @@ DicomSource dicom_source(const fs::path& path, const ReadOptions& options) {
   const DicomStack stack = stack_of_series(path, options, ignored);
   DicomSource source;
   source.normal = stack.normal;
+  source.identity = stack.first().identity;
   source.series_uid = stack.first().series_uid;
   source.series_number = stack.first().series_number;
   source.modality = stack.first().modality;

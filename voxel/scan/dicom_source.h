@@ -29,6 +29,7 @@ struct DicomSource {
   /// Patient, study, frame of reference and acquisition by tag, from the first image's file and in its
   /// character set. Attributes that the file lacks are absent.
   std::map<DicomTag, Text> attributes;
+  Identity identity;
   std::string series_uid;
   int series_number = 0;
   std::string modality;

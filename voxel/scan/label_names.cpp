@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/scan/label_names.h"
 
+#include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <set>
 
 #include "voxel/scan/dicom_file.h"
 #include "voxel/scan/read_dicom_seg.h"
@@ -31,13 +33,10 @@ std::map<int, std::string> of_dicom(const fs::path& path) {
   return names;
 }
 
-/// Slicer's segments by their number in the header, whose lines are KEY:=VALUE up to an empty one.
-std::map<int, std::string> of_nrrd(const fs::path& path) {
-  struct Segment {
-    std::string name;
-    int label = 0;
-  };
-  std::map<int, Segment> segments;
+}  // namespace
+
+std::vector<SlicerSegment> slicer_segments(const fs::path& path) {
+  std::map<int, SlicerSegment> listed;
   std::ifstream in = opened(path);
   constexpr std::size_t most_lines = 100000;
   std::string line;
@@ -47,24 +46,39 @@ std::map<int, std::string> of_nrrd(const fs::path& path) {
     int number = 0;
     const char* const end = line.data() + middle;
     const auto [rest, error] = std::from_chars(line.data() + 7, end, number);
-    if (error != std::errc()) continue;
+    constexpr int most_segments = 1000000;
+    if (error != std::errc() || number < 0 || number > most_segments) continue;
     const std::string key(rest, end), value = trimmed(line.substr(middle + 2));
-    if (key == "_Name") segments[number].name = value;
-    if (key == "_LabelValue")
-      std::from_chars(value.data(), value.data() + value.size(), segments[number].label);
+    const auto whole = [&](int& to) { std::from_chars(value.data(), value.data() + value.size(), to); };
+    SlicerSegment& segment = listed[number];
+    if (key == "_Name") segment.name = value;
+    if (key == "_LabelValue") whole(segment.value);
+    if (key == "_Layer") whole(segment.layer);
   }
-  std::map<int, std::string> names;
-  // Without a value the segments are numbered as they are listed.
-  for (const auto& [number, segment] : segments)
-    if (!segment.name.empty()) names.emplace(segment.label > 0 ? segment.label : number + 1, segment.name);
-  return names;
+  std::vector<SlicerSegment> segments;
+  int largest = 0;
+  for (auto& [number, segment] : listed) {
+    if (segment.name.empty()) continue;
+    // Without a value the segments are numbered as they are listed.
+    if (segment.value <= 0) segment.value = number + 1;
+    largest = std::max(largest, segment.value);
+    segments.push_back(std::move(segment));
+  }
+  std::set<int> taken;
+  for (SlicerSegment& segment : segments) {
+    segment.number = taken.contains(segment.value) ? ++largest : segment.value;
+    taken.insert(segment.number);
+  }
+  return segments;
 }
-
-}  // namespace
 
 std::map<int, std::string> label_names(const fs::path& path) {
   const std::string extension = extension_of(path);
-  if (extension == ".nrrd" || extension == ".nhdr") return of_nrrd(path);
+  if (extension == ".nrrd" || extension == ".nhdr") {
+    std::map<int, std::string> names;
+    for (const SlicerSegment& segment : slicer_segments(path)) names[segment.number] = segment.name;
+    return names;
+  }
   std::error_code ignored;
   return fs::is_regular_file(path, ignored) && is_dicom_seg(path) ? of_dicom(path)
                                                                   : std::map<int, std::string>{};

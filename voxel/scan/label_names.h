@@ -4,8 +4,19 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace octotomy::voxel {
+
+/// A segment of 3D Slicer's .seg.nrrd. Segments that overlap stand in layers, which number theirs anew.
+struct SlicerSegment {
+  std::string name;
+  int layer = 0;
+  int value = 0;   ///< its samples in its layer
+  int number = 0;  ///< its label here: the value, or where an earlier segment has that, the next one free
+};
+/// The segments that a NRRD's header lists, in its order; none of other files. Cost: the header.
+std::vector<SlicerSegment> slicer_segments(const std::filesystem::path& path);
 
 /// The names that a label map's own file has for its labels, in UTF-8: those of a DICOM segmentation's
 /// segments, and of 3D Slicer's (Segment0_Name with Segment0_LabelValue in the header of .seg.nrrd). Empty

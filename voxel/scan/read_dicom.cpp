@@ -61,6 +61,7 @@ class SeriesReader {
     }
     scene_.lattice = lattice_of(stack, plan);
     scene_.modality = stack.first().modality;
+    scene_.identity = stack.first().identity;
     audit_steps();
     if (scene_.modality == "CT") {
       AirLevel air = air_level_of_ct(scene_);

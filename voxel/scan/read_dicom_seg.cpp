@@ -3,7 +3,7 @@
 // A segmentation (DICOM PS3.3, A.51) to a label map:
 //   1  read the segments' numbers and labels, and each frame's segment and position
 //   2  order the positions along the normal and lay a lattice through them
-//   3  unpack each frame into its plane, segments of lower numbers first
+//   3  unpack each frame into its plane; where segments overlap, a number stands for all of them
 #include "voxel/scan/read_dicom_seg.h"
 
 #include <algorithm>
@@ -14,6 +14,8 @@
 
 #include "voxel/scan/audit.h"
 #include "voxel/scan/dicom_file.h"
+#include "voxel/scan/identity.h"
+#include "voxel/scan/label_overlaps.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {
@@ -23,6 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* segmentation_storage = "1.2.840.10008.5.1.4.1.1.66.4";
+/// Of segmentations whose pixels are the numbers of segments.
+constexpr const char* label_map_storage = "1.2.840.10008.5.1.4.1.1.66.7";
 
 struct Frame {
   int segment = 0;
@@ -44,6 +48,7 @@ class SegReader {
     scene_.meaning = Meaning::Label;
     scene_.modality = "SEG";
     scene_.source = path_.string();
+    scene_.identity = identity_of(file_);
     return std::move(scene_);
   }
 
@@ -54,7 +59,10 @@ class SegReader {
     rows_ = file_.unsigned_short(0x00280010).value_or(0);
     columns_ = file_.unsigned_short(0x00280011).value_or(0);
     bits_ = file_.unsigned_short(0x00280100).value_or(1);
-    if (rows_ == 0 || columns_ == 0 || (bits_ != 1 && bits_ != 8)) refused("without pixels of 1 or 8 bits");
+    is_label_map_ = trimmed(file_.text(0x00620001)) == "LABELMAP";
+    const bool fits = is_label_map_ ? bits_ == 8 || bits_ == 16 : bits_ == 1 || bits_ == 8;
+    if (rows_ == 0 || columns_ == 0 || !fits)
+      refused(is_label_map_ ? "without pixels of 8 or 16 bits" : "without pixels of 1 or 8 bits");
     if (!file_.raw_pixels()) refused("whose pixels are compressed or absent: decompress it first");
     if (bits_ == 8) least_ = (file_.unsigned_short(0x0062000e).value_or(255) + 1) / 2;
   }
@@ -63,9 +71,10 @@ class SegReader {
     std::string list;
     for (const DicomFile& segment : file_.items(0x00620002)) {
       const int number = segment.unsigned_short(0x00620004).value_or(0);
-      if (number < 1 || number > 32767) refused("with a segment that has no number");
-      list += (list.empty() ? "" : ", ") + std::to_string(number) + " '" + segment.readable_text(0x00620005) +
-              "'";
+      if (number < 1 && is_label_map_) continue;  // its background
+      if (number < 1) refused("with a segment that has no number");
+      names_[number] = trimmed(segment.readable_text(0x00620005));
+      list += (list.empty() ? "" : ", ") + std::to_string(number) + " '" + names_[number] + "'";
     }
     if (list.empty()) refused("without segments");
     scene_.audit.push_back({"segments", Verdict::Pass, list});
@@ -129,7 +138,7 @@ class SegReader {
       for (const DicomFile& item : groups->items(0x0062000a))
         segment = item.unsigned_short(0x0062000b).value_or(0);
     }
-    if (segment < 1 || segment > 32767)
+    if (segment < 1 && !is_label_map_)
       refused("whose frame " + std::to_string(number + 1) + " names no segment");
     frames_.push_back({segment, glm::dot(offset, normal_), number});
   }
@@ -162,6 +171,15 @@ class SegReader {
                    glm::dvec4(normal_ * step_mm_, 0.0), glm::dvec4(first, 1.0))};
   }
 
+  /// The segment of a pixel; 0 is none.
+  int segment_at(const Frame& frame, std::size_t pixel) const {
+    if (!is_label_map_) return is_inside(pixel) ? frame.segment : 0;
+    const std::size_t at = file_.raw_pixels()->at + pixel * bits_ / 8;
+    const auto byte = [&](std::size_t i) { return int{static_cast<unsigned char>(bytes_[at + i])}; };
+    if (bits_ == 8) return byte(0);
+    return file_.big_endian() ? byte(0) * 256 + byte(1) : byte(1) * 256 + byte(0);
+  }
+
   bool is_inside(std::size_t pixel) const {
     const std::size_t at = file_.raw_pixels()->at;
     if (bits_ == 8) return static_cast<unsigned char>(bytes_[at + pixel]) >= least_;
@@ -169,34 +187,60 @@ class SegReader {
   }
 
   void fill() {
-    const std::size_t area = static_cast<std::size_t>(rows_) * columns_;
-    Int16Samples samples(scene_.lattice.sample_count(), 0);
+    int largest = names_.rbegin()->first;
+    for (const Frame& frame : frames_) largest = std::max(largest, frame.segment);
+    if (is_label_map_) largest = bits_ == 8 ? 255 : 65535;
     std::stable_sort(frames_.begin(), frames_.end(),
                      [](const Frame& a, const Frame& b) { return a.segment < b.segment; });
-    std::size_t overlaps = 0;
+    // Half of int16's numbers are left for overlaps.
+    constexpr int most_of_int16 = 1 << 14;
+    LabelOverlaps overlaps(largest);
+    largest <= most_of_int16 ? fill_as<std::int16_t>(overlaps, 2 * most_of_int16 - 1)
+                             : fill_as<float>(overlaps, 1 << 24);
+  }
+
+  template <typename Sample>
+  void fill_as(LabelOverlaps& overlaps, int most) {
+    const std::size_t area = static_cast<std::size_t>(rows_) * columns_;
+    Samples<Sample> samples(scene_.lattice.sample_count(), Sample{0});
+    std::map<int, std::size_t> counts;
     for (const Frame& frame : frames_) {
       const auto plane = static_cast<std::size_t>(std::lround((frame.height_mm - low_mm_) / step_mm_));
       for (std::size_t i = 0; i < area; ++i) {
-        if (!is_inside(frame.number * area + i)) continue;
-        std::int16_t& sample = samples[plane * area + i];
-        overlaps += sample != 0 && sample != frame.segment;
-        if (sample == 0) sample = static_cast<std::int16_t>(frame.segment);
+        const int segment = segment_at(frame, frame.number * area + i);
+        if (segment == 0) continue;
+        Sample& sample = samples[plane * area + i];
+        if (sample == Sample{0}) {
+          sample = static_cast<Sample>(segment);
+          continue;
+        }
+        const int old = static_cast<int>(sample), number = overlaps.joined(old, segment);
+        if (number == old) continue;
+        if (overlaps.largest() > most) refused("whose segments overlap in too many combinations");
+        sample = static_cast<Sample>(number);
+        if (overlaps.all().contains(old)) --counts[old];
+        ++counts[number];
       }
     }
     scene_.samples = std::move(samples);
-    if (overlaps > 0)
-      scene_.audit.push_back(
-          {"overlaps", Verdict::Warn,
-           std::to_string(overlaps) + " samples lie in several segments: the lower number is kept"});
+    scene_.overlaps = overlaps.all();
+    std::erase_if(scene_.overlaps, [&](const auto& each) { return counts[each.first] == 0; });
+    if (!scene_.overlaps.empty())
+      scene_.audit.push_back({"overlaps", Verdict::Warn,
+                              described(scene_.overlaps, counts, names_) +
+                                  ": each segment keeps its samples; a window on numbers does not, "
+                                  "and a label map that is written has the lowest number there"});
   }
 
   const fs::path& path_;
   const DicomFile& file_;
   const std::string& bytes_;
   Scene scene_;
+  std::map<int, std::string> names_;  ///< of the segments
   std::vector<Frame> frames_;
   int rows_ = 0, columns_ = 0;
   std::size_t bits_ = 1;
+  bool is_label_map_ = false;
   int least_ = 128;
   glm::dvec2 spacing_mm_{1.0};
   double step_mm_ = 0.0;
@@ -212,7 +256,8 @@ bool is_dicom_seg(const fs::path& path) {
   std::ifstream in = opened(path);
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(in.gcount()));
-  return DicomFile::begins(bytes) && bytes.find(segmentation_storage) != std::string::npos;
+  return DicomFile::begins(bytes) && (bytes.find(segmentation_storage) != std::string::npos ||
+                                      bytes.find(label_map_storage) != std::string::npos);
 }
 
 Scene read_dicom_seg(const fs::path& path) {

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "voxel/scan/dicom_file.h"
+#include "voxel/scan/identity.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {
@@ -21,21 +22,50 @@ int number_of(const DicomFile& item, DicomTag tag) {
   return number >= 1.0 && number <= most ? static_cast<int>(number) : 0;
 }
 
-void add_contours(const fs::path& path, const DicomFile& of_region, Structure& structure) {
+void add_contours(const DicomFile& of_region, Structure& structure) {
+  bool is_slab = true;
   for (const DicomFile& contour : of_region.items(0x30060040)) {
     const std::string kind = trimmed(contour.text(0x30060042));
-    if (kind != "CLOSED_PLANAR" && kind != "CLOSEDPLANAR_XOR") {
+    if (kind != "CLOSED_PLANAR" && kind != "CLOSEDPLANAR_XOR" && kind != "INTERPOLATED_PLANAR") {
       ++structure.others;
       continue;
     }
+    structure.is_interpolated |= kind == "INTERPOLATED_PLANAR";
     const auto numbers = contour.decimals(0x30060050);
-    if (!numbers || numbers->size() % 3 != 0 || numbers->size() < 9)
-      refuse(path, "a contour of '" + structure.name + "' has no three or more points x, y, z");
+    if (!numbers || numbers->size() % 3 != 0) {
+      structure.flaw = "a contour's points are no numbers x, y, z";
+      continue;
+    }
+    if (numbers->size() < 9) {
+      ++structure.degenerate;
+      continue;
+    }
+    const double slab_mm = contour.decimal(0x30060044).value_or(0.0);
+    is_slab &= slab_mm > 0.0;
+    structure.slab_mm = !is_slab                  ? 0.0
+                        : structure.slab_mm > 0.0 ? std::min(structure.slab_mm, slab_mm)
+                                                  : slab_mm;
     std::vector<glm::dvec3> points;
     for (std::size_t i = 0; i < numbers->size(); i += 3)
       points.emplace_back((*numbers)[i], (*numbers)[i + 1], (*numbers)[i + 2]);
     structure.contours_mm.push_back(std::move(points));
   }
+}
+
+void add_uid(std::vector<std::string>& uids, std::string uid) {
+  uid = trimmed(uid);
+  if (!uid.empty() && std::find(uids.begin(), uids.end(), uid) == uids.end()) uids.push_back(std::move(uid));
+}
+
+/// The file's own, and the studies and frames of reference that it refers to.
+Identity identity_of_set(const DicomFile& file) {
+  Identity identity = identity_of(file);
+  for (const DicomFile& frame : file.items(0x30060010)) {
+    add_uid(identity.frame_uids, frame.text(0x00200052));
+    for (const DicomFile& study : frame.items(0x30060012))
+      add_uid(identity.study_uids, study.text(0x00081155));
+  }
+  return identity;
 }
 
 }  // namespace
@@ -49,13 +79,18 @@ bool is_rtstruct(const fs::path& path) {
   return DicomFile::begins(bytes) && bytes.find(structure_set_storage) != std::string::npos;
 }
 
-std::vector<Structure> read_rtstruct(const fs::path& path) {
+StructureSet read_rtstruct(const fs::path& path) {
   const std::string bytes = file_bytes(path);
   try {
     const DicomFile file(bytes, bytes.size());
-    std::vector<Structure> structures;
-    for (const DicomFile& region : file.items(0x30060020))
-      structures.push_back({number_of(region, 0x30060022), trimmed(region.readable_text(0x30060026)), {}, 0});
+    StructureSet set{{}, identity_of_set(file)};
+    std::vector<Structure>& structures = set.structures;
+    for (const DicomFile& region : file.items(0x30060020)) {
+      Structure& structure = structures.emplace_back();
+      structure.number = number_of(region, 0x30060022);
+      structure.name = trimmed(region.readable_text(0x30060026));
+      add_uid(structure.frame_uids, region.text(0x30060024));
+    }
     if (structures.empty()) refuse(path, "a structure set without regions of interest");
     for (const DicomFile& contours : file.items(0x30060039)) {
       const int number = number_of(contours, 0x30060084);
@@ -64,9 +99,9 @@ std::vector<Structure> read_rtstruct(const fs::path& path) {
       if (found == structures.end())
         refuse(path, "a structure set whose contours belong to region " + std::to_string(number) +
                          ", which it does not name");
-      add_contours(path, contours, *found);
+      add_contours(contours, *found);
     }
-    return structures;
+    return set;
   } catch (const DicomFile::Deflated&) {
     refuse(path, "a deflated structure set: inflate it first");
   } catch (const DicomFile::NeedsMore&) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "voxel/space/scene.h"
+
 namespace octotomy::voxel {
 
 /// A region of interest of a DICOM structure set.
@@ -14,14 +16,28 @@ struct Structure {
   std::string name;                                  ///< as written, in UTF-8
   std::vector<std::vector<glm::dvec3>> contours_mm;  ///< closed and planar, LPS; the closing edge is implied
   std::size_t others = 0;                            ///< points and open lines, which enclose nothing
+  std::size_t degenerate = 0;  ///< closed contours of one or two points, which enclose nothing
+  std::string flaw = {};       ///< why the contours cannot be read; empty: they can
+  /// Whether the file states that the region goes on between neighbouring contours, however far apart: the
+  /// type INTERPOLATED_PLANAR.
+  bool is_interpolated = false;
+  double slab_mm = 0.0;                      ///< least ContourSlabThickness; 0 where a contour states none
+  std::vector<std::string> frame_uids = {};  ///< the region's own frame of reference, or none
+};
+
+/// Regions, and whom and which frames and studies they refer to. A study or frame that the set refers to
+/// stands beside the file's own.
+struct StructureSet {
+  std::vector<Structure> structures;
+  Identity identity;
 };
 
 /// Whether a file is a DICOM structure set, by its storage class. False also of files that cannot be read.
 bool is_rtstruct(const std::filesystem::path& path);
 
 /// The regions of a structure set (PS3.3, A.19), in their order, those without contours too. Nothing is
-/// promised of how contours lie to each other. Throws Error, Input, with path and reason. Memory: the file
-/// and its points.
-std::vector<Structure> read_rtstruct(const std::filesystem::path& path);
+/// promised of how contours lie to each other. A region whose contours are damaged keeps its flaw, so that
+/// the others can be read. Throws Error, Input, with path and reason. Memory: the file and its points.
+StructureSet read_rtstruct(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/scan/write_scene.h"
 
+#include "voxel/scan/label_overlaps.h"
 #include "voxel/space/disk_need.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
@@ -84,6 +85,7 @@ std::filesystem::path staged_scene_name(const std::filesystem::path& path) {
 
 void write_scene(const Scene& scene, const std::filesystem::path& path) {
   check(scene);
+  if (!scene.overlaps.empty()) return write_scene(with_lowest_labels(scene), path);
   const std::optional<VolumeFormat> format = volume_format(path);
   if (!format)
     refuse(path, "no scan format has this extension; choose .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd");

@@ -11,15 +11,15 @@
 
 namespace octotomy::voxel {
 
-/// Writes a scene in the format of the extension: .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd. The samples' type,
-/// their meaning and the modality survive a round trip; frame and unit of length are stated. Geometry is kept
-/// in double precision; NIfTI files, single precision by themselves, keep it in an extension that other
-/// readers skip. Written beside and renamed into place, so that a failure leaves an older file intact. The
-/// samples of .nhdr and .mhd go into a data file beside the header under a name that was free, so that an
-/// older header never reads them; those of the older header are removed last. Throws Error, Input or
-/// Resource, with path and reason, before a byte is written where the disk cannot take it; as
-/// need_own_data_file(); std::invalid_argument for MetaImage, whose readers take none, if the lattice's axes
-/// are not perpendicular.
+/// Writes a scene in the format of the extension: .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd. Where labels
+/// overlap, the lowest stays. The samples' type, their meaning and the modality survive a round trip; frame
+/// and unit of length are stated. Geometry is kept in double precision; NIfTI files, single precision by
+/// themselves, keep it in an extension that other readers skip. Written beside and renamed into place, so
+/// that a failure leaves an older file intact. The samples of .nhdr and .mhd go into a data file beside the
+/// header under a name that was free, so that an older header never reads them; those of the older header are
+/// removed last. Throws Error, Input or Resource, with path and reason, before a byte is written where the
+/// disk cannot take it; as need_own_data_file(); std::invalid_argument for MetaImage, whose readers take
+/// none, if the lattice's axes are not perpendicular.
 void write_scene(const Scene& scene, const std::filesystem::path& path);
 
 /// Of .nhdr and .mhd, whose samples go into a data file beside them: throws Error (Input) where a file of

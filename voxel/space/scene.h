@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,6 +43,13 @@ using Samples = std::vector<Sample, LargeAllocator<Sample>>;
 using Int16Samples = Samples<std::int16_t>;
 using FloatSamples = Samples<float>;
 
+/// Patient, study and frame of reference as DICOM states them, in UTF-8 without padding. Empty where the file
+/// does not state them. A scan has one study and one frame, a structure set all that it refers to.
+struct Identity {
+  std::string patient_id, patient_name;
+  std::vector<std::string> study_uids, frame_uids;
+};
+
 /// Samples on a lattice, x fastest.
 struct Scene {
   Lattice lattice;
@@ -51,6 +59,10 @@ struct Scene {
   std::string source;    ///< its origin, for people
   std::vector<Finding> audit;
   std::vector<Hole> holes = {};  ///< from the lowest on
+  Identity identity = {};
+  /// Of a label map whose labels overlap: each number that stands for several labels, with those labels in
+  /// ascending order.
+  std::map<int, std::vector<int>> overlaps = {};
 };
 
 /// First and last slice of a lattice whose centres lie inside a hole.

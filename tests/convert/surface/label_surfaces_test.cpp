@@ -173,6 +173,40 @@ TEST(LabelSurfaces, OtherLabelsAreNothingAndThoseThatAreMissingAreRefused) {
       label_surfaces(labels_on(cube_of(4), [](const glm::ivec3&) { return 0; })).triangles.faces.empty());
 }
 
+TEST(LabelSurfaces, OfLabelsThatOverlapOrAreNoSixteenBitsAreEachWhole) {
+  const auto in = [](const glm::ivec3& p, int low, int high) {
+    return glm::all(glm::greaterThanEqual(p, glm::ivec3(low))) &&
+           glm::all(glm::lessThan(p, glm::ivec3(high)));
+  };
+  voxel::Scene both = labels_on(
+      cube_of(12), [&](const glm::ivec3& p) { return (in(p, 2, 7) ? 1 : 0) + (in(p, 5, 10) ? 2 : 0); });
+  both.overlaps = {{3, {1, 2}}};
+  LabelSurfaceOptions options;
+  options.smooth_voxels = 0;
+  const brep::PartedSurface parted = label_surfaces(both, options);
+  ASSERT_EQ(parted.names.size(), 2u);
+  const double alone_mm3 = volume_mm3(brep::surface_of_part(
+      label_surfaces(labels_on(cube_of(12), [&](const glm::ivec3& p) { return in(p, 2, 7) ? 1 : 0; }),
+                     options),
+      1));
+  for (const int part : {1, 2})
+    EXPECT_NEAR(volume_mm3(brep::surface_of_part(parted, part)), alone_mm3, 1e-9) << part;
+  options.labels = {2};
+  EXPECT_EQ(label_surfaces(both, options).names.size(), 1u);
+  options.labels = {3};
+  EXPECT_THROW(label_surfaces(both, options), voxel::Error) << "a number of an overlap is no label";
+  voxel::Scene large = both;
+  large.overlaps.clear();
+  voxel::FloatSamples samples;
+  for (const std::int16_t label : std::get<voxel::Int16Samples>(both.samples))
+    samples.push_back(label == 1 ? 2.9999F : label == 2 ? 70000.0F : 0.0F);
+  large.samples = samples;
+  const brep::PartedSurface named = label_surfaces(large);
+  EXPECT_TRUE(named.names.contains(3));
+  EXPECT_TRUE(named.names.contains(70000));
+  EXPECT_EQ(fault_in(named), "");
+}
+
 TEST(LabelSurfaces, AreTheSameBitsOnOneThread) {
   const voxel::Scene scene = noise(20, 6, 3);
   const brep::PartedSurface many = label_surfaces(scene);

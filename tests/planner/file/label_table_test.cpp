@@ -70,7 +70,7 @@ TEST(LabelTable, ASpoiledTableIsRefusedByItsLine) {
             std::string::npos);
   EXPECT_NE(refusal("d.txt", "5 255 0 0 1 1 1 \"liver\"\nliver 5\n").find("d.txt:2"), std::string::npos);
   EXPECT_NE(refusal("e.json", R"({"liver": -1})").find("liver"), std::string::npos);
-  EXPECT_NE(refusal("f.csv", "5,liver\n40000,spleen\n").find("f.csv:2"), std::string::npos);
+  EXPECT_NE(refusal("f.csv", "5,liver\n40000000,spleen\n").find("f.csv:2"), std::string::npos);
 }
 
 TEST(LabelTable, OfALabelMapIsItsOwnOrTheOneBesideItAndOfADicomSegmentationItsSegments) {
@@ -89,6 +89,60 @@ TEST(LabelTable, OfALabelMapIsItsOwnOrTheOneBesideItAndOfADicomSegmentationItsSe
   voxel::write_dicom_seg(voxel::combine(universe, voxel::Sphere{{3, 3, 3}, 2.0}), folder / "c.dcm",
                          {.label = "Skull"});
   EXPECT_EQ(label_table_of(folder / "c.dcm").names, (Names{{1, "Skull"}}));
+}
+
+TEST(LabelTable, NumbersOfAnAcquisitionOrLabelsThatDoNotOccurNameNothing) {
+  const ScratchFolder folder;
+  const auto map = put(folder, "a.nii.gz", "");
+  put(folder, "a.json", R"({"SeriesNumber": 2, "SliceThickness": 1, "AcquisitionNumber": 3})");
+  const LabelTable sidecar = label_table_of(map, {1, 2, 3});
+  EXPECT_TRUE(sidecar.names.empty());
+  ASSERT_EQ(sidecar.passed_over.size(), 1U);
+  EXPECT_NE(sidecar.passed_over[0].find("is a number of an acquisition"), std::string::npos)
+      << sidecar.passed_over[0];
+  put(folder, "a.json", R"({"left": 2, "right": 1})");
+  EXPECT_EQ(label_table_of(map, {1, 2, 3}).names, (Names{{1, "right"}, {2, "left"}}));
+  EXPECT_TRUE(label_table_of(map, {7}).names.empty());
+  put(folder, "a.json", R"({"Manual": true, "Resolution": "native"})");
+  put(folder, "a.txt", "notes of the reader\n");
+  const LabelTable none = label_table_of(map, {1});
+  EXPECT_TRUE(none.names.empty());
+  EXPECT_EQ(none.passed_over.size(), 2U);
+  put(folder, "a.csv", "1,0.25\n2,0.5\n");
+  EXPECT_TRUE(label_table_of(map, {1}).names.empty()) << "volumes are no names";
+}
+
+TEST(LabelTable, OfBidsIsTheTsvBesideItOrTheInheritedOne) {
+  const ScratchFolder folder;
+  std::filesystem::create_directories(folder / "sub-01/anat");
+  const auto map = put(folder, "sub-01/anat/sub-01_space-T1w_dseg.nii.gz", "");
+  put(folder, "sub-01/anat/sub-01_space-T1w_dseg.json", R"({"Manual": true})");
+  put(folder, "dseg.tsv", "index\tname\n1\tinherited\n");
+  put(folder, "sub-02_dseg.tsv", "index\tname\n1\tof another\n");
+  EXPECT_EQ(label_table_of(map, {1}).names, (Names{{1, "inherited"}}));
+  put(folder, "sub-01/anat/sub-01_space-T1w_dseg.tsv",
+      "\xef\xbb\xbfindex\tname\tmapping\r\n1\tLeft, upper\t11\r\n2\t\"Right\"\t12\r\n");
+  const LabelTable own = label_table_of(map, {1});
+  EXPECT_EQ(own.names, (Names{{1, "Left, upper"}, {2, "Right"}}));
+  EXPECT_TRUE(own.passed_over.empty());
+}
+
+TEST(LabelTable, FurtherProgramsFormsAreRead) {
+  const ScratchFolder folder;
+  EXPECT_EQ(read_label_table(put(folder, "dcmqi.json", R"({"segmentAttributes": [[
+      {"labelID": 1, "SegmentLabel": "Liver"}], [{"labelID": 4, "SegmentLabel": "Spleen"}]]})"))
+                .names,
+            (Names{{1, "Liver"}, {4, "Spleen"}}));
+  EXPECT_EQ(read_label_table(
+                put(folder, "nnunet.json", R"({"labels": {"background": 0, "whole": [1, 2], "core": 2}})"))
+                .names,
+            (Names{{2, "core"}}));
+  EXPECT_EQ(read_label_table(put(folder, "lut.txt",
+                                 "#No. Label Name:  R G B A\n0 Unknown 0 0 0 0\n"
+                                 "17  Left-Hippocampus  220 216 20 0\n14175 wm_rh 1 2 3 0\n"))
+                .names,
+            (Names{{17, "Left-Hippocampus"}, {14175, "wm_rh"}}));
+  EXPECT_EQ(read_label_table(put(folder, "large.csv", "70000,node\n")).names, (Names{{70000, "node"}}));
 }
 
 class LabelNames : public tests::CommandLine {};

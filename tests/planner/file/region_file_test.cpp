@@ -137,6 +137,84 @@ TEST(RegionFile, PlanesNearerThanTheirRoundingAreRefusedForThat) {
                "lies in one plane");
 }
 
+/// Squares of 20 mm on every second plane of another structure's, which lie 2 mm apart.
+std::vector<DrawnStructure> interleaved(const std::string& kind, double slab_mm = 0.0) {
+  Outlines every, second;
+  for (int i = 0; i < 9; ++i) {
+    every.push_back(rectangle({-30, -30}, {30, 30}, 2.0 * i));
+    if (i % 2 == 0) second.push_back(rectangle({-10, -10}, {10, 10}, 2.0 * i));
+  }
+  return {{1, "Body", every}, {2, "Bone", second, kind, slab_mm}};
+}
+
+TEST(RegionFile, AStructureOnEverySecondPlaneIsToldAndBridgedWhereAskedOrStated) {
+  const ScratchFolder folder;
+  const auto empty_between = [](const DrawnSlices& drawn) {
+    std::size_t count = 0;
+    for (std::size_t i = 1; i + 1 < drawn.mask.slices.size(); ++i)
+      count += drawn.mask.slices[i].polygons_mm.empty() ? 1 : 0;
+    return count;
+  };
+  const auto path = set_file(folder, interleaved("CLOSED_PLANAR"));
+  const DrawnSlices apart = read_slices(path, SlicesOptions{"Bone"});
+  EXPECT_EQ(empty_between(apart), 4U);
+  ASSERT_EQ(apart.findings.size(), 1U);
+  EXPECT_HOLDS(apart.findings[0], "'Bone': is drawn every 4 mm, while the set's planes are 2 mm apart");
+  EXPECT_HOLDS(apart.findings[0], "--bridge 4");
+  const DrawnSlices bridged = read_slices(path, SlicesOptions{"Bone", 4.0});
+  EXPECT_EQ(empty_between(bridged), 0U);
+  EXPECT_TRUE(bridged.findings.empty());
+  EXPECT_EQ(bridged.mask.slices.front().position_mm, -4.0) << "ends speak for half of its own distance";
+  for (const auto& stated : {interleaved("INTERPOLATED_PLANAR"), interleaved("CLOSED_PLANAR", 4.0)}) {
+    const DrawnSlices drawn = read_slices(set_file(folder, stated), SlicesOptions{"Bone"});
+    EXPECT_EQ(empty_between(drawn), 0U);
+    EXPECT_TRUE(drawn.findings.empty());
+  }
+  EXPECT_EQ(
+      empty_between(read_slices(set_file(folder, interleaved("CLOSED_PLANAR", 2.0)), SlicesOptions{"Bone"})),
+      4U)
+      << "slabs that do not meet";
+}
+
+TEST(RegionFile, OneMissingPlaneIsToldAndPartsFarApartAreNot) {
+  const ScratchFolder folder;
+  Outlines contours = square_block(), parts = square_block();
+  contours.erase(contours.begin() + 2);
+  for (const double z : {40.0, 42.0}) parts.push_back(rectangle({-10, -10}, {10, 10}, z));
+  const auto path = set_file(folder, {{1, "A", contours}, {2, "B", parts}});
+  const DrawnSlices missing = read_slices(path, SlicesOptions{"A"});
+  ASSERT_EQ(missing.findings.size(), 1U);
+  EXPECT_HOLDS(missing.findings[0], "1 gap");
+  EXPECT_HOLDS(missing.findings[0], "between 2 and 6 mm");
+  EXPECT_TRUE(read_slices(path, SlicesOptions{"B"}).findings.empty());
+}
+
+TEST(RegionFile, PointsALittleOffTheirPlaneAreTakenInItAndTold) {
+  const ScratchFolder folder;
+  Outlines contours = square_block(), other = square_block();
+  for (auto& contour : contours) contour[1].z += 0.03;
+  contours[2][3].z -= 0.03;
+  other[0][0].z += 0.05;
+  const auto path = set_file(folder, {{1, "A", contours}, {2, "B", square_block()}, {3, "C", other}});
+  const DrawnSlices drawn = read_slices(path, SlicesOptions{"A"});
+  EXPECT_EQ(contour_counts(drawn.mask), (std::vector<std::size_t>{1, 1, 1, 1, 1}));
+  ASSERT_EQ(drawn.findings.size(), 1U);
+  EXPECT_HOLDS(drawn.findings[0], "off their contour's plane");
+  EXPECT_TRUE(read_slices(path, SlicesOptions{"B"}).findings.empty()) << "of another structure";
+  for (auto& contour : contours) contour[1].z += 0.3;
+  EXPECT_HOLDS(slices_refusal(set_file(folder, {{1, "A", contours}}), "A"), "not parallel");
+}
+
+TEST(RegionFile, AContourOfTwoPointsIsLeftOutAndTold) {
+  const ScratchFolder folder;
+  Outlines contours = square_block();
+  contours.push_back({{0, 0, 4}, {1, 1, 4}});
+  const DrawnSlices drawn = read_slices(set_file(folder, {{1, "A", contours}}), SlicesOptions{"A"});
+  EXPECT_EQ(contour_counts(drawn.mask), (std::vector<std::size_t>{1, 1, 1, 1, 1}));
+  ASSERT_EQ(drawn.findings.size(), 1U);
+  EXPECT_HOLDS(drawn.findings[0], "1 contours of fewer than three points");
+}
+
 #undef EXPECT_HOLDS
 
 }  // namespace

@@ -19,5 +19,12 @@ TEST(Csv, AByte0IsRefusedWithItsRowWhereverItStands) {
   }
 }
 
+TEST(Tsv, CellsAreWhatTabsPartWhateverElseTheyHold) {
+  EXPECT_EQ(parse_tsv("\xef\xbb\xbfindex\tname\r\n1\tLeft, upper\r\n\r\n2\t\"of \"\"two\"\t\n"),
+            (std::vector<std::vector<std::string>>{
+                {"index", "name"}, {"1", "Left, upper"}, {"2", "of \"\"two", ""}}));
+  EXPECT_THROW(parse_tsv(std::string_view("a\0b", 3)), voxel::Error);
+}
+
 }  // namespace
 }  // namespace octotomy::planner

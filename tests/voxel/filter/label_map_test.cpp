@@ -104,6 +104,40 @@ TEST(Labels, AreWholeNumbers) {
   EXPECT_EQ(labels(scene)[0].number, 7);
 }
 
+TEST(Labels, AreThoseThatFilesStoreWithAFractionOrBeyondSixteenBits) {
+  Scene scene;
+  scene.lattice = axis_aligned_lattice({6, 1, 1}, {1, 1, 1}, {0, 0, 0});
+  scene.samples = FloatSamples{2.9999F, 3.0001F, 3.0F, 0.00001F, 40000.0F, 16777216.0F};
+  const std::vector<Label> found = labels(scene);
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].number, 3);
+  EXPECT_EQ(found[0].samples, 3U);
+  EXPECT_NEAR(found[0].off, 1e-4, 1e-6);
+  EXPECT_EQ(found[1].number, 40000);
+  EXPECT_EQ(found[1].off, 0.0);
+  EXPECT_EQ(found[2].number, most_label);
+  const Universe universe = universe_on(scene.lattice);
+  EXPECT_EQ(octree_of_label(universe, scene, 3).voxel_count(), 3U);
+  EXPECT_EQ(octree_of_label(universe, scene, 40000).voxel_count(), 1U);
+  for (const double none : {2.98, 2.5, -1.0, -0.02, 16777217.5})
+    EXPECT_FALSE(label_of(none)) << none << " is no label";
+}
+
+TEST(Labels, ThatOverlapStandInLayersWhereEachIsWhole) {
+  Scene scene;
+  scene.lattice = axis_aligned_lattice({5, 1, 1}, {1, 1, 1}, {0, 0, 0});
+  scene.samples = Int16Samples{2, 7, 8, 5, 0};
+  scene.overlaps = {{8, {2, 5}}};
+  ASSERT_EQ(labels(scene).size(), 3U);
+  EXPECT_EQ(labels(scene)[0].samples, 2U);
+  const std::vector<LabelLayer> layers = label_layers(scene);
+  ASSERT_EQ(layers.size(), 2U);
+  EXPECT_EQ(layers[0].labels, (std::vector<int>{2, 7}));
+  EXPECT_EQ(layers[1].labels, std::vector<int>{5});
+  EXPECT_EQ(std::get<Int16Samples>(layers[0].ranks.samples), (Int16Samples{1, 2, 1, 0, 0}));
+  EXPECT_EQ(std::get<Int16Samples>(layers[1].ranks.samples), (Int16Samples{0, 0, 1, 1, 0}));
+}
+
 TEST(LabelMap, StopsWhenAskedAndIsTheSameOnAnyThreads) {
   const Lattice lattice = tests::oblique_lattice();
   const Universe universe = universe_on(lattice);

@@ -92,7 +92,7 @@ std::string two_segments(bool fractional) {
           DicomBytes::element(0x7fe00010, "OB", pixels));
 }
 
-TEST(ReadDicomSeg, ReadsSeveralSegmentsInAnyOrderAndTellsOverlaps) {
+TEST(ReadDicomSeg, OverlappingSegmentsKeepTheirSamplesAndAreNamed) {
   const ScratchFolder folder;
   for (const bool fractional : {false, true}) {
     std::ofstream(folder / "two.dcm", std::ios::binary) << two_segments(fractional);
@@ -100,12 +100,64 @@ TEST(ReadDicomSeg, ReadsSeveralSegmentsInAnyOrderAndTellsOverlaps) {
     EXPECT_EQ(scene.lattice.dims, glm::ivec3(4, 2, 3));
     EXPECT_EQ(scene.lattice.spacing_mm(), glm::dvec3(0.25, 0.5, 2));
     EXPECT_EQ(scene.lattice.lps_mm({0, 0, 0}), glm::dvec3(1, 2, 2));
-    const Int16Samples expected{0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 1, 2, 2, 2, 2, 0, 0, 0, 0};
+    // 3 stands for both.
+    const Int16Samples expected{0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 3, 2, 2, 2, 2, 0, 0, 0, 0};
     EXPECT_EQ(std::get<Int16Samples>(scene.samples), expected);
     EXPECT_EQ(scene.audit[0].detail, "1 'Mandible', 2 'Skull'");
     ASSERT_EQ(scene.audit.size(), 2U);
     EXPECT_EQ(scene.audit[1].check, "overlaps");
+    EXPECT_EQ(scene.audit[1].verdict, Verdict::Warn);
+    EXPECT_NE(scene.audit[1].detail.find("1 sample lies in 1 'Mandible' and 2 'Skull', as number 3"),
+              std::string::npos)
+        << scene.audit[1].detail;
+    EXPECT_EQ(scene.overlaps, (std::map<int, std::vector<int>>{{3, {1, 2}}}));
+    const std::vector<Label> found = labels(scene);
+    ASSERT_EQ(found.size(), 2U);
+    EXPECT_EQ(found[0].samples, 2U);
+    EXPECT_EQ(found[1].samples, 6U);
+    const Universe universe = universe_on(scene.lattice);
+    EXPECT_EQ(octree_of_label(universe, scene, 1).voxel_count(), 2U);
+    EXPECT_EQ(octree_of_label(universe, scene, 2).voxel_count(), 6U);
   }
+}
+
+TEST(ReadDicomSeg, APixelOfALabelMapIsTheNumberOfItsSegment) {
+  const ScratchFolder folder;
+  const auto seq = [](std::uint32_t at, const std::string& inner) {
+    return DicomBytes::sequence(at, DicomBytes::item(inner));
+  };
+  const auto segment = [](std::uint16_t number, const char* label) {
+    return DicomBytes::item(DicomBytes::us(0x00620004, number) +
+                            DicomBytes::element(0x00620005, "LO", label));
+  };
+  const auto frame = [&](int z) {
+    return DicomBytes::item(
+        seq(0x00209113, DicomBytes::element(0x00200032, "DS", "0\\0\\" + std::to_string(z))));
+  };
+  const std::string shared = seq(0x00209116, DicomBytes::element(0x00200037, "DS", "1\\0\\0\\0\\1\\0")) +
+                             seq(0x00289110, DicomBytes::element(0x00280030, "DS", "1\\1"));
+  std::string pixels;
+  for (const int number : {0, 300, 2, 2, 0, 0, 40000, 2}) {
+    pixels += static_cast<char>(number & 255);
+    pixels += static_cast<char>(number >> 8);
+  }
+  std::ofstream(folder / "map.dcm", std::ios::binary) << DicomBytes::file(
+      "1.2.840.10008.1.2.1",
+      DicomBytes::element(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.66.7") + DicomBytes::us(0x00280010, 2) +
+          DicomBytes::us(0x00280011, 2) + DicomBytes::us(0x00280100, 16) +
+          DicomBytes::element(0x00620001, "CS", "LABELMAP") +
+          DicomBytes::sequence(0x00620002, segment(0, "Background") + segment(2, "A") + segment(300, "B") +
+                                               segment(40000, "C")) +
+          DicomBytes::sequence(0x52009229, DicomBytes::item(shared)) +
+          DicomBytes::sequence(0x52009230, frame(0) + frame(1)) +
+          DicomBytes::element(0x7fe00010, "OW", pixels));
+  ASSERT_TRUE(is_dicom_seg(folder / "map.dcm"));
+  const std::vector<Label> found = labels(read_dicom_seg(folder / "map.dcm"));
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].number, 2);
+  EXPECT_EQ(found[0].samples, 3U);
+  EXPECT_EQ(found[1].number, 300);
+  EXPECT_EQ(found[2].number, 40000);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ TEST(ReadRtstruct, NamesNumbersAndPointsAreTheFilesAndLinesAreCountedApart) {
                      {3, "Isocentre", {{{1, 2, 3}}}, "POINT"},
                      {9, "Empty", {}}}));
   ASSERT_TRUE(is_rtstruct(path));
-  const std::vector<Structure> all = read_rtstruct(path);
+  const std::vector<Structure> all = read_rtstruct(path).structures;
   ASSERT_EQ(all.size(), 3u);
   EXPECT_EQ(all[0].name, "Mandible");
   EXPECT_EQ(all[0].number, 7);
@@ -43,7 +43,7 @@ TEST(ReadRtstruct, AContourOverSixtyFourKilobytesIsReadWhole) {
   const ScratchFolder folder;
   std::vector<glm::dvec3> circle;
   for (int i = 0; i < 5000; ++i) circle.emplace_back(50 * std::cos(i * 2e-4 * M_PI * 2), i % 7, 5);
-  const auto all = read_rtstruct(written(folder, structure_set({{1, "Body", {circle}}})));
+  const auto all = read_rtstruct(written(folder, structure_set({{1, "Body", {circle}}}))).structures;
   EXPECT_EQ(all[0].contours_mm[0].size(), 5000u);
 }
 
@@ -65,7 +65,33 @@ TEST(ReadRtstruct, ASpoiledFileIsRefusedByNameOrReadAndNeverMore) {
     }
   EXPECT_GT(refused, whole.size() / 2);
   EXPECT_THROW(read_rtstruct(written(folder, structure_set({}))), Error);
-  EXPECT_THROW(read_rtstruct(written(folder, structure_set({{1, "A", {{{0, 0, 0}, {1, 1, 1}}}}}))), Error);
+}
+
+TEST(ReadRtstruct, AContourOfTwoPointsIsCountedAndSpoilsNoOtherRegion) {
+  const ScratchFolder folder;
+  const auto path =
+      written(folder, structure_set({{1, "A", {{{0, 0, 0}, {1, 1, 1}}, rectangle({0, 0}, {9, 9}, 0)}},
+                                     {2, "B", {rectangle({0, 0}, {9, 9}, 0)}, "INTERPOLATED_PLANAR"},
+                                     {3, "C", {rectangle({0, 0}, {9, 9}, 0)}, "CLOSED_PLANAR", 2.5}}));
+  const std::vector<Structure> all = read_rtstruct(path).structures;
+  EXPECT_EQ(all[0].degenerate, 1u);
+  EXPECT_EQ(all[0].contours_mm.size(), 1u);
+  EXPECT_EQ(all[1].contours_mm.size(), 1u);
+  EXPECT_FALSE(all[0].is_interpolated);
+  EXPECT_TRUE(all[1].is_interpolated);
+  EXPECT_EQ(all[0].slab_mm, 0.0);
+  EXPECT_EQ(all[2].slab_mm, 2.5);
+}
+
+TEST(ReadRtstruct, StatesWhoseItIsAndWhichFrameItRefersTo) {
+  const ScratchFolder folder;
+  const Identity identity =
+      read_rtstruct(written(folder, structure_set({{1, "A", {rectangle({0, 0}, {9, 9}, 0)}}},
+                                                  {"P-17 ", "1.2.3", "1.2.4"})))
+          .identity;
+  EXPECT_EQ(identity.patient_id, "P-17");
+  EXPECT_EQ(identity.study_uids, std::vector<std::string>{"1.2.3"});
+  EXPECT_EQ(identity.frame_uids, std::vector<std::string>{"1.2.4"});
 }
 
 }  // namespace

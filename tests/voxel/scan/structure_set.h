@@ -14,10 +14,17 @@ struct DrawnStructure {
   std::string name;
   std::vector<std::vector<glm::dvec3>> contours_mm;
   std::string kind = "CLOSED_PLANAR";
+  double slab_mm = 0.0;  ///< ContourSlabThickness; 0: not stated
+};
+
+/// Whom a structure set states; empty: it does not.
+struct StatedIdentity {
+  std::string patient_id, study_uid, frame_uid;
 };
 
 /// A DICOM structure set, explicit VR little-endian; long contours as UN, as pydicom writes them.
-inline std::string structure_set(const std::vector<DrawnStructure>& structures) {
+inline std::string structure_set(const std::vector<DrawnStructure>& structures,
+                                 const StatedIdentity& identity = {}) {
   using D = DicomBytes;
   std::string names, drawn;
   for (const DrawnStructure& structure : structures) {
@@ -29,15 +36,22 @@ inline std::string structure_set(const std::vector<DrawnStructure>& structures) 
       for (const glm::dvec3& p : contour)
         for (int axis = 0; axis < 3; ++axis)
           data += (data.empty() ? "" : "\\") + std::to_string(p[axis]).substr(0, 16);
-      contours += D::item(D::element(0x30060042, "CS", structure.kind) +
-                          D::element(0x30060046, "IS", std::to_string(contour.size())) +
-                          D::element(0x30060050, data.size() > 60000 ? "UN" : "DS", data));
+      contours += D::item(
+          D::element(0x30060042, "CS", structure.kind) +
+          (structure.slab_mm > 0.0 ? D::element(0x30060044, "DS", std::to_string(structure.slab_mm)) : "") +
+          D::element(0x30060046, "IS", std::to_string(contour.size())) +
+          D::element(0x30060050, data.size() > 60000 ? "UN" : "DS", data));
     }
     drawn += D::item(D::sequence(0x30060040, contours) +
                      D::element(0x30060084, "IS", std::to_string(structure.number)));
   }
+  std::string stated;
+  if (!identity.patient_id.empty()) stated += D::element(0x00100020, "LO", identity.patient_id);
+  if (!identity.study_uid.empty()) stated += D::element(0x0020000d, "UI", identity.study_uid);
+  if (!identity.frame_uid.empty())
+    stated += D::sequence(0x30060010, D::item(D::element(0x00200052, "UI", identity.frame_uid)));
   return D::file("1.2.840.10008.1.2.1", D::element(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.481.3") +
-                                            D::element(0x00080060, "CS", "RTSTRUCT") +
+                                            D::element(0x00080060, "CS", "RTSTRUCT") + stated +
                                             D::sequence(0x30060020, names) + D::sequence(0x30060039, drawn));
 }
 

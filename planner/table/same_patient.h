@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "voxel/space/scene.h"
+
+namespace octotomy::planner {
+
+/// One of two files that are laid onto each other.
+struct IdentityOf {
+  std::string name;  ///< for people
+  const voxel::Identity& identity;
+};
+
+/// The audit's line on whether two files are of one patient, study and frame of reference. Fail names each
+/// value that differs; Warn says what could not be compared because a file does not state it.
+voxel::Finding identity_finding(const IdentityOf& scan, const IdentityOf& laid);
+
+/// Throws std::runtime_error where identity_finding() fails, with `option` as the way to go on; where
+/// `is_allowed` returns the failure instead. Returns no line where the files agree in all.
+std::vector<std::string> need_same_patient(const IdentityOf& scan, const IdentityOf& laid, bool is_allowed,
+                                           const std::string& option);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/measure/compare_labels.h"
+
+#include "tests/planner/cli/command_line.h"
+#include "voxel/scan/write_scene.h"
+
+namespace octotomy::planner {
+namespace {
+
+using tests::CommandAnswer;
+using tests::SortedJson;
+
+class CompareLabels : public tests::CommandLine {
+ protected:
+  /// A block of 10 x 10 x 10 samples of 1 mm that begins at `from`, and one sample of label 9 where wanted.
+  void put(const std::string& name, int from, std::int16_t label, bool has_nine = false,
+           double origin_mm = 0.0) const {
+    voxel::Scene scene;
+    scene.lattice = voxel::axis_aligned_lattice({24, 24, 24}, {1, 1, 1}, glm::dvec3(origin_mm));
+    scene.meaning = voxel::Meaning::Label;
+    voxel::Int16Samples samples(24 * 24 * 24, 0);
+    const auto at = [](int x, int y, int z) { return static_cast<std::size_t>(x + 24 * (y + 24 * z)); };
+    for (int z = 5; z < 15; ++z)
+      for (int y = 5; y < 15; ++y)
+        for (int x = from; x < from + 10; ++x) samples[at(x, y, z)] = label;
+    if (has_nine) samples[at(20, 20, 20)] = 9;
+    scene.samples = std::move(samples);
+    voxel::write_scene(scene, folder_ / name);
+  }
+  SortedJson compared(const std::string& a, const std::string& b) const {
+    const CommandAnswer answer = run("compare " + at(a) + " " + at(b) + " --json");
+    EXPECT_EQ(answer.status, 0) << answer.errors;
+    return SortedJson::parse(answer.out);
+  }
+};
+
+TEST_F(CompareLabels, BlocksThatAreShiftedHaveTheDiceAndDistancesOfTheirOverlap) {
+  put("a.nrrd", 5, 3);
+  put("b.nrrd", 7, 3);
+  const SortedJson json = compared("a.nrrd", "b.nrrd");
+  EXPECT_NEAR(json["dice"].get<double>(), 0.8, 1e-12);
+  ASSERT_EQ(json["labels"].size(), 1u);
+  const SortedJson& label = json["labels"][0];
+  EXPECT_EQ(label["label"], 3);
+  EXPECT_NEAR(label["dice"].get<double>(), 0.8, 1e-12);
+  EXPECT_NEAR(label["volume_a_mm3"].get<double>(), 1000.0, 1e-9);
+  EXPECT_NEAR(label["volume_b_mm3"].get<double>(), 1000.0, 1e-9);
+  EXPECT_NEAR(label["hausdorff_mm"].get<double>(), 2.0, 0.05);
+  EXPECT_NEAR(json["hausdorff_mm"].get<double>(), 2.0, 0.05);
+  EXPECT_GT(json["mean_mm"].get<double>(), 0.2);
+  EXPECT_LT(json["mean_mm"].get<double>(), 1.5);
+  EXPECT_TRUE(json.contains("hausdorff95_mm"));
+  EXPECT_TRUE(json.contains("definition"));
+}
+
+TEST_F(CompareLabels, EqualMapsOfAnotherLatticeAndNumbersAreStillEqualAndALabelOfOneSideIsTold) {
+  put("a.nrrd", 5, 3, true);
+  put("b.nrrd", 3, 3, false, 2.0);  // x from 5 mm as in a; y and z are shifted by 2 mm
+  const SortedJson json = compared("a.nrrd", "b.nrrd");
+  ASSERT_EQ(json["labels"].size(), 2u);
+  EXPECT_NEAR(json["labels"][0]["dice"].get<double>(), 0.64, 1e-12);
+  EXPECT_EQ(json["labels"][1]["label"], 9);
+  EXPECT_EQ(json["labels"][1]["dice"], 0.0);
+  EXPECT_TRUE(json["labels"][1]["mean_mm"].is_null());
+  const std::string findings = json["findings"].dump();
+  EXPECT_NE(findings.find("different lattices"), std::string::npos) << findings;
+  EXPECT_NE(findings.find("is only in"), std::string::npos) << findings;
+}
+
+TEST_F(CompareLabels, AScanASurfaceOrAnEmptyMapIsRefused) {
+  put("a.nrrd", 5, 3);
+  put("none.nrrd", 5, 0);
+  expect_refused(run("compare " + at("a.nrrd") + " " + at("ball.nrrd")), "is no label map");
+  expect_refused(run("compare " + at("a.nrrd") + " " + at("none.nrrd")), "there are no labels");
+  write("s.stl", "solid\nendsolid\n");
+  expect_refused(run("compare " + at("a.nrrd") + " " + at("s.stl")), "octotomy surfaces");
+  expect_refused(run("compare " + at("a.nrrd") + " " + at("a.nrrd") + " -o " + at("x.ply")), "--out");
+}
+
+}  // namespace
+}  // namespace octotomy::planner
