@@ -156,7 +156,8 @@ void add_cephalometry(Program& program) {
           throw std::runtime_error("name a .plan.json or a file of landmarks; --list says which landmarks");
         return cephalometry(program, *text);
       });
-  verb.add_option("plan", text->plan, "A .plan.json, or a file of landmarks: JSON, or 3D Slicer's .mrk.json")
+  verb.add_option("plan", text->plan,
+                  "A .plan.json, or a file of landmarks: JSON, or 3D Slicer's .mrk.json or .fcsv")
       ->check(CLI::ExistingFile);
   add_plan_options(verb, *text);
   verb.add_flag("--list", *lists, "Say the landmarks and the measures that there are");

@@ -135,7 +135,7 @@ void add_procedure(Program& program) {
   verb.add_option("--scan", text->scan, "The scan")->check(scan_path());
   verb.add_option("--donor", text->donor, "The scan of a donor bone, of a flap")->check(scan_path());
   verb.add_option("--landmarks", text->landmarks,
-                  "Named points: JSON, or 3D Slicer's .mrk.json; repeated, as one file a scan")
+                  "Named points: JSON, or 3D Slicer's .mrk.json or .fcsv; repeated, as one file a scan")
       ->expected(1)
       ->take_all()
       ->allow_extra_args(false)

@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include "planner/file/landmarks_file.h"
 #include "planner/file/picture_frame.h"
 #include "planner/file/region_file.h"
 #include "planner/file/svg_outlines.h"
@@ -129,17 +130,12 @@ DrawnRegion of_markups(const voxel::View& view, const fs::path& path) {
       findings.push_back(path.filename().string() + ": a markup of type " + type + " is left out");
       continue;
     }
-    const std::string system = list.value("coordinateSystem", "LPS");
-    const bool is_ras = system == "RAS" || system == "0";
-    if (!is_ras && system != "LPS" && system != "1")
-      refuse(where + ".coordinateSystem", "is LPS or RAS, not '" + system + "'");
-    if (const SortedJson unit = list.value("coordinateUnits", SortedJson("mm"));
-        unit != "mm" &&
-        !(unit.is_array() && std::all_of(unit.begin(), unit.end(), [](const SortedJson& each) {
-            return each == SortedJson::array({"mm", "UCUM", "millimeter"}) || each == "mm" ||
-                   each == "UCUM" || each == "millimeter";
-          })))
-      refuse(where + ".coordinateUnits", "are not mm, but " + unit.dump());
+    glm::dvec3 lps_mm(1.0);
+    try {
+      lps_mm = lps_mm_of_markup(list);
+    } catch (const std::runtime_error& error) {
+      refuse(where, error.what());
+    }
     std::vector<glm::dvec3> points;
     const SortedJson& controls = need(list, "controlPoints", where);
     for (std::size_t i = 0; i < controls.size(); ++i) {
@@ -148,7 +144,7 @@ DrawnRegion of_markups(const voxel::View& view, const fs::path& path) {
       const SortedJson& p = need(controls[i], "position", at);
       if (!p.is_array() || p.size() != 3) refuse(at + ".position", "must be a point [x, y, z]");
       points.emplace_back(number_of(p[0], at), number_of(p[1], at), number_of(p[2], at));
-      if (is_ras) points.back() *= glm::dvec3(-1.0, -1.0, 1.0);
+      points.back() *= lps_mm;
     }
     if (points.size() < 3)
       refuse(where, "has " + std::to_string(points.size()) + " points that are placed: a region takes three");

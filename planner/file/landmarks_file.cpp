@@ -1,15 +1,24 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/file/landmarks_file.h"
 
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "planner/table/csv.h"
 #include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
+#include "voxel/space/file_text.h"
 #include "voxel/space/regular_file.h"
 
 namespace octotomy::planner {
@@ -52,36 +61,132 @@ std::vector<brep::Landmark> own_landmarks(const SortedJson& list) {
   return landmarks;
 }
 
+/// What a coordinate system multiplies by to be LPS; Slicer writes it as a word or a number.
+glm::dvec3 lps_of_system(const std::string& system) {
+  if (system == "LPS" || system == "1") return glm::dvec3(1.0);
+  if (system == "RAS" || system == "0") return {-1.0, -1.0, 1.0};
+  throw std::runtime_error("the coordinate system '" + system + "' is neither LPS (1) nor RAS (0)");
+}
+
+double mm_of_unit(const std::string& unit) {
+  static const std::map<std::string, double> known{
+      {"mm", 1.0},  {"millimeter", 1.0}, {"millimetre", 1.0}, {"cm", 10.0},     {"centimeter", 10.0},
+      {"m", 1e3},   {"meter", 1e3},      {"metre", 1e3},      {"um", 1e-3},     {"micrometer", 1e-3},
+      {"in", 25.4}, {"inch", 25.4},      {"[in_i]", 25.4},    {"\u00b5m", 1e-3}};
+  const auto found = known.find(unit);
+  if (found == known.end())
+    throw std::runtime_error("the unit '" + unit + "' is not known: write points in mm");
+  return found->second;
+}
+
+/// "mm"; or one for all or for each axis as ["mm", "UCUM", "millimeter"], whose first word is the unit.
+double mm_of_units(const SortedJson& units) {
+  if (units.is_string()) return mm_of_unit(units.get<std::string>());
+  if (!units.is_array() || units.empty())
+    throw std::runtime_error("the unit " + units.dump() + " is not known");
+  const bool is_coded = units.size() == 3 && units[1] == "UCUM";
+  if (is_coded) return mm_of_units(units[0]);
+  for (const SortedJson& each : units)
+    if (mm_of_units(each) != mm_of_units(units[0]))
+      throw std::runtime_error("the axes have different units: " + units.dump());
+  return mm_of_units(units[0]);
+}
+
 /// Control points of every list in the file.
 std::vector<brep::Landmark> slicer_landmarks(const SortedJson& markups) {
   std::vector<brep::Landmark> landmarks;
   for (const SortedJson& list : markups) {
-    const std::string system = list.value("coordinateSystem", "LPS");
-    if (system != "LPS" && system != "RAS" && system != "0" && system != "1")
-      throw std::runtime_error("the coordinate system '" + system + "' is neither LPS nor RAS");
-    const bool ras = system == "RAS" || system == "0";
+    const glm::dvec3 lps_mm = lps_mm_of_markup(list);
     for (const SortedJson& entry : list.value("controlPoints", SortedJson::array())) {
       if (entry.value("positionStatus", "defined") != "defined") continue;
       brep::Landmark landmark;
       landmark.name = entry.value("label", "");
       if (landmark.name.empty())
         throw std::runtime_error("control point " + std::to_string(landmarks.size()) + " has no label");
-      landmark.p_mm = position_of(entry.value("position", SortedJson()), landmark.name);
-      if (ras) landmark.p_mm *= glm::dvec3(-1.0, -1.0, 1.0);
+      landmark.p_mm = lps_mm * position_of(entry.value("position", SortedJson()), landmark.name);
       landmarks.push_back(landmark);
     }
   }
   return landmarks;
 }
 
+/// "# CoordinateSystem = LPS" as its key and value; none where the line is no such comment.
+std::optional<std::pair<std::string, std::string>> fcsv_fact(const std::string& line) {
+  const std::size_t middle = line.find('=');
+  if (!line.starts_with("#") || middle == std::string::npos) return std::nullopt;
+  return std::pair{voxel::lower_case(voxel::trimmed(line.substr(1, middle - 1))),
+                   voxel::trimmed(line.substr(middle + 1))};
+}
+
+double fcsv_number(const std::string& cell, const std::string& name) {
+  const std::string text = voxel::trimmed(cell);
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || error != std::errc() || end != text.data() + text.size() || !std::isfinite(number))
+    throw std::runtime_error("the point of '" + name + "' has a coordinate '" + text +
+                             "', which is no number");
+  return number;
+}
+
+/// Slicer's points as lines of commas. Since its version 4 a line is id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,
+/// ..., before label,x,y,z,...; the file says which.
+std::vector<brep::Landmark> fcsv_landmarks(const std::string& text) {
+  std::vector<std::string> columns{"id", "x",  "y",   "z",   "ow",   "ox",
+                                   "oy", "oz", "vis", "sel", "lock", "label"};
+  glm::dvec3 lps_mm(-1.0, -1.0, 1.0);
+  std::vector<brep::Landmark> landmarks;
+  std::istringstream in(text);
+  std::size_t number = 0;
+  for (std::string line; std::getline(in, line); ++number) {
+    line = voxel::trimmed(line);
+    if (line.empty()) continue;
+    if (const auto fact = fcsv_fact(line)) {
+      if (fact->first == "coordinatesystem") lps_mm = lps_of_system(fact->second);
+      if (fact->first == "columns") columns = parse_csv(voxel::lower_case(fact->second)).at(0);
+    }
+    if (line.starts_with("#")) continue;
+    const std::vector<std::string> cells = parse_csv(line).at(0);
+    const auto cell = [&](const char* column) -> std::string {
+      for (std::size_t i = 0; i < columns.size(); ++i)
+        if (voxel::trimmed(columns[i]) == column) return i < cells.size() ? voxel::trimmed(cells[i]) : "";
+      return "";
+    };
+    brep::Landmark landmark;
+    landmark.name = cell("label");
+    if (landmark.name.empty())
+      throw std::runtime_error("line " + std::to_string(number + 1) + " has no label in its column " +
+                               "'label', where the name of a point stands");
+    for (int axis = 0; axis < 3; ++axis)
+      landmark.p_mm[axis] =
+          fcsv_number(cell(std::array{"x", "y", "z"}.at(static_cast<std::size_t>(axis))), landmark.name);
+    landmark.p_mm *= lps_mm;
+    landmarks.push_back(std::move(landmark));
+  }
+  if (landmarks.empty()) throw std::runtime_error("there is no point");
+  return landmarks;
+}
+
 }  // namespace
+
+glm::dvec3 lps_mm_of_markup(const SortedJson& markup) {
+  const SortedJson system = markup.value("coordinateSystem", SortedJson("LPS"));
+  return mm_of_units(markup.value("coordinateUnits", SortedJson("mm"))) *
+         lps_of_system(system.is_string() ? system.get<std::string>() : system.dump());
+}
+
+bool is_landmarks_file(const std::filesystem::path& path) {
+  const std::string extension = voxel::extension_of(path);
+  return extension == ".json" || extension == ".fcsv";
+}
 
 std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path) {
   voxel::need_regular_file(path);
   std::ifstream file(path);
   if (!file) throw std::runtime_error(path.string() + ": cannot be read");
   try {
-    const auto root = parse_json(std::string{std::istreambuf_iterator<char>(file), {}});
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (voxel::extension_of(path) == ".fcsv") return fcsv_landmarks(text);
+    const auto root = parse_json(text);
     const auto is_list = [&](const char* key) {
       return root.is_object() && root.contains(key) && root[key].is_array();
     };

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "brep/align/register_landmarks.h"
@@ -11,10 +13,20 @@ namespace octotomy::planner {
 /// Reads named points from JSON: ours,
 ///   { "landmarks": [ { "name": "nasion", "point_mm": [0, -90, 30], "weight": 2 }, ... ] }
 /// in LPS millimetres, weights 1 where absent, also as find_landmarks writes them once each "confirmed" is
-/// true; or 3D Slicer's markups (.mrk.json, its control points' labels and positions, turned to LPS where it
-/// says RAS; points that are not placed are passed over).
-/// Throws std::runtime_error with path and what is wrong: no such list, an entry without name or three
-/// finite numbers, an unknown key, a guess that is not confirmed, a coordinate system that is neither.
+/// true; or 3D Slicer's markups (.mrk.json, its control points' labels and positions; points that are not
+/// placed are passed over); or its older .fcsv: a point a line, whose columns, coordinate system and version
+/// the lines with '#' name. Slicer's points are turned to LPS where the file says RAS, and .fcsv where it
+/// says nothing, which then was RAS. Throws std::runtime_error with path and what is wrong: no such list, an
+/// entry without name or three finite numbers, an unknown key, a guess that is not confirmed, a coordinate
+/// system or unit that is not known.
 std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path);
+
+/// Whether a file holds landmarks by its extension: .json or .fcsv.
+bool is_landmarks_file(const std::filesystem::path& path);
+
+/// What positions of one of Slicer's markups are multiplied by, to be LPS millimetres: its "coordinateSystem"
+/// (LPS where it is absent; 0 is RAS, 1 LPS) and "coordinateUnits" (mm where absent). Throws
+/// std::runtime_error where they are not known.
+glm::dvec3 lps_mm_of_markup(const nlohmann::json& markup);
 
 }  // namespace octotomy::planner

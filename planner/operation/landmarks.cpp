@@ -45,7 +45,7 @@ Operation landmarks_operation() {
                       field("point_mm", &NamedPoint::p_mm, "The point [x, y, z], LPS.").required()}))
       .takes(field("file", &Landmarks::file,
                    "A file of points beside the plan: {\"landmarks\": [{\"name\", \"point_mm\"}]}, or 3D "
-                   "Slicer's .mrk.json.")
+                   "Slicer's .mrk.json or .fcsv.")
                  .a_file())
       .example(R"({"id": "marks", "do": "landmarks", "points": [{"name": "ans", "point_mm": [0, -88, -28]},
         {"name": "pns", "point_mm": [0, -45, -28]}]})")

@@ -59,7 +59,7 @@ Turn turn_of(const glm::dmat4& motion) {
 }
 
 bool is_json(const std::filesystem::path& path) {
-  return path.extension() == ".json";
+  return is_landmarks_file(path);
 }
 
 Laid by_landmarks(const std::filesystem::path& moving, const std::filesystem::path& fixed,

@@ -61,6 +61,50 @@ TEST_F(LandmarksFile, SlicersMarkupsAreTurnedFromRasToLps) {
   EXPECT_EQ(ras[0].p_mm, glm::dvec3(-1, -2, 3));
 }
 
+TEST_F(LandmarksFile, SlicersMarkupsStateTheirSystemAsANumberTooAndTheirUnit) {
+  const auto place = [&](const std::string& facts) {
+    return read(R"({"markups":[{)" + facts + R"("controlPoints":[{"label":"N","position":[1,2,3]}]}]})")
+        .at(0)
+        .p_mm;
+  };
+  EXPECT_EQ(place(""), glm::dvec3(1, 2, 3));
+  EXPECT_EQ(place(R"("coordinateSystem":0,)"), glm::dvec3(-1, -2, 3));
+  EXPECT_EQ(place(R"("coordinateSystem":"1",)"), glm::dvec3(1, 2, 3));
+  EXPECT_EQ(place(R"("coordinateUnits":"cm",)"), glm::dvec3(10, 20, 30));
+  EXPECT_EQ(place(R"("coordinateUnits":[["m","UCUM","meter"],["m","UCUM","meter"],["m","UCUM","meter"]],)"),
+            glm::dvec3(1000, 2000, 3000));
+  EXPECT_EQ(place(R"("coordinateUnits":["mm","UCUM","millimeter"],)"), glm::dvec3(1, 2, 3));
+  EXPECT_NE(refusal(R"({"markups":[{"coordinateUnits":"furlong","controlPoints":[]}]})").find("furlong"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"markups":[{"coordinateUnits":["mm","cm","mm"],"controlPoints":[]}]})")
+                .find("different units"),
+            std::string::npos);
+}
+
+TEST_F(LandmarksFile, SlicersLinesOfCommasAreTurnedToLps) {
+  const auto marks = [&](const std::string& system, const std::string& more = "") {
+    std::ofstream(folder_ / "marks.fcsv") << "# Markups fiducial file version = 4.11\r\n" + system + more +
+                                                 "1,10.5,-20,30,0,0,0,1,1,1,0,nasion,the deepest,vtkMRML\r\n"
+                                                 "2,1,2,3,0,0,0,1,1,1,0,\"sella, left\",,\r\n";
+    return read_landmarks(folder_ / "marks.fcsv");
+  };
+  const std::string columns = "# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\r\n";
+  for (const char* ras : {"# CoordinateSystem = RAS\r\n", "# CoordinateSystem = 0\r\n", ""}) {
+    const auto read = marks(ras, columns);
+    ASSERT_EQ(read.size(), 2u);
+    EXPECT_EQ(read[0].name, "nasion");
+    EXPECT_EQ(read[0].p_mm, glm::dvec3(-10.5, 20, 30)) << ras;
+    EXPECT_EQ(read[1].name, "sella, left");
+  }
+  for (const char* lps : {"# CoordinateSystem = LPS\n", "# CoordinateSystem = 1\n"})
+    EXPECT_EQ(marks(lps)[0].p_mm, glm::dvec3(10.5, -20, 30)) << lps;
+  EXPECT_THROW(marks("# CoordinateSystem = 2\n"), std::runtime_error) << "indices need their scan";
+  std::ofstream(folder_ / "old.fcsv") << "# name = F\n# columns = label,x,y,z,sel,vis\nA,1,2,3,1,1\n";
+  EXPECT_EQ(read_landmarks(folder_ / "old.fcsv").at(0).p_mm, glm::dvec3(-1, -2, 3));
+  std::ofstream(folder_ / "bad.fcsv") << "1,x,2,3,0,0,0,1,1,1,0,A,,\n";
+  EXPECT_THROW(read_landmarks(folder_ / "bad.fcsv"), std::runtime_error);
+}
+
 TEST_F(LandmarksFile, EveryRefusalNamesWhatIsWrong) {
   EXPECT_NE(refusal("{").find("marks.json"), std::string::npos);
   EXPECT_NE(refusal(std::string(100'000, '[')).find("nested more than 512 deep"), std::string::npos);
