@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <fcntl.h>
+#include <map>
 #include <new>
 #include <sys/file.h>
 #include <sys/resource.h>
@@ -11,7 +12,9 @@
 #include "brep/mesh/error.h"
 #include "planner/cohort/cohort_folder.h"
 #include "planner/cohort/result_rows.h"
+#include "planner/plan/dependence.h"
 #include "planner/plan/evaluate.h"
+#include "planner/plan/rebase.h"
 #include "planner/plan/sha256.h"
 #include "planner/report/report.h"
 #include "planner/report/result_folder.h"
@@ -50,6 +53,9 @@ class Claim {
 std::string key_of(const Plan& plan, const Subject& subject) {
   std::string text = OCTOTOMY_VERSION "\n" + plan_sha256(Json::parse(plan.text)) + "\n";
   for (const auto& [name, path] : subject.scans) text += name + " " + sha256_of_path(path) + "\n";
+  for (const Step& step : plan.steps)
+    for (const fs::path& file : files_read(step))
+      if (fs::is_regular_file(plan.folder / file)) text += sha256_of_path(plan.folder / file) + "\n";
   return sha256_of(text);
 }
 
@@ -106,6 +112,17 @@ std::vector<std::uint8_t> picture_of(const Plan& plan, const Evaluation& evaluat
 
 void write_bytes(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
   write_text(path, {bytes.begin(), bytes.end()});
+}
+
+/// The plan with the subject's own files where its steps read files that are not beside it.
+Plan of_subject(const Plan& plan, const Subject& subject) {
+  std::map<fs::path, fs::path> places;
+  for (const Step& step : plan.steps)
+    for (const fs::path& file : files_read(step)) {
+      if (file.is_absolute() || fs::exists(plan.folder / file)) continue;
+      if (fs::path own = file_of_subject(subject, file); !own.empty()) places[file] = std::move(own);
+    }
+  return with_files(plan, places);
 }
 
 /// Evaluates and writes into `folder`.
@@ -200,7 +217,7 @@ SubjectRecord subject_record(const fs::path& out, const Subject& subject) {
   return record;
 }
 
-SubjectRecord run_participant(const Plan& plan, const Subject& subject, const fs::path& out,
+SubjectRecord run_participant(const Plan& given, const Subject& subject, const fs::path& out,
                               const ParticipantOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const Claim claim(out, subject);
@@ -213,6 +230,8 @@ SubjectRecord run_participant(const Plan& plan, const Subject& subject, const fs
   if (earlier.state == SubjectRecord::State::Changed) return earlier;
   record.scan_bytes = subject.scan_bytes();
   record.reason = subject.trouble;
+  Plan plan = given;
+  if (record.reason.empty()) record.reason = reason_of([&] { plan = of_subject(given, subject); });
   if (record.reason.empty()) record.reason = reason_of([&] { record.key = key_of(plan, subject); });
   if (!options.again && record.reason.empty() && earlier.state == SubjectRecord::State::Done &&
       earlier.key == record.key) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <set>
 
 #include "planner/table/csv.h"
@@ -43,19 +44,42 @@ std::string without_prefix(const std::string& label) {
   return label.starts_with("sub-") ? label.substr(4) : label;
 }
 
+/// BIDS's suffixes of files that are no scan but drawn on one.
+bool is_drawn(const std::string& stem) {
+  const std::string end = stem.substr(stem.rfind('_') + 1);
+  return end == "dseg" || end == "probseg" || end == "mask" || end == "seg" || end == "label" ||
+         end == "labels" || end == "roi";
+}
+
+/// The files below a subject's folder; those of sessions, which stand for themselves, only where the folder
+/// is one.
+std::vector<fs::path> files_below(const fs::path& folder) {
+  std::vector<fs::path> files;
+  auto at = fs::recursive_directory_iterator(folder);
+  for (; at != fs::recursive_directory_iterator(); ++at) {
+    if (at.depth() == 0 && at->is_directory() && at->path().filename().string().starts_with("ses-"))
+      at.disable_recursion_pending();
+    else if (at->is_regular_file())
+      files.push_back(at->path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 /// What a subject's folder holds for each of the plan's scans.
 Subject subject_of_folder(const std::string& label, const fs::path& folder, const Plan& plan) {
   Subject subject{label, {}};
+  subject.place = fs::absolute(folder).lexically_normal();
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file() && !stem_of_scan(entry.path().filename().string()).empty())
-      files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files_below(folder))
+    if (!stem_of_scan(file.filename().string()).empty()) files.push_back(file);
   for (const auto& [name, unused] : plan.scans) {
     std::vector<fs::path> fitting;
     for (const fs::path& file : files)
       if (stem_of_scan(file.filename().string()).ends_with("_" + name)) fitting.push_back(file);
-    if (fitting.empty() && plan.scans.size() == 1) fitting = files;
+    if (fitting.empty() && plan.scans.size() == 1)
+      std::copy_if(files.begin(), files.end(), std::back_inserter(fitting),
+                   [](const fs::path& file) { return !is_drawn(stem_of_scan(file.filename().string())); });
     if (fitting.size() == 1) {
       subject.scans[name] = fitting.front();
       continue;
@@ -79,20 +103,51 @@ std::vector<fs::path> folders_in(const fs::path& folder, const std::string& pref
   return found;
 }
 
+/// A subject of each session, and of what lies outside of them.
+void add_subject(const std::string& label, const fs::path& folder, const Plan& plan,
+                 std::vector<Subject>& subjects) {
+  const std::vector<fs::path> sessions = folders_in(folder, "ses-");
+  for (const fs::path& session : sessions)
+    subjects.push_back(subject_of_folder(label + "_" + session.filename().string(), session, plan));
+  Subject own = subject_of_folder(label, folder, plan);
+  if (sessions.empty() || !own.scans.empty()) subjects.push_back(std::move(own));
+}
+
 std::vector<Subject> subjects_of_folder(const fs::path& input, const Plan& plan) {
   std::vector<Subject> subjects;
   for (const fs::path& folder : folders_in(input, "sub-")) {
     const std::string label = without_prefix(folder.filename().string());
     check_label(label, input.string());
-    const std::vector<fs::path> sessions = folders_in(folder, "ses-");
-    for (const fs::path& session : sessions)
-      subjects.push_back(subject_of_folder(label + "_" + session.filename().string(), session, plan));
-    if (sessions.empty()) subjects.push_back(subject_of_folder(label, folder, plan));
+    add_subject(label, folder, plan, subjects);
   }
   if (subjects.empty())
     refuse(input.string() +
-           ": has no subject: it should hold folders sub-LABEL, or be a .csv with the columns "
+           ": has no subject: it should hold folders sub-LABEL, or be a .csv or .tsv with the columns "
            "participant_id and scan");
+  return subjects;
+}
+
+/// BIDS's table of participants names no scans: the subjects' folders beside it. None where a column names
+/// scans, or a subject has no folder.
+std::optional<std::vector<Subject>> folders_of_rows(const std::vector<std::vector<std::string>>& rows,
+                                                    std::size_t id, const fs::path& input, const Plan& plan) {
+  const std::vector<std::string>& header = rows.front();
+  const auto has = [&](const std::string& name) {
+    return std::find(header.begin(), header.end(), name) != header.end();
+  };
+  if (has("scan") ||
+      std::any_of(plan.scans.begin(), plan.scans.end(), [&](const auto& scan) { return has(scan.first); }))
+    return std::nullopt;
+  std::vector<Subject> subjects;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (id >= rows[i].size()) return std::nullopt;
+    const std::string label = without_prefix(rows[i][id]);
+    check_label(label, input.string() + ": row " + std::to_string(i + 1));
+    const fs::path folder = fs::absolute(input).parent_path() / ("sub-" + label);
+    if (!fs::is_directory(folder)) return std::nullopt;
+    add_subject(label, folder, plan, subjects);
+  }
+  if (subjects.empty()) return std::nullopt;
   return subjects;
 }
 
@@ -102,7 +157,7 @@ std::vector<Subject> subjects_of_table(const fs::path& input, const Plan& plan) 
   if (!file) refuse(input.string() + ": cannot be read");
   std::vector<std::vector<std::string>> rows;
   try {
-    rows = parse_csv(text);
+    rows = voxel::extension_of(input) == ".tsv" ? parse_tsv(text) : parse_csv(text);
   } catch (const voxel::Error& error) {
     refuse(input.string() + ": " + error.what());
   }
@@ -115,6 +170,7 @@ std::vector<Subject> subjects_of_table(const fs::path& input, const Plan& plan) 
   auto id = column("participant_id");
   if (!id) id = column("subject");
   if (!id) refuse(input.string() + ": has no column participant_id");
+  if (const auto folders = folders_of_rows(rows, *id, input, plan)) return *folders;
   std::map<std::string, std::size_t> scan_columns;
   for (const auto& [name, unused] : plan.scans) {
     auto at = column(name);
@@ -170,6 +226,21 @@ std::vector<Subject> find_subjects(const fs::path& input, const Plan& plan) {
   return subjects;
 }
 
+fs::path file_of_subject(const Subject& subject, const fs::path& name) {
+  if (subject.place.empty()) return {};
+  fs::path found;
+  const std::string wanted = name.filename().string();
+  for (const fs::path& file : files_below(subject.place)) {
+    const std::string own = file.filename().string();
+    if (own != wanted && !own.ends_with("_" + wanted)) continue;
+    if (!found.empty())
+      refuse(subject.place.string() + ": several files for the plan's " + wanted + ", " + found.string() +
+             " and " + file.string());
+    found = file;
+  }
+  return found;
+}
+
 std::vector<Subject> chosen_subjects(std::vector<Subject> subjects, const std::vector<std::string>& labels) {
   if (labels.empty()) return subjects;
   std::set<std::string> wanted;
@@ -177,9 +248,16 @@ std::vector<Subject> chosen_subjects(std::vector<Subject> subjects, const std::v
   for (const Subject& subject : subjects) known.push_back(subject.label);
   for (const std::string& said : labels) {
     const std::string label = without_prefix(said);
-    if (!std::binary_search(known.begin(), known.end(), label))
+    // Engines ask for one subject by its whole label.
+    const bool is_whole = std::binary_search(known.begin(), known.end(), label);
+    bool is_there = is_whole;
+    for (const std::string& each : known)
+      if (is_whole ? each == label : each.starts_with(label + "_ses-")) {
+        wanted.insert(each);
+        is_there = true;
+      }
+    if (!is_there)
       refuse("--participant-label: there is no subject '" + label + "'" + suggestion(label, known));
-    wanted.insert(label);
   }
   std::erase_if(subjects, [&](const Subject& subject) { return !wanted.contains(subject.label); });
   return subjects;

@@ -2,6 +2,7 @@
 #include "planner/plan/rebase.h"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 
 #include "planner/plan/dependence.h"
@@ -28,21 +29,23 @@ struct Rebase {
                                to.string() + ": name it by an absolute one");
     return found.generic_string();
   }
-  /// Fields of a step that name a file which the step reads: a text, or texts of a list.
-  void files(Json& step, const std::vector<fs::path>& read) const {
-    const auto is_read = [&](const Json& value) {
-      return value.is_string() &&
-             std::find(read.begin(), read.end(), fs::path(value.get<std::string>())) != read.end();
-    };
-    for (auto& [key, value] : step.items()) {
-      if (key == "id" || key == "do") continue;
-      if (is_read(value)) value = of(value.get<std::string>());
-      if (!value.is_array()) continue;
-      for (Json& entry : value)
-        if (is_read(entry)) entry = of(entry.get<std::string>());
-    }
-  }
 };
+
+/// Changes the fields of a step that name a file which the step reads: a text, or texts of a list.
+void change_files(Json& step, const std::vector<fs::path>& read,
+                  const std::function<std::string(const std::string&)>& change) {
+  const auto is_read = [&](const Json& value) {
+    return value.is_string() &&
+           std::find(read.begin(), read.end(), fs::path(value.get<std::string>())) != read.end();
+  };
+  for (auto& [key, value] : step.items()) {
+    if (key == "id" || key == "do") continue;
+    if (is_read(value)) value = change(value.get<std::string>());
+    if (!value.is_array()) continue;
+    for (Json& entry : value)
+      if (is_read(entry)) entry = change(entry.get<std::string>());
+  }
+}
 
 }  // namespace
 
@@ -53,8 +56,22 @@ Plan rebased(const Plan& plan, const fs::path& folder) {
   for (auto& [name, scan] : json["scans"].items())
     if (scan.contains("path")) scan["path"] = rebase.of(scan["path"].get<std::string>());
   for (std::size_t i = 0; i < plan.steps.size(); ++i)
-    rebase.files(json["steps"][i], files_read(plan.steps[i]));
+    change_files(json["steps"][i], files_read(plan.steps[i]),
+                 [&](const std::string& path) { return rebase.of(path); });
   Plan made = parse_plan(json.dump(2) + "\n", folder);
+  made.file = plan.file;
+  return made;
+}
+
+Plan with_files(const Plan& plan, const std::map<fs::path, fs::path>& places) {
+  if (places.empty()) return plan;
+  Json json = Json::parse(plan.text);
+  for (std::size_t i = 0; i < plan.steps.size(); ++i)
+    change_files(json["steps"][i], files_read(plan.steps[i]), [&](const std::string& path) {
+      const auto place = places.find(path);
+      return place == places.end() ? path : place->second.generic_string();
+    });
+  Plan made = parse_plan(json.dump(2) + "\n", plan.folder);
   made.file = plan.file;
   return made;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cohort/subjects.h"
 
+#include <fstream>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -33,6 +34,77 @@ TEST(Subjects, ADeviceBehindALinkIsNoTable) {
   std::filesystem::create_symlink("/dev/zero", folder / "scans.csv");
   EXPECT_EQ(table_refusal(folder / "scans.csv"),
             (folder / "scans.csv").string() + ": is a pipe or device: copy it into a file first");
+}
+
+class BidsSubjects : public testing::Test {
+ protected:
+  void put(const std::string& name, const std::string& text = "") {
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    std::ofstream(folder_ / name) << text;
+  }
+  static Plan plan_of(const std::vector<std::string>& scans) {
+    Plan plan;
+    for (const std::string& scan : scans) plan.scans[scan] = {"head.nrrd"};
+    return plan;
+  }
+  std::vector<std::string> labels(const std::filesystem::path& input, const Plan& plan) {
+    std::vector<std::string> found;
+    for (const Subject& subject : find_subjects(input, plan))
+      found.push_back(subject.label + subject.trouble);
+    return found;
+  }
+
+  tests::ScratchFolder folder_;
+};
+
+TEST_F(BidsSubjects, SessionsHideNeitherASubjectsOwnScanNorTheSubjectsLabel) {
+  put("sub-01/ct/sub-01_ct.nii.gz");
+  put("sub-01/ses-1/ct/sub-01_ses-1_ct.nii.gz");
+  put("sub-02/ses-1/ct/sub-02_ses-1_ct.nii.gz");
+  put("sub-02/ses-2/ct/sub-02_ses-2_ct.nii.gz");
+  const Plan plan = plan_of({"ct"});
+  EXPECT_EQ(labels(folder_.path(), plan),
+            (std::vector<std::string>{"01", "01_ses-1", "02_ses-1", "02_ses-2"}));
+  const auto chosen = chosen_subjects(find_subjects(folder_.path(), plan), {"sub-02"});
+  ASSERT_EQ(chosen.size(), 2U);
+  EXPECT_EQ(chosen[0].label, "02_ses-1");
+  EXPECT_EQ(chosen_subjects(find_subjects(folder_.path(), plan), {"01_ses-1"}).size(), 1U);
+  EXPECT_EQ(chosen_subjects(find_subjects(folder_.path(), plan), {"01"}).size(), 1U) << "a whole label";
+  EXPECT_THROW(chosen_subjects(find_subjects(folder_.path(), plan), {"0"}), voxel::Error);
+}
+
+TEST_F(BidsSubjects, ALabelMapBesideTheOnlyScanIsNoSecondScan) {
+  put("sub-01/ct/sub-01_ct.nii.gz");
+  put("sub-01/ct/sub-01_dseg.nii.gz");
+  put("sub-01/ct/sub-01_desc-bone_mask.nii.gz");
+  const std::vector<Subject> found = find_subjects(folder_.path(), plan_of({"head"}));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].trouble, "");
+  EXPECT_EQ(found[0].scans.at("head").filename(), "sub-01_ct.nii.gz");
+  EXPECT_EQ(find_subjects(folder_.path(), plan_of({"ct", "dseg"}))[0].scans.at("dseg").filename(),
+            "sub-01_dseg.nii.gz");
+}
+
+TEST_F(BidsSubjects, ATableOfTabsNamesScansOrTheFoldersBesideIt) {
+  put("sub-01/ct/sub-01_ct.nii.gz");
+  put("sub-02/ct/sub-02_ct.nii.gz");
+  put("sub-03/ct/sub-03_ct.nii.gz");
+  put("scans.tsv", "participant_id\tage\tscan\nsub-01\t20\tsub-01/ct/sub-01_ct.nii.gz\n");
+  const std::vector<Subject> named = find_subjects(folder_ / "scans.tsv", plan_of({"ct"}));
+  ASSERT_EQ(named.size(), 1U);
+  EXPECT_TRUE(std::filesystem::exists(named[0].scans.at("ct")));
+  put("participants.tsv", "participant_id\tage\nsub-01\t20\nsub-03\tn/a\n");
+  EXPECT_EQ(labels(folder_ / "participants.tsv", plan_of({"ct"})), (std::vector<std::string>{"01", "03"}));
+}
+
+TEST_F(BidsSubjects, AFileThatStepsReadIsTheSubjectsOwnByItsName) {
+  put("sub-01/ct/sub-01_ct.nii.gz");
+  put("sub-01/ct/sub-01_marks.fcsv");
+  const Subject subject = find_subjects(folder_.path(), plan_of({"ct"}))[0];
+  EXPECT_EQ(file_of_subject(subject, "plans/marks.fcsv").filename(), "sub-01_marks.fcsv");
+  EXPECT_TRUE(file_of_subject(subject, "other.fcsv").empty());
+  put("sub-01/marks.fcsv");
+  EXPECT_THROW(file_of_subject(subject, "marks.fcsv"), voxel::Error);
 }
 
 }  // namespace
