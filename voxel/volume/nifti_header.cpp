@@ -59,7 +59,7 @@ Fields fields_of(const char* bytes, bool is_swapped) {
   const auto real = [&](auto value) { return static_cast<double>(number(value)); };
   const auto whole = [&](auto value) { return static_cast<int>(number(value)); };
   const auto text = [](const auto& letters) {
-    return std::string(letters, std::find(std::begin(letters), std::end(letters), '\0'));
+    return shown({letters, std::find(std::begin(letters), std::end(letters), '\0')});
   };
   Fields fields;
   fields.is_swapped = is_swapped;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "voxel/space/file_text.h"
+#include "voxel/space/printed.h"
 #include "voxel/volume/fill_ahead.h"
 #include "voxel/volume/sample_stream.h"
 
@@ -157,7 +158,7 @@ std::string_view parse(const fs::path& path, std::string_view text, char* to, st
     const auto used = static_cast<std::size_t>(end - text.data());
     if (error != std::errc() || !is_end(end))
       refuse(path, "sample " + std::to_string(i + 1) + " of its text is no number of its type: '" +
-                       std::string(text.substr(0, std::min<std::size_t>(text.size(), 20))) + "'");
+                       shown(std::string(text.substr(0, 20))) + "'");
     std::memcpy(to + i * sizeof(Number), &number, sizeof(Number));
     text.remove_prefix(used);
   }

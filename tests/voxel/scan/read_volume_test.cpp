@@ -58,6 +58,8 @@ TEST(ReadVolume, RefusesWhatIsNoScanAndSaysWhat) {
              ramp(),
          "one value a sample"},
         {"a.mha", meta(meta_place + "ElementNumberOfChannels = 3\n"), "3 values per sample"},
+        {"a.nrrd", nrrd(lps + "encoding: ascii\n", "1 2 3x\n4" + std::string(60, ' ')), "'3x?4"},
+        {"a.nii", nifti([](auto& h) { std::memcpy(h.magic, "n\n1", 4); }), "'n?1'"},
         {"a.mha", meta("TransformMatrix = 1 0 0 0 1 0 0\n"), "9 numbers"}}) {
     write_bytes(folder / name, bytes);
     EXPECT_NE(reason_to_refuse(folder / name).find(words), std::string::npos)
