@@ -438,7 +438,7 @@ TEST(ReadDicom, RefusesAnAttributeLongerThanItsFile) {
 }
 
 /// A text that claims `dims` and then holds 24 bytes of samples, 0 to 23.
-std::string nrrd(const std::string& fields) {
+std::string nrrd_with(const std::string& fields) {
   std::string text = "NRRD0004\n" + fields + "endian: little\nencoding: raw\n\n";
   for (char value = 0; value < 24; ++value) text += value;
   return text;
@@ -447,15 +447,16 @@ std::string nrrd(const std::string& fields) {
 TEST(ReadVolumeFile, TurnsOtherFramesIntoLps) {
   const ScratchFolder folder;
   write_bytes(folder / "ras.nrrd",
-              nrrd("type: uint8\ndimension: 3\nspace: right-anterior-superior\nsizes: 2 3 4\n"
-                   "space directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (10,20,30)\n"));
+              nrrd_with("type: uint8\ndimension: 3\nspace: right-anterior-superior\nsizes: 2 3 4\n"
+                        "space directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (10,20,30)\n"));
   const Scene read = read_scene(folder / "ras.nrrd");
   EXPECT_EQ(read.lattice.lps_mm({0, 0, 0}), glm::dvec3(-10, -20, 30));
   EXPECT_EQ(read.lattice.lps_mm({1, 2, 3}), glm::dvec3(-12, -26, 42));
   ASSERT_TRUE(std::holds_alternative<voxel::Int16Samples>(read.samples));
   EXPECT_EQ(std::get<voxel::Int16Samples>(read.samples)[23], 23) << "x fastest, z slowest";
   EXPECT_EQ(verdict(read, "orientation"), Verdict::Pass);
-  write_bytes(folder / "unnamed.nrrd", nrrd("type: uint8\ndimension: 3\nsizes: 2 3 4\nspacings: 2 3 4\n"));
+  write_bytes(folder / "unnamed.nrrd",
+              nrrd_with("type: uint8\ndimension: 3\nsizes: 2 3 4\nspacings: 2 3 4\n"));
   EXPECT_EQ(verdict(read_scene(folder / "unnamed.nrrd"), "orientation"), Verdict::Warn);
 }
 
@@ -480,7 +481,7 @@ TEST(ReadVolumeFile, DoesNotAllocateWhatTheFileCannotHold) {
   for (const char* sizes :
        {"60000 60000 60000", "2 3 50", "2147483647 2147483647 2147483647", "-2 3 4", "0 3 4"}) {
     write_bytes(folder / "lie.nrrd",
-                nrrd("type: int16\ndimension: 3\n" + rest + "sizes: " + std::string(sizes) + "\n"));
+                nrrd_with("type: int16\ndimension: 3\n" + rest + "sizes: " + std::string(sizes) + "\n"));
     const std::string reason = reason_of(folder / "lie.nrrd");
     EXPECT_NE(reason, "nothing was thrown") << sizes;
     if (sizes[0] == '6' || sizes[4] == '5') {
@@ -500,7 +501,7 @@ TEST(ReadVolumeFile, SaysInOneLineWhatIsWrong) {
     EXPECT_EQ(reason.find('\n'), std::string::npos) << reason;
     EXPECT_NE(reason.find("is not a"), std::string::npos) << reason;
   }
-  write_bytes(folder / "broken.nrrd", nrrd("type: nonsense\ndimension: 3\nsizes: 2 3 4\n"));
+  write_bytes(folder / "broken.nrrd", nrrd_with("type: nonsense\ndimension: 3\nsizes: 2 3 4\n"));
   const std::string reason = reason_of(folder / "broken.nrrd");
   EXPECT_EQ(reason.find('\n'), std::string::npos) << reason;
   EXPECT_NE(reason.find("nonsense"), std::string::npos) << reason;
@@ -517,7 +518,7 @@ TEST(ReadVolumeFile, RefusesAVolumeWhoseDataFileIsGone) {
 TEST(ReadVolumeFile, MutatedHeadersAreReadOrRefusedButNeverCrash) {
   // The samples are 24 bytes: whatever is read must be as small.
   const ScratchFolder folder;
-  const std::string whole = nrrd(
+  const std::string whole = nrrd_with(
       "type: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 2 3 4\n"
       "space directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (10,20,30)\n");
   int refused_count = 0;
