@@ -80,8 +80,9 @@ void mark_all(const voxel::Samples<Sample>& samples, const glm::ivec3& dims, con
 template <typename Sample>
 class SceneSamples {
  public:
-  SceneSamples(const voxel::Lattice& lattice, const voxel::Samples<Sample>& samples)
-      : lattice_(lattice), samples_(samples) {}
+  SceneSamples(const voxel::Lattice& lattice, const voxel::Samples<Sample>& samples,
+               std::optional<double> padding)
+      : lattice_(lattice), samples_(samples), padding_(padding) {}
   const voxel::Lattice& lattice() const { return lattice_; }
 
   InsideBits inside(double low, double high) const {
@@ -106,13 +107,19 @@ class SceneSamples {
     const std::array<std::size_t, 3> step = {1, nx, nx * ny};
     const std::size_t index = static_cast<std::size_t>(voxel.x) + nx * static_cast<std::size_t>(voxel.y) +
                               nx * ny * static_cast<std::size_t>(voxel.z);
-    return {static_cast<double>(samples_[index]),
-            static_cast<double>(samples_[index + step[static_cast<std::size_t>(axis)]])};
+    return {measured(index), measured(index + step[static_cast<std::size_t>(axis)])};
   }
 
  private:
+  /// No number where nothing was measured: a surface then closes at the measured voxel's end.
+  double measured(std::size_t index) const {
+    const auto sample = static_cast<double>(samples_[index]);
+    return padding_ && sample == *padding_ ? std::numeric_limits<double>::quiet_NaN() : sample;
+  }
+
   const voxel::Lattice& lattice_;
   const voxel::Samples<Sample>& samples_;
+  std::optional<double> padding_;
 };
 
 /// The samples of a grey octree: blocks that are wholly in or out of the window are not opened.
@@ -234,7 +241,8 @@ brep::Triangles isosurface(const voxel::Scene& scene, double low, double high,
   check_bounds(low, high);
   return std::visit(
       [&]<typename Sample>(const voxel::Samples<Sample>& samples) {
-        return surface_of(SceneSamples<Sample>(scene.lattice, samples), low, high, progress);
+        return surface_of(SceneSamples<Sample>(scene.lattice, samples, scene.padding),
+                          above_padding(scene, low), high, progress);
       },
       scene.samples);
 }

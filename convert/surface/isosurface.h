@@ -15,8 +15,8 @@ namespace octotomy::convert {
 /// handedness of the lattice: ambiguous faces of cells keep the inside corners apart. Vertices keep a
 /// thousandth of an edge's distance from samples, so no triangle is degenerate. An object that reaches the
 /// scan's border is closed half a voxel beyond the outermost samples, at the voxels' ends. Samples that are
-/// not numbers are outside. Between neighbouring samples below and above the window there is no surface.
-/// Empty if nothing is inside.
+/// not numbers, and the scene's padding, are outside; the surface closes half way to them. Between
+/// neighbouring samples below and above the window there is no surface. Empty if nothing is inside.
 ///
 /// On a sphere of r voxels of partial-volume samples the volume is 0.82 / r^2 of it low: 0.6 because
 /// triangles are chords, the rest because the mean of a voxel is not its centre's value. The area is 0.4 %

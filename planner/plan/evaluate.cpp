@@ -234,6 +234,7 @@ class Evaluator {
                                 {"path", source.path.string()},
                                 {"series", source.read.series},
                                 {"voxel_mm", plan_.voxel_mm.value_or(0.0)}};
+    if (source.read.join) says["join"] = true;
     for (const voxel::SliceRange& range : source.read.slices)
       says["slices"].push_back({range.first, range.last});
     if (source.read.frame) says["frame"] = source.read.frame->name;

@@ -72,6 +72,7 @@ std::optional<Value> parsed(const Keys& scan, const char* key, Value (*parse)(co
 voxel::ReadOptions read_options_of(const Keys& scan) {
   voxel::ReadOptions read;
   if (scan.find("series") != nullptr) read.series = scan.text("series");
+  if (scan.find("join") != nullptr) read.join = scan.flag("join");
   if (scan.find("slices") != nullptr) read.slices = slices_of(scan);
   if (scan.find("spacing_mm") != nullptr) read.spacing_mm = scan.point("spacing_mm");
   read.frame = parsed(scan, "frame", voxel::parse_frame);
@@ -103,9 +104,9 @@ std::map<std::string, ScanSource> scans_of(const Keys& top) {
     refuse("scans", "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}");
   std::map<std::string, ScanSource> scans;
   for (const auto& [name, entry] : value.items()) {
-    const Keys keys(
-        entry, "scans, " + name,
-        {"path", "sha256", "series", "slices", "frame", "unit", "spacing_mm", "raw", "other_identity"});
+    const Keys keys(entry, "scans, " + name,
+                    {"path", "sha256", "series", "join", "slices", "frame", "unit", "spacing_mm", "raw",
+                     "other_identity"});
     ScanSource source{keys.text("path"), std::nullopt, read_options_of(keys)};
     if (keys.find("other_identity") != nullptr) source.other_identity = keys.flag("other_identity");
     if (keys.find("sha256") != nullptr) {
@@ -269,6 +270,7 @@ Json plan_schema() {
                    {{"path", {{"type", "string"}, {"minLength", 1}}},
                     {"sha256", {{"type", {"string", "null"}}, {"pattern", "^[0-9a-fA-F]{64}$"}}},
                     {"series", {{"type", "string"}}},
+                    {"join", {{"type", "boolean"}}},
                     {"slices", {{"type", "string"}}},
                     {"frame", {{"type", "string"}}},
                     {"unit", {{"type", "string"}}},

@@ -21,6 +21,7 @@ constexpr int look_picture_px = 400;
 Json scan_entry(const std::filesystem::path& scan, const voxel::ReadOptions& read) {
   Json entry{{"path", voxel::absolute_of(scan).string()}};
   if (!read.series.empty()) entry["series"] = read.series;
+  if (read.join) entry["join"] = true;
   if (!read.slices.empty()) entry["slices"] = voxel::to_string(read.slices);
   if (read.frame) entry["frame"] = read.frame->name;
   if (read.unit) entry["unit"] = read.unit->name;

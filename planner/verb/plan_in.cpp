@@ -37,12 +37,13 @@ Plan plan_of(const Program& program, const PlanIn& text) {
     found->second.path = voxel::absolute_of(scan.substr(equals + 1));
   }
   if (const voxel::ReadOptions read = read_options(program, text.in);
-      !read.series.empty() || !read.slices.empty() || read.spacing_mm || read.raw || read.frame ||
-      read.unit) {
+      !read.series.empty() || read.join || !read.slices.empty() || read.spacing_mm || read.raw ||
+      read.frame || read.unit) {
     if (plan.scans.size() != 1)
       throw std::runtime_error(
-          "--series, --slices, --spacing, --raw, --frame and --unit are of one scan, the plan has several: "
-          "write series, slices, spacing_mm, raw, frame or unit beside their paths in the plan");
+          "--series, --join, --slices, --spacing, --raw, --frame and --unit are of one scan, the plan has "
+          "several: "
+          "write series, join, slices, spacing_mm, raw, frame or unit beside their paths in the plan");
     plan.scans.begin()->second.read = read;
   }
   return plan;

@@ -63,6 +63,11 @@ void add_scan_options(CLI::App& verb, ScanIn& in, const std::string& heading) {
                   "Of a folder with several DICOM series: its number as octotomy info lists it (2, or 2.1 of "
                   "several stacks in one series), its UID, or a part of its description or kernel")
       ->group(heading);
+  verb.add_flag(
+          "--join", in.join,
+          "Join all DICOM series of the folder, of one patient and modality: for an export that gave each "
+          "image a series, study or frame of reference of its own. The audit then holds a FAIL")
+      ->group(heading);
   verb.add_option("--slices", in.slices,
                   "FROM:TO of the DICOM series' images to keep, 1 the lowest along their normal, for example "
                   "1:40 or 1:40,45:60")
@@ -96,6 +101,7 @@ CLI::Validator scan_path() {
 voxel::ReadOptions read_options(const Program& program, const ScanIn& in) {
   voxel::ReadOptions options;
   options.series = in.series;
+  options.join = in.join;
   if (!in.slices.empty()) options.slices = slices_of(in.slices);
   if (!in.spacing.empty()) options.spacing_mm = spacing_of(in.spacing);
   options.frame = parsed("--frame", in.frame, voxel::parse_frame);

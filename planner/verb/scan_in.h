@@ -14,13 +14,14 @@ namespace octotomy::planner::cli {
 /// The options about it, as text.
 struct ScanIn {
   std::string series, slices, spacing, frame, unit;
+  bool join = false;
   std::vector<std::string> raw;  ///< DIMS TYPE
   bool big_endian = false;
   std::uint64_t offset = 0;
 };
 
-/// Adds --series, --slices, --frame, --unit, --spacing, --raw, --big-endian and --offset to a verb's help,
-/// under a heading that says whose they are.
+/// Adds --series, --join, --slices, --frame, --unit, --spacing, --raw, --big-endian and --offset to a verb's
+/// help, under a heading that says whose they are.
 void add_scan_options(CLI::App& verb, ScanIn& in, const std::string& heading = "scan");
 
 /// A path that is there, or a pattern of image files.

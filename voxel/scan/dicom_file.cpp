@@ -5,6 +5,7 @@
 #include "voxel/scan/dicom_file.h"
 
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -41,6 +42,12 @@ bool is_wide(std::string_view vr) {
   for (const std::string_view one : wide)
     if (vr == one) return true;
   return false;
+}
+
+/// Whether a transfer syntax is DICOM's, all of which are explicit and little-endian but for those that
+/// leave_meta() names. An empty one is an old file's.
+bool is_readable_syntax(std::string_view syntax) {
+  return syntax.empty() || syntax.starts_with("1.2.840.10008.1.2");
 }
 
 bool begins_little_endian_item(std::string_view bytes) {
@@ -91,6 +98,9 @@ std::uint32_t DicomFile::u32(std::size_t at) const {
 void DicomFile::require(std::size_t length, DicomTag tag) const {
   if (length <= left()) return;
   if (length <= file_bytes_ - at_) throw NeedsMore{};
+  if (!is_readable_syntax(transfer_syntax_))
+    throw Error(ErrorCode::Input, "is in the transfer syntax " + transfer_syntax_ +
+                                      ", which is not known here: convert it, for example by gdcmconv --raw");
   std::array<char, 112> text{};
   std::snprintf(text.data(), text.size(),
                 "cut short or damaged: attribute (%04x,%04x) claims %zu bytes of %zu left", tag >> 16,
@@ -257,12 +267,48 @@ std::optional<std::uint16_t> DicomFile::unsigned_short(DicomTag tag) const {
   return static_cast<std::uint16_t>(u16(static_cast<std::size_t>(found->second.data() - bytes_.data())));
 }
 
+std::vector<std::uint16_t> DicomFile::unsigned_shorts(DicomTag tag) const {
+  std::vector<std::uint16_t> numbers;
+  const auto found = values_.find(tag);
+  if (found == values_.end()) return numbers;
+  const auto start = static_cast<std::size_t>(found->second.data() - bytes_.data());
+  for (std::size_t i = 0; i + 2 <= found->second.size(); i += 2)
+    numbers.push_back(static_cast<std::uint16_t>(u16(start + i)));
+  return numbers;
+}
+
+std::optional<std::size_t> DicomFile::length(DicomTag tag) const {
+  const auto found = values_.find(tag);
+  return found == values_.end() ? std::nullopt : std::optional(found->second.size());
+}
+
+std::optional<std::uint32_t> DicomFile::unsigned_long(DicomTag tag) const {
+  const auto found = values_.find(tag);
+  if (found == values_.end() || found->second.size() != 4) return std::nullopt;
+  return u32(static_cast<std::size_t>(found->second.data() - bytes_.data()));
+}
+
+std::optional<double> DicomFile::float_double(DicomTag tag) const {
+  const auto found = values_.find(tag);
+  if (found == values_.end() || found->second.size() < 8) return std::nullopt;
+  const auto start = static_cast<std::size_t>(found->second.data() - bytes_.data());
+  const std::uint64_t first = u32(start), second = u32(start + 4);
+  return std::bit_cast<double>(big_endian_ ? first << 32 | second : second << 32 | first);
+}
+
+bool DicomFile::has_decimal_comma(DicomTag tag) const {
+  return text(tag).find(',') != std::string::npos;
+}
+
 std::optional<std::vector<double>> DicomFile::decimals(DicomTag tag) const {
   std::vector<double> numbers;
   std::istringstream parts(text(tag));
   for (std::string part; std::getline(parts, part, '\\');) {
     part = unpadded(part);
     if (part.starts_with('+')) part.erase(0, 1);
+    if (const std::size_t comma = part.find(',');
+        comma != std::string::npos && part.find('.') == std::string::npos)
+      part[comma] = '.';
     double number = 0.0;
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
     if (error != std::errc() || end != part.data() + part.size() || !std::isfinite(number))

@@ -50,13 +50,24 @@ class DicomFile {
   /// marks.
   std::string readable_text(DicomTag tag) const;
   std::optional<std::uint16_t> unsigned_short(DicomTag tag) const;
-  /// Decimal strings; none if the attribute is absent or one value is no finite number.
+  /// All values of an attribute of two-byte numbers; empty if it is absent.
+  std::vector<std::uint16_t> unsigned_shorts(DicomTag tag) const;
+  /// How many bytes an attribute's value takes; none if it is absent.
+  std::optional<std::size_t> length(DicomTag tag) const;
+  /// Decimal strings; none if the attribute is absent or one value is no finite number. A comma is read as
+  /// the point that a writer with another language's numbers meant.
   std::optional<std::vector<double>> decimals(DicomTag tag) const;
   std::optional<double> decimal(DicomTag tag) const;
   /// The items of a sequence, each with attributes of its own; empty if the sequence is absent. The file's
   /// bytes must outlive them. Throws Error, Input, if an item is damaged.
   std::vector<DicomFile> items(DicomTag sequence) const;
 
+  /// Whether a decimal string has a comma where the point belongs.
+  bool has_decimal_comma(DicomTag tag) const;
+  /// The number of an attribute that takes four bytes, VR UL.
+  std::optional<std::uint32_t> unsigned_long(DicomTag tag) const;
+  /// An attribute's number of eight bytes, VR FD.
+  std::optional<double> float_double(DicomTag tag) const;
   bool big_endian() const { return big_endian_; }
   const std::string& transfer_syntax() const { return transfer_syntax_; }
   /// Uncompressed pixel data; none if the file has none or compressed ones.

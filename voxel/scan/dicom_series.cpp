@@ -7,6 +7,7 @@
 //   4  if several stacks lie at one place, keep the largest
 //   5  order the slices by position along their normal and drop repeated ones
 //   6  keep the slices asked for and judge what they have in common
+// Longer than most sources because the steps share what the folder holds and what the caller can choose from.
 #include "voxel/scan/dicom_series.h"
 
 #include <algorithm>
@@ -16,6 +17,8 @@
 #include <tbb/parallel_for.h>
 
 #include "voxel/scan/audit.h"
+#include "voxel/scan/dicom_folder.h"
+#include "voxel/scan/dicom_pixels.h"
 #include "voxel/scan/dicom_stacks.h"
 #include "voxel/scan/stack_audit.h"
 #include "voxel/space/file_text.h"
@@ -31,46 +34,16 @@ double repeat_tolerance_mm(double usual_gap_mm) {
   return 0.1 * usual_gap_mm;
 }
 
-bool is_folder(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored);
+/// Turns that move an image's farthest pixel by no more than a tenth change its samples less than a slice's
+/// partial volume does.
+constexpr double unseen_turn_px() {
+  return 0.1;
 }
 
-/// Whether an entry is a regular file, or a link to nothing, which is told as a stray file.
-bool is_file(const fs::directory_entry& entry) {
-  std::error_code ignored;
-  return entry.is_regular_file(ignored) || (entry.is_symlink(ignored) && !entry.exists(ignored));
-}
-
-/// Whether a name is that of a folder of staged files, which are not in their place yet, or of the list of a
-/// result's files.
-bool is_of_octotomy(const fs::path& path) {
-  const std::string name = path.filename().string();
-  return name.starts_with('.') && name.find(".octotomy-") != std::string::npos;
-}
-
-struct FolderFiles {
-  std::vector<fs::path> files;   ///< of a folder and its subfolders, sorted
-  std::vector<fs::path> staged;  ///< folders of files that a run has not put in their place, sorted
-};
-
-FolderFiles files_of(const fs::path& path) {
-  if (!is_folder(path)) return {{path}, {}};
-  FolderFiles found;
-  std::error_code error, is_closed;
-  fs::recursive_directory_iterator entry(path, error);
-  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
-    if (is_of_octotomy(entry->path())) {
-      entry.disable_recursion_pending();
-      if (is_folder(entry->path()) && !fs::is_empty(entry->path(), is_closed))
-        found.staged.push_back(entry->path());
-    } else if (is_file(*entry)) {
-      found.files.push_back(entry->path());
-    }
-  if (error) refuse(path, "the folder cannot be listed: " + error.message());
-  std::sort(found.files.begin(), found.files.end());
-  std::sort(found.staged.begin(), found.staged.end());
-  return found;
+/// Cosines rounded to two decimals, each by 0.005, make a vector's length or a product of two vectors err by
+/// up to 0.005 times the root of three, and twice that.
+double two_decimals_error() {
+  return 0.01 * std::sqrt(3.0);
 }
 
 class SeriesAssembler {
@@ -91,8 +64,10 @@ class SeriesAssembler {
   }
 
   DicomStack run() {
-    DicomStack stack = orient(with_one_identity(without_localizers(choose(read_headers()))));
+    DicomStack stack = orient(with_one_identity(without_localizers(chosen_of(read_headers()))));
     order(stack);
+    if (options_.join) audit_join(stack, audit_);
+    audit_counts(stack, audit_);
     keep_asked(stack);
     audit_stack(stack, audit_);
     return stack;
@@ -113,6 +88,12 @@ class SeriesAssembler {
     audit_.push_back({check, verdict, std::move(detail), std::move(files)});
   }
 
+  struct SkippedFiles {
+    std::vector<std::string> names, reasons;
+    std::vector<std::string> series_uids;
+  };
+  using Skipped = std::map<NoSlice::Kind, SkippedFiles>;
+
   std::vector<DicomSlice> read_headers() {
     const FolderFiles folder = files_of(path_);
     const std::vector<fs::path>& files = folder.files;
@@ -120,10 +101,11 @@ class SeriesAssembler {
     for_each_index(files.size(), options_.progress,
                    [&](std::size_t i) { headers[i] = read_dicom_slices(files[i]); });
     std::vector<DicomSlice> found;
-    Skipped skipped;
+    Skipped& skipped = skipped_;
     const auto skip = [&](const std::string& name, const NoSlice& none) {
       skipped[none.kind].names.push_back(name);
       skipped[none.kind].reasons.push_back(name + " (" + none.reason + ")");
+      skipped[none.kind].series_uids.push_back(none.series_uid);
     };
     for (std::size_t i = 0; i < files.size(); ++i) {
       const std::string name = name_of(files[i]);
@@ -145,7 +127,6 @@ class SeriesAssembler {
       refuse(path_, "is not a readable scan: " + std::get<NoSlice>(headers.front()).reason +
                         "; scans are DICOM, .nii, .nii.gz, .nrrd, .nhdr, .mha and .mhd");
     if (found.empty()) refuse_empty(files.size() + folder.staged.size(), skipped);
-    audit_skipped(skipped);
     return found;
   }
 
@@ -159,11 +140,6 @@ class SeriesAssembler {
     return (is_folder(path_) ? file.lexically_relative(path_) : file.filename()).string();
   }
 
-  struct SkippedFiles {
-    std::vector<std::string> names, reasons;
-  };
-  using Skipped = std::map<NoSlice::Kind, SkippedFiles>;
-
   [[noreturn]] void refuse_empty(std::size_t file_count, const Skipped& skipped) const {
     // Damaged and unusable images say more than files that are no images at all.
     for (const auto kind : {NoSlice::Kind::Damaged, NoSlice::Kind::Unusable, NoSlice::Kind::Stray})
@@ -174,14 +150,19 @@ class SeriesAssembler {
     refuse(path_, "no DICOM slice in the folder or below; it holds no files");
   }
 
-  void audit_skipped(const Skipped& skipped) {
+  /// Files that hold no slice; one that belongs to the series taken is a slice of it that is lost.
+  void audit_skipped(const std::string& taken_uid) {
     const auto tell = [&](const char* check, NoSlice::Kind kind, Verdict verdict, const char* passed,
                           const char* what) {
-      const auto some = skipped.find(kind);
-      if (some == skipped.end()) return find(check, Verdict::Pass, passed);
+      const auto some = skipped_.find(kind);
+      if (some == skipped_.end()) return find(check, Verdict::Pass, passed);
       const std::size_t count = some->second.names.size();
-      find(check, verdict,
-           std::to_string(count) + (count == 1 ? " file" : " files") + what + listed(some->second.reasons),
+      const auto& uids = some->second.series_uids;
+      const auto own = kind == NoSlice::Kind::Unusable ? std::count(uids.begin(), uids.end(), taken_uid) : 0;
+      find(check, own > 0 ? Verdict::Fail : verdict,
+           std::to_string(count) + (count == 1 ? " file" : " files") + what +
+               (own > 0 ? "(" + std::to_string(own) + " of the series taken, which lacks them) " : "") +
+               listed(some->second.reasons),
            some->second.names);
     };
     tell("stray_files", NoSlice::Kind::Stray, Verdict::Warn, "every file is a DICOM image",
@@ -189,13 +170,26 @@ class SeriesAssembler {
     tell("unusable_images", NoSlice::Kind::Unusable, Verdict::Warn, "none",
          " skipped whose images have no place in a volume: ");
     tell("damaged_files", NoSlice::Kind::Damaged, Verdict::Fail, "none",
-         " left out that are damaged; copy them again: ");
+         " left out that are damaged or cannot be read; copy them again: ");
+  }
+
+  /// The slices that choose() takes; lines about files that hold none stand first.
+  std::vector<DicomSlice> chosen_of(std::vector<DicomSlice> found) {
+    const auto before = static_cast<std::ptrdiff_t>(audit_.size());
+    std::vector<DicomSlice> taken = choose(std::move(found));
+    const auto middle = static_cast<std::ptrdiff_t>(audit_.size());
+    audit_skipped(taken.front().series_uid);
+    std::rotate(audit_.begin() + before, audit_.begin() + middle, audit_.end());
+    return taken;
   }
 
   /// Slices by series, most slices first; equal counts in the order of their identifiers.
-  static std::vector<Series> by_series(std::vector<DicomSlice> found) {
+  std::vector<Series> by_series(std::vector<DicomSlice> found) const {
     std::map<std::string, Series> series;
-    for (DicomSlice& slice : found) series[slice.series_uid].members.push_back(std::move(slice));
+    for (DicomSlice& slice : found) {
+      const std::string uid = options_.join ? std::string() : slice.series_uid;
+      series[uid].members.push_back(std::move(slice));
+    }
     std::vector<Series> sorted;
     sorted.reserve(series.size());
     for (auto& [uid, one] : series) sorted.push_back(std::move(one));
@@ -203,7 +197,7 @@ class SeriesAssembler {
                      [](const Series& a, const Series& b) { return a.members.size() > b.members.size(); });
     for (std::size_t i = 0; i < sorted.size(); ++i) {
       sorted[i].number = i + 1;
-      sorted[i].stacks = subseries_of(sorted[i].members);
+      sorted[i].stacks = subseries_of(sorted[i].members, options_.join);
     }
     return sorted;
   }
@@ -223,10 +217,14 @@ class SeriesAssembler {
     return list;
   }
 
+  /// "; choose by --series N of ...", or nothing where there is no choice.
+  std::string advice() const { return choice_count_ > 1 ? "; choose by --series N of " + choices_ : ""; }
+
   /// The series or stack asked for, else the series with most slices.
   std::vector<DicomSlice> choose(std::vector<DicomSlice> found) {
     std::vector<Series> all = by_series(std::move(found));
     choices_ = choices(all);
+    for (const Series& series : all) choice_count_ += series.stacks.size();
     const Asked wanted = options_.series.empty() ? Asked{} : asked(all);
     Series& taken = all[wanted.series];
     if (wanted.stack) {
@@ -238,14 +236,61 @@ class SeriesAssembler {
       return std::move(taken.members);
     }
     std::string others;
+    std::size_t told = 0;
     for (const Series& series : all)
-      if (series.number != taken.number)
+      if (series.number != taken.number && ++told <= 8)
         others += (others.empty() ? "" : ", ") + std::to_string(series.number) + " " + named(series.members);
-    find("series", options_.series.empty() ? Verdict::Warn : Verdict::Pass,
+    if (told > 8) others += " and " + std::to_string(told - 8) + " more";
+    const Scattered scattered = scattered_of(all, taken);
+    const bool is_scattered = options_.series.empty() && scattered.images > 0;
+    find("series",
+         is_scattered && scattered.images > taken.members.size() ? Verdict::Fail
+         : options_.series.empty()                               ? Verdict::Warn
+                                                                 : Verdict::Pass,
          std::to_string(all.size()) + " series: took " + std::to_string(taken.number) + " " +
              named(taken.members) + ", left " + others +
+             (is_scattered ? print("; %zu images of %zu other series lie at further places of the same "
+                                   "planes: --join reads them as one",
+                                   scattered.images, scattered.series)
+                           : std::string()) +
              (options_.series.empty() ? "; choose another by --series N" : ""));
     return std::move(taken.members);
+  }
+
+  /// Images of other series that may continue a series: alike, at other places.
+  struct Scattered {
+    std::size_t series = 0, images = 0;
+  };
+  Scattered scattered_of(const std::vector<Series>& all, const Series& taken) const {
+    const DicomSlice& first = taken.members.front();
+    const glm::dvec3 normal = glm::cross(first.along_row, first.along_column);
+    double low_mm = glm::dot(first.first_mm, normal), high_mm = low_mm;
+    for (const DicomSlice& slice : taken.members) {
+      low_mm = std::min(low_mm, glm::dot(slice.first_mm, normal));
+      high_mm = std::max(high_mm, glm::dot(slice.first_mm, normal));
+    }
+    Scattered scattered;
+    for (const Series& series : all) {
+      if (series.number == taken.number) continue;
+      const bool continues =
+          std::all_of(series.members.begin(), series.members.end(), [&](const DicomSlice& slice) {
+            const double height_mm = glm::dot(slice.first_mm, normal);
+            return !slice.is_localizer && same_grid(slice, first) && same_orientation(slice, first) &&
+                   is_of_one_patient(slice, first) && (height_mm < low_mm || height_mm > high_mm);
+          });
+      if (!continues) continue;
+      ++scattered.series;
+      scattered.images += series.members.size();
+    }
+    return scattered;
+  }
+
+  static bool is_of_one_patient(const DicomSlice& a, const DicomSlice& b) {
+    for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait)
+      if (dicom_traits[trait].role == TraitRole::Identity && a.traits[trait] != b.traits[trait] &&
+          !a.traits[trait].empty() && !b.traits[trait].empty())
+        return false;
+    return true;
   }
 
   struct Asked {
@@ -279,9 +324,7 @@ class SeriesAssembler {
     if (localizers == 0) {
       find("localizers", Verdict::Pass, "none");
     } else if (localizers == members.size()) {
-      find("localizers", Verdict::Fail,
-           "every image is a localizer: this series is a scout view; choose another by --series N of " +
-               choices_);
+      find("localizers", Verdict::Fail, "every image is a localizer: this series is a scout view" + advice());
     } else {
       std::vector<std::string> names;
       for (const DicomSlice& slice : members)
@@ -308,9 +351,9 @@ class SeriesAssembler {
     if (left.empty())
       find(check, Verdict::Pass, taken);
     else
-      find(check, Verdict::Warn,
+      find(check, Verdict::Fail,
            "mixed in one series: kept " + slices(most.size()) + " of " + taken + ", left " +
-               slices(left.size()) + ": " + listed(left),
+               slices(left.size()) + ": " + listed(left) + advice(),
            left);
     members = std::vector<DicomSlice>(std::move(most));
   }
@@ -319,7 +362,9 @@ class SeriesAssembler {
   /// taken to be of the commonest.
   std::vector<DicomSlice> with_one_identity(std::vector<DicomSlice> members) {
     for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait) {
-      if (dicom_traits[trait].role != TraitRole::Identity) continue;
+      const bool is_joinable = dicom_traits[trait].role == TraitRole::Origin;
+      if (dicom_traits[trait].role != TraitRole::Identity && !is_joinable) continue;
+      if (is_joinable && options_.join) continue;
       std::map<std::string, std::size_t> counts;
       for (const DicomSlice& slice : members)
         if (!slice.traits[trait].empty()) ++counts[slice.traits[trait]];
@@ -340,7 +385,8 @@ class SeriesAssembler {
       std::erase_if(members, is_other);
       find(dicom_traits[trait].check, Verdict::Fail,
            "one series holds " + std::string(dicom_traits[trait].effect) + ": kept " +
-               slices(members.size()) + ", left out " + slices(left.size()) + ": " + listed(left),
+               slices(members.size()) + ", left out " + slices(left.size()) + ": " + listed(left) +
+               (is_joinable ? "; if an export gave the images of one scan several, --join keeps them" : ""),
            left);
     }
     return members;
@@ -359,7 +405,7 @@ class SeriesAssembler {
     }
     find("stacks", Verdict::Fail,
          std::to_string(stacks.size()) + " stacks of one series lie at one place: " + list + ": " +
-             listed(left) + "; choose by --series N of " + choices_,
+             listed(left) + advice(),
          left);
   }
 
@@ -400,6 +446,7 @@ class SeriesAssembler {
     DicomStack stack;
     keep_one_stack(members);
     stack.slices = std::move(members);
+    take_mean_spacing(stack);
     make_perpendicular(stack);
     if (stack.first().spacing_at_detector)
       find("pixel_spacing", Verdict::Warn,
@@ -407,17 +454,61 @@ class SeriesAssembler {
     return stack;
   }
 
-  void make_perpendicular(DicomStack& stack) {
+  /// Spacings of one grid may differ in their last decimals: all slices take their mean.
+  static void take_mean_spacing(DicomStack& stack) {
+    glm::dvec2 sum(0.0);
+    bool is_one = true;
+    for (const DicomSlice& slice : stack.slices) {
+      sum += slice.spacing_mm;
+      is_one = is_one && slice.spacing_mm == stack.first().spacing_mm;
+    }
+    if (is_one) return;
+    for (DicomSlice& slice : stack.slices) slice.spacing_mm = sum / static_cast<double>(stack.slices.size());
+  }
+
+  /// The mean of the slices' directions; that of the first, to the bit, where all are equal.
+  std::pair<glm::dvec3, glm::dvec3> mean_directions(const DicomStack& stack) {
     const DicomSlice& first = stack.first();
-    const double row = glm::length(first.along_row);
-    const double column = glm::length(first.along_column);
-    const double lean = glm::dot(first.along_row, first.along_column);
-    // A thousandth is fifty times the worst rounding seen; a larger deviation is a wrong header.
-    if (!(std::abs(row - 1.0) < 1e-3 && std::abs(column - 1.0) < 1e-3 && std::abs(lean) < 1e-3))
-      refuse(first.path, "ImageOrientationPatient is not two perpendicular unit vectors");
-    stack.along_row = first.along_row / row;
+    glm::dvec3 along_row(0.0), along_column(0.0);
+    bool is_one = true;
+    for (const DicomSlice& slice : stack.slices) {
+      along_row += slice.along_row / static_cast<double>(stack.slices.size());
+      along_column += slice.along_column / static_cast<double>(stack.slices.size());
+      is_one = is_one && slice.along_row == first.along_row && slice.along_column == first.along_column;
+    }
+    if (is_one) return {first.along_row, first.along_column};
+    double most_px = 0.0;
+    std::vector<std::string> turned;
+    for (const DicomSlice& slice : stack.slices) {
+      const double px = turned_px(slice, along_row, along_column);
+      most_px = std::max(most_px, px);
+      if (px > unseen_turn_px()) turned.push_back(slice.name);
+    }
+    // With the line about the orientation that has passed, one line more only if there is a doubt.
+    if (!turned.empty())
+      find("orientation_noise", Verdict::Warn,
+           "directions differ from slice to slice, which moves pixels of " + slices(turned.size()) +
+               print(" by up to %.2g of their width at the edge; the mean direction is taken: ", most_px) +
+               listed(turned),
+           turned);
+    return {along_row, along_column};
+  }
+
+  void make_perpendicular(DicomStack& stack) {
+    const auto [along_row, along_column] = mean_directions(stack);
+    const double row = glm::length(along_row);
+    const double column = glm::length(along_column);
+    const double lean = glm::dot(along_row, along_column);
+    const double error = std::max({std::abs(row - 1.0), std::abs(column - 1.0), std::abs(lean)});
+    if (!(error < 1e-3 || error < two_decimals_error()))
+      refuse(stack.first().path, "ImageOrientationPatient is not two perpendicular unit vectors");
+    if (error >= 1e-3)
+      find("orientation_rounded", Verdict::Warn,
+           print("ImageOrientationPatient is no more exact than %.2g: directions may be off by %.2g degrees",
+                 error, error * 180.0 / 3.14159265358979323846));
+    stack.along_row = along_row / row;
     stack.along_column =
-        glm::normalize(first.along_column - glm::dot(first.along_column, stack.along_row) * stack.along_row);
+        glm::normalize(along_column - glm::dot(along_column, stack.along_row) * stack.along_row);
     // Adding zero turns -0, which headers hold, into 0.
     stack.along_row += 0.0;
     stack.along_column += 0.0;
@@ -476,8 +567,9 @@ class SeriesAssembler {
       all.insert(all.end(), names.begin(), names.end());
     };
     tell(rivals, " left out that are different images at positions already taken: ",
-         "; the series holds several scans: choose by --series N of " + choices_ +
-             ", or put each into a folder of its own");
+         "; the series holds several scans" + advice() +
+             (choice_count_ > 1 ? ", or put each into a folder of its own"
+                                : ": put each into a folder of its own"));
     tell(copies, " stored twice and left out: ", "");
     tell(renamed, " with the pixels and place of another, under a new identifier, left out: ", "");
     const Verdict verdict = !rivals.empty() ? Verdict::Fail : !all.empty() ? Verdict::Warn : Verdict::Pass;
@@ -487,6 +579,8 @@ class SeriesAssembler {
   fs::path path_;
   const ReadOptions& options_;
   std::vector<Finding>& audit_;
+  Skipped skipped_;
+  std::size_t choice_count_ = 0;
   std::string choices_;  ///< of all series and stacks, for findings and refusals
 };
 

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// A header to slices, attribute by attribute: longer than most sources because each attribute that a volume
+// needs has its own way to be absent, wrong or elsewhere.
 #include "voxel/scan/dicom_slice.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cassert>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fcntl.h>
 #include <fstream>
 #include <limits>
-#include <type_traits>
-#include <unistd.h>
 
-#include "voxel/scan/dicom_codec.h"
+#include "voxel/scan/audit.h"
 #include "voxel/scan/identity.h"
 #include "voxel/scan/inflate.h"
 #include "voxel/space/file_text.h"
@@ -32,9 +33,9 @@ class Attributes {
   Attributes(const DicomFile& file, const DicomFile* shared, const DicomFile* own) : file_(&file) {
     for (const DicomFile* groups : {own, shared}) {
       if (groups == nullptr) continue;
-      for (const DicomTag group :
-           {DicomTag{0x00209113}, DicomTag{0x00209116}, DicomTag{0x00289110}, DicomTag{0x00289145},
-            DicomTag{0x00209111}, DicomTag{0x00189314}, DicomTag{0x00189325}, DicomTag{0x00189341}})
+      for (const DicomTag group : {DicomTag{0x00209113}, DicomTag{0x00209116}, DicomTag{0x00289110},
+                                   DicomTag{0x00289145}, DicomTag{0x00209111}, DicomTag{0x00189314},
+                                   DicomTag{0x00189325}, DicomTag{0x00189341}, DicomTag{0x00189117}})
         for (DicomFile& item : groups->items(group)) groups_.push_back(std::move(item));
     }
   }
@@ -45,6 +46,30 @@ class Attributes {
              return found.empty() ? std::nullopt : std::optional(std::move(found));
            })
         .value_or("");
+  }
+  /// A trait's value as text, also where it is a binary number.
+  std::string trait(DicomTag tag) const {
+    const auto wide = [&] {
+      return first<double>([&](const DicomFile& from) { return from.float_double(tag); });
+    };
+    const auto word = [&] {
+      return first<std::uint32_t>([&](const DicomFile& from) { return from.unsigned_long(tag); });
+    };
+    if (tag == 0x00189087)  // VR FD
+      return wide() ? print("%g", *wide()) : std::string();
+    if (tag == 0x00209128)  // VR UL
+      return word() ? std::to_string(*word()) : std::string();
+    const std::string found = text(tag);
+    // VR FL, which some writers make a decimal string
+    if ((tag == 0x00209241 || tag == 0x00209245) && word() &&
+        found.find_first_not_of("0123456789.+- ") != std::string::npos)
+      return print("%g", static_cast<double>(std::bit_cast<float>(*word())));
+    return found;
+  }
+  bool has_decimal_comma(DicomTag tag) const {
+    return std::any_of(groups_.begin(), groups_.end(),
+                       [&](const DicomFile& group) { return group.has_decimal_comma(tag); }) ||
+           file_->has_decimal_comma(tag);
   }
   std::optional<std::vector<double>> decimals(DicomTag tag) const {
     return first<std::vector<double>>([&](const DicomFile& from) { return from.decimals(tag); });
@@ -91,6 +116,9 @@ DicomPixels pixels_of(const DicomFile& file) {
   pixels.stored = file.unsigned_short(0x00280101).value_or(static_cast<std::uint16_t>(pixels.allocated));
   pixels.high = file.unsigned_short(0x00280102).value_or(static_cast<std::uint16_t>(pixels.stored - 1));
   pixels.is_signed = file.unsigned_short(0x00280103).value_or(0) == 1;
+  for (DicomTag group = 0x60000000; group < 0x60200000; group += 0x00020000)
+    pixels.holds_overlay = pixels.holds_overlay || (file.unsigned_short(group + 0x0102).value_or(0) != 0 &&
+                                                    !file.length(group + 0x3000));
   // Fragments in a syntax without compression are raw pixels in pieces.
   pixels.is_compressed = file.fragments().has_value() && !is_raw_syntax(pixels.transfer_syntax);
   pixels.is_big_endian = file.big_endian() && !pixels.is_compressed;
@@ -104,13 +132,6 @@ bool is_sound(const DicomPixels& pixels) {
          pixels.high < pixels.allocated && pixels.high + 1 >= pixels.stored;
 }
 
-std::size_t frame_bytes(const DicomSlice& slice) {
-  return (static_cast<std::size_t>(slice.size_px.x) * static_cast<std::size_t>(slice.size_px.y) *
-              slice.pixels.allocated +
-          7) /
-         8;
-}
-
 /// Whether every value that the pixels can hold stays finite in single precision when it is rescaled.
 bool is_rescale_finite(const DicomSlice& slice) {
   const double largest_stored = std::ldexp(1.0, static_cast<int>(slice.pixels.stored));
@@ -118,9 +139,47 @@ bool is_rescale_finite(const DicomSlice& slice) {
          static_cast<double>(std::numeric_limits<float>::max());
 }
 
+struct NamedTag {
+  DicomTag tag;
+  const char* name;
+  bool is_needed;  ///< an image whose value cannot be read has no place or no values
+};
+constexpr std::array<NamedTag, 10> decimal_tags{{{0x00200032, "ImagePositionPatient", true},
+                                                 {0x00200037, "ImageOrientationPatient", true},
+                                                 {0x00280030, "PixelSpacing", true},
+                                                 {0x00181164, "ImagerPixelSpacing", false},
+                                                 {0x00281052, "RescaleIntercept", true},
+                                                 {0x00281053, "RescaleSlope", true},
+                                                 {0x00180050, "SliceThickness", false},
+                                                 {0x00180088, "SpacingBetweenSlices", false},
+                                                 {0x00181120, "GantryDetectorTilt", false},
+                                                 {0x3004000c, "GridFrameOffsetVector", true}}};
+
+/// An attribute that is there and holds no numbers: to take it for absent would change places or values.
+std::optional<NoSlice> unreadable_number(const Attributes& attributes) {
+  for (const NamedTag& named : decimal_tags) {
+    const std::string text = attributes.text(named.tag);
+    if (named.is_needed && !text.empty() && !attributes.decimals(named.tag))
+      return NoSlice{std::string("an image whose ") + named.name + " '" + text.substr(0, 60) +
+                         "' cannot be read as a number; correct the attribute",
+                     NoSlice::Kind::Unusable};
+  }
+  return std::nullopt;
+}
+
+std::string decimal_commas_of(const Attributes& attributes) {
+  std::string names;
+  for (const NamedTag& named : decimal_tags)
+    if (attributes.has_decimal_comma(named.tag) && attributes.decimals(named.tag))
+      names += (names.empty() ? "" : ", ") + std::string(named.name);
+  return names;
+}
+
 /// Fills the slice's geometry. Returns the reason if the file has none.
-std::optional<NoSlice> take_geometry(const Attributes& attributes, DicomSlice& slice) {
+std::optional<NoSlice> take_geometry(const Attributes& attributes, std::size_t frame_count,
+                                     DicomSlice& slice) {
   constexpr auto unusable = NoSlice::Kind::Unusable;
+  if (auto flaw = unreadable_number(attributes)) return flaw;
   const auto are_within = [](const std::vector<double>& numbers, double low, double high) {
     return std::all_of(numbers.begin(), numbers.end(), [&](double x) { return x >= low && x <= high; });
   };
@@ -130,6 +189,11 @@ std::optional<NoSlice> take_geometry(const Attributes& attributes, DicomSlice& s
     position = attributes.decimals(0x00200030);
     orientation = attributes.decimals(0x00200035);
     slice.position_of_acr_nema = position && orientation;
+  }
+  // Some writers put the positions of all frames behind each other.
+  if (position && frame_count > 1 && position->size() == 3 * frame_count) {
+    const auto own = position->begin() + 3 * slice.frame;
+    position = std::vector<double>(own, own + 3);
   }
   if (!position || position->size() != 3) return NoSlice{"an image without ImagePositionPatient", unusable};
   if (!orientation || orientation->size() != 6)
@@ -161,6 +225,16 @@ bool begins_image(std::string_view fragment) {
   return fragment.size() >= 4 && fragment[0] == '\xff' &&
          ((fragment[1] == '\xd8' && fragment[2] == '\xff') ||
           (fragment[1] == '\x4f' && fragment[2] == '\xff'));
+}
+
+/// How many images the fragments begin, by the offset table and by their marks. An RLE frame is one fragment.
+std::size_t images_begun(const DicomFile& file) {
+  const std::vector<DicomExtent>& fragments = *file.fragments();
+  if (file.transfer_syntax() == "1.2.840.10008.1.2.5") return fragments.size();
+  const auto begun = std::count_if(fragments.begin(), fragments.end(), [&](const DicomExtent& fragment) {
+    return begins_image(file.at(fragment));
+  });
+  return std::max(file.frame_offsets().size(), static_cast<std::size_t>(begun));
 }
 
 /// The fragments of each frame: one for each, or by the offset table, or by the fragments' start-of-image
@@ -214,28 +288,66 @@ std::vector<DicomExtent> cut_out(const std::vector<DicomExtent>& pieces, std::si
   return cut;
 }
 
+/// The reason if nothing here decodes the pixels' transfer syntax.
+std::optional<NoSlice> unknown_syntax(const DicomFile& file, const DicomPixels& pixels) {
+  const std::string& syntax = pixels.transfer_syntax;
+  constexpr std::array<std::string_view, 9> codecs = {
+      "1.2.840.10008.1.2.4.50", "1.2.840.10008.1.2.4.51", "1.2.840.10008.1.2.4.57",
+      "1.2.840.10008.1.2.4.70", "1.2.840.10008.1.2.4.80", "1.2.840.10008.1.2.4.81",
+      "1.2.840.10008.1.2.4.90", "1.2.840.10008.1.2.4.91", "1.2.840.10008.1.2.5"};
+  if (is_raw_syntax(syntax) || std::find(codecs.begin(), codecs.end(), syntax) != codecs.end())
+    return std::nullopt;
+  // Raw pixels under DICOM's name for a compression were decompressed by a tool that left the name.
+  if (!pixels.is_compressed && file.raw_pixels() && syntax.starts_with("1.2.840.10008.1.2"))
+    return std::nullopt;
+  return NoSlice{"pixels in transfer syntax " + syntax +
+                     ", which nothing here decodes: convert the file, for example by gdcmconv --raw",
+                 NoSlice::Kind::Unusable};
+}
+
+/// Notes pixel data for more images than the header counts. An odd number of bytes ends in one more.
+void note_excess(std::size_t held, std::size_t needed, std::vector<DicomSlice>& slices) {
+  const std::size_t excess = held - needed * slices.size();
+  if (excess <= 1) return;
+  const std::size_t more = excess / needed;
+  slices.front().excess_pixels =
+      more > 0
+          ? print("pixels of %zu images, of which the header counts %zu", more + slices.size(), slices.size())
+          : print("%zu bytes of pixels more than Rows, Columns and BitsAllocated take", excess);
+}
+
 /// Fills the pixels of `slices`, the frames of a file. Returns the reason if they cannot be grey frames.
 std::optional<NoSlice> take_pixels(const DicomFile& file, std::vector<DicomSlice>& slices) {
   const std::size_t needed = frame_bytes(slices.front());
   const std::size_t frames = slices.size();
   if (!file.raw_pixels() && !file.fragments())
     return NoSlice{"DICOM without pixels", NoSlice::Kind::Unusable};
+  if (auto flaw = unknown_syntax(file, slices.front().pixels)) return flaw;
   if (!slices.front().pixels.is_compressed) {
     const std::vector<DicomExtent> pieces =
         file.raw_pixels() ? std::vector{*file.raw_pixels()} : *file.fragments();
     std::size_t held = 0;
     for (const DicomExtent& piece : pieces) held += piece.length;
     if (held / frames < needed)
-      return NoSlice{
-          "cut short: " + std::to_string(held) + " bytes of pixels of " + std::to_string(needed * frames),
-          NoSlice::Kind::Damaged};
+      return NoSlice{"cut short: " + std::to_string(held) + " bytes of pixels of " +
+                         std::to_string(needed * frames) +
+                         (is_raw_syntax(slices.front().pixels.transfer_syntax)
+                              ? std::string()
+                              : "; or compressed, as transfer syntax " +
+                                    slices.front().pixels.transfer_syntax + " says, but not in fragments"),
+                     NoSlice::Kind::Damaged};
+    note_excess(held, needed, slices);
     if (frames > 1 && slices.front().pixels.allocated == 12 &&
         slices.front().size_px.x * slices.front().size_px.y % 2 != 0)
       return NoSlice{"packed frames that begin within a byte", NoSlice::Kind::Unusable};
     for (std::size_t i = 0; i < frames; ++i) slices[i].pixels.parts = cut_out(pieces, i * needed, needed);
     return std::nullopt;
   }
-  auto parts = fragments_by_frame(file, frames);
+  const std::size_t images = std::max(images_begun(file), frames);
+  auto parts = fragments_by_frame(file, images);
+  if (parts && images > frames)
+    slices.front().excess_pixels =
+        print("pixels of %zu images, of which the header counts %zu", images, frames);
   if (!parts)
     return NoSlice{"a multi-frame image without the offsets of its frames; decompress it first",
                    NoSlice::Kind::Unusable};
@@ -249,6 +361,72 @@ std::optional<NoSlice> take_pixels(const DicomFile& file, std::vector<DicomSlice
     slices[i].pixels.parts = std::move((*parts)[i]);
   }
   return std::nullopt;
+}
+
+/// PixelPaddingValue, to PixelPaddingRangeLimit if that is there.
+std::optional<DicomPadding> padding_of(const DicomFile& file, const DicomPixels& pixels) {
+  const auto stored = [&](DicomTag tag) -> std::optional<double> {
+    const auto word = file.unsigned_short(tag);
+    if (!word) return std::nullopt;
+    return pixels.is_signed ? static_cast<double>(static_cast<std::int16_t>(*word))
+                            : static_cast<double>(*word);
+  };
+  const auto value = stored(0x00280120);
+  if (!value) return std::nullopt;
+  const double limit = stored(0x00280121).value_or(*value);
+  return DicomPadding{std::min(*value, limit), std::max(*value, limit)};
+}
+
+/// Fills the slice's Modality LUT if the file has one. Returns the reason if it is damaged.
+std::optional<NoSlice> take_lut(const DicomFile& file, DicomSlice& slice) {
+  const std::vector<DicomFile> items = file.items(0x00283000);
+  if (items.empty()) return std::nullopt;
+  const std::vector<std::uint16_t> descriptor = items.front().unsigned_shorts(0x00283002);
+  const std::size_t held = items.front().length(0x00283006).value_or(0);
+  const NoSlice damaged{"an image whose Modality LUT does not hold the entries that its descriptor counts",
+                        NoSlice::Kind::Unusable};
+  if (descriptor.size() != 3) return damaged;
+  const std::size_t count = descriptor[0] == 0 ? 65536 : descriptor[0];
+  auto lut = std::make_shared<ModalityLut>();
+  lut->first = slice.pixels.is_signed ? static_cast<std::int16_t>(descriptor[1]) : descriptor[1];
+  lut->type = items.front().readable_text(0x00283004);
+  std::vector<std::uint16_t> words = items.front().unsigned_shorts(0x00283006);
+  const bool is_byte_each = descriptor[2] <= 8 && held >= count && held < 2 * count;
+  if (is_byte_each && !file.big_endian())
+    for (const std::uint16_t word : words) {
+      lut->values.push_back(word & 0xff);
+      lut->values.push_back(word >> 8);
+    }
+  else if (descriptor[2] <= 8)
+    for (const std::uint16_t word : words) lut->values.push_back(word & 0xff);
+  else
+    lut->values = std::move(words);
+  if (is_byte_each && held % 2 != 0) lut->values.push_back(lut->values.back());
+  if (lut->values.size() < count) return damaged;
+  lut->values.resize(count);
+  slice.lut = std::move(lut);
+  return std::nullopt;
+}
+
+/// "slope 0.5, intercept -3, unit g/ml" of a Real World Value Mapping; empty if there is none.
+std::string real_world_of(const DicomFile& file, const DicomFile* own, const DicomFile* shared) {
+  for (const DicomFile* from : {own, shared, &file}) {
+    if (from == nullptr) continue;
+    for (const DicomFile& item : from->items(0x00409096)) {
+      const auto slope = item.float_double(0x00409225), intercept = item.float_double(0x00409224);
+      std::string words = slope && intercept ? print("slope %g, intercept %g", *slope, *intercept)
+                                             : std::string("a table of values");
+      for (const DicomFile& unit : item.items(0x004008ea))
+        words += ", unit " + unit.readable_text(0x00080100);
+      return words;
+    }
+  }
+  return {};
+}
+
+/// A count of two bytes; 0 if the attribute is absent.
+int stated_short(const DicomFile& file, DicomTag tag) {
+  return file.unsigned_short(tag).value_or(0);
 }
 
 /// The part of the header that all frames of a file share.
@@ -281,14 +459,24 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
     const double value = file.decimal(tag).value_or(0.0);
     return std::abs(value) < 1e9 ? static_cast<int>(value) : 0;
   };
+  slice.padding = padding_of(file, slice.pixels);
+  if (auto flaw = take_lut(file, slice)) return std::move(*flaw);
+  if (const auto ratio = file.decimals(0x00280034); ratio && ratio->size() == 2 && (*ratio)[1] > 0.0)
+    slice.aspect_ratio = (*ratio)[0] / (*ratio)[1];
+  if (const int images = number(0x00201002); images > 0) slice.stated_images = images;
+  if (const int slices = stated_short(file, 0x00540081); slices > 0) slice.stated_images = slices;
+  slice.concatenation = {file.text(0x00209161), stated_short(file, 0x00209162),
+                         stated_short(file, 0x00209163)};
   slice.series_number = number(0x00200011);
   slice.instance_number = number(0x00200013);
   return slice;
 }
 
 /// Fills the part of the header that may differ between frames. Returns the reason if geometry is missing.
-std::optional<NoSlice> take_frame(const DicomFile& file, const Attributes& attributes, DicomSlice& slice) {
-  if (auto flaw = take_geometry(attributes, slice)) return flaw;
+std::optional<NoSlice> take_frame(const DicomFile& file, const Attributes& attributes,
+                                  std::size_t frame_count, DicomSlice& slice) {
+  if (auto flaw = take_geometry(attributes, frame_count, slice)) return flaw;
+  slice.decimal_commas = decimal_commas_of(attributes);
   slice.rescale_type = attributes.text(0x00281054);
   slice.intercept = attributes.decimal(0x00281052);
   slice.slope = attributes.decimal(0x00281053);
@@ -296,12 +484,57 @@ std::optional<NoSlice> take_frame(const DicomFile& file, const Attributes& attri
     return NoSlice{"values that RescaleSlope takes beyond single precision", NoSlice::Kind::Unusable};
   for (std::size_t i = 0; i < dicom_traits.size(); ++i)
     for (const DicomTag tag : dicom_traits[i].tags)
-      if (tag != 0 && slice.traits[i].empty()) slice.traits[i] = attributes.text(tag);
+      if (tag != 0 && slice.traits[i].empty()) slice.traits[i] = attributes.trait(tag);
   slice.is_localizer = file.text(0x00080008).find("LOCALIZER") != std::string::npos;
-  if (const auto padding = file.unsigned_short(0x00280120)) {
-    const double stored = slice.pixels.is_signed ? static_cast<double>(static_cast<std::int16_t>(*padding))
-                                                 : static_cast<double>(*padding);
-    slice.padding = slice.slope.value_or(1.0) * stored + slice.intercept.value_or(0.0);
+  return std::nullopt;
+}
+
+/// How many frames the pixels can hold: a fragment or their bytes each.
+std::size_t most_frames(const DicomFile& file, const DicomSlice& slice) {
+  if (file.fragments() && slice.pixels.is_compressed) return file.fragments()->size();
+  std::size_t held = file.raw_pixels() ? file.raw_pixels()->length : 0;
+  if (file.fragments())
+    for (const DicomExtent& piece : *file.fragments()) held += piece.length;
+  return held / std::max<std::size_t>(frame_bytes(slice), 1);
+}
+
+/// Places frames that have no positions of their own along the normal, from the first one's on. Returns the
+/// reason if the header states no distances.
+std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlice>& slices) {
+  const std::size_t frames = slices.size();
+  if (const auto all = file.decimals(0x00200032); all && all->size() == 3 * frames) {
+    for (DicomSlice& slice : slices)
+      slice.assumed_place = "the positions that its one ImagePositionPatient lists";
+    return std::nullopt;
+  }
+  const DicomSlice& first = slices.front();
+  const double scale = glm::length(glm::cross(first.along_row, first.along_column));
+  if (!(scale > 0.0)) return NoSlice{"a multi-frame image without directions", NoSlice::Kind::Unusable};
+  const glm::dvec3 normal = glm::cross(first.along_row, first.along_column) / scale;
+  std::vector<double> offsets_mm;
+  std::string how;
+  for (const NamedTag& named : {NamedTag{0x3004000c, "GridFrameOffsetVector", true},
+                                NamedTag{0x00182005, "SliceLocationVector", true}})
+    if (const auto vector = file.decimals(named.tag); vector && vector->size() == frames && how.empty()) {
+      offsets_mm = *vector;
+      how = std::string("the distances that ") + named.name + " lists";
+    }
+  for (const NamedTag& named :
+       {NamedTag{0x00180088, "SpacingBetweenSlices", true}, NamedTag{0x00180050, "SliceThickness", true}}) {
+    const double step_mm =
+        named.tag == 0x00180088 ? first.spacing_tag_mm.value_or(0.0) : first.thickness_mm.value_or(0.0);
+    if (!how.empty() || step_mm == 0.0 || !(std::abs(step_mm) < 1e6)) continue;
+    for (std::size_t i = 0; i < frames; ++i) offsets_mm.push_back(step_mm * static_cast<double>(i));
+    how = print("%s, %.6g mm", named.name, step_mm);
+  }
+  if (how.empty())
+    return NoSlice{
+        "a multi-frame image without the positions of its frames or their distance; export it as "
+        "single frames",
+        NoSlice::Kind::Unusable};
+  for (std::size_t i = 0; i < frames; ++i) {
+    slices[i].first_mm += (offsets_mm[i] - offsets_mm[0]) * normal;
+    slices[i].assumed_place = how + ", along the normal from ImagePositionPatient on";
   }
   return std::nullopt;
 }
@@ -310,257 +543,94 @@ std::variant<std::vector<DicomSlice>, NoSlice> slices_of(const DicomFile& file,
                                                          const std::filesystem::path& path) {
   std::variant<DicomSlice, NoSlice> common = common_of(file, path);
   if (NoSlice* flaw = std::get_if<NoSlice>(&common)) return std::move(*flaw);
-  const double claimed = file.decimal(0x00280008).value_or(1.0);
+  const double claimed = std::max(file.decimal(0x00280008).value_or(1.0), 1.0);
   // The items, each of at least eight bytes, bound the number of frames that a damaged count can claim.
   const std::vector<DicomFile> own = file.items(frame_groups_tag);
   const std::vector<DicomFile> shared = file.items(shared_groups_tag);
-  if (claimed > 1.0 && static_cast<double>(own.size()) != claimed)
-    return NoSlice{"a multi-frame image without the positions of its frames; export it as single frames",
+  if (!own.empty() && static_cast<double>(own.size()) != claimed)
+    return NoSlice{print("NumberOfFrames is %.0f, but %zu frames have attributes of their own; export the "
+                         "image again, or as single frames",
+                         claimed, own.size()),
                    NoSlice::Kind::Unusable};
-  std::vector<DicomSlice> slices(std::max<std::size_t>(own.size(), 1), std::get<DicomSlice>(common));
+  const std::size_t frames = own.empty() ? static_cast<std::size_t>(std::min(claimed, 1e6)) : own.size();
+  const DicomSlice& first = std::get<DicomSlice>(common);
+  if (own.empty() && frames > 1 && frames > most_frames(file, first))
+    return NoSlice{print("cut short: the header counts %.0f frames, the pixels are fewer", claimed),
+                   NoSlice::Kind::Damaged};
+  std::vector<DicomSlice> slices(frames, first);
   for (std::size_t i = 0; i < slices.size(); ++i) {
-    const Attributes attributes(file, shared.empty() ? nullptr : &shared.front(),
-                                own.empty() ? nullptr : &own[i]);
+    const DicomFile* own_groups = own.empty() ? nullptr : &own[i];
+    const DicomFile* shared_groups = shared.empty() ? nullptr : &shared.front();
+    const Attributes attributes(file, shared_groups, own_groups);
     slices[i].frame = static_cast<int>(i);
     if (slices.size() > 1) slices[i].instance_uid.append("#").append(std::to_string(i + 1));
-    if (auto flaw = take_frame(file, attributes, slices[i])) return std::move(*flaw);
+    if (own.empty() && frames > 1 && attributes.text(0x00200032).empty())
+      return NoSlice{"a multi-frame image without the positions of its frames; export it as single frames",
+                     NoSlice::Kind::Unusable};
+    if (auto flaw = take_frame(file, attributes, frames, slices[i])) return std::move(*flaw);
+    slices[i].real_world = real_world_of(file, own_groups, shared_groups);
   }
+  if (own.empty() && frames > 1)
+    if (auto flaw = place_frames(file, slices)) return std::move(*flaw);
   if (auto flaw = take_pixels(file, slices)) return std::move(*flaw);
   return slices;
 }
 
-/// The first `count` bytes of a file, or all of them.
-std::string beginning_of(const std::filesystem::path& path, std::size_t count) {
-  std::ifstream in = opened(path);
-  std::string bytes(count, '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  return bytes;
-}
-
-/// A deflated file whose bytes from `at` on are inflated.
-std::string inflated(const std::string& bytes, std::size_t at) {
-  return bytes.substr(0, at) + inflate_raw(std::string_view(bytes).substr(at));
-}
-
-/// An open file, read at offsets.
-class PlacedReader {
- public:
-  explicit PlacedReader(const DicomSlice& slice)
-      : slice_(slice), file_(::open(slice.path.c_str(), O_RDONLY | O_CLOEXEC)) {
-    if (file_ < 0)
-      refuse(slice.path, "cannot be opened: " + std::string(std::strerror(errno)), code_of_errno(errno));
-  }
-  PlacedReader(const PlacedReader&) = delete;
-  PlacedReader& operator=(const PlacedReader&) = delete;
-  ~PlacedReader() { ::close(file_); }
-
-  void read(const DicomExtent& extent, char* to) const {
-    std::size_t done = 0;
-    while (done < extent.length) {
-      const ssize_t got =
-          ::pread(file_, to + done, extent.length - done, static_cast<off_t>(extent.at + done));
-      if (got <= 0) refuse(slice_.path, "changed while it was read");
-      done += static_cast<std::size_t>(got);
-    }
-  }
-
- private:
-  const DicomSlice& slice_;
-  int file_;
-};
-
-/// The parts of a slice's pixels as stored.
-std::vector<std::string> stored_parts(const DicomSlice& slice) {
-  std::vector<std::string> parts;
-  if (slice.pixels.is_deflated) {
-    const std::string bytes =
-        beginning_of(slice.path, static_cast<std::size_t>(std::filesystem::file_size(slice.path)));
-    try {
-      const DicomFile file(bytes, bytes.size());
-      refuse(slice.path, "changed while it was read");
-    } catch (const DicomFile::Deflated& from) {
-      const std::string whole = inflated(bytes, from.at);
-      for (const DicomExtent& part : slice.pixels.parts) {
-        if (part.at > whole.size() || part.length > whole.size() - part.at)
-          refuse(slice.path, "changed while it was read");
-        parts.push_back(whole.substr(part.at, part.length));
-      }
-    }
-    return parts;
-  }
-  const PlacedReader reader(slice);
-  for (const DicomExtent& part : slice.pixels.parts) {
-    parts.emplace_back(part.length, '\0');
-    reader.read(part, parts.back().data());
-  }
-  return parts;
-}
-
-/// All parts of raw pixels behind each other.
-std::string joined(std::vector<std::string> parts) {
-  for (std::size_t i = 1; i < parts.size(); ++i) parts.front() += parts[i];
-  return std::move(parts.front());
-}
-
-/// Pixels of 12 bits, two in three bytes, as words of 16 bits. The first pixel has the lower bits (DICOM
-/// PS3.5, 8.1.1); big-endian files store 16-bit words, whose bytes are exchanged.
-std::string unpacked(std::string packed, std::size_t count, bool big_endian) {
-  if (packed.size() % 2 != 0) packed += '\0';
-  if (big_endian)
-    for (std::size_t i = 0; i < packed.size(); i += 2) std::swap(packed[i], packed[i + 1]);
-  packed.append(2, '\0');
-  std::string words(2 * count, '\0');
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(packed[i]); };
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t at = i / 2 * 3 + i % 2;
-    const int word = i % 2 == 0 ? byte(at) | (byte(at + 1) & 0x0f) << 8 : byte(at) >> 4 | byte(at + 1) << 4;
-    words[2 * i] = static_cast<char>(word & 0xff);
-    words[2 * i + 1] = static_cast<char>(word >> 8);
-  }
-  return words;
-}
-
-/// Decompressed pixels, little-endian, in the bits allocated.
-std::string decompressed(const DicomSlice& slice, const std::vector<std::string>& parts) {
-  const DicomPixels& pixels = slice.pixels;
-  CompressedFrame frame{pixels.transfer_syntax,
-                        static_cast<unsigned>(slice.size_px.x),
-                        static_cast<unsigned>(slice.size_px.y),
-                        pixels.allocated,
-                        pixels.stored,
-                        pixels.high,
-                        pixels.is_signed,
-                        {parts.begin(), parts.end()}};
-  std::optional<std::string> decoded = decompress(frame);
-  if (!decoded)
-    refuse(slice.path,
-           "pixels in transfer syntax " + pixels.transfer_syntax +
-               " cannot be decompressed: the file is damaged, or decompress it with another tool");
-  return std::move(*decoded);
-}
-
-/// The value in the stored bits of a pixel's word.
-double value_of(std::uint32_t word, const DicomPixels& pixels) {
-  const std::uint32_t mask = pixels.stored == 32 ? 0xffffffffu : (1u << pixels.stored) - 1;
-  word = (word >> (pixels.high + 1 - pixels.stored)) & mask;
-  const std::uint32_t sign = 1u << (pixels.stored - 1);
-  return pixels.is_signed && (word & sign) != 0 ? static_cast<double>(word) - static_cast<double>(mask) - 1.0
-                                                : static_cast<double>(word);
-}
-
-/// The usual CT: 16 bits, little-endian, slope 1, an integer intercept. Rescales the stored words in place,
-/// in integers so that the compiler vectorises. False if a value leaves int16's range.
-bool rescale_shorts(const DicomPixels& pixels, int intercept, std::span<std::int16_t> samples) {
-  assert(pixels.allocated == 16 && pixels.high < 16 && pixels.stored >= 1 && pixels.stored <= 16);
-  const int shift = 15 - static_cast<int>(pixels.high);
-  const int drop = 16 - static_cast<int>(pixels.stored);
-  int low = std::numeric_limits<int>::max();
-  int high = std::numeric_limits<int>::min();
-  const auto run = [&]<typename Word>(Word) {
-    for (std::int16_t& sample : samples) {
-      const auto word = static_cast<Word>(sample);
-      const int value = static_cast<Word>(static_cast<Word>(word << shift) >> drop) + intercept;
-      low = std::min(low, value);
-      high = std::max(high, value);
-      sample = static_cast<std::int16_t>(value);
-    }
-  };
-  if (pixels.is_signed)
-    run(std::int16_t{});
-  else
-    run(std::uint16_t{});
-  return low >= std::numeric_limits<std::int16_t>::min() && high <= std::numeric_limits<std::int16_t>::max();
-}
-
-/// A slope of 0 would leave one value: it is taken for 1.
-double slope_of(const DicomSlice& slice) {
-  const double slope = slice.slope.value_or(1.0);
-  return slope == 0.0 ? 1.0 : slope;
-}
-
-bool is_usual(const DicomSlice& slice) {
-  const double intercept = slice.intercept.value_or(0.0);
-  return std::endian::native == std::endian::little && slice.pixels.allocated == 16 &&
-         !slice.pixels.is_big_endian && slope_of(slice) == 1.0 && intercept == std::trunc(intercept) &&
-         std::abs(intercept) < 1e6;
-}
-
-template <typename Sample>
-bool rescale(const std::string& stored, const DicomSlice& slice, std::span<Sample> samples) {
-  const DicomPixels& pixels = slice.pixels;
-  const double slope = slope_of(slice);
-  const double intercept = slice.intercept.value_or(0.0);
-  if constexpr (std::is_same_v<Sample, std::int16_t>)
-    if (is_usual(slice)) {
-      std::memcpy(samples.data(), stored.data(), samples.size_bytes());
-      return rescale_shorts(pixels, static_cast<int>(intercept), samples);
-    }
-  const bool is_packed = pixels.allocated == 12;  // unpacked to little-endian words
-  const std::size_t width = is_packed ? 2 : pixels.allocated / 8;
-  const bool is_big_endian = pixels.is_big_endian && !is_packed;
-  assert(stored.size() >= samples.size() * width);
-  bool fits = true;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    std::uint32_t word = 0;
-    for (std::size_t byte = 0; byte < width; ++byte) {
-      const std::size_t at = i * width + (is_big_endian ? width - 1 - byte : byte);
-      word |= std::uint32_t{static_cast<unsigned char>(stored[at])} << (8 * byte);
-    }
-    const double value = slope * value_of(word, pixels) + intercept;
-    if constexpr (std::is_same_v<Sample, float>) {
-      samples[i] = static_cast<float>(value);
-    } else {
-      const bool held = value >= std::numeric_limits<Sample>::min() &&
-                        value <= std::numeric_limits<Sample>::max() && value == std::trunc(value);
-      fits = fits && held;
-      samples[i] = held ? static_cast<Sample>(value) : Sample{0};
-    }
-  }
-  return fits;
-}
-
-template <typename Sample>
-bool read_samples(const DicomSlice& slice, std::span<Sample> samples) {
-  assert((samples.size() * slice.pixels.allocated + 7) / 8 == frame_bytes(slice));
-  try {
-    if constexpr (std::is_same_v<Sample, std::int16_t>)
-      if (is_usual(slice) && !slice.pixels.is_compressed && !slice.pixels.is_deflated &&
-          slice.pixels.parts.size() == 1) {
-        const std::size_t at = slice.pixels.parts.front().at;
-        PlacedReader(slice).read({at, samples.size_bytes()}, reinterpret_cast<char*>(samples.data()));
-        return rescale_shorts(slice.pixels, static_cast<int>(slice.intercept.value_or(0.0)), samples);
-      }
-    std::vector<std::string> parts = stored_parts(slice);
-    std::string stored = slice.pixels.is_compressed ? decompressed(slice, parts) : joined(std::move(parts));
-    if (stored.size() < frame_bytes(slice)) refuse(slice.path, "the pixels decompress to too few bytes");
-    if (slice.pixels.allocated == 12)
-      stored = unpacked(std::move(stored), samples.size(), slice.pixels.is_big_endian);
-    return rescale(stored, slice, samples);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& error) {
-    refuse(slice.path, std::string("its pixels cannot be read: ") + error.what(), ErrorCode::Resource);
-  }
+/// The slices of a file, or the reason with the file's series.
+std::variant<std::vector<DicomSlice>, NoSlice> slices_or_reason(const DicomFile& file,
+                                                                const std::filesystem::path& path) {
+  auto found = slices_of(file, path);
+  if (NoSlice* flaw = std::get_if<NoSlice>(&found)) flaw->series_uid = file.text(0x0020000e);
+  return found;
 }
 
 /// The slices of a file that begins with `bytes`; reads the whole file if these end within the attributes.
 std::variant<std::vector<DicomSlice>, NoSlice> slices_of(std::string bytes, std::size_t file_bytes,
                                                          const std::filesystem::path& path) {
   try {
-    return slices_of(DicomFile(bytes, file_bytes), path);
+    return slices_or_reason(DicomFile(bytes, file_bytes), path);
   } catch (const DicomFile::NeedsMore&) {
     bytes = beginning_of(path, file_bytes);
-    return slices_of(DicomFile(bytes, bytes.size()), path);
+    return slices_or_reason(DicomFile(bytes, bytes.size()), path);
   }
 }
 
 }  // namespace
 
+std::size_t frame_bytes(const DicomSlice& slice) {
+  return (static_cast<std::size_t>(slice.size_px.x) * static_cast<std::size_t>(slice.size_px.y) *
+              slice.pixels.allocated +
+          7) /
+         8;
+}
+
+std::string beginning_of(const std::filesystem::path& path, std::size_t count) {
+  errno = 0;
+  std::ifstream in = opened(path);
+  std::string bytes(count, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!in.is_open() || in.bad())
+    throw Error(ErrorCode::Input,
+                std::string("cannot be read: ") + (errno != 0 ? std::strerror(errno) : "unknown reason"));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
+}
+
+std::string inflated(const std::string& bytes, std::size_t at) {
+  return bytes.substr(0, at) + inflate_raw(std::string_view(bytes).substr(at));
+}
+
 std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::filesystem::path& path) {
   // Attributes take some kilobytes; the pixels after them are not needed yet.
   constexpr std::size_t most_attributes = std::size_t{1} << 15;
-  std::string bytes = beginning_of(path, most_attributes);
+  std::string bytes;
+  try {
+    bytes = beginning_of(path, most_attributes);
+  } catch (const Error& error) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) return NoSlice{"a link to no file"};
+    return NoSlice{error.what(), NoSlice::Kind::Damaged};
+  }
   if (!DicomFile::begins(bytes)) return NoSlice{"not DICOM"};
   try {
     std::error_code error;
@@ -570,7 +640,7 @@ std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::file
       return slices_of(bytes, file_bytes, path);
     } catch (const DicomFile::Deflated& from) {
       const std::string whole = inflated(beginning_of(path, file_bytes), from.at);
-      auto slices = slices_of(DicomFile(whole, whole.size(), true), path);
+      auto slices = slices_or_reason(DicomFile(whole, whole.size(), true), path);
       if (auto* found = std::get_if<std::vector<DicomSlice>>(&slices))
         for (DicomSlice& slice : *found) slice.pixels.is_deflated = true;
       return slices;
@@ -582,22 +652,6 @@ std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::file
     const bool has_prefix = bytes.size() >= 132 && bytes.compare(128, 4, "DICM") == 0;
     return NoSlice{error.what(), has_prefix ? NoSlice::Kind::Damaged : NoSlice::Kind::Stray};
   }
-}
-
-bool same_pixels(const DicomSlice& a, const DicomSlice& b) {
-  if (a.size_px != b.size_px || a.pixels.transfer_syntax != b.pixels.transfer_syntax ||
-      a.pixels.allocated != b.pixels.allocated || a.pixels.is_signed != b.pixels.is_signed ||
-      a.slope != b.slope || a.intercept != b.intercept)
-    return false;
-  return stored_parts(a) == stored_parts(b);
-}
-
-bool read_dicom_samples(const DicomSlice& slice, std::span<std::int16_t> samples) {
-  return read_samples(slice, samples);
-}
-
-bool read_dicom_samples(const DicomSlice& slice, std::span<float> samples) {
-  return read_samples(slice, samples);
 }
 
 }  // namespace octotomy::voxel

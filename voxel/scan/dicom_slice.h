@@ -4,9 +4,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
-#include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -28,6 +29,28 @@ struct DicomPixels {
   unsigned stored = 16;
   unsigned high = 15;
   bool is_signed = false;
+  bool holds_overlay = false;  ///< bits outside of the stored ones are an overlay's (until DICOM 2004)
+};
+
+/// Stored values that are no measurements, both ends included (DICOM PS3.3, C.7.5.1.1.2).
+struct DicomPadding {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// A Modality LUT (DICOM PS3.3, C.11.1): stored value `first` + i means values[i]; the first and the last
+/// entry hold for all stored values below and above.
+struct ModalityLut {
+  double first = 0.0;
+  std::vector<std::uint16_t> values;
+  std::string type;  ///< the unit: "HU", "US"
+};
+
+/// One file's part in an image that was stored in several files (DICOM PS3.3, C.7.6.16.1).
+struct Concatenation {
+  std::string uid;  ///< empty: the image is in one file
+  int number = 0;   ///< of this part, from 1 on
+  int total = 0;    ///< 0: the header does not state it
 };
 
 /// The part of a grey DICOM image's header that a volume needs. The image is a file of one frame or one frame
@@ -58,7 +81,15 @@ struct DicomSlice {
   bool is_localizer = false;          ///< by ImageType
   std::optional<double> slope;
   std::optional<double> intercept;
-  std::optional<double> padding;  ///< rescaled value of pixels that were not measured
+  std::shared_ptr<const ModalityLut> lut;  ///< applied instead of slope and intercept
+  std::optional<DicomPadding> padding;
+  std::string decimal_commas;          ///< attributes whose numbers have a comma for the point, for people
+  std::string real_world;              ///< a Real World Value Mapping, for people
+  std::string assumed_place;           ///< how a frame without a position of its own was placed, for people
+  std::string excess_pixels;           ///< pixel data beyond what the header counts, for people
+  std::optional<double> aspect_ratio;  ///< of PixelAspectRatio: height by width
+  std::optional<int> stated_images;    ///< ImagesInAcquisition, or NumberOfSlices
+  Concatenation concatenation;
   std::optional<double> thickness_mm;
   std::optional<double> spacing_tag_mm;  ///< SpacingBetweenSlices
   std::optional<double> tilt_deg;        ///< the scanner's own tag; its sign varies from vendor to vendor
@@ -74,23 +105,24 @@ struct NoSlice {
 
   std::string reason;
   Kind kind = Kind::Stray;
-  bool is_directory = false;  ///< a DICOMDIR, which lists the images beside it
+  bool is_directory = false;    ///< a DICOMDIR, which lists the images beside it
+  std::string series_uid = {};  ///< of the file, if it states one
 };
 
 /// Reads the header of a file and checks that its attributes and pixels end within it. Returns one slice, or
 /// one for each frame of an enhanced CT or MR. Never throws on a file's contents. Memory: the file's
-/// attributes, or the whole file if it is compressed. Unusable are also positions beyond 1e9 mm, spacings not
-/// from 1e-6 to 1e6 mm, directions longer than a unit, and rescaled values beyond single precision.
+/// attributes, or the whole file if it is compressed. Numbers with a decimal comma are read. Unusable are
+/// positions beyond 1e9 mm, spacings not from 1e-6 to 1e6 mm, directions longer than a unit, rescaled values
+/// beyond single precision, numbers that cannot be read, and transfer syntaxes that nothing here decodes.
 std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::filesystem::path& path);
 
-/// Whether two images store the same pixels in the same way. Throws Error, Input, if a file has changed.
-bool same_pixels(const DicomSlice& a, const DicomSlice& b);
+/// How many bytes a frame's pixels take before compression.
+std::size_t frame_bytes(const DicomSlice& slice);
 
-/// Decodes a slice and applies its rescale (absent, or a slope of 0: slope 1; absent: intercept 0), row by
-/// row, x fastest. Returns false if a value is no integer in int16's range. Precondition: `samples` has a
-/// place for every pixel. Throws Error, Input, with path and reason if the pixels cannot be decoded.
-bool read_dicom_samples(const DicomSlice& slice, std::span<std::int16_t> samples);
-/// Decodes to single precision; always true.
-bool read_dicom_samples(const DicomSlice& slice, std::span<float> samples);
+/// The first `count` bytes of a file, or all of them. Throws Error, Input, if they cannot be read.
+std::string beginning_of(const std::filesystem::path& path, std::size_t count);
+
+/// A deflated file whose bytes from `at` on are inflated. Throws Error, Input.
+std::string inflated(const std::string& bytes, std::size_t at);
 
 }  // namespace octotomy::voxel

@@ -19,10 +19,16 @@ constexpr double same_place_mm() {
   return 0.01;
 }
 
-/// Files give direction cosines with six decimals or more. Ten roundings are allowed: over the longest side
-/// in use, 4096 pixels, they shift a pixel by a twenty-fifth of its width.
+/// Spacings and directions that shift no pixel of an image by more than half its width are one: their mean
+/// shifts none by more than a quarter. Tags that hold decimals, or writers that compute each slice's anew,
+/// differ by less.
+constexpr double same_pixel_px() {
+  return 0.5;
+}
+
+/// Directions given with three decimals differ by no more; a larger angle was meant, however small the image.
 constexpr double cosine_tolerance() {
-  return 1e-5;
+  return 2e-3;
 }
 
 /// Pairs of different images at one place, in the order of their heights.
@@ -62,11 +68,75 @@ std::optional<std::size_t> parting_trait(const std::vector<DicomSlice>& slices,
   return 2 * most >= rivals.size() ? best : std::nullopt;
 }
 
+/// The place of the trait that orders images in time.
+std::size_t time_trait() {
+  std::size_t trait = 0;
+  while (dicom_traits[trait].role != TraitRole::Order) ++trait;
+  return trait;
+}
+
+/// Parts images of which several lie at nearly each place: the first of each place, the second, and so on, by
+/// time, or by number where times do not tell. Leaves them together if neither tells.
+std::vector<std::vector<DicomSlice>> parted_by_order(std::vector<DicomSlice> slices) {
+  const glm::dvec3 normal = glm::cross(slices.front().along_row, slices.front().along_column);
+  const std::size_t time = time_trait();
+  std::stable_sort(slices.begin(), slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
+    return glm::dot(a.first_mm, normal) < glm::dot(b.first_mm, normal);
+  });
+  std::vector<std::pair<std::size_t, std::size_t>> places;  // first image of each, and one beyond its last
+  for (std::size_t i = 0; i < slices.size(); ++i)
+    if (i > 0 && glm::dot(slices[i].first_mm - slices[i - 1].first_mm, normal) < same_place_mm())
+      places.back().second = i + 1;
+    else
+      places.emplace_back(i, i + 1);
+  const auto count_where = [&](const auto& holds) {
+    return static_cast<std::size_t>(std::count_if(places.begin(), places.end(), holds));
+  };
+  const std::size_t crowded = count_where([](const auto& at) { return at.second - at.first > 1; });
+  if (places.size() < 2 || 5 * crowded < 4 * places.size()) return {std::move(slices)};
+  const auto differ = [&](const auto& value) {
+    return count_where([&](const auto& at) {
+             std::set<std::string> values;
+             for (std::size_t i = at.first; i < at.second; ++i) values.insert(value(slices[i]));
+             return at.second - at.first > 1 && values.size() == at.second - at.first;
+           }) == crowded;
+  };
+  const bool by_time = differ([&](const DicomSlice& slice) { return slice.traits[time]; });
+  const auto number = [](const DicomSlice& slice) {
+    return std::to_string(slice.instance_number) + "#" + std::to_string(slice.frame);
+  };
+  if (!by_time && !differ(number)) return {std::move(slices)};
+  std::vector<std::vector<DicomSlice>> parts;
+  for (const auto& [first, end] : places) {
+    const auto at = [&](std::size_t i) { return slices.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::stable_sort(at(first), at(end), [&](const DicomSlice& a, const DicomSlice& b) {
+      if (by_time) return a.traits[time] < b.traits[time];
+      return std::pair(a.instance_number, a.frame) < std::pair(b.instance_number, b.frame);
+    });
+    if (parts.size() < end - first) parts.resize(end - first);
+    for (std::size_t i = first; i < end; ++i) parts[i - first].push_back(std::move(slices[i]));
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    for (DicomSlice& slice : parts[i])
+      slice.traits[time] = print("%zu of %zu%s", i + 1, parts.size(), by_time ? "" : " by number");
+  return parts;
+}
+
 void part(std::vector<DicomSlice> slices, std::vector<std::vector<DicomSlice>>& parts) {
   const auto rivals = rivals_of(slices);
   const auto trait = rivals.empty() ? std::nullopt : parting_trait(slices, rivals);
   if (!trait) {
-    parts.push_back(std::move(slices));
+    if (rivals.empty()) return parts.push_back(std::move(slices));
+    std::vector<std::vector<DicomSlice>> ordered = parted_by_order(std::move(slices));
+    std::move(ordered.begin(), ordered.end(), std::back_inserter(parts));
+    return;
+  }
+  std::set<std::string> values;
+  for (const DicomSlice& slice : slices) values.insert(slice.traits[*trait]);
+  // A value for nearly each image counts on: it orders the images of a place and names no stack.
+  if (2 * values.size() > slices.size() && values.size() > 2) {
+    std::vector<std::vector<DicomSlice>> ordered = parted_by_order(std::move(slices));
+    std::move(ordered.begin(), ordered.end(), std::back_inserter(parts));
     return;
   }
   std::map<std::string, std::vector<DicomSlice>> by_value;
@@ -110,9 +180,12 @@ class Words {
     std::string words;
     const auto add = [&](const std::string& text) { words += (words.empty() ? "" : ", ") + text; };
     for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait) {
-      if (dicom_traits[trait].role == TraitRole::Uniformity || !trait_differs_[trait]) continue;
+      const TraitRole role = dicom_traits[trait].role;
       const std::string& value = slice.traits[trait];
-      const bool is_shown = dicom_traits[trait].role == TraitRole::Stack || value.size() == 2;
+      if (role == TraitRole::Uniformity || !trait_differs_[trait]) continue;
+      // A time tells stacks apart only where they were parted by it.
+      if (role == TraitRole::Order && value.find(" of ") == std::string::npos) continue;
+      const bool is_shown = role == TraitRole::Stack || role == TraitRole::Order || value.size() == 2;
       add(std::string(dicom_traits[trait].words) + (is_shown ? " " + value : " of its own"));
     }
     if (plane_differs_) add(plane_of(slice));
@@ -141,10 +214,11 @@ std::vector<DicomSubseries> sorted(std::vector<std::vector<DicomSlice>> parts) {
   return found;
 }
 
-bool same_identity(const DicomSlice& a, const DicomSlice& b) {
+bool same_identity(const DicomSlice& a, const DicomSlice& b, bool join) {
   for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait)
-    if (dicom_traits[trait].role == TraitRole::Identity && a.traits[trait] != b.traits[trait] &&
-        !a.traits[trait].empty() && !b.traits[trait].empty())
+    if ((dicom_traits[trait].role == TraitRole::Identity ||
+         (dicom_traits[trait].role == TraitRole::Origin && !join)) &&
+        a.traits[trait] != b.traits[trait] && !a.traits[trait].empty() && !b.traits[trait].empty())
       return false;
   return true;
 }
@@ -166,13 +240,23 @@ std::vector<std::vector<DicomSlice>> grouped(
 }
 
 bool same_grid(const DicomSlice& a, const DicomSlice& b) {
-  return a.size_px == b.size_px &&
-         glm::all(glm::lessThan(glm::abs(a.spacing_mm - b.spacing_mm), 1e-5 * a.spacing_mm));
+  const glm::dvec2 shift_px = glm::abs(a.spacing_mm / b.spacing_mm - 1.0) * glm::dvec2(a.size_px);
+  // A hundredth is more than decimals round, however small the image.
+  return a.size_px == b.size_px && glm::all(glm::lessThanEqual(shift_px, glm::dvec2(same_pixel_px()))) &&
+         glm::all(glm::lessThan(glm::abs(a.spacing_mm - b.spacing_mm), 1e-2 * a.spacing_mm));
+}
+
+double turned_px(const DicomSlice& slice, const glm::dvec3& along_row, const glm::dvec3& along_column) {
+  const glm::dvec2 side_mm = glm::dvec2(slice.size_px) * slice.spacing_mm;
+  const double shift_mm = glm::length(slice.along_row - along_row) * side_mm.x +
+                          glm::length(slice.along_column - along_column) * side_mm.y;
+  return shift_mm / std::min(slice.spacing_mm.x, slice.spacing_mm.y);
 }
 
 bool same_orientation(const DicomSlice& a, const DicomSlice& b) {
   return glm::length(a.along_row - b.along_row) < cosine_tolerance() &&
-         glm::length(a.along_column - b.along_column) < cosine_tolerance();
+         glm::length(a.along_column - b.along_column) < cosine_tolerance() &&
+         turned_px(a, b.along_row, b.along_column) <= same_pixel_px();
 }
 
 std::vector<DicomSubseries> parted_at_one_place(std::vector<DicomSlice> slices) {
@@ -181,15 +265,15 @@ std::vector<DicomSubseries> parted_at_one_place(std::vector<DicomSlice> slices) 
   return sorted(std::move(parts));
 }
 
-std::vector<DicomSubseries> subseries_of(const std::vector<DicomSlice>& series) {
+std::vector<DicomSubseries> subseries_of(const std::vector<DicomSlice>& series, bool join) {
   const bool is_scout_only =
       std::all_of(series.begin(), series.end(), [](const DicomSlice& slice) { return slice.is_localizer; });
   std::vector<DicomSlice> asked;
   std::copy_if(series.begin(), series.end(), std::back_inserter(asked),
                [&](const DicomSlice& slice) { return is_scout_only || !slice.is_localizer; });
   std::vector<std::vector<DicomSlice>> alike =
-      grouped(std::move(asked), [](const DicomSlice& a, const DicomSlice& b) {
-        return same_grid(a, b) && same_orientation(a, b) && same_identity(a, b);
+      grouped(std::move(asked), [&](const DicomSlice& a, const DicomSlice& b) {
+        return same_grid(a, b) && same_orientation(a, b) && same_identity(a, b, join);
       });
   std::vector<std::vector<DicomSlice>> parts;
   for (std::vector<DicomSlice>& members : alike) part(std::move(members), parts);

@@ -11,7 +11,9 @@ namespace octotomy::voxel {
 /// The part that an attribute plays in telling the images of one series apart.
 enum class TraitRole {
   Identity,    ///< images that differ never belong together: the commonest stay
+  Origin,      ///< images that differ belong together only if the caller asks to join them
   Stack,       ///< images at one place are parted by it into stacks
+  Order,       ///< images at one place are parted by their order in it, if nothing else parts them
   Uniformity,  ///< images that differ stay together; the audit names the fewer
 };
 
@@ -21,50 +23,44 @@ struct DicomTrait {
   const char* check;  ///< its line in the audit
   const char* words;  ///< for people
   TraitRole role;
-  std::array<DicomTag, 3> tags;  ///< 0: none
+  std::array<DicomTag, 5> tags;  ///< 0: none
   const char* effect;            ///< of images that differ
 };
 
-constexpr std::array<DicomTrait, 15> dicom_traits{{
-    {"patient", "patient", TraitRole::Identity, {0x00100020, 0x00100010, 0}, "another patient's images"},
-    {"study", "study", TraitRole::Identity, {0x0020000d, 0, 0}, "images of another study"},
-    {"modality", "modality", TraitRole::Identity, {0x00080060, 0, 0}, "images of another modality"},
+constexpr std::array<DicomTrait, 17> dicom_traits{{
+    {"patient", "patient", TraitRole::Identity, {0x00100020, 0x00100010}, "another patient's images"},
+    {"study", "study", TraitRole::Origin, {0x0020000d}, "images of another study"},
+    {"modality", "modality", TraitRole::Identity, {0x00080060}, "images of another modality"},
     {"frame_of_reference",
      "frame of reference",
-     TraitRole::Identity,
-     {0x00200052, 0, 0},
-     "their positions count from another origin"},
-    {"kernel",
-     "kernel",
-     TraitRole::Stack,
-     {0x00181210, 0, 0},
-     "edges and thin bone differ from slice to slice"},
-    {"tube_voltage", "kVp", TraitRole::Stack, {0x00180060, 0, 0}, "bone's values change with the voltage"},
-    {"contrast_agent",
-     "contrast",
-     TraitRole::Stack,
-     {0x00180010, 0, 0},
-     "vessels differ from slice to slice"},
+     TraitRole::Origin,
+     {0x00200052},
+     "images of another frame of reference, whose positions may count from another origin"},
+    {"kernel", "kernel", TraitRole::Stack, {0x00181210}, "edges and thin bone differ from slice to slice"},
+    {"tube_voltage", "kVp", TraitRole::Stack, {0x00180060}, "bone's values change with the voltage"},
+    {"contrast_agent", "contrast", TraitRole::Stack, {0x00180010}, "vessels differ from slice to slice"},
     {"acquisition",
      "acquisition",
      TraitRole::Stack,
-     {0x00200012, 0, 0},
+     {0x00200012},
      "the patient may have moved between the acquisitions"},
     {"phase",
      "phase",
      TraitRole::Stack,
-     {0x00209241, 0x00200100, 0x00181060},
+     {0x00209241, 0x00209245, 0x00200100, 0x00209128, 0x00181060},
      "the slices show different times"},
-    {"echo", "echo", TraitRole::Stack, {0x00180081, 0x00180086, 0}, "tissues' values change with the echo"},
-    {"stack", "stack", TraitRole::Stack, {0x00209056, 0, 0}, "the slices are of several stacks"},
-    {"image_type", "type", TraitRole::Stack, {0x00080008, 0, 0}, "some slices are measured, others derived"},
-    {"patient_name", "name", TraitRole::Uniformity, {0x00100010, 0, 0}, "the identifier is the same"},
+    {"echo", "echo", TraitRole::Stack, {0x00180081, 0x00180086}, "tissues' values change with the echo"},
+    {"diffusion", "b value", TraitRole::Stack, {0x00189087}, "tissues' values change with the b value"},
+    {"time", "time", TraitRole::Order, {0x00189074, 0x0008002a, 0x00080032, 0x00080033}, ""},
+    {"stack", "stack", TraitRole::Stack, {0x00209056}, "the slices are of several stacks"},
+    {"image_type", "type", TraitRole::Stack, {0x00080008}, "some slices are measured, others derived"},
+    {"patient_name", "name", TraitRole::Uniformity, {0x00100010}, "the identifier is the same"},
     {"patient_position",
      "position",
      TraitRole::Uniformity,
-     {0x00185100, 0, 0},
+     {0x00185100},
      "the patient lay differently: check left and right"},
-    {"scanner", "scanner", TraitRole::Uniformity, {0x00081090, 0x00080070, 0}, "several scanners' images"},
+    {"scanner", "scanner", TraitRole::Uniformity, {0x00081090, 0x00080070}, "several scanners' images"},
 }};
 
 using DicomTraitValues = std::array<std::string, dicom_traits.size()>;

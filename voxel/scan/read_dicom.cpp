@@ -12,15 +12,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <span>
 #include <tbb/parallel_for.h>
 #include <tuple>
+#include <type_traits>
 
 #include "voxel/scan/air_level.h"
 #include "voxel/scan/audit.h"
+#include "voxel/scan/dicom_pixels.h"
 #include "voxel/scan/dicom_series.h"
+#include "voxel/scan/neighbour_audit.h"
 #include "voxel/scan/slice_plan.h"
 #include "voxel/scan/upright.h"
 #include "voxel/space/file_text.h"
@@ -45,19 +49,22 @@ class SeriesReader {
     options_.progress.at(0.1);
     const Plan plan = slice_plan(stack, path_, scene_.audit);
     scene_.holes = plan.holes;
-    if (!decode_as<std::int16_t>(stack)) decode_as<float>(stack);
+    const bool is_padded = std::any_of(stack.slices.begin(), stack.slices.end(),
+                                       [](const DicomSlice& slice) { return slice.padding.has_value(); });
+    if (is_padded) scene_.padding = std::numeric_limits<std::int16_t>::min();
+    if (!decode_as<std::int16_t>(stack)) {
+      if (is_padded) scene_.padding = far_below(stack);
+      decode_as<float>(stack);
+    }
     options_.progress.at(0.8);
     audit_rescale(stack);
-    audit_padding(stack);
+    std::visit([&](auto& samples) { take_padding(stack, samples); }, scene_.samples);
     audit_contents(stack);
     if (!plan.is_copy()) {
-      std::vector<glm::dvec2> aside_px(stack.slices.size(), glm::dvec2(0.0));
-      if (plan.leans)
-        for (std::size_t i = 0; i < aside_px.size(); ++i) aside_px[i] = stack.aside_px(stack.slices[i]);
       need_memory(
           path_, std::uint64_t(plan.size_px.x) * std::uint64_t(plan.size_px.y) * plan.slice_count,
           std::holds_alternative<FloatSamples>(scene_.samples) ? sizeof(float) : sizeof(std::int16_t));
-      scene_.samples = upright_samples(plan, stack.first().size_px, aside_px, scene_.samples);
+      scene_.samples = upright_samples(plan, stack.first().size_px, scene_.samples, scene_.padding);
     }
     scene_.lattice = lattice_of(stack, plan);
     scene_.modality = stack.first().modality;
@@ -88,18 +95,79 @@ class SeriesReader {
     const std::size_t area = static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y);
     need_memory(path_, area * stack.slices.size(), sizeof(Sample));
     Samples<Sample> samples(area * stack.slices.size());
-    std::vector<char> fits(stack.slices.size(), 0);
+    std::optional<Sample> mark;
+    if (scene_.padding) mark = static_cast<Sample>(*scene_.padding);
+    std::vector<DecodedSlice> decoded(stack.slices.size());
     for_each_index(stack.slices.size(), options_.progress, [&](std::size_t i) {
-      fits[i] = read_dicom_samples(stack.slices[i], std::span<Sample>(samples).subspan(i * area, area));
+      decoded[i] =
+          read_dicom_samples(stack.slices[i], std::span<Sample>(samples).subspan(i * area, area), mark);
     });
-    const bool all_fit = std::all_of(fits.begin(), fits.end(), [](char fit) { return fit != 0; });
-    if (all_fit) scene_.samples = std::move(samples);
-    return all_fit;
+    const bool all_fit =
+        std::all_of(decoded.begin(), decoded.end(), [](const DecodedSlice& slice) { return slice.fits; });
+    if (!all_fit && std::is_same_v<Sample, std::int16_t>) return false;
+    scene_.samples = std::move(samples);
+    audit_stored_bits(stack, decoded);
+    return true;
+  }
+
+  /// A mark of padding in single precision: sixteen times the largest value that any slice can hold, below 0.
+  static double far_below(const Stack& stack) {
+    double largest = 65535.0;
+    for (const DicomSlice& slice : stack.slices)
+      largest = std::max(largest, std::abs(slice.slope.value_or(1.0)) *
+                                          std::ldexp(1.0, static_cast<int>(slice.pixels.stored)) +
+                                      std::abs(slice.intercept.value_or(0.0)));
+    const double least = -static_cast<double>(std::numeric_limits<float>::max());
+    return static_cast<double>(static_cast<float>(std::max(-16.0 * largest, least)));
+  }
+
+  /// Bits that BitsStored leaves out: of an overlay if the header says so, else values that are wrapped.
+  void audit_stored_bits(const Stack& stack, const std::vector<DecodedSlice>& decoded) {
+    std::vector<std::string> names;
+    std::size_t count = 0;
+    unsigned stored = 0;
+    for (std::size_t i = 0; i < decoded.size(); ++i) {
+      if (decoded[i].foreign_count == 0 || stack.slices[i].pixels.holds_overlay) continue;
+      names.push_back(stack.slices[i].name);
+      count += decoded[i].foreign_count;
+      stored = stack.slices[i].pixels.stored;
+    }
+    if (!names.empty())
+      find("stored_bits", Verdict::Fail,
+           std::to_string(count) + " pixels of " + slices(names.size()) +
+               print(" have bits beyond the %u that BitsStored counts. They were cut off: if they belong to "
+                     "the values, those are wrong; correct BitsStored and HighBit: ",
+                     stored) +
+               listed(names),
+           names);
+  }
+
+  /// Whether slices have a Modality LUT, which is applied instead of slope and intercept.
+  bool audit_lut(const Stack& stack) {
+    std::vector<std::string> without;
+    const ModalityLut* lut = nullptr;
+    for (const DicomSlice& slice : stack.slices)
+      if (!slice.lut)
+        without.push_back(slice.name);
+      else if (lut == nullptr)
+        lut = slice.lut.get();
+    if (lut == nullptr) return false;
+    const std::string applied =
+        print("a Modality LUT of %zu entries from stored %g on is applied", lut->values.size(), lut->first) +
+        (lut->type.empty() ? "" : ", its unit declared '" + lut->type + "'") +
+        (stack.first().slope ? "; RescaleSlope and RescaleIntercept are not" : "");
+    if (without.empty())
+      find("rescale", Verdict::Pass, applied);
+    else
+      find("rescale", Verdict::Warn,
+           applied + " where it is; " + slices(without.size()) + " have none: " + listed(without), without);
+    return true;
   }
 
   void audit_rescale(const Stack& stack) {
     const DicomSlice& first = stack.first();
     const bool is_ct = first.modality == "CT";
+    if (audit_lut(stack)) return;
     const auto named_if = [&](const auto& holds) {
       std::vector<std::string> names;
       for (const DicomSlice& slice : stack.slices)
@@ -190,6 +258,9 @@ class SeriesReader {
           pass_over_air(samples, area, blank, repeated);
         },
         scene_.samples);
+    std::vector<std::string> names;
+    for (const DicomSlice& slice : stack.slices) names.push_back(slice.name);
+    audit_neighbours(scene_.samples, stack.first().size_px, names, range_of_slices().low, scene_.audit);
     std::vector<std::string> blanks, repeats;
     for (std::size_t i = 0; i < stack.slices.size(); ++i) {
       if (blank[i] != 0) blanks.push_back(stack.slices[i].name);
@@ -210,9 +281,13 @@ class SeriesReader {
   void audit_steps() {
     const auto* samples = std::get_if<Int16Samples>(&scene_.samples);
     if (samples == nullptr || scene_.modality != "CT") return;
+    const auto measured = std::find_if_not(samples->begin(), samples->end(),
+                                           [&](std::int16_t sample) { return is_padding(sample); });
+    if (measured == samples->end()) return;
+    const std::int16_t origin = *measured;
     int step = 0;
     for (const std::int16_t sample : *samples)
-      if ((step = std::gcd(step, sample - samples->front())) == 1) break;
+      if ((step = std::gcd(step, is_padding(sample) ? 0 : sample - origin)) == 1) break;
     // Scanners measure to about a unit; four units are below the noise of any head protocol.
     if (step > 4)
       find("sample_steps", Verdict::Warn,
@@ -220,23 +295,105 @@ class SeriesReader {
                  step));
   }
 
-  /// Pixels beyond the scanner's field of view hold a padding value, which is no measurement.
-  void audit_padding(const Stack& stack) {
-    const std::optional<double> padding = stack.first().padding;
-    if (!padding) return find("padding", Verdict::Pass, "the header names no padding value");
-    const auto count = std::visit(
+  bool is_padding(double sample) const { return scene_.padding && sample == *scene_.padding; }
+
+  /// Of the measured samples, on the stack's slices.
+  Range range_of_slices() const {
+    Range found{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    std::visit(
         [&](const auto& samples) {
-          return std::count_if(samples.begin(), samples.end(),
-                               [&](auto sample) { return static_cast<double>(sample) == *padding; });
+          for (const auto sample : samples) {
+            const auto value = static_cast<double>(sample);
+            if (is_padding(value)) continue;
+            found.low = std::min(found.low, value);
+            found.high = std::max(found.high, value);
+          }
         },
         scene_.samples);
-    if (count == 0)
-      find("padding", Verdict::Pass, print("no sample has the padding value %g", *padding));
-    else
-      find("padding", Verdict::Warn,
-           print("%td samples have the padding value %g, which is no measurement; they are kept: choose "
-                 "windows without that value",
-                 count, *padding));
+    return found;
+  }
+
+  /// The values that the header's padding would be read as: of all slices, without one that has a LUT.
+  static std::optional<Range> padding_values(const Stack& stack) {
+    std::optional<Range> values;
+    for (const DicomSlice& slice : stack.slices) {
+      if (!slice.padding) continue;
+      if (slice.lut) return std::nullopt;
+      for (const double stored : {slice.padding->low, slice.padding->high}) {
+        const double slope = slice.slope.value_or(1.0) == 0.0 ? 1.0 : slice.slope.value_or(1.0);
+        const double value = slope * stored + slice.intercept.value_or(0.0);
+        if (!values) values = Range{value, value};
+        values->low = std::min(values->low, value);
+        values->high = std::max(values->high, value);
+      }
+    }
+    return values;
+  }
+
+  /// Whether most padded samples have measured ones on two sides or more. Padding fills areas.
+  template <typename Samples>
+  bool is_scattered(const Samples& samples, const glm::ivec2& size_px) const {
+    const std::size_t width = static_cast<std::size_t>(size_px.x),
+                      area = width * static_cast<std::size_t>(size_px.y);
+    std::size_t padded = 0, lonely = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (!is_padding(static_cast<double>(samples[i]))) continue;
+      const std::size_t x = i % width, place = i % area;
+      const auto is_measured = [&](bool is_inside, std::size_t at) {
+        return is_inside && !is_padding(static_cast<double>(samples[at]));
+      };
+      const int measured = is_measured(x > 0, i - 1) + is_measured(x + 1 < width, i + 1) +
+                           is_measured(place >= width, i - width) +
+                           is_measured(place + width < area, i + width);
+      ++padded;
+      lonely += measured >= 2;
+    }
+    return 2 * lonely > padded;
+  }
+
+  /// Pixels beyond the scanner's field of view hold a padding value, which is no measurement. They become one
+  /// value below all measured ones: the header's own where it is, else the mark that they were decoded to.
+  template <typename Samples>
+  void take_padding(const Stack& stack, Samples& samples) {
+    using Sample = typename Samples::value_type;
+    if (!scene_.padding) return find("padding", Verdict::Pass, "the header names no padding value");
+    const std::optional<Range> values = padding_values(stack);
+    const std::string named = !values ? std::string("by a table")
+                              : values->low == values->high
+                                  ? print("value %g", values->low)
+                                  : print("values %g to %g", values->low, values->high);
+    const auto mark = static_cast<Sample>(*scene_.padding);
+    const auto count = std::count(samples.begin(), samples.end(), mark);
+    if (count == 0) {
+      scene_.padding.reset();
+      return find("padding", Verdict::Pass, "no sample has the padding " + named);
+    }
+    const Range measured = range_of_slices();
+    const double least_step = std::abs(stack.first().slope.value_or(1.0));
+    if (values && values->low == values->high && values->low < measured.high + 1.5 * least_step &&
+        values->low > measured.low - 1.5 * least_step && is_scattered(samples, stack.first().size_px)) {
+      std::replace(samples.begin(), samples.end(), mark, static_cast<Sample>(values->low));
+      scene_.padding.reset();
+      return find(
+          "padding", Verdict::Warn,
+          print("%td samples have the padding value %g, but lie scattered among measured ones of like "
+                "value: they are taken as measurements",
+                count, values->low));
+    }
+    if (values && values->low < measured.low &&
+        values->low >= static_cast<double>(std::numeric_limits<Sample>::lowest()) &&
+        static_cast<double>(static_cast<Sample>(values->low)) == values->low) {
+      scene_.padding = values->low;
+      std::replace(samples.begin(), samples.end(), mark, static_cast<Sample>(values->low));
+    }
+    const double percent = 100.0 * static_cast<double>(count) / static_cast<double>(samples.size());
+    find("padding", Verdict::Warn,
+         print("%td samples (%.3g %%) hold the padding ", count, percent) + named +
+             (values && *scene_.padding != values->low ? print(" and are read as %g", *scene_.padding) : "") +
+             (values && values->high >= measured.low && values->low <= measured.high
+                  ? print("; measured values from %g to %g lie around it", measured.low, measured.high)
+                  : "") +
+             ": no measurement, in no window and in no interpolation");
   }
 
   fs::path path_;

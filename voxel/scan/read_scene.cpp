@@ -11,6 +11,7 @@
 #include "voxel/scan/read_image_stack.h"
 #include "voxel/scan/read_raw.h"
 #include "voxel/scan/read_volume.h"
+#include "voxel/scan/size_audit.h"
 #include "voxel/space/regular_file.h"
 
 namespace octotomy::voxel {
@@ -105,6 +106,7 @@ Scene read_scene(const fs::path& path, const ReadOptions& options) {
   } catch (const std::invalid_argument& flaw) {
     refuse(path, std::string("the header's geometry is unusable: ") + flaw.what());
   }
+  if (std::optional<Finding> size = size_finding(scene)) scene.audit.push_back(std::move(*size));
   options.progress.at(1.0);
   return scene;
 }

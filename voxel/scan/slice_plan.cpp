@@ -2,9 +2,10 @@
 //
 // A lattice through a stack of slices:
 //   1  choose the step from the distances of neighbours
-//   2  tell holes from a protocol's second distance
-//   3  find for every slice of the lattice the slices that it is made from
-//   4  fit the stack's lean, name slices off it, widen the lattice by it
+//   2  fit even distances to positions that are rounded or noisy
+//   3  tell holes from a protocol's second distance
+//   4  find for every slice of the lattice the slices that it is made from
+//   5  fit the stack's lean, name slices off it, widen the lattice by it
 #include "voxel/scan/slice_plan.h"
 
 #include <algorithm>
@@ -29,6 +30,32 @@ double position_tolerance_mm(double step_mm) {
 /// volume effect of any slice, and far above the rounding of positions.
 constexpr double aside_tolerance_px() {
   return 0.1;
+}
+
+/// Places that err by a tenth of the slices' distance blur less when they are believed even than the linear
+/// interpolation between two slices would: that mixes in up to half of the neighbour.
+constexpr double noise_share() {
+  return 0.1;
+}
+
+/// Half a pixel to the side is the most that noisy positions may hide; more is a slice that moved.
+constexpr double most_noise_px() {
+  return 0.5;
+}
+
+/// The step, from 1 mm down, to which one coordinate of all positions is rounded; 0 if it is finer
+/// than a micrometre or the coordinate never changes.
+double rounding_step_mm(const std::vector<DicomSlice>& slices, int axis) {
+  const bool changes = std::any_of(slices.begin(), slices.end(), [&](const DicomSlice& slice) {
+    return slice.first_mm[axis] != slices.front().first_mm[axis];
+  });
+  for (const double step_mm : {1.0, 0.5, 0.25, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001})
+    if (changes && std::all_of(slices.begin(), slices.end(), [&](const DicomSlice& slice) {
+          const double steps = slice.first_mm[axis] / step_mm;
+          return std::abs(steps - std::round(steps)) * step_mm < 1e-6;
+        }))
+      return step_mm;
+  return 0.0;
 }
 
 bool are_equal(double gap_mm, double other_mm) {
@@ -56,10 +83,17 @@ class Layer {
     for (const DicomSlice& slice : stack_.slices) heights_mm_.push_back(stack_.height_mm(slice));
     for (std::size_t i = 1; i < heights_mm_.size(); ++i)
       gaps_mm_.push_back(heights_mm_[i] - heights_mm_[i - 1]);
+    for (int axis = 0; axis < 3; ++axis) rounding_mm_[axis] = rounding_step_mm(stack_.slices, axis);
     choose_step();
+    even_out();
     find_holes();
-    find_sources();
-    report_spacing();
+    if (even_) {
+      take_even_sources();
+      report_even();
+    } else {
+      find_sources();
+      report_spacing();
+    }
     report_holes();
     lay_across();
     return std::move(plan_);
@@ -113,12 +147,131 @@ class Layer {
     plan_.step_mm = total_mm() / static_cast<double>(step_count_);
   }
 
+  /// Slices by their number on an even lattice, whose height is low_mm + number * step_mm.
+  struct Even {
+    std::vector<long> numbers;
+    double low_mm = 0.0, step_mm = 0.0, worst_mm = 0.0;
+
+    double height_mm(std::size_t i) const { return low_mm + step_mm * static_cast<double>(numbers[i]); }
+  };
+
+  /// The lattice of least squares.
+  Even fitted(std::vector<long> numbers) const {
+    const auto count = static_cast<double>(numbers.size());
+    double mean_number = 0.0, mean_mm = 0.0, square = 0.0, product = 0.0;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      mean_number += static_cast<double>(numbers[i]) / count;
+      mean_mm += heights_mm_[i] / count;
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const double number = static_cast<double>(numbers[i]) - mean_number;
+      square += number * number;
+      product += number * (heights_mm_[i] - mean_mm);
+    }
+    Even even{std::move(numbers), 0.0, product / square, 0.0};
+    even.low_mm = mean_mm - even.step_mm * mean_number;
+    for (std::size_t i = 0; i < even.numbers.size(); ++i)
+      even.worst_mm = std::max(even.worst_mm, std::abs(heights_mm_[i] - even.height_mm(i)));
+    return even;
+  }
+
+  /// By how much the decimals of the positions round a height.
+  double height_rounding_mm() const { return 0.5 * glm::dot(rounding_mm_, glm::abs(stack_.normal)); }
+
+  /// Whether the images' numbers run on without a break: none is missing between them.
+  bool numbers_run_on() const {
+    const int step = stack_.slices[1].instance_number - stack_.slices[0].instance_number;
+    for (std::size_t i = 1; i < stack_.slices.size(); ++i)
+      if (stack_.slices[i].instance_number - stack_.slices[i - 1].instance_number != step) return false;
+    return std::abs(step) == 1;
+  }
+
+  /// Whether positions that err by rounding or noise explain a lattice's deviations. Beyond a quarter of a
+  /// step, rounding looks like missing slices: the images' numbers must show that there are none, and the
+  /// long gaps must be as frequent as rounding makes them.
+  bool is_explained(const Even& even) const {
+    if (!(even.step_mm > 0.0)) return false;
+    if (even.worst_mm <= noise_share() * even.step_mm) return true;
+    // Least squares leave some more than the half step of rounding.
+    if (even.worst_mm > 1.1 * height_rounding_mm()) return false;
+    const double tag_mm = std::abs(stack_.first().spacing_tag_mm.value_or(0.0));
+    const bool tag_agrees = tag_mm == 0.0 || std::abs(tag_mm - even.step_mm) <= 0.05 * even.step_mm;
+    const auto long_gaps = std::count_if(gaps_mm_.begin(), gaps_mm_.end(),
+                                         [&](double gap) { return gap > 1.5 * plan_.step_mm; });
+    return even.worst_mm <= 0.25 * even.step_mm || (numbers_run_on() && tag_agrees && long_gaps > 2);
+  }
+
+  /// Takes an even lattice if the slices are not on the chosen one and only the tags' errors keep them off.
+  void even_out() {
+    const double tolerance_mm = position_tolerance_mm(plan_.step_mm);
+    std::vector<long> counted(heights_mm_.size(), 0), spaced(heights_mm_.size(), 0);
+    bool is_on_lattice = true;
+    for (std::size_t i = 0; i < heights_mm_.size(); ++i) {
+      counted[i] = static_cast<long>(i);
+      if (i > 0) spaced[i] = spaced[i - 1] + std::max(1L, std::lround(gaps_mm_[i - 1] / plan_.step_mm));
+      const double steps = heights_mm_[i] / plan_.step_mm;
+      is_on_lattice = is_on_lattice && std::abs(steps - std::round(steps)) * plan_.step_mm <= tolerance_mm;
+    }
+    const Even even = fitted(std::move(counted));
+    if (is_on_lattice && std::abs(even.step_mm - plan_.step_mm) < 0.01 * plan_.step_mm) return;
+    if (is_explained(even) && (!is_on_lattice || height_rounding_mm() > tolerance_mm)) {
+      even_ = even;
+    } else if (!is_on_lattice) {
+      const Even with_gaps = fitted(std::move(spaced));
+      if (is_explained(with_gaps) && with_gaps.worst_mm <= 0.25 * with_gaps.step_mm) even_ = with_gaps;
+    }
+    if (!even_) return;
+    plan_.step_mm = even_->step_mm;
+    plan_.low_mm = even_->low_mm;
+  }
+
+  /// Each slice of the even lattice is a slice of the stack, or lies between two.
+  void take_even_sources() {
+    for (std::size_t i = 0; i < even_->numbers.size(); ++i) {
+      if (i > 0) {
+        const long gap = even_->numbers[i] - even_->numbers[i - 1];
+        for (long k = 1; k < gap; ++k)
+          plan_.sources.push_back({i - 1, i, static_cast<double>(k) / static_cast<double>(gap)});
+      }
+      plan_.sources.push_back({i, i, 0.0});
+    }
+  }
+
+  void report_even() {
+    std::vector<std::string> off;
+    for (std::size_t i = 0; i < heights_mm_.size(); ++i)
+      if (std::abs(heights_mm_[i] - even_->height_mm(i)) > position_tolerance_mm(plan_.step_mm))
+        off.push_back(stack_.slices[i].name);
+    const double rounding_mm = height_rounding_mm();
+    const bool is_rounding = even_->worst_mm <= 1.1 * rounding_mm;
+    const bool is_small = even_->worst_mm <= noise_share() * even_->step_mm;
+    find(
+        "slice_spacing", is_rounding && is_small && hole_gaps_.empty() ? Verdict::Pass : Verdict::Warn,
+        print("%zu slices %.6g mm apart; their positions%s lie up to %.3g mm beside that, less than "
+              "interpolation would blur: every slice is copied",
+              plan_.sources.size(), plan_.step_mm,
+              is_rounding ? print(", rounded to %.3g mm,", 2.0 * rounding_mm).c_str() : "", even_->worst_mm) +
+            (hole_gaps_.empty() ? "" : ", except at the gaps that missing_slices lists") +
+            (is_rounding && is_small ? "" : ": " + listed(off)),
+        is_rounding && is_small ? std::vector<std::string>() : off);
+  }
+
+  /// Whether two gaps have one length, as far as positions tell.
+  bool are_alike(std::size_t a, std::size_t b) const {
+    if (!even_) return are_equal(gaps_mm_[a], gaps_mm_[b]);
+    return even_->numbers[a + 1] - even_->numbers[a] == even_->numbers[b + 1] - even_->numbers[b];
+  }
+
   /// Whether a gap is one of at least three equal ones in a row.
   bool is_in_run(std::size_t gap) const {
     std::size_t first = gap, last = gap;
-    while (first > 0 && are_equal(gaps_mm_[first - 1], gaps_mm_[gap])) --first;
-    while (last + 1 < gaps_mm_.size() && are_equal(gaps_mm_[last + 1], gaps_mm_[gap])) ++last;
+    while (first > 0 && are_alike(first - 1, gap)) --first;
+    while (last + 1 < gaps_mm_.size() && are_alike(last + 1, gap)) ++last;
     return last - first >= 2;
+  }
+
+  bool is_long(std::size_t gap) const {
+    return even_ ? even_->numbers[gap + 1] - even_->numbers[gap] > 1 : gaps_mm_[gap] > 1.5 * plan_.step_mm;
   }
 
   /// Whether the scanner's numbers skip as many images as the gap has room for.
@@ -129,7 +282,7 @@ class Layer {
 
   void find_holes() {
     for (std::size_t i = 0; i < gaps_mm_.size(); ++i)
-      if (gaps_mm_[i] > 1.5 * plan_.step_mm && (!is_in_run(i) || skips_numbers(i))) hole_gaps_.push_back(i);
+      if (is_long(i) && (!is_in_run(i) || skips_numbers(i))) hole_gaps_.push_back(i);
     const double origin_mm = glm::dot(stack_.first().first_mm, stack_.normal);
     for (const std::size_t gap : hole_gaps_)
       plan_.holes.push_back({stack_.normal, origin_mm + heights_mm_[gap], origin_mm + heights_mm_[gap + 1]});
@@ -220,71 +373,138 @@ class Layer {
          names);
   }
 
-  /// Shift aside per millimetre of height, in pixels: the median of all neighbours, so that one slice out of
-  /// line does not bend it.
+  /// Shift aside per millimetre of height, in pixels: the median over pairs of slices that lie half a stack
+  /// apart (after Theil and Sen), so that neither a slice out of line nor noise of the positions bends it.
   glm::dvec2 lean_px_per_mm() const {
+    const std::size_t count = stack_.slices.size(), half = count / 2;
     glm::dvec2 lean;
     for (int axis = 0; axis < 2; ++axis) {
       std::vector<double> slopes;
-      for (std::size_t i = 1; i < stack_.slices.size(); ++i)
+      for (std::size_t i = half; i < count; ++i)
         slopes.push_back(
-            (stack_.aside_px(stack_.slices[i])[axis] - stack_.aside_px(stack_.slices[i - 1])[axis]) /
-            gaps_mm_[i - 1]);
+            (stack_.aside_px(stack_.slices[i])[axis] - stack_.aside_px(stack_.slices[i - half])[axis]) /
+            (heights_mm_[i] - heights_mm_[i - half]));
       lean[axis] = median_of(slopes);
     }
     return lean;
   }
 
-  /// Names the slices that stand aside from the line through the others.
-  void report_sideways(const glm::dvec2& lean) {
-    std::vector<glm::dvec2> off_px;
-    for (std::size_t i = 0; i < stack_.slices.size(); ++i)
-      off_px.push_back(stack_.aside_px(stack_.slices[i]) - lean * heights_mm_[i]);
-    glm::dvec2 usual;
+  /// Median over the slices of each axis.
+  static glm::dvec2 medians_of(const std::vector<glm::dvec2>& points) {
+    glm::dvec2 medians;
     for (int axis = 0; axis < 2; ++axis) {
       std::vector<double> values;
-      values.reserve(off_px.size());
-      for (const glm::dvec2& off : off_px) values.push_back(off[axis]);
-      usual[axis] = median_of(values);
+      values.reserve(points.size());
+      for (const glm::dvec2& point : points) values.push_back(point[axis]);
+      medians[axis] = median_of(values);
     }
-    std::vector<std::string> names;
-    double most_mm = 0.0;
-    for (std::size_t i = 0; i < off_px.size(); ++i) {
-      const glm::dvec2 off = off_px[i] - usual;
-      if (std::max(std::abs(off.x), std::abs(off.y)) <= aside_tolerance_px()) continue;
-      most_mm = std::max(most_mm, glm::length(off * stack_.first().spacing_mm));
-      names.push_back(stack_.slices[i].name);
-    }
-    if (names.empty()) return;
-    find("sideways", Verdict::Warn,
-         slices(names.size()) +
-             print(" up to %.3g mm to the side of the others, moved back by linear "
-                   "interpolation: ",
-                   most_mm) +
-             listed(names),
-         names);
+    return medians;
   }
 
-  /// Sets the lattice's extent across the stack, wider than the slices if they lean.
-  void lay_across() {
-    glm::dvec2 low_px(0.0);
-    glm::dvec2 high_px(0.0);
+  /// Distances of the slices from a line through the stack, and where the line starts.
+  struct Line {
+    glm::dvec2 lean_px_per_mm{0.0}, start_px{0.0}, scatter_px{0.0};
+    std::vector<glm::dvec2> off_px;
+  };
+  Line line_along(const glm::dvec2& lean) const {
+    Line line;
+    line.lean_px_per_mm = lean;
+    for (std::size_t i = 0; i < stack_.slices.size(); ++i)
+      line.off_px.push_back(stack_.aside_px(stack_.slices[i]) - lean * heights_mm_[i]);
+    line.start_px = medians_of(line.off_px);
+    std::vector<glm::dvec2> sizes;
+    for (glm::dvec2& off : line.off_px) sizes.push_back(glm::abs(off -= line.start_px));
+    line.scatter_px = 1.48 * medians_of(sizes);  // the deviation of normal noise
+    return line;
+  }
+
+  /// The stack's line: leaning if that is more than the scatter of the positions can feign. The shift over
+  /// the stack, from half as many pairs as slices, errs by about 5 / sqrt(slices) times their scatter; six
+  /// times that is allowed, because the scatter of a dozen slices is itself known to a factor of two.
+  Line line() const {
+    Line leaning = line_along(lean_px_per_mm());
+    const glm::dvec2 scatter_px = leaning.scatter_px;
+    const glm::dvec2 shift_px = glm::abs(leaning.lean_px_per_mm) * total_mm();
+    const double feigned = 30.0 / std::sqrt(static_cast<double>(stack_.slices.size()));
+    const bool is_lean = (shift_px.x > aside_tolerance_px() && shift_px.x > feigned * scatter_px.x) ||
+                         (shift_px.y > aside_tolerance_px() && shift_px.y > feigned * scatter_px.y);
+    return is_lean ? leaning : line_along(glm::dvec2(0.0));
+  }
+
+  static double size_of(const glm::dvec2& off) { return std::max(std::abs(off.x), std::abs(off.y)); }
+
+  /// Names the slices that stand aside of the line, and places all: those that scatter by noise stay in line.
+  void place_aside(const Line& line, bool is_tilted) {
+    std::vector<std::string> names;
+    double most_px = 0.0, most_mm = 0.0;
+    for (std::size_t i = 0; i < line.off_px.size(); ++i) {
+      if (size_of(line.off_px[i]) <= aside_tolerance_px()) continue;
+      most_px = std::max(most_px, size_of(line.off_px[i]));
+      most_mm = std::max(most_mm, glm::length(line.off_px[i] * stack_.first().spacing_mm));
+      names.push_back(stack_.slices[i].name);
+    }
+    // One slice that moved is a fact of its own; many that stand a little aside are noise of the tags.
+    const bool is_common =
+        5 * names.size() >= line.off_px.size() || most_px <= 5.0 * size_of(line.scatter_px);
+    const bool is_noise = !names.empty() && most_px <= most_noise_px() && is_common;
+    const bool is_line = is_noise || !is_tilted;
+    if (!is_tilted && !names.empty()) plan_.origin_px = line.start_px;
+    for (std::size_t i = 0; i < line.off_px.size(); ++i) {
+      const bool is_in_line = is_noise || size_of(line.off_px[i]) <= aside_tolerance_px();
+      const glm::dvec2 in_line =
+          is_tilted ? line.start_px + line.lean_px_per_mm * heights_mm_[i] : glm::dvec2(0.0);
+      const glm::dvec2 own = stack_.aside_px(stack_.slices[i]) - plan_.origin_px;
+      plan_.aside_px.push_back(is_in_line && is_line ? in_line : own);
+    }
+    plan_.leans = is_tilted || (!is_noise && !names.empty());
+    if (!plan_.leans) plan_.aside_px.clear();
+    if (is_noise)
+      find("sideways", Verdict::Warn,
+           slices(names.size()) +
+               print(
+                   " scatter up to %.3g mm (%.2g pixels) to the side, as noisy or rounded positions do: they "
+                   "are kept in line: ",
+                   most_mm, most_px) +
+               listed(names),
+           names);
+    else if (!names.empty())
+      find("sideways", Verdict::Warn,
+           slices(names.size()) +
+               print(" up to %.3g mm to the side of the others, moved back by linear "
+                     "interpolation: ",
+                     most_mm) +
+               listed(names),
+           names);
+  }
+
+  void refuse_far_aside() const {
     for (std::size_t i = 1; i < stack_.slices.size(); ++i) {
       const DicomSlice& slice = stack_.slices[i];
-      const glm::dvec2 aside_px = stack_.aside_px(slice);
-      low_px = glm::min(low_px, aside_px);
-      high_px = glm::max(high_px, aside_px);
-      const double aside_mm =
-          glm::length((aside_px - stack_.aside_px(stack_.slices[i - 1])) * stack_.first().spacing_mm);
-      if (aside_mm > gaps_mm_[i - 1])
+      const double aside_mm = glm::length((stack_.aside_px(slice) - stack_.aside_px(stack_.slices[i - 1])) *
+                                          stack_.first().spacing_mm);
+      // Slices that nearly touch may be noisy by more than their distance.
+      if (aside_mm > std::max(gaps_mm_[i - 1], most_noise_px() * stack_.first().spacing_mm.x))
         refuse(slice.path,
                print("lies %.4g mm to the side of the slice before it, more than any gantry tilt explains; "
                      "move it to a folder of its own, or leave it out by --slices FROM:TO",
                      aside_mm));
     }
-    const glm::dvec2 lean = lean_px_per_mm();
-    report_sideways(lean);
-    const double lean_mm = glm::length(lean * stack_.first().spacing_mm) * total_mm();
+  }
+
+  /// Sets the lattice's extent across the stack, wider than the slices if they lean.
+  void lay_across() {
+    refuse_far_aside();
+    const Line line = this->line();
+    const glm::dvec2 lean_px = glm::abs(line.lean_px_per_mm) * total_mm();
+    const bool is_tilted = size_of(lean_px) > aside_tolerance_px();
+    place_aside(line, is_tilted);
+    glm::dvec2 low_px(0.0);
+    glm::dvec2 high_px(0.0);
+    for (const glm::dvec2& aside_px : plan_.aside_px) {
+      low_px = glm::min(low_px, aside_px);
+      high_px = glm::max(high_px, aside_px);
+    }
+    const double lean_mm = glm::length(line.lean_px_per_mm * stack_.first().spacing_mm) * total_mm();
     const double tilt_deg = std::atan2(lean_mm, total_mm()) * 180.0 / std::numbers::pi;
     const double tag_deg = std::abs(stack_.first().tilt_deg.value_or(0.0));
     const glm::dvec2 spread_px = high_px - low_px;
@@ -292,9 +512,6 @@ class Layer {
     if (!(std::max(spread_px.x, spread_px.y) <= widest_px))
       refuse(path_, print("its slices lean over %.4g pixels; check their positions and the pixels' spacing",
                           std::max(spread_px.x, spread_px.y)));
-    plan_.leans = std::max(spread_px.x, spread_px.y) > aside_tolerance_px();
-    const glm::dvec2 lean_px = glm::abs(lean) * total_mm();
-    const bool is_tilted = std::max(lean_px.x, lean_px.y) > aside_tolerance_px();
     if (plan_.leans) {
       plan_.low_px = glm::ivec2(glm::floor(low_px + aside_tolerance_px()));
       const glm::ivec2 high = glm::ivec2(glm::ceil(high_px - aside_tolerance_px()));
@@ -303,7 +520,8 @@ class Layer {
     if (is_tilted)
       find("gantry_tilt", Verdict::Warn,
            print("slices lean by %.2f degrees (%.4g mm over the stack); straightened by linear interpolation "
-                 "within slices, widened from %d x %d to %d x %d pixels and filled with the lowest value",
+                 "within slices, widened from %d x %d to %d x %d pixels and filled with the padding or the "
+                 "lowest value",
                  tilt_deg, lean_mm, stack_.first().size_px.x, stack_.first().size_px.y, plan_.size_px.x,
                  plan_.size_px.y));
     else if (tag_deg > 0.5)  // files give the tag to half a degree or better
@@ -323,6 +541,8 @@ class Layer {
   std::vector<double> gaps_mm_;     ///< gap i lies between slices i and i + 1
   std::vector<std::size_t> hole_gaps_;
   std::size_t step_count_ = 0;
+  glm::dvec3 rounding_mm_{0.0};  ///< decimal step of the positions' coordinates
+  std::optional<Even> even_;     ///< set: the slices are taken as evenly spaced
 };
 
 }  // namespace
@@ -337,8 +557,9 @@ bool SlicePlan::is_copy() const {
 Lattice lattice_of(const DicomStack& stack, const SlicePlan& plan) {
   const glm::dvec3 row_mm = stack.along_row * stack.first().spacing_mm.x;
   const glm::dvec3 column_mm = stack.along_column * stack.first().spacing_mm.y;
-  const glm::dvec3 first_mm = stack.first().first_mm + row_mm * static_cast<double>(plan.low_px.x) +
-                              column_mm * static_cast<double>(plan.low_px.y);
+  const glm::dvec2 low_px = glm::dvec2(plan.low_px) + plan.origin_px;
+  const glm::dvec3 first_mm =
+      stack.first().first_mm + row_mm * low_px.x + column_mm * low_px.y + stack.normal * plan.low_mm;
   return {{plan.size_px, static_cast<int>(plan.sources.size())},
           glm::dmat4(glm::dvec4(row_mm, 0.0), glm::dvec4(column_mm, 0.0),
                      glm::dvec4(stack.normal * plan.step_mm, 0.0), glm::dvec4(first_mm, 1.0))};

@@ -18,8 +18,11 @@ struct SlicePlan {
   };
   std::vector<Source> sources;  ///< of each slice of the lattice
   double step_mm = 1.0;
-  bool leans = false;    ///< slices are shifted aside against each other
-  glm::ivec2 low_px{0};  ///< first pixel of the lattice, in pixels of the first slice
+  double low_mm = 0.0;               ///< height of the lattice's first slice above the stack's first
+  bool leans = false;                ///< slices are shifted aside against each other
+  std::vector<glm::dvec2> aside_px;  ///< of each slice of the stack, from `origin_px`; empty: none leans
+  glm::dvec2 origin_px{0.0};         ///< in pixels of the first slice, whose own place may be noisy
+  glm::ivec2 low_px{0};              ///< first pixel of the lattice, from `origin_px`
   glm::ivec2 size_px{0};
   std::vector<Hole> holes;
   std::size_t slice_count = 0;  ///< of the stack
@@ -38,10 +41,12 @@ constexpr double longest_unmeasured_mm() {
 }
 
 /// Lays a lattice through an ordered stack. Its step is the finest distance that at least a fifth of the
-/// neighbours have. A gap of more than one and a half steps is a hole, unless at least three like it follow
-/// each other and the slices are numbered without a break: then the protocol has two distances. Findings:
-/// slice_spacing, missing_slices, gantry_tilt, sideways. Throws Error, Input, if the lattice would have more
-/// than four times as many slices as the stack, or a slice lies beside the others.
+/// neighbours have. Slices whose positions scatter around an even distance, by a tenth of it or by what the
+/// positions' decimals round, are copied: the tags err there, not the scanner. So are slices that scatter
+/// sideways by up to half a pixel. A gap of more than one and a half steps is a hole, unless at least three
+/// like it follow each other and the slices are numbered without a break: then the protocol has two
+/// distances. Findings: slice_spacing, missing_slices, gantry_tilt, sideways. Throws Error, Input, if the
+/// lattice would have more than four times as many slices as the stack, or a slice lies beside the others.
 SlicePlan slice_plan(const DicomStack& stack, const std::filesystem::path& path, std::vector<Finding>& audit);
 
 }  // namespace octotomy::voxel

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "voxel/scan/audit.h"
@@ -24,6 +25,9 @@ class StackAudit {
     audit_spacing_tag();
     audit_instance_order();
     audit_acr_nema();
+    audit_numbers();
+    audit_aspect();
+    audit_frames();
   }
 
  private:
@@ -76,7 +80,7 @@ class StackAudit {
     std::string same;
     for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait) {
       const DicomTrait& kind = dicom_traits[trait];
-      if (kind.role == TraitRole::Identity) continue;
+      if (kind.role != TraitRole::Stack && kind.role != TraitRole::Uniformity) continue;
       const bool is_type = kind.check == std::string("image_type");
       const Values values = values_of([&](const DicomSlice& slice) {
         const std::string& value = slice.traits[trait];
@@ -165,9 +169,13 @@ class StackAudit {
     }
     const std::optional<double> thickness_mm = stack_.first().thickness_mm;
     if (stack_.slices.size() < 2 || !thickness_mm || *thickness_mm <= 0.0) return;
-    const double gap_mm = usual_gap_mm();
+    double gap_mm = usual_gap_mm();
     // Headers give both to two decimals or better.
     const double tolerance_mm = 0.02 + 0.01 * gap_mm;
+    // Of positions that are rounded to more, the mean is exact.
+    const double mean_mm =
+        stack_.height_mm(stack_.slices.back()) / static_cast<double>(stack_.slices.size() - 1);
+    if (std::abs(*thickness_mm - mean_mm) <= tolerance_mm) gap_mm = mean_mm;
     if (*thickness_mm < gap_mm - tolerance_mm)
       find("slice_thickness", Verdict::Warn,
            print("slices of %.4g mm lie %.4g mm apart: %.3g mm between them were not measured", *thickness_mm,
@@ -216,6 +224,61 @@ class StackAudit {
            "check that left and right are not exchanged");
   }
 
+  /// "a.dcm, b.dcm" of the slices whose header has a text, and the first text.
+  struct Noted {
+    std::vector<std::string> names;
+    std::string text;
+  };
+  Noted noted(std::string DicomSlice::*text) const {
+    Noted found;
+    for (const DicomSlice& slice : stack_.slices)
+      if (!(slice.*text).empty()) {
+        if (found.names.empty()) found.text = slice.*text;
+        found.names.push_back(slice.name);
+      }
+    return found;
+  }
+
+  void audit_numbers() {
+    if (const Noted commas = noted(&DicomSlice::decimal_commas); !commas.names.empty())
+      find("decimal_commas", Verdict::Warn,
+           commas.text + " hold commas, read as decimal points, in " + slices(commas.names.size()) + ": " +
+               listed(commas.names),
+           commas.names);
+    if (const Noted mapping = noted(&DicomSlice::real_world); !mapping.names.empty())
+      find("real_world_values", Verdict::Warn,
+           "a Real World Value Mapping (" + mapping.text + ") is in " + slices(mapping.names.size()) +
+               " and is not applied: values are those of the rescale");
+  }
+
+  void audit_aspect() {
+    std::vector<std::string> names;
+    std::string told;
+    for (const DicomSlice& slice : stack_.slices) {
+      const double spacing_ratio = slice.spacing_mm.y / slice.spacing_mm.x;
+      // Both are given with few digits; a hundredth distorts a head by two millimetres.
+      if (!slice.aspect_ratio || std::abs(*slice.aspect_ratio / spacing_ratio - 1.0) < 0.01) continue;
+      if (names.empty())
+        told = print("PixelAspectRatio makes pixels %.4g times as high as wide, PixelSpacing %.4g times",
+                     *slice.aspect_ratio, spacing_ratio);
+      names.push_back(slice.name);
+    }
+    if (!names.empty())
+      find("pixel_aspect", Verdict::Warn,
+           told + ": PixelSpacing is used; compare the head's width with its length: " + listed(names),
+           names);
+  }
+
+  void audit_frames() {
+    if (const Noted placed = noted(&DicomSlice::assumed_place); !placed.names.empty())
+      find("frame_positions", Verdict::Warn,
+           slices(placed.names.size()) + " have no position of their own and are placed by " + placed.text +
+               ": check that head and feet are not exchanged");
+    if (const Noted excess = noted(&DicomSlice::excess_pixels); !excess.names.empty())
+      find("pixel_data", excess.text.find("images") != std::string::npos ? Verdict::Fail : Verdict::Warn,
+           "the file holds " + excess.text + "; the rest is not read: " + listed(excess.names), excess.names);
+  }
+
   const DicomStack& stack_;
   std::vector<Finding>& audit_;
 };
@@ -224,6 +287,71 @@ class StackAudit {
 
 void audit_stack(const DicomStack& stack, std::vector<Finding>& audit) {
   StackAudit(stack, audit).run();
+}
+
+void audit_join(const DicomStack& stack, std::vector<Finding>& audit) {
+  std::map<std::string, std::size_t> series;
+  for (const DicomSlice& slice : stack.slices) ++series[slice.series_uid];
+  std::string of = std::to_string(series.size()) + " series";
+  for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait) {
+    if (dicom_traits[trait].role != TraitRole::Origin) continue;
+    std::map<std::string, std::size_t> values;
+    for (const DicomSlice& slice : stack.slices) ++values[slice.traits[trait]];
+    if (values.size() > 1)
+      of += ", " + std::to_string(values.size()) + " values of " + dicom_traits[trait].words;
+  }
+  std::string apart = "one place";
+  if (stack.slices.size() > 1) {
+    double least_mm = std::numeric_limits<double>::infinity(), most_mm = 0.0;
+    for (std::size_t i = 1; i < stack.slices.size(); ++i) {
+      const double gap_mm = stack.height_mm(stack.slices[i]) - stack.height_mm(stack.slices[i - 1]);
+      least_mm = std::min(least_mm, gap_mm);
+      most_mm = std::max(most_mm, gap_mm);
+    }
+    apart = print("%.4g to %.4g mm apart", least_mm, most_mm);
+  }
+  audit.push_back(
+      {"join", Verdict::Fail,
+       "joined as asked: " + slices(stack.slices.size()) + " of " + of + ", " + apart +
+           ". Their headers do not say that their positions count from one origin: check the pictures for "
+           "steps between slices"});
+}
+
+void audit_counts(const DicomStack& stack, std::vector<Finding>& audit) {
+  int stated = 0;
+  for (const DicomSlice& slice : stack.slices) stated = std::max(stated, slice.stated_images.value_or(0));
+  if (stated > static_cast<int>(stack.slices.size()))
+    audit.push_back(
+        {"image_count", Verdict::Warn,
+         print(
+             "the header states %d images in the acquisition, and %zu are in the stack: check that all were "
+             "exported",
+             stated, stack.slices.size())});
+  struct Parts {
+    std::vector<int> numbers;
+    int total = 0;
+  };
+  std::map<std::string, Parts> concatenations;
+  for (const DicomSlice& slice : stack.slices) {
+    const Concatenation& part = slice.concatenation;
+    if (part.uid.empty() && part.total < 2) continue;
+    Parts& parts = concatenations[part.uid];
+    parts.total = std::max({parts.total, part.total, part.number});
+    if (std::find(parts.numbers.begin(), parts.numbers.end(), part.number) == parts.numbers.end())
+      parts.numbers.push_back(part.number);
+  }
+  for (const auto& [uid, parts] : concatenations) {
+    std::string missing;
+    for (int number = 1; number <= std::min(parts.total, 9999); ++number)
+      if (std::find(parts.numbers.begin(), parts.numbers.end(), number) == parts.numbers.end())
+        missing += (missing.empty() ? "" : ", ") + std::to_string(number);
+    if (!missing.empty())
+      audit.push_back({"concatenation", Verdict::Fail,
+                       print("the image is stored in %d files (InConcatenationTotalNumber), of which %zu "
+                             "are here; missing: ",
+                             parts.total, parts.numbers.size()) +
+                           missing.substr(0, 200) + "; export it again"});
+  }
 }
 
 }  // namespace octotomy::voxel

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace octotomy::voxel {
@@ -11,11 +12,27 @@ namespace octotomy::voxel {
 Range range(const Scene& scene) {
   assert(scene.lattice.sample_count() > 0);
   return std::visit(
-      [](const auto& samples) {
-        const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
-        return Range{static_cast<double>(*low), static_cast<double>(*high)};
+      [&](const auto& samples) {
+        if (!scene.padding) {
+          const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
+          return Range{static_cast<double>(*low), static_cast<double>(*high)};
+        }
+        Range found{std::numeric_limits<double>::infinity(), *scene.padding};
+        for (const auto sample : samples) {
+          const auto value = static_cast<double>(sample);
+          if (value == *scene.padding) continue;
+          found.low = std::min(found.low, value);
+          found.high = std::max(found.high, value);
+        }
+        found.low = std::min(found.low, found.high);
+        return found;
       },
       scene.samples);
+}
+
+double above_padding(const Scene& scene, double low) {
+  if (!scene.padding || low > *scene.padding) return low;
+  return std::nextafter(*scene.padding, std::numeric_limits<double>::infinity());
 }
 
 std::string unit(const Scene& scene) {
@@ -73,6 +90,13 @@ double interpolate(const Scene& scene, const glm::dvec3& p_voxel) {
           return static_cast<double>(
               samples[row * static_cast<std::size_t>(dims.x) + static_cast<std::size_t>(i.x)]);
         };
+        if (scene.padding)
+          for (int corner = 0; corner < 8; ++corner) {
+            const glm::ivec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+            const glm::dvec3 share = glm::mix(1.0 - t, t, glm::dvec3(side));
+            if (share.x * share.y * share.z > 0.0 && at(side.x, side.y, side.z) == *scene.padding)
+              return *scene.padding;
+          }
         const auto along_x = [&](int y, int z) { return at(0, y, z) * (1.0 - t.x) + at(1, y, z) * t.x; };
         const auto along_y = [&](int z) { return along_x(0, z) * (1.0 - t.y) + along_x(1, z) * t.y; };
         return along_y(0) * (1.0 - t.z) + along_y(1) * t.z;

@@ -63,7 +63,13 @@ struct Scene {
   /// Of a label map whose labels overlap: each number that stands for several labels, with those labels in
   /// ascending order.
   std::map<int, std::vector<int>> overlaps = {};
+  /// The sample that stands where the scanner measured nothing; below every measured one. No interpolation
+  /// may mix it with a measurement. None: every sample is a measurement.
+  std::optional<double> padding = {};
 };
+
+/// A window's lower bound, raised above the padding: what was not measured lies in no window.
+double above_padding(const Scene& scene, double low);
 
 /// First and last slice of a lattice whose centres lie inside a hole.
 struct SliceRange {
@@ -73,7 +79,8 @@ struct SliceRange {
 /// None if no slice's centre lies inside the hole, or the lattice's slices are not the hole's.
 std::optional<SliceRange> slices_inside(const Lattice& lattice, const Hole& hole);
 
-/// Smallest and largest sample. Precondition: the scene is not empty.
+/// Smallest and largest measured sample; the padding itself if nothing was measured. Precondition: the scene
+/// is not empty.
 struct Range {
   double low = 0.0;
   double high = 0.0;
@@ -88,7 +95,8 @@ std::string unit(const Scene& scene);
 void check(const Scene& scene);
 
 /// The sample at a position in index space by trilinear interpolation; positions outside take the nearest
-/// border sample. Precondition: the scene passes check().
+/// border sample; the padding if one of the samples that it would be made of is. Precondition: the scene
+/// passes check().
 double interpolate(const Scene& scene, const glm::dvec3& p_voxel);
 
 }  // namespace octotomy::voxel

@@ -143,6 +143,7 @@ Octree octree_of_blocks(const Universe& universe, const std::function<Block(cons
 
 Octree octree_of_window(const Universe& universe, const Scene& scene, double low, double high) {
   check_fits(universe, scene);
+  low = above_padding(scene, low);
   const glm::ivec3 dims = scene.lattice.dims;
   const auto row_start = [&](int y, int z) {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(y)) *

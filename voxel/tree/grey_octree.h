@@ -125,7 +125,8 @@ inline constexpr std::int16_t beyond_scan = -1024;
 
 /// Samples the scene at the universe's voxel centres: exactly if the lattices coincide, otherwise by
 /// trilinear interpolation rounded to the nearest integer, halves upward. Voxels whose centre lies outside
-/// the scene's bounds become `background`. Throws std::invalid_argument if float samples leave the int16
+/// the scene's bounds, or whose sample would be made of the scene's padding, become `background` and are no
+/// part of scan(): no window holds them. Throws std::invalid_argument if float samples leave the int16
 /// range; Stopped. Parallel; same bits on any thread count. GreyOctreeBuild (grey_octree_build.h) makes it
 /// while the scan is read. Memory: the samples within the scan's bounds and three per cent, without blocks of
 /// 16 x 16 x 16 voxels that have one value, as air beside a head has.

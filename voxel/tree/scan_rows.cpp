@@ -121,10 +121,30 @@ std::uint16_t ScanRows::copy(const Sample* samples, const glm::ivec3& first, std
   for (int i = begin; i < end; ++i) {
     if constexpr (std::is_same_v<Sample, std::int16_t>)
       row[i] = source[i];
-    else
+    else if (!scene_.padding || static_cast<double>(source[i]) != *scene_.padding)
       row[i] = rounded(source[i]);
   }
-  return static_cast<std::uint16_t>((0xffff >> (length - end)) & (0xffff << begin));
+  unsigned inside = (0xffffU >> (length - end)) & (0xffffU << begin);
+  if (scene_.padding)
+    for (int i = begin; i < end; ++i)
+      if (static_cast<double>(source[i]) == *scene_.padding) {
+        row[i] = background_;
+        inside &= ~(1U << i);
+      }
+  return static_cast<std::uint16_t>(inside);
+}
+
+template <typename Sample>
+bool ScanRows::is_mixed(const Sample* samples, const std::array<Place, 3>& at) const {
+  const auto& [x, y, z] = at;
+  for (int corner = 0; corner < 8; ++corner) {
+    const bool right = (corner & 1) != 0, back = (corner & 2) != 0, up = (corner & 4) != 0;
+    const double share =
+        (right ? x.share : 1.0 - x.share) * (back ? y.share : 1.0 - y.share) * (up ? z.share : 1.0 - z.share);
+    const Sample* own = samples + index(back ? y.high : y.low, up ? z.high : z.low);
+    if (share > 0.0 && static_cast<double>(own[right ? x.high : x.low]) == *scene_.padding) return true;
+  }
+  return false;
 }
 
 template <typename Sample>
@@ -134,6 +154,7 @@ std::uint16_t ScanRows::interpolate(const Sample* samples, const glm::ivec3& fir
     row[i] = background_;
     const auto [x, y, z] = places(first + glm::ivec3(i, 0, 0));
     if (!x.inside || !y.inside || !z.inside) continue;
+    if (scene_.padding && is_mixed(samples, {x, y, z})) continue;
     inside |= 1U << i;
     const auto along_x = [&, &x = x](int j, int k) {
       const Sample* own = samples + index(j, k);
@@ -182,7 +203,7 @@ int ScanRows::slices_read(int first, int last) const {
 
 const std::int16_t* ScanRows::own_samples(const glm::ivec3& origin) const {
   const auto* shorts = std::get_if<Int16Samples>(&scene_.samples);
-  if (shorts == nullptr || !offset_) return nullptr;
+  if (shorts == nullptr || !offset_ || scene_.padding) return nullptr;
   const glm::ivec3 first = origin + *offset_;
   if (glm::any(glm::lessThan(first, glm::ivec3(0))) || glm::any(glm::greaterThan(first + length, dims_)))
     return nullptr;
@@ -198,7 +219,7 @@ std::uint16_t ScanRows::read(const glm::ivec3& first, std::int16_t* row) const {
       [&](const auto& samples) {
         if (offset_) return copy(samples.data(), first + *offset_, row);
         if constexpr (std::is_same_v<std::decay_t<decltype(samples)>, Int16Samples>)
-          if (!along_[0].empty()) return interpolate_along(samples.data(), first, row);
+          if (!along_[0].empty() && !scene_.padding) return interpolate_along(samples.data(), first, row);
         return interpolate(samples.data(), first, row);
       },
       scene_.samples);

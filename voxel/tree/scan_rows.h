@@ -23,7 +23,8 @@ struct RowSteps {
 class ScanRows {
  public:
   static constexpr int length = 16;
-  /// Voxels whose centre lies outside the scene's bounds have the sample `background`.
+  /// Voxels whose centre lies outside the scene's bounds, or whose sample would be made of the scene's
+  /// padding, have the sample `background` and do not lie in the scan.
   ScanRows(const Universe& universe, const Scene& scene, std::int16_t background);
 
   /// How many of the scan's slices, from the first on, hold all samples that the universe's slices
@@ -31,7 +32,7 @@ class ScanRows {
   int slices_read(int first, int last) const;
 
   /// The sample of the first of 16 x 16 x 16 voxels from `origin` on, if all of them have samples of the
-  /// scan's own; else null. steps() lead to the others.
+  /// scan's own and the scan has no padding; else null. steps() lead to the others.
   const std::int16_t* own_samples(const glm::ivec3& origin) const;
   RowSteps steps() const;
 
@@ -52,6 +53,9 @@ class ScanRows {
   Place place(int axis, double p) const;
   std::array<Place, 3> places(const glm::ivec3& voxel) const;
   std::size_t index(int y, int z) const;
+  /// Whether padding is among the samples that a sample at a place is made of.
+  template <typename Sample>
+  bool is_mixed(const Sample* samples, const std::array<Place, 3>& at) const;
   template <typename Sample>
   std::uint16_t copy(const Sample* samples, const glm::ivec3& first, std::int16_t* row) const;
   template <typename Sample>

@@ -79,6 +79,31 @@ TEST(ReadDicom, RefusesFramesThatDoNotSayWhereTheyLieOrAreCutShort) {
       << reason(DicomBytes::file(explicit_little, cut));
 }
 
+TEST(ReadDicom, PlacesFramesByTheFirstOnesPositionAndTheirDistanceAndSaysSo) {
+  const ScratchFolder folder;
+  const Frames frames;
+  const std::string attributes = frames.attributes();
+  const std::size_t shared = attributes.find(DicomBytes::tag(0x52009229));
+  const std::size_t groups = attributes.find(DicomBytes::tag(0x52009230));
+  const std::size_t pixels = attributes.find(DicomBytes::tag(0x7fe00010));
+  const std::string first = DicomBytes::element(0x00200032, "DS", frames.position(0));
+  const std::string all =
+      DicomBytes::element(0x00200032, "DS",
+                          frames.position(0) + "\\" + frames.position(1) + "\\" + frames.position(2) + "\\" +
+                              frames.position(3) + "\\" + frames.position(4));
+  const std::string offsets = DicomBytes::element(0x3004000c, "DS", "0\\2\\4\\6\\8");
+  // The shared thickness of 2 mm; a vector of offsets; a list of all positions.
+  for (const std::string& places : {first, first + offsets, all}) {
+    write_bytes(folder / "frames.dcm",
+                DicomBytes::file(explicit_little, attributes.substr(0, shared) + places +
+                                                      attributes.substr(shared, groups - shared) +
+                                                      attributes.substr(pixels)));
+    const Scene scene = read_scene(folder / "frames.dcm");
+    expect_ramp(scene, frames);
+    EXPECT_EQ(tests::verdict(scene, "frame_positions"), Verdict::Warn);
+  }
+}
+
 TEST(ReadDicom, InflatesWhatIsDeflatedAsAWhole) {
   const ScratchFolder folder;
   const Frames frames;

@@ -98,7 +98,7 @@ TEST(DicomStacks, GroupsAreThoseOfTheFirstImageThatIsAlike) {
   std::vector<DicomSlice> images(6);
   for (std::size_t i = 0; i < images.size(); ++i) {
     images[i].size_px = {4, 4};
-    images[i].spacing_mm = glm::dvec2(1.0 + 0.6e-5 * static_cast<double>(i % 3));
+    images[i].spacing_mm = glm::dvec2(1.0 + 0.6e-2 * static_cast<double>(i % 3));
     images[i].instance_uid = std::to_string(i);
   }
   images[3].size_px = {4, 5};

@@ -128,7 +128,7 @@ TEST(SeriesAudit, KeepsTheCommonestOfMixedResolutions) {
   const Scene scene = read_spoiled(folder, [](Slice& slice, int k) {
     if (k == 3) slice.set(0x00280030, "DS", "0.6\\0.3");
   });
-  EXPECT_EQ(verdict(scene, "size"), Verdict::Warn);
+  EXPECT_EQ(verdict(scene, "size"), Verdict::Fail);
   EXPECT_NE(detail(scene, "size").find("kept 3 slices of 6 x 5 pixels of 0.25 x 0.5 mm, left 1 slice"),
             std::string::npos)
       << detail(scene, "size");
@@ -140,7 +140,7 @@ TEST(SeriesAudit, KeepsTheCommonestOfMixedOrientations) {
   const Scene scene = read_spoiled(folder, [](Slice& slice, int k) {
     if (k == 0) slice.set(0x00200037, "DS", "1\\0\\0\\0\\0\\-1");
   });
-  EXPECT_EQ(verdict(scene, "orientation"), Verdict::Warn);
+  EXPECT_EQ(verdict(scene, "orientation"), Verdict::Fail);
   EXPECT_NE(detail(scene, "orientation").find("kept 3 slices of axial"), std::string::npos)
       << detail(scene, "orientation");
   EXPECT_EQ(scene.lattice.dims.z, 3);

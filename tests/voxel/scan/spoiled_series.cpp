@@ -154,7 +154,7 @@ std::vector<SpoiledKind> of_identity() {
       {"another_frame_of_reference",
        "frame_of_reference",
        fail,
-       "another origin",
+       "another frame of reference",
        {"a05", "a06"},
        text(0x00200052, "UI", "1.8", 5, 6)},
       {"name_spelled_differently",
@@ -270,7 +270,7 @@ std::vector<SpoiledKind> of_values() {
       {"slope_negative", "rescale", fail, "below 0", {"a07"}, text(0x00281053, "DS", "-1", 7, 7)},
       {"slope_beyond_single_precision",
        "unusable_images",
-       warn,
+       fail,
        "beyond single precision",
        {"a07"},
        text(0x00281053, "DS", "1e300", 7, 7)},
@@ -282,7 +282,7 @@ std::vector<SpoiledKind> of_values() {
        text(0x00281053, "DS", "1e300")},
       {"intercept_beyond_single_precision",
        "unusable_images",
-       warn,
+       fail,
        "beyond single precision",
        {"a07"},
        text(0x00281052, "DS", "-1e39", 7, 7)},
@@ -301,11 +301,11 @@ std::vector<SpoiledKind> of_values() {
        text(0x00280004, "CS", "MONOCHROME1", 2, 2)},
       {"palette_in_one",
        "unusable_images",
-       warn,
+       fail,
        "PALETTE COLOR",
        {"a02"},
        text(0x00280004, "CS", "PALETTE COLOR", 2, 2)},
-      {"colour_in_one", "unusable_images", warn, "colour", {"a02"}, number(0x00280002, 3, 2, 2)},
+      {"colour_in_one", "unusable_images", fail, "colour", {"a02"}, number(0x00280002, 3, 2, 2)},
       {"twelve_bits_in_one",
        "pixel_format",
        warn,
@@ -342,19 +342,19 @@ std::vector<SpoiledKind> of_places() {
       {"spacing_tag_wrong", "spacing_tag", warn, "by their positions", {}, text(0x00180088, "DS", "2.5")},
       {"size_in_one",
        "size",
-       warn,
+       fail,
        "left 1 slice: a03",
        {"a03"},
        both(number(0x00280010, 10, 3, 3), text(0x7fe00010, "OW", std::string(2 * columns * 10, 'x'), 3, 3))},
       {"pixel_spacing_in_one",
        "size",
-       warn,
+       fail,
        "left 1 slice: a03",
        {"a03"},
        text(0x00280030, "DS", "0.6\\0.6", 3, 3)},
       {"orientation_in_one",
        "orientation",
-       warn,
+       fail,
        "left 1 slice: a03",
        {"a03"},
        text(0x00200037, "DS", "1\\0\\0\\0\\0\\-1", 3, 3)},
@@ -413,19 +413,19 @@ std::vector<SpoiledKind> of_places() {
              })},
       {"position_of_no_place",
        "unusable_images",
-       warn,
+       fail,
        "ImagePositionPatient is beyond 1e9 mm",
        {"a03"},
        text(0x00200032, "DS", "1e300\\0\\0", 3, 3)},
       {"orientation_of_no_direction",
        "unusable_images",
-       warn,
+       fail,
        "not two unit vectors",
        {"a03"},
        text(0x00200037, "DS", "1e300\\0\\0\\0\\1\\0", 3, 3)},
       {"pixels_of_no_size",
        "unusable_images",
-       warn,
+       fail,
        "PixelSpacing is not 1e-6 to 1e6 mm",
        {"a03"},
        text(0x00280030, "DS", "1e-300\\1e-300", 3, 3)},
@@ -532,29 +532,29 @@ std::vector<SpoiledKind> of_files() {
        {{"report", DicomBytes::file("1.2.840.10008.1.2.1", DicomBytes::element(0x00080060, "CS", "SR"))}}},
       {"slice_without_position",
        "unusable_images",
-       warn,
+       fail,
        "ImagePositionPatient",
        {"a02"},
        without({0x00200032}, 2, 2)},
       {"slice_without_orientation",
        "unusable_images",
-       warn,
+       fail,
        "ImageOrientationPatient",
        {"a02"},
        without({0x00200037}, 2, 2)},
       {"slice_without_spacing",
        "unusable_images",
-       warn,
+       fail,
        "PixelSpacing",
        {"a02"},
        without({0x00280030}, 2, 2)},
       {"slice_without_pixels",
        "unusable_images",
-       warn,
+       fail,
        "without pixels",
        {"a02"},
        without({0x7fe00010}, 2, 2)},
-      {"pixels_of_odd_bits", "unusable_images", warn, "24 bits", {"a02"}, number(0x00280100, 24, 2, 2)},
+      {"pixels_of_odd_bits", "unusable_images", fail, "24 bits", {"a02"}, number(0x00280100, 24, 2, 2)},
       {"nothing_but_notes",
        "refused",
        fail,
@@ -641,6 +641,159 @@ std::vector<SpoiledKind> that_are_read() {
        "",
        {},
        [](Images& images) { each(images, [](SpoiledImage& image, int) { image.has_preamble = false; }); }},
+  };
+}
+
+/// Tags whose values are noisy, rounded, spelled otherwise, or contradict each other and the pixels.
+std::vector<SpoiledKind> of_statements() {
+  const auto rounded_to = [](double step_mm, double gap_mm) {
+    return [=](Images& images) {
+      each(images, [=](SpoiledImage& image, int i) {
+        image.place(-6, -5, step_mm * std::round((30 + gap_mm * i) / step_mm));
+        image.text(0x00180050, "DS", decimal(gap_mm));
+      });
+    };
+  };
+  const auto swapped_columns = [](const std::string& pixels) {
+    std::string turned_bytes;
+    for (int y = 0; y < rows; ++y)
+      for (int x = columns - 1; x >= 0; --x)
+        turned_bytes += pixels.substr(2 * static_cast<std::size_t>(y * columns + x), 2);
+    return turned_bytes;
+  };
+  return {
+      {"positions_to_whole_millimetres", "slice_spacing", warn, "rounded to 1 mm", names("a", 0, 11),
+       rounded_to(1.0, 1.25)},
+      {"positions_that_scatter",
+       "sideways",
+       warn,
+       "kept in line",
+       {"a00", "a02", "a04", "a06", "a08", "a10"},
+       [](Images& images) {
+         each(images, [](SpoiledImage& image, int i) {
+           image.place(-6 + 0.1 * ((i * 3) % 4 == 0 ? 1 : (i * 3) % 4 == 2 ? -1 : 0), -5, 30 + 2 * i);
+         });
+       }},
+      {"comma_in_the_spacing", "decimal_commas", warn, "PixelSpacing", names("a", 0, 11),
+       text(0x00280030, "DS", "0,5\\0,5")},
+      {"comma_in_the_intercept",
+       "decimal_commas",
+       warn,
+       "RescaleIntercept",
+       {"a03"},
+       text(0x00281052, "DS", "-1024,0", 3, 3)},
+      {"intercept_that_is_no_number",
+       "unusable_images",
+       fail,
+       "RescaleIntercept '-1024;0' cannot be read",
+       {"a03"},
+       text(0x00281052, "DS", "-1024;0", 3, 3)},
+      {"aspect_against_the_spacing", "pixel_aspect", warn, "0.5 times as high", names("a", 0, 11),
+       text(0x00280034, "IS", "1\\2")},
+      {"values_beyond_the_stored_bits", "stored_bits", fail, "beyond the 10", names("a", 1, 10),
+       both(number(0x00280101, 10), number(0x00280102, 9))},
+      {"fewer_than_stated", "image_count", warn, "states 14 images", {}, text(0x00201002, "IS", "14")},
+      {"two_of_three_parts",
+       "concatenation",
+       fail,
+       "missing: 3",
+       {},
+       [](Images& images) {
+         each(images, [](SpoiledImage& image, int i) {
+           image.text(0x00209161, "UI", "1.2.77");
+           image.number(0x00209162, static_cast<std::uint16_t>(i / 6 + 1));
+           image.number(0x00209163, 3);
+         });
+       }},
+      {"pixels_of_two_images",
+       "pixel_data",
+       fail,
+       "pixels of 2 images",
+       {"a04"},
+       [](Images& images) { images[4].elements[0x7fe00010].second += pixels_of(5); }},
+      {"some_bytes_more",
+       "pixel_data",
+       warn,
+       "6 bytes",
+       {"a04"},
+       [](Images& images) { images[4].elements[0x7fe00010].second += "sixsix"; }},
+      {"one_mirrored",
+       "mirrored_slices",
+       fail,
+       "1 mirrored along its rows",
+       {"a04"},
+       [=](Images& images) {
+         each(images, [=](SpoiledImage& image, int i) {
+           // A shape that no mirror leaves as it is.
+           std::string pixels;
+           for (int y = 0; y < rows; ++y)
+             for (int x = 0; x < columns; ++x)
+               pixels += DicomBytes::number(std::hypot(x - 7, y - 8, i - 5) < 6.5 ? 1424U : 24U, 2);
+           image.text(0x7fe00010, "OW", i == 4 ? swapped_columns(pixels) : pixels);
+         });
+       }},
+      {"one_of_noise",
+       "unlike_slices",
+       fail,
+       "1 slice unlike",
+       {"a04"},
+       [](Images& images) {
+         std::string pixels;
+         for (std::uint32_t i = 0, value = 1; i < rows * columns; ++i) {
+           value = value * 1664525U + 1013904223U;
+           pixels += DicomBytes::number(value >> 21, 2);
+         }
+         images[4].text(0x7fe00010, "OW", pixels);
+       }},
+      {"rows_and_columns_exchanged",
+       "rows_columns",
+       fail,
+       "Rows (24) and Columns (20)",
+       {},
+       both(number(0x00280010, columns), number(0x00280011, rows))},
+      {"spacing_of_a_tenth",
+       "plausible_size",
+       warn,
+       "smaller than any organ",
+       {},
+       text(0x00280030, "DS", "0.05\\0.05")},
+      {"spacing_in_micrometres",
+       "plausible_size",
+       warn,
+       "instead of 500 mm",
+       {},
+       text(0x00280030, "DS", "500\\500")},
+      {"a_series_for_each_image",
+       "series",
+       fail,
+       "--join reads them as one",
+       {},
+       [](Images& images) {
+         each(images, [](SpoiledImage& image, int i) {
+           image.text(0x0020000e, "UI", "1.2.3.4." + std::to_string(i));
+         });
+       }},
+      {"a_frame_of_reference_for_each_image", "frame_of_reference", fail, "--join keeps them",
+       names("a", 1, 11),
+       [](Images& images) {
+         each(images, [](SpoiledImage& image, int i) {
+           image.text(0x00200052, "UI", "1.7." + std::to_string(i + 10));
+         });
+       }},
+      {"two_times_at_each_place", "stacks", fail, "time 2 of 2", names("b", 0, 10),
+       doubled(0x00080032, "TM", "120000", "120500")},
+      {"syntax_that_is_not_known",
+       "unusable_images",
+       fail,
+       "transfer syntax 1.2.840.113619.5.2",
+       {"a04"},
+       [](Images& images) { images[4].syntax = "1.2.840.113619.5.2"; }},
+      {"real_world_values",
+       "real_world_values",
+       warn,
+       "is not applied",
+       {},
+       text(0x00409096, "SQ", DicomBytes::item(DicomBytes::element(0x00409210, "SH", "PD")))},
   };
 }
 
@@ -745,7 +898,7 @@ const std::vector<SpoiledKind>& spoiled_kinds() {
   static const std::vector<SpoiledKind> kinds = [] {
     std::vector<SpoiledKind> all;
     for (const auto& group :
-         {of_identity(), of_stacks(), of_values(), of_places(), of_files(), that_are_read()})
+         {of_identity(), of_stacks(), of_values(), of_places(), of_files(), of_statements(), that_are_read()})
       all.insert(all.end(), group.begin(), group.end());
     return all;
   }();

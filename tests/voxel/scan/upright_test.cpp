@@ -51,7 +51,8 @@ TEST(Upright, ASampleBetweenLeaningSlicesIsMadeOfBothOrIsTheFill) {
   SlicePlan plan;
   plan.sources = {{0, 0, 0.0}, {0, 1, 0.5}, {1, 1, 0.0}};
   plan.size_px = {7, 1};
-  const SceneSamples made = upright_samples(plan, {4, 1}, aside_px, stored);
+  plan.aside_px = aside_px;
+  const SceneSamples made = upright_samples(plan, {4, 1}, stored);
   const auto& samples = std::get<FloatSamples>(made);
   const float fill = stored.front();
   for (int x = 0; x < 7; ++x) {

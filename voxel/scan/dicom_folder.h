@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace octotomy::voxel {
+
+struct FolderFiles {
+  std::vector<std::filesystem::path> files;  ///< of a folder and its subfolders, sorted
+  std::vector<std::filesystem::path>
+      staged;  ///< folders of files that a run has not put in their place, sorted
+};
+
+bool is_folder(const std::filesystem::path& path);
+
+/// The files of a folder and its subfolders, or the one file that the path names. Throws Error, Input, if the
+/// folder cannot be listed.
+FolderFiles files_of(const std::filesystem::path& path);
+
+}  // namespace octotomy::voxel

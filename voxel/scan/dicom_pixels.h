@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "voxel/scan/dicom_slice.h"
+
+namespace octotomy::voxel {
+
+/// What decoding a slice showed.
+struct DecodedSlice {
+  bool fits = true;               ///< every value is an integer in the samples' range
+  std::size_t foreign_count = 0;  ///< pixels with bits outside of BitsStored that are no copy of the sign
+};
+
+/// Whether two images store the same pixels in the same way. Throws Error, Input, if a file has changed.
+bool same_pixels(const DicomSlice& a, const DicomSlice& b);
+
+/// Decodes a slice and applies its Modality LUT or its rescale (absent, or a slope of 0: slope 1; absent:
+/// intercept 0), row by row, x fastest. Padded pixels become `padding_mark`; then a measured value at or
+/// below the mark does not fit. Precondition: `samples` has a place for every pixel. Throws Error, Input,
+/// with path and reason if the pixels cannot be decoded.
+DecodedSlice read_dicom_samples(const DicomSlice& slice, std::span<std::int16_t> samples,
+                                std::optional<std::int16_t> padding_mark = std::nullopt);
+/// Decodes to single precision.
+DecodedSlice read_dicom_samples(const DicomSlice& slice, std::span<float> samples,
+                                std::optional<float> padding_mark = std::nullopt);
+
+}  // namespace octotomy::voxel
