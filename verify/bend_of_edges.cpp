@@ -29,7 +29,7 @@ OCTOTOMY_VECTOR_CLONES void measure_faces(FaceBatch& faces, const BendFrame& wit
     faces.across.set(i, across);
     faces.size[i] = glm::length(across);
     faces.along.set(i, across * frame.units);
-    faces.part.set(i, glm::floor(frame.from_lps * ((a + b + c) / 3.0) / frame.part_samples));
+    faces.part.set(i, glm::floor(frame.from_lps * ((a + b + c) / 3.0 - frame.origin_mm) / frame.part_samples));
   }
 }
 
@@ -60,7 +60,7 @@ OCTOTOMY_VECTOR_CLONES void bend_edges(EdgeBatch& edges, const BendFrame& within
     edges.mm[i] = 0.5 * glm::length(along) * edges.angle[i];
     edges.spacing_mm[i] = glm::length((t * frame.units) * frame.spacing_mm);
     edges.inverse[i] = glm::length(frame.from_lps * t);
-    edges.part.set(i, glm::floor(frame.from_lps * middle / frame.part_samples));
+    edges.part.set(i, glm::floor(frame.from_lps * (middle - frame.origin_mm) / frame.part_samples));
     edges.cell.set(i, glm::floor(middle / frame.cell_mm));
   }
 }

@@ -12,7 +12,9 @@
 #include <tuple>
 
 #include "convert/surface/isosurface.h"
+#include "verify/drawn_solid.h"
 #include "verify/phantom_scan.h"
+#include "verify/two_phase.h"
 #include "voxel/scan/upright.h"
 #include "voxel/space/shared_progress.h"
 
@@ -29,7 +31,7 @@ constexpr std::array<const char*, 3> samplings{"shares", "blurred, noise", "tilt
 
 /// An error over the truth, and over its half-width.
 struct Error {
-  double relative = 0.0, share = 0.0;
+  double relative = 0.0, share = 0.0, width = 0.0;
 };
 struct Errors {
   std::size_t group = 0, spacing = 0, sampling = 0;
@@ -38,8 +40,10 @@ struct Errors {
 
 Error error_of(const Interval& found, double truth) {
   const double error = found.value - truth;
-  return {error / truth, found.half_width > 0.0 ? std::abs(error) / found.half_width
-                                                : std::numeric_limits<double>::infinity()};
+  return {
+      error / truth,
+      found.half_width > 0.0 ? std::abs(error) / found.half_width : std::numeric_limits<double>::infinity(),
+      found.half_width / truth};
 }
 
 /// The samples, interpolated linearly; beyond the outermost ones the nearest.
@@ -120,10 +124,68 @@ IntervalCoverage coverage_of(std::vector<Error> errors) {
   std::sort(errors.begin(), errors.end(),
             [](const Error& a, const Error& b) { return std::abs(a.relative) < std::abs(b.relative); });
   found.p99_error_percent = 100.0 * std::abs(errors[at(0.99)].relative);
+  std::sort(errors.begin(), errors.end(), [](const Error& a, const Error& b) { return a.width < b.width; });
+  found.median_width_percent = 100.0 * errors[at(0.5)].width;
   return found;
 }
 
+/// The intervals of a solid drawn by chance, as its scan shows them.
+Errors drawn_errors_of(std::uint64_t seed, std::size_t number) {
+  Errors errors;
+  errors.group = number % drawn_groups().size();
+  Chance chance((seed << 32) + number);
+  const DrawnSolid solid = drawn_solid(drawn_groups()[errors.group].name, chance);
+  const DrawnScan how = drawn_scan(chance);
+  const voxel::Scene scan = scan_of(solid, how, chance);
+  SizeIntervals found = nothing_found(how.spacing_mm);
+  if (const std::optional<TwoPhase> phases = two_phase(scan, how.half())) {
+    found.volume_mm3 = phases->volume_mm3;
+    found.area_mm2 = phases->area_mm2;
+  } else {
+    const brep::Solid surface =
+        brep::trusted_solid(convert::isosurface(scan, how.half(), std::numeric_limits<double>::infinity()),
+                            brep::Proof::Construction);
+    SampledFrom from;
+    from.sample_edges = glm::dmat3(scan.lattice.lps_from_voxel);
+    from.sample_at_mm = glm::dvec3(scan.lattice.lps_from_voxel[3]);
+    from.blur_samples2 = blur_of(surface, from.sample_edges, sampler_of(scan));
+    if (!surface.empty()) found = size_intervals(surface, from);
+  }
+  errors.volume = error_of(found.volume_mm3, solid.volume_mm3);
+  errors.area = error_of(found.area_mm2, solid.area_mm2);
+  return errors;
+}
+
 }  // namespace
+
+std::vector<IntervalCoverage> drawn_suite(const IntervalSuiteOptions& options) {
+  if (options.solids < 1) throw std::invalid_argument("a suite of intervals takes at least one solid");
+  std::vector<Errors> all(static_cast<std::size_t>(options.solids));
+  voxel::SharedProgress done(options.progress, all.size());
+  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+    done.one_more();
+    all[i] = drawn_errors_of(options.seed, i);
+  });
+  std::vector<IntervalCoverage> table;
+  const auto add = [&](bool of_volume, bool is_held_back, const std::string& group) {
+    std::vector<Error> errors;
+    for (const Errors& one : all) {
+      const DrawnGroup& its = drawn_groups()[one.group];
+      if (its.is_held_back == is_held_back && (group.empty() || group == its.name))
+        errors.push_back(of_volume ? one.volume : one.area);
+    }
+    if (errors.empty()) return;
+    table.push_back(coverage_of(std::move(errors)));
+    table.back().quantity = of_volume ? "volume" : "area";
+    table.back().group = group;
+    table.back().sampling = is_held_back ? "held back" : "calibrated";
+  };
+  for (const bool of_volume : {true, false}) {
+    for (const bool is_held_back : {true, false}) add(of_volume, is_held_back, "");
+    for (const DrawnGroup& group : drawn_groups()) add(of_volume, group.is_held_back, group.name);
+  }
+  return table;
+}
 
 std::vector<IntervalCoverage> interval_suite(const IntervalSuiteOptions& options) {
   if (options.solids < 1) throw std::invalid_argument("a suite of intervals takes at least one solid");

@@ -23,10 +23,14 @@
 // of six samples along each axis and by the direction of the normal, so that ripple and noise cancel. What
 // they leave over the surface, R, is the area that one step of smoothing takes away.
 //
-// The blur b^2 that samples show is doubt and not added to a value: a slope that blur would give may be the
-// object's own, as that of a ramp or of spongy bone.
+// None of this is added to a value, which is the triangles' own: it holds at the half level of a solid of one
+// density, and no threshold of a patient's scan is known to be one. Where a scan is known to have two
+// densities, two_phase.h has the value. The blur b^2 that samples show may be the object's own slope, too, as
+// that of a ramp or of spongy bone.
 //
-// sources  digitisation, edges: a share of what was added. blur: what blur would have taken, and a share of
+// sources  interpolation: all that a half level would lose, or the difference to samples counted, which do
+//          not depend on how samples are joined: between coarse slices the surface of a low threshold bulges,
+//          and that of thin walls shrinks. digitisation, edges: a share of the former. blur: what blur would have taken, and a share of
 //          it. flat: a plane along the lattice lies between samples of shares 1, f and 0, and linear
 //          interpolation misplaces it by up to 0.086 s, the whole of it alike. Noise
 //          tilts its triangles, so that a part whose mean normal is along the lattice counts whole. sheet:
@@ -77,14 +81,21 @@ struct Shape {
   double ripple_mm2 = 0.0;                               ///< R
   double curvature_mm = 0.0;                             ///< integral of H without sign
   double flat_mm3 = 0.0;  ///< area along the lattice, each part times the spacing across
+  /// By how much samples counted differ from the triangles, along the axis where they differ most.
+  double between_mm3 = 0.0;
 };
 
 class Measuring {
  public:
   Measuring(const brep::Solid& solid, const SampledFrom& from)
-      : linked_(solid.linked()), triangles_(linked_.triangles), has_cells_(from.along_lps_mm) {
+      : linked_(solid.linked()),
+        triangles_(linked_.triangles),
+        sample_at_mm_(from.sample_at_mm),
+        has_cells_(from.along_lps_mm) {
     const glm::dmat3& edges = from.sample_edges;
     frame_.from_lps = glm::inverse(edges);
+    // Vertices have whole coordinates in samples: between such planes rounding moves none to the next part.
+    frame_.origin_mm = from.sample_at_mm + edges * glm::dvec3(0.123, 0.147, 0.161);
     for (int axis = 0; axis < 3; ++axis) {
       frame_.spacing_mm[axis] = glm::length(edges[axis]);
       frame_.units[axis] = edges[axis] / frame_.spacing_mm[axis];
@@ -112,6 +123,7 @@ class Measuring {
     });
     cells_mm_.each([&](double cell_mm) { triangles_as_they_are_.curvature_mm += std::abs(cell_mm); });
     smooth();
+    find_between();
     return shape_;
   }
   const AreaAndCurvature& triangles() const { return triangles_as_they_are_; }
@@ -125,7 +137,7 @@ class Measuring {
   static std::uint64_t numbered(const glm::dvec3& cell, const glm::dvec3& along) {
     int direction = 0;
     for (int axis = 1; axis < 3; ++axis)
-      if (std::abs(along[axis]) > std::abs(along[direction])) direction = axis;
+      if (std::abs(along[axis]) > (1.0 + 1e-9) * std::abs(along[direction])) direction = axis;
     auto key = static_cast<std::uint64_t>(along[direction] < 0.0 ? direction : direction + 3);
     for (int axis = 0; axis < 3; ++axis)
       key = (key << 20) |
@@ -251,6 +263,31 @@ class Measuring {
     shape_.curvature_mm = std::abs(shape_.curvature_mm);
   }
 
+  /// Where crossings lie on the lattice's edges, along each axis: counting samples sets them in the middle.
+  void find_between() {
+    std::vector<glm::dvec3> across(triangles_.points_mm.size(), glm::dvec3(0.0));
+    for (const auto& [a, b, c] : triangles_.faces) {
+      const glm::dvec3 area = glm::cross(point(b) - point(a), point(c) - point(a));
+      for (const std::uint32_t corner : {a, b, c}) across[corner] += area;
+    }
+    const glm::dvec3& spacing_mm = frame_.spacing_mm;
+    const double sample_mm3 = spacing_mm.x * spacing_mm.y * spacing_mm.z;
+    glm::dvec3 sum(0.0);
+    for (std::size_t v = 0; v < across.size(); ++v) {
+      const glm::dvec3 q = frame_.from_lps * (triangles_.points_mm[v] - sample_at_mm_);
+      const glm::dvec3 off = glm::abs(q - glm::round(q));
+      // Vertices keep a thousandth of an edge's distance from samples.
+      constexpr double on_line = 2e-4;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (off[axis] <= on_line || off[(axis + 1) % 3] > on_line || off[(axis + 2) % 3] > on_line) continue;
+        const double part = q[axis] - std::floor(q[axis]) - 0.5;
+        sum[axis] += std::copysign(part, part * glm::dot(across[v], frame_.units[axis])) * sample_mm3;
+      }
+    }
+    sum = glm::abs(sum);
+    shape_.between_mm3 = std::max({sum.x, sum.y, sum.z});
+  }
+
   /// Takes every point half-way to the mean of its neighbours; points of cuts stay. Each thread has points of
   /// its own and looks at all triangles for them, so that a point's sum goes by the triangles' order.
   void smooth() {
@@ -291,6 +328,7 @@ class Measuring {
   const brep::Linked& linked_;
   const brep::Triangles& triangles_;
   BendFrame frame_;
+  glm::dvec3 sample_at_mm_;
   bool has_cells_;
   CellTable<Part> parts_;
   CellTable<double> cells_mm_;  ///< the curvature in cells of three samples along the LPS axes
@@ -339,6 +377,19 @@ Interval summed(double value, std::vector<DoubtSource> sources) {
   return {value, biases + std::sqrt(squares), std::move(sources)};
 }
 
+void add(double share, const Interval& part, Interval& whole) {
+  whole.value += share * part.value;
+  whole.half_width += share * part.half_width;
+  for (const DoubtSource& source : part.sources) {
+    const auto known = std::find_if(whole.sources.begin(), whole.sources.end(),
+                                    [&](const DoubtSource& other) { return other.name == source.name; });
+    if (known == whole.sources.end())
+      whole.sources.push_back({source.name, source.formula, share * source.half_width, source.is_bias});
+    else
+      known->half_width += share * source.half_width;
+  }
+}
+
 /// What a sheet's half level loses on either side because the other side's blur reaches it.
 double sheet_mm3(const Shape& shape, double blur_samples2, double sample_mm) {
   if (!(shape.area_mm2 > 0.0) || !(shape.volume_mm3 > 0.0)) return 0.0;
@@ -374,10 +425,31 @@ SizeIntervals size_intervals(const brep::Solid& solid, const SampledFrom& from) 
     volume.push_back({"window", "area * shift for ten sample units", shape.area_mm2 * shift_mm});
     area.push_back({"window", "2 M * shift for ten sample units", 2.0 * shape.curvature_mm * shift_mm});
   }
-  const double volume_mm3 =
-      shape.volume_mm3 + voxel_mean * shape.bent_mm3 + chords * shape.chord_mm3 + 0.15 * shape.sharp_mm3;
-  const double area_mm2 = shape.area_mm2 + lost * shape.sharp_mm2 + 0.5 * shape.ripple_mm2;
-  return {summed(volume_mm3, std::move(volume)), summed(area_mm2, std::move(area)), measuring.triangles()};
+  const double lost_mm3 =
+      std::abs(voxel_mean * shape.bent_mm3 + chords * shape.chord_mm3 + 0.15 * shape.sharp_mm3);
+  volume.push_back({"interpolation", "largest of |B / 12 + 0.2 C + 0.15 F| and |V - samples counted|",
+                    std::max(lost_mm3, shape.between_mm3), true});
+  area.push_back({"interpolation", "0.28 E + 0.5 R", lost * shape.sharp_mm2 + 0.5 * shape.ripple_mm2, true});
+  return {summed(shape.volume_mm3, std::move(volume)), summed(shape.area_mm2, std::move(area)),
+          measuring.triangles()};
+}
+
+SizeIntervals nothing_found(const glm::dvec3& sample_mm) {
+  const double mm3 = sample_mm.x * sample_mm.y * sample_mm.z, mm = std::cbrt(mm3);
+  const double ball_mm3 = 4.0 / 3.0 * std::numbers::pi * mm3, ball_mm2 = 4.0 * std::numbers::pi * mm * mm;
+  return {{0.0, ball_mm3, {{"unseen", "a ball two samples across", ball_mm3}}},
+          {0.0, ball_mm2, {{"unseen", "a ball two samples across", ball_mm2}}},
+          {}};
+}
+
+SizeIntervals weighed(const std::vector<SharedIntervals>& parts) {
+  SizeIntervals whole;
+  for (const auto& [share, intervals] : parts) {
+    add(share, intervals.volume_mm3, whole.volume_mm3);
+    add(share, intervals.area_mm2, whole.area_mm2);
+    whole.triangles = intervals.triangles;
+  }
+  return whole;
 }
 
 double blur_of(const brep::Solid& solid, const glm::dmat3& sample_edges,

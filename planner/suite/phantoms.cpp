@@ -76,6 +76,30 @@ void add_intervals(const std::vector<verify::IntervalCoverage>& table,
   answer.more["intervals"] = std::move(json);
 }
 
+/// The same of solids drawn by chance, by class; classes held back from calibration apart from the others.
+void add_drawn(const std::vector<verify::IntervalCoverage>& table,
+               std::vector<std::pair<std::string, std::string>>& rows, SuiteAnswer& answer) {
+  Json json = Json::array();
+  for (const verify::IntervalCoverage& row : table) {
+    const bool all = row.group.empty();
+    const double width = row.p99_share > 0.0 ? 1.0 / row.p99_share : 0.0;
+    json.push_back({{"quantity", row.quantity},
+                    {"class", all ? "all" : row.group},
+                    {"calibration", row.sampling},
+                    {"solids", row.cases},
+                    {"held_percent", 100.0 * row.held},
+                    {"median_width_percent", row.median_width_percent},
+                    {"width_over_p99_error", width},
+                    {"bias_percent", row.bias_percent},
+                    {"p99_error_percent", row.p99_error_percent}});
+    rows.emplace_back(
+        row.quantity + " of drawn solids, " + (all ? "all classes" : row.group) + ", " + row.sampling,
+        three_figures(100.0 * row.held) + " % held, median half-width " +
+            three_figures(row.median_width_percent) + " %, " + std::to_string(row.cases) + " solids");
+  }
+  answer.more["drawn_intervals"] = std::move(json);
+}
+
 SuiteAnswer run_phantoms(Program& program, const VerifyText& text) {
   SuiteAnswer answer;
   verify::PhantomSuiteOptions options;
@@ -105,16 +129,19 @@ SuiteAnswer run_phantoms(Program& program, const VerifyText& text) {
         check.held ? "holds" : "DOES NOT HOLD",
         check.statement + ": " + three_figures(check.found) + ", limit " + three_figures(check.allowed));
   }
-  std::vector<verify::IntervalCoverage> intervals;
+  std::vector<verify::IntervalCoverage> intervals, drawn;
   {
     const Stopwatch watch(answer.timings, "intervals");
     intervals =
         verify::interval_suite({text.solids, 1, {program.stop.get_token(), program.progress("intervals")}});
+    drawn = verify::drawn_suite(
+        {std::max(text.solids / 4, 27), 1, {program.stop.get_token(), program.progress("drawn solids")}});
   }
   rows.emplace_back("verdicts", text_of(answer.counts));
   answer.worst = std::move(suite.worst);
   answer.more = study_json(suite);
   add_intervals(intervals, rows, answer);
+  add_drawn(drawn, rows, answer);
   answer.text = lines(rows);
   return answer;
 }

@@ -1,0 +1,489 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// A threshold's surface loses what is thinner than the blur (Prevrhal, Engelke and Kalender 1999, Accuracy
+// limits for the determination of cortical width and density; Dougherty and Newman 1999; Treece et al. 2010,
+// High resolution cortical bone thickness measurement from clinical CT data). Treece fits each wall's profile
+// with the density held; here the same model, one density and a blur, is summed over the whole solid.
+//
+// u      a sample less the background, as a share of the contrast.
+// volume The sum of u near the solid. Blur, voxel means and the spacing of slices keep it: its error is
+//        noise, that of the background, and what is too faint to be found.
+// area   1 The sum of u - u^2, over the blur's deviation s, is the area over sqrt(pi) on a surface that is
+//          flat over the blur. Of thinner solids the sum of u^2 over that of u is the mean of the solid's
+//          covariogram (Porod 1951; Debye, Anderson and Brumberger 1957) under a Gaussian of variance 2 s^2.
+//          Sheets, rods and balls have closed or tabulated covariograms. Each is fitted, with its s, to the
+//          sums at four added blurs; the fits are weighed by how well they do.
+//        2 The half level's area after two added blurs, continued to no blur: what curvature and edges lose
+//          goes nearly as the variance.
+//        The value is between both; how far they differ and how far the fits differ is doubt.
+//
+// passes 1 Levels of the surroundings and of the core; no if there are more than two densities. 2 Samples
+// near the solid: those that rise above noise after a blur of one sample, and three samples about them.
+// 3 Sums. 4 Fits.
+#include "verify/two_phase.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <tbb/parallel_for.h>
+#include <vector>
+
+namespace octotomy::verify {
+namespace {
+
+using Values = std::vector<float>;
+using Mask = std::vector<std::uint8_t>;
+constexpr std::array<double, 4> added_blur{0.0, 0.6, 1.0, 1.6};
+/// Two gigabytes of copies.
+constexpr std::size_t most_samples = std::size_t{1} << 27;
+
+struct Grid {
+  glm::ivec3 dims{0};
+  glm::dvec3 spacing_mm{1.0};
+  std::size_t size() const {
+    return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) *
+           static_cast<std::size_t>(dims.z);
+  }
+  std::size_t stride(int axis) const {
+    return axis == 0   ? 1
+           : axis == 1 ? static_cast<std::size_t>(dims.x)
+                       : static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
+  }
+  std::size_t at(int x, int y, int z) const {
+    return static_cast<std::size_t>(x) + stride(1) * static_cast<std::size_t>(y) +
+           stride(2) * static_cast<std::size_t>(z);
+  }
+};
+
+/// Sums in a fixed order whatever the threads: by planes of z, then over the planes.
+template <typename Sum, typename PerPlane>
+Sum by_planes(const Grid& grid, const PerPlane& per_plane) {
+  std::vector<Sum> planes(static_cast<std::size_t>(grid.dims.z));
+  tbb::parallel_for(0, grid.dims.z, [&](int z) { per_plane(z, planes[static_cast<std::size_t>(z)]); });
+  Sum whole{};
+  for (const Sum& plane : planes) whole += plane;
+  return whole;
+}
+
+/// Rows along an axis: runs `along(first, stride, length)` for each, in parallel.
+template <typename Along>
+void each_row(const Grid& grid, int axis, const Along& along) {
+  const int outer = axis == 2 ? grid.dims.y : grid.dims.z, inner = axis == 0 ? grid.dims.y : grid.dims.x;
+  tbb::parallel_for(0, outer, [&](int i) {
+    for (int j = 0; j < inner; ++j) {
+      const std::size_t first = axis == 0   ? grid.at(0, j, i)
+                                : axis == 1 ? grid.at(j, 0, i)
+                                            : grid.at(j, i, 0);
+      along(first, grid.stride(axis), static_cast<std::size_t>(grid.dims[axis]));
+    }
+  });
+}
+
+/// A Gaussian of so many samples along each axis; border samples go on outwards.
+Values blurred(const Grid& grid, Values values, double deviation) {
+  const auto reach = static_cast<std::size_t>(std::ceil(3.5 * deviation));
+  std::vector<float> weights(2 * reach + 1);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const double off = static_cast<double>(i) - static_cast<double>(reach);
+    sum += weights[i] = static_cast<float>(std::exp(-0.5 * off * off / (deviation * deviation)));
+  }
+  for (float& weight : weights) weight = static_cast<float>(weight / sum);
+  for (int axis = 0; axis < 3; ++axis)
+    each_row(grid, axis, [&](std::size_t first, std::size_t stride, std::size_t length) {
+      thread_local std::vector<float> line;
+      line.resize(length + 2 * reach);
+      for (std::size_t i = 0; i < length; ++i) line[i + reach] = values[first + i * stride];
+      std::fill_n(line.begin(), reach, line[reach]);
+      std::fill_n(line.end() - static_cast<std::ptrdiff_t>(reach), reach, line[length + reach - 1]);
+      for (std::size_t i = 0; i < length; ++i) {
+        float value = 0.0F;
+        for (std::size_t k = 0; k < weights.size(); ++k) value += weights[k] * line[i + k];
+        values[first + i * stride] = value;
+      }
+    });
+  return values;
+}
+
+/// Sets all within so many samples along each axis of one that is set.
+void grow(const Grid& grid, Mask& mask, std::size_t reach) {
+  for (int axis = 0; axis < 3; ++axis)
+    each_row(grid, axis, [&](std::size_t first, std::size_t stride, std::size_t length) {
+      thread_local Mask line;
+      line.assign(length, 0);
+      std::size_t until = 0;  // one beyond what the last set sample reaches
+      for (std::size_t i = 0; i < length; ++i)
+        if (mask[first + i * stride] != 0) {
+          for (std::size_t k = std::max(until, i > reach ? i - reach : 0);
+               k < std::min(length, i + reach + 1); ++k)
+            line[k] = 1;
+          until = i + reach + 1;
+        }
+      for (std::size_t i = 0; i < length; ++i) mask[first + i * stride] = line[i];
+    });
+}
+
+double median_of(std::vector<float>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return static_cast<double>(*middle);
+}
+
+/// Half level's area of samples, in cells parted into six tetrahedra about a diagonal.
+double level_mm2(const Grid& grid, const Values& values, float level) {
+  constexpr int tets[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7},
+                              {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+  Grid cells = grid;
+  --cells.dims.z;
+  return by_planes<double>(cells, [&](int z, double& area) {
+    for (int y = 0; y + 1 < grid.dims.y; ++y)
+      for (int x = 0; x + 1 < grid.dims.x; ++x) {
+        std::array<double, 8> f;
+        int inside = 0;
+        for (int i = 0; i < 8; ++i) {
+          const float value = values[grid.at(x + (i & 1), y + ((i >> 1) & 1), z + (i >> 2))];
+          f[static_cast<std::size_t>(i)] = static_cast<double>(value - level);
+          inside += value >= level ? 1 : 0;
+        }
+        if (inside == 0 || inside == 8) continue;
+        for (const auto& tet : tets) {
+          std::array<int, 4> in{}, out{};
+          std::size_t in_count = 0, out_count = 0;
+          for (const int k : tet)
+            if (f[static_cast<std::size_t>(k)] >= 0.0)
+              in[in_count++] = k;
+            else
+              out[out_count++] = k;
+          if (in_count == 0 || out_count == 0) continue;
+          const auto crossing = [&](int i, int o) {
+            const double fi = f[static_cast<std::size_t>(i)], fo = f[static_cast<std::size_t>(o)];
+            const auto place = [&](int k) {
+              return glm::dvec3(k & 1, (k >> 1) & 1, k >> 2) * grid.spacing_mm;
+            };
+            return glm::mix(place(i), place(o), fi / (fi - fo));
+          };
+          const auto triangle = [&](const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& r) {
+            area += 0.5 * glm::length(glm::cross(q - p, r - p));
+          };
+          if (in_count == 1)
+            triangle(crossing(in[0], out[0]), crossing(in[0], out[1]), crossing(in[0], out[2]));
+          else if (out_count == 1)
+            triangle(crossing(in[0], out[0]), crossing(in[1], out[0]), crossing(in[2], out[0]));
+          else {
+            const glm::dvec3 p = crossing(in[0], out[0]), r = crossing(in[1], out[1]);
+            triangle(p, crossing(in[0], out[1]), r);
+            triangle(p, r, crossing(in[1], out[0]));
+          }
+        }
+      }
+  });
+}
+
+/// Sums over the samples near the solid and those away from it.
+struct Sums {
+  double near = 0.0, near_square = 0.0, away = 0.0, away_square = 0.0, tail = 0.0;
+  std::size_t band_count = 0, deep_count = 0, away_count = 0, tail_count = 0, border = 0, odd = 0, above = 0;
+  double deep = 0.0;
+  float highest = 0.0F;
+  Sums& operator+=(const Sums& by) {
+    near += by.near;
+    near_square += by.near_square;
+    away += by.away;
+    away_square += by.away_square;
+    tail += by.tail;
+    band_count += by.band_count;
+    deep_count += by.deep_count;
+    away_count += by.away_count;
+    tail_count += by.tail_count;
+    border += by.border;
+    odd += by.odd;
+    above += by.above;
+    deep += by.deep;
+    highest = std::max(highest, by.highest);
+    return *this;
+  }
+};
+
+class Reading {
+ public:
+  Reading(const voxel::Scene& scan, double low) : scan_(scan), low_(low) {
+    grid_.dims = scan.lattice.dims;
+    grid_.spacing_mm = scan.lattice.spacing_mm();
+  }
+
+  /// False: the scan is not of two densities.
+  bool run(PhaseEvidence& found) {
+    if (glm::any(glm::lessThan(grid_.dims, glm::ivec3(8)))) return false;
+    if (grid_.size() > most_samples || !find_background()) return false;
+    std::visit([&](const auto& samples) { values_.assign(samples.begin(), samples.end()); }, scan_.samples);
+    std::array<Values, 4> at_blur;
+    at_blur[2] = blurred(grid_, values_, added_blur[2]);
+    if (!find_near(at_blur[2])) return false;
+    find_core();
+    Sums sums = summed(values_, true);
+    // Samples that lie alone are noise; elsewhere they are a third density.
+    if (sums.odd > sums.away_count / 500 + 2 || sums.border > 0 || sums.away_count < 100) return false;
+    if (sums.deep_count >= 30) {
+      const double core = sums.deep / static_cast<double>(sums.deep_count) - background_;
+      const double rounding = 4.0 * noise_ / std::sqrt(static_cast<double>(sums.deep_count));
+      if (std::abs(core - contrast_) > 0.06 * contrast_ + rounding) return false;
+      found.has_core = true;
+      contrast_ = core;
+    }
+    background_ = sums.away / static_cast<double>(sums.away_count);
+    contrast_ = found.has_core ? contrast_ : 2.0 * (low_ - background_);
+    at_blur[1] = blurred(grid_, values_, added_blur[1]);
+    at_blur[3] = blurred(grid_, at_blur[2], std::sqrt(1.6 * 1.6 - 1.0));
+    at_blur[0] = std::move(values_);
+    const auto half = static_cast<float>(background_ + 0.5 * contrast_);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Sums shares = summed(at_blur[i], false);
+      const double away = shares.away_square / static_cast<double>(shares.away_count);
+      // White noise keeps one part in 44.5 of its variance after a blur of one sample.
+      if (i == 2) found.correlation = std::sqrt(std::max(1.0, 44.5 * away / std::max(white_, 1e-9)));
+      if (i == 0) white_ = away;
+      found.squares[i] = shares.near_square - static_cast<double>(shares.band_count) * away;
+      found.level_mm2[i] = level_mm2(grid_, at_blur[i], half);
+      if (i == 2) found.highest = static_cast<double>(shares.highest);
+      if (i > 0) continue;
+      found.sum = shares.near;
+      const glm::dvec3& spacing_mm = grid_.spacing_mm;
+      found.counted_mm3 = static_cast<double>(shares.above) * spacing_mm.x * spacing_mm.y * spacing_mm.z;
+      found.band = shares.band_count;
+      found.tail = shares.tail;
+      found.noise = contrast_ * std::sqrt(away);
+    }
+    found.background = background_;
+    found.contrast = contrast_;
+    found.least_seen = least_seen_ / contrast_;
+    return found.highest < 1.25 && (found.has_core || !has_lower_plateau(at_blur[2], found.highest));
+  }
+
+ private:
+  /// The middle of what is below the bound; noise from the middle distance to it.
+  bool find_background() {
+    std::vector<float> below;
+    const std::size_t size = grid_.size(), stride = 1 + size / 200000;
+    std::visit(
+        [&](const auto& samples) {
+          for (std::size_t i = 0; i < size; i += stride)
+            if (static_cast<double>(samples[i]) < low_) below.push_back(static_cast<float>(samples[i]));
+        },
+        scan_.samples);
+    if (2 * below.size() * stride < size) return false;
+    background_ = median_of(below);
+    for (float& value : below) value = std::abs(value - static_cast<float>(background_));
+    noise_ = 1.4826 * median_of(below);
+    contrast_ = 2.0 * (low_ - background_);
+    if (!(contrast_ > 0.0) || noise_ > 0.2 * contrast_) return false;
+    // A third density shows at once: more than a tenth of what is below the bound, far from the background.
+    const auto far = static_cast<float>(std::max(6.0 * noise_, 0.02 * contrast_));
+    const auto odd = std::count_if(below.begin(), below.end(), [&](float off) { return off > far; });
+    return static_cast<std::size_t>(odd) <= below.size() / 4;
+  }
+
+  bool find_near(const Values& at_one) {
+    std::vector<float> off;
+    const std::size_t stride = 1 + at_one.size() / 200000;
+    for (std::size_t i = 0; i < at_one.size(); i += stride)
+      off.push_back(std::abs(at_one[i] - static_cast<float>(background_)));
+    // Samples are whole numbers: where nothing varies, half a unit does.
+    least_seen_ = std::max(5.0 * 1.4826 * median_of(off), 0.005 * contrast_);
+    near_.resize(at_one.size());
+    const auto level = static_cast<float>(background_ + least_seen_);
+    bool any = false;
+    const auto quarter = static_cast<float>(background_ + 0.25 * contrast_);
+    solid_.resize(at_one.size());
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+      any |= (near_[i] = at_one[i] >= level ? 1 : 0) != 0;
+      solid_[i] = at_one[i] >= std::max(level, quarter) ? 1 : 0;
+    }
+    grow(grid_, near_, 3);
+    beyond_ = near_;
+    grow(grid_, beyond_, 2);
+    return any;
+  }
+
+  void find_core() {
+    deep_.resize(values_.size());
+    for (std::size_t i = 0; i < deep_.size(); ++i) deep_[i] = static_cast<double>(values_[i]) < low_ ? 1 : 0;
+    grow(grid_, deep_, 3);
+    for (std::uint8_t& one : deep_) one = one == 0 ? 1 : 0;
+  }
+
+  /// Whether a solid without a core is too thick for its low samples: over half of the highest share, thin
+  /// walls blurred by up to 1.6 samples are five samples wide at most below a share of 0.45, and seven below
+  /// 0.7. The window's bound is not the half level then.
+  bool has_lower_plateau(const Values& at_one, double highest) {
+    if (highest >= 0.7) return false;
+    const auto half = static_cast<float>(background_ + 0.5 * highest * contrast_);
+    Mask thin(at_one.size());
+    for (std::size_t i = 0; i < thin.size(); ++i) thin[i] = at_one[i] < half ? 1 : 0;
+    grow(grid_, thin, highest < 0.45 ? 2 : 3);
+    return std::count(thin.begin(), thin.end(), std::uint8_t{0}) > 4;
+  }
+
+  /// In sample units, or as shares of the contrast; a sample deep in the solid counts as one.
+  Sums summed(const Values& values, bool as_they_are) const {
+    const double unit = as_they_are ? 1.0 : contrast_, zero = as_they_are ? 0.0 : background_;
+    const double far = std::max(6.0 * noise_, 0.02 * contrast_);
+    return by_planes<Sums>(grid_, [&](int z, Sums& sums) {
+      for (std::size_t i = grid_.at(0, 0, z), end = i + grid_.stride(2); i < end; ++i) {
+        const double u = (static_cast<double>(values[i]) - zero) / unit;
+        sums.highest = std::max(sums.highest, static_cast<float>(u));
+        sums.above += u >= 0.5 ? 1 : 0;
+        if (deep_[i] != 0) {
+          ++sums.deep_count;
+          sums.deep += u;
+          sums.near += 1.0;
+          sums.near_square += 1.0;
+        } else if (near_[i] != 0) {
+          ++sums.band_count;
+          sums.near += u;
+          sums.near_square += u * u;
+        } else if (beyond_[i] != 0) {
+          ++sums.tail_count;
+          sums.tail += u;
+        } else {
+          ++sums.away_count;
+          sums.away += u;
+          sums.away_square += u * u;
+          if (as_they_are && std::abs(u - background_) > far) ++sums.odd;
+        }
+      }
+      // The scan's outermost samples.
+      for (int y = 0; y < grid_.dims.y; ++y)
+        for (int x = 0; x < grid_.dims.x; ++x) {
+          const bool is_border = x == 0 || y == 0 || z == 0 || x + 1 == grid_.dims.x ||
+                                 y + 1 == grid_.dims.y || z + 1 == grid_.dims.z;
+          if (is_border && solid_[grid_.at(x, y, z)] != 0) ++sums.border;
+        }
+    });
+  }
+
+  const voxel::Scene& scan_;
+  Grid grid_;
+  Values values_;
+  Mask solid_, near_, beyond_, deep_;
+  double low_ = 0.0, background_ = 0.0, contrast_ = 0.0, noise_ = 0.0, least_seen_ = 0.0, white_ = 0.0;
+};
+
+/// What is left of the sum of squares of a solid whose area is `ratio` times its volume under a blur of this
+/// deviation, both in samples: the mean covariogram.
+double sheet_left(double ratio, double deviation) {
+  const double thickness = 2.0 / ratio, q = std::numbers::sqrt2 * deviation;
+  const double z = thickness / (q * std::numbers::sqrt2);
+  return std::erf(z) - (1.0 - std::exp(-z * z)) / (z * std::sqrt(std::numbers::pi));
+}
+double rod_left(double ratio, double deviation) {
+  const double x = 2.0 / (ratio * ratio * deviation * deviation);
+  if (x > 500.0) return 1.0 - std::sqrt(2.0 / (std::numbers::pi * x));
+  return 1.0 - std::exp(-x) * (std::cyl_bessel_i(0.0, x) + std::cyl_bessel_i(1.0, x));
+}
+double ball_left(double ratio, double deviation) {
+  const double radius = 3.0 / ratio, q = std::numbers::sqrt2 * deviation, l = 2.0 * radius / q;
+  const double e = std::exp(-0.5 * l * l), c = std::sqrt(2.0 / std::numbers::pi);
+  const double zeroth = std::erf(l / std::numbers::sqrt2) - c * l * e;
+  const double first = q * c * (2.0 - (2.0 + l * l) * e);
+  const double third = q * q * q * c * (8.0 - (8.0 + 4.0 * l * l + l * l * l * l) * e);
+  return zeroth - 0.75 / radius * first + third / (16.0 * radius * radius * radius);
+}
+
+/// Area per volume and the blur's deviation, in samples, by fits of sheets, rods and balls.
+struct Fitted {
+  double log_ratio = 0.0, spread = 0.0, deviation = 0.0;
+};
+Fitted fitted(const PhaseEvidence& found) {
+  constexpr int deviations = 49, ratios = 241;
+  constexpr std::array<double (*)(double, double), 3> shapes{sheet_left, rod_left, ball_left};
+  std::array<double, 3> weights, log_ratios, blurs;
+  for (std::size_t shape = 0; shape < 3; ++shape) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < deviations; ++i)
+      for (int j = 0; j < ratios; ++j) {
+        const double deviation = 0.3 + 1.2 * i / (deviations - 1.0);
+        const double log_ratio = std::log(0.02) + std::log(400.0) * j / (ratios - 1.0);
+        double off = 0.0;
+        for (std::size_t k = 0; k < 4 && off < least; ++k) {
+          const double left = shapes[shape](std::exp(log_ratio), std::hypot(deviation, added_blur[k]));
+          const double miss = std::log(std::max(left, 1e-12) / std::max(found.squares[k] / found.sum, 1e-6));
+          off += miss * miss;
+        }
+        if (off >= least) continue;
+        least = off;
+        log_ratios[shape] = log_ratio;
+        blurs[shape] = deviation;
+      }
+    // Even the right shape misses by about one per cent at each blur.
+    weights[shape] = 1.0 / ((least + 2e-4) * (least + 2e-4));
+  }
+  const double all = weights[0] + weights[1] + weights[2];
+  Fitted mean;
+  for (std::size_t i = 0; i < 3; ++i) {
+    mean.log_ratio += weights[i] / all * log_ratios[i];
+    mean.deviation += weights[i] / all * blurs[i];
+  }
+  for (std::size_t i = 0; i < 3; ++i)
+    mean.spread += weights[i] / all * (log_ratios[i] - mean.log_ratio) * (log_ratios[i] - mean.log_ratio);
+  mean.spread = std::sqrt(mean.spread);
+  return mean;
+}
+
+Interval from_logs(double middle, double half, const std::string& name, const std::string& formula) {
+  const double value = std::exp(middle) * std::cosh(half), half_width = std::exp(middle) * std::sinh(half);
+  return {value, half_width, {{name, formula, half_width}}};
+}
+
+/// 99 of 100 normal errors are within so many deviations, and some room for noise's own doubt.
+constexpr double confidence = 2.8;
+
+Interval volume_of(const PhaseEvidence& found, double sample_mm3) {
+  const double value = found.sum * sample_mm3;
+  const double noise = confidence * found.noise / found.contrast *
+                       std::sqrt(static_cast<double>(found.band)) * found.correlation * sample_mm3;
+  const double unseen = 0.3 * found.least_seen / std::max(found.highest, found.least_seen) * value;
+  const double levels = 0.003 * value;
+  const double tail = 0.6 * std::abs(found.tail) * sample_mm3;
+  return {value,
+          std::hypot(noise, tail) + levels + unseen,
+          {{"noise", "2.8 sigma sqrt(samples near) of the contrast", noise},
+           {"tail", "0.6 of the sum just beyond", tail},
+           {"levels", "0.003 V", levels},
+           {"unseen", "0.3 V least seen / highest", unseen}}};
+}
+
+Interval area_of(const PhaseEvidence& found, const glm::dvec3& spacing_mm) {
+  const double sample_mm3 = spacing_mm.x * spacing_mm.y * spacing_mm.z;
+  const Fitted fit = fitted(found);
+  const auto& level = found.level_mm2;
+  if (level[2] > 0.0 && level[1] > level[2] * 0.99 && level[1] < 1.42 * level[2]) {
+    const double near = std::hypot(fit.deviation, added_blur[1]),
+                 far = std::hypot(fit.deviation, added_blur[2]);
+    const double step = std::max(std::log(level[1] / level[2]), 0.0);
+    const double least = near * near / (far * far - near * near) * step, most = near / (far - near) * step;
+    const double apart = std::min(most - least, 0.6);
+    return from_logs(
+        std::log(level[1]) + least + 0.3 * apart, 0.85 * apart + 0.015, "edges",
+        "the half level's area at two blurs, continued to none by the variance or the deviation");
+  }
+  const double sample_mm = std::cbrt(sample_mm3);
+  return from_logs(std::log(found.sum * sample_mm3 / sample_mm) + fit.log_ratio + 0.15,
+                   0.6 + fit.spread + 0.06 / std::max(found.highest, 0.03), "shape",
+                   "sheets, rods and balls that leave these sums of squares");
+}
+
+}  // namespace
+
+std::optional<TwoPhase> two_phase(const voxel::Scene& scan, double low, const voxel::Progress& progress) {
+  progress.at(0.0);
+  TwoPhase found;
+  if (!Reading(scan, low).run(found.evidence)) return std::nullopt;
+  const glm::dvec3 spacing_mm = scan.lattice.spacing_mm();
+  found.volume_mm3 = volume_of(found.evidence, spacing_mm.x * spacing_mm.y * spacing_mm.z);
+  found.area_mm2 = area_of(found.evidence, spacing_mm);
+  return found;
+}
+
+}  // namespace octotomy::verify
