@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "planner/measure/recommended.h"
 #include "planner/table/number_format.h"
 #include "voxel/measure/flat_parts.h"
 
@@ -27,7 +28,10 @@ Digitised digitised_of(const AnswerBench& bench, const Object& object) {
   std::set<std::pair<std::string, double>> known;
   for (const Shown& window : object.bound.windows) {
     if (!known.emplace(window.scan, window.threshold).second) continue;
-    const std::optional<double> shift_mm = window_shift_mm({window.grey, window.threshold});
+    // The whole window's surface, which a part's is a piece of.
+    const std::optional<double> shift_mm =
+        window.samples ? window_shift_mm(*window.samples, window.threshold, window.high)
+                       : window_shift_mm({window.grey, window.threshold});
     if (shift_mm) digitised.shift_mm = std::max(digitised.shift_mm.value_or(0.0), *shift_mm);
   }
   return digitised;

@@ -3,13 +3,83 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numbers>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
+#include "planner/table/number_format.h"
 #include "voxel/measure/crofton.h"
 
 namespace octotomy::planner {
 namespace {
 
-/// Interpolates the samples at a point of the object's frame.
+/// The number of samples in a window.
+std::size_t count_in(const voxel::Scene& scan, double low, double high) {
+  return std::visit(
+      [&](const auto& samples) {
+        return tbb::parallel_reduce(
+            tbb::blocked_range<std::size_t>(0, samples.size()), std::size_t{0},
+            [&](const auto& range, std::size_t count) {
+              for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                const auto sample = static_cast<double>(samples[i]);
+                count += sample >= low && sample <= high ? 1 : 0;
+              }
+              return count;
+            },
+            std::plus<>());
+      },
+      scan.samples);
+}
+
+/// The area between samples in a window and neighbours out of it, which overstate a boundary of all
+/// directions by 3/2.
+double faces_of(const voxel::Scene& scan, double low, double high) {
+  const glm::ivec3 dims = scan.lattice.dims;
+  const glm::dvec3 spacing_mm = scan.lattice.spacing_mm();
+  const double cell_mm3 = spacing_mm.x * spacing_mm.y * spacing_mm.z;
+  const auto row = static_cast<std::size_t>(dims.x), plane = row * static_cast<std::size_t>(dims.y);
+  std::vector<glm::dvec3> faces(static_cast<std::size_t>(dims.z), glm::dvec3(0.0));
+  std::visit(
+      [&](const auto& samples) {
+        const auto is_in = [&](std::size_t i) {
+          const auto sample = static_cast<double>(samples[i]);
+          return sample >= low && sample <= high;
+        };
+        tbb::parallel_for(0, dims.z, [&](int z) {
+          glm::dvec3 sum(0.0);
+          for (int y = 0; y < dims.y; ++y)
+            for (int x = 0; x < dims.x; ++x) {
+              const std::size_t i = static_cast<std::size_t>(x) + row * static_cast<std::size_t>(y) +
+                                    plane * static_cast<std::size_t>(z);
+              const bool here = is_in(i);
+              sum.x += x + 1 < dims.x && here != is_in(i + 1) ? 1.0 : 0.0;
+              sum.y += y + 1 < dims.y && here != is_in(i + row) ? 1.0 : 0.0;
+              sum.z += z + 1 < dims.z && here != is_in(i + plane) ? 1.0 : 0.0;
+            }
+          faces[static_cast<std::size_t>(z)] = sum;
+        });
+      },
+      scan.samples);
+  glm::dvec3 all(0.0);
+  for (const glm::dvec3& sum : faces) all += sum;
+  return glm::dot(all, cell_mm3 / spacing_mm);
+}
+
+double sample_mm3(const voxel::Scene& scan) {
+  return std::abs(glm::determinant(glm::dmat3(scan.lattice.lps_from_voxel)));
+}
+
+/// Interpolates the scan's own samples at a point of the object's frame.
+std::function<double(const glm::dvec3&)> sampler_of(const voxel::Scene& scan,
+                                                    const glm::dmat4& moved_from_still) {
+  return [&scan, still_from_moved = glm::inverse(moved_from_still)](const glm::dvec3& p_mm) {
+    return voxel::interpolate(scan, scan.lattice.voxel(glm::dvec3(still_from_moved * glm::dvec4(p_mm, 1.0))));
+  };
+}
+
+/// Interpolates the octree's samples at a point of the object's frame.
 std::function<double(const glm::dvec3&)> sampler_of(const voxel::GreyOctree& grey,
                                                     const glm::dmat4& moved_from_still) {
   return [&grey, voxel_from_lps = glm::inverse(grey.universe().lps_from_voxel) *
@@ -24,6 +94,76 @@ std::function<double(const glm::dvec3&)> sampler_of(const voxel::GreyOctree& gre
     }
     return value;
   };
+}
+
+verify::SizeIntervals intervals_of_one(const brep::Solid& solid, const SurfaceSamples& samples) {
+  verify::SampledFrom from;
+  const glm::dmat4 lps_from_scan = samples.moved_from_still * samples.lps_from_scan;
+  from.sample_edges = glm::dmat3(lps_from_scan);
+  from.sample_at_mm = glm::dvec3(lps_from_scan[3]);
+  from.window_shift_mm = samples.window_shift_mm;
+  from.along_lps_mm = samples.along_lps_mm;
+  // Between two bounds samples rise and fall again, which shows no blur: seven tenths of a sample are usual.
+  constexpr double usual_blur2 = 0.5;
+  if (samples.has_upper()) {
+    from.blur_samples2 = usual_blur2;
+  } else if (samples.samples) {
+    from.blur_samples2 =
+        verify::blur_of(solid, from.sample_edges, sampler_of(*samples.samples, samples.moved_from_still));
+  } else if (samples.grey) {
+    const glm::dvec3 voxel_mm = samples.grey->universe().lattice().spacing_mm();
+    double coarsest = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+      coarsest = std::max(coarsest, voxel_mm[axis] / glm::length(from.sample_edges[axis]));
+    // Voxels between samples were interpolated once before.
+    const double interpolation = samples.voxels_are_samples ? 1.0 / 6.0 : (1.0 + coarsest * coarsest) / 6.0;
+    from.blur_samples2 = verify::blur_of(solid, from.sample_edges,
+                                         sampler_of(*samples.grey, samples.moved_from_still), interpolation);
+  }
+  return verify::size_intervals(solid, from);
+}
+
+/// The shares of the surface that the sources show: of each face among some thousand, the source in whose
+/// samples it lies nearest to a bound of the window, as far as that is within a sample. A face further off is
+/// a cut's. Equal shares where all are.
+std::vector<double> shares_of(const brep::Solid& solid, const std::vector<SurfaceSamples>& sources) {
+  constexpr std::size_t most_faces = 2000;
+  std::vector<double> shares(sources.size(), 0.0);
+  const brep::Triangles& triangles = solid.triangles();
+  std::vector<std::function<double(const glm::dvec3&)>> samplers;
+  for (const SurfaceSamples& source : sources)
+    samplers.push_back(source.samples ? sampler_of(*source.samples, source.moved_from_still)
+                       : source.grey  ? sampler_of(*source.grey, source.moved_from_still)
+                                      : nullptr);
+  const std::size_t stride = 1 + triangles.faces.size() / most_faces;
+  double all = 0.0;
+  for (std::size_t face = 0; face < triangles.faces.size(); face += stride) {
+    const auto& [a, b, c] = triangles.faces[face];
+    const glm::dvec3 &p = triangles.points_mm[a], &q = triangles.points_mm[b], &r = triangles.points_mm[c];
+    const glm::dvec3 across = glm::cross(q - p, r - p), at = (p + q + r) / 3.0;
+    const double size = glm::length(across);
+    if (!(size > 0.0)) continue;
+    double nearest = 1.0;
+    std::optional<std::size_t> owner;
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      if (!samplers[i]) continue;
+      const glm::dmat3 edges = glm::dmat3(sources[i].moved_from_still * sources[i].lps_from_scan);
+      const glm::dvec3 one = across / size * glm::length(glm::transpose(edges) * across) / size;
+      const double slope = 0.5 * std::abs(samplers[i](at - one) - samplers[i](at + one));
+      const double sample = samplers[i](at);
+      const double off =
+          std::min(std::abs(sample - sources[i].low), std::abs(sample - sources[i].high)) / slope;
+      if (off < nearest) {
+        nearest = off;
+        owner = i;
+      }
+    }
+    if (!owner) continue;
+    shares[*owner] += size;
+    all += size;
+  }
+  for (double& share : shares) share = all > 0.0 ? share / all : 1.0 / static_cast<double>(shares.size());
+  return shares;
 }
 
 verify::Interval interval(double value, const HalfWidth& width) {
@@ -47,22 +187,82 @@ Json to_json(const verify::Interval& interval, const std::string& unit) {
           {"sources", sources}};
 }
 
-verify::SizeIntervals intervals_of_surface(const brep::Solid& solid, const SurfaceSamples& samples) {
-  verify::SampledFrom from;
-  from.sample_edges = glm::dmat3(samples.moved_from_still) * samples.scan_edges;
-  from.window_shift_mm = samples.window_shift_mm;
-  from.along_lps_mm = samples.along_lps_mm;
-  if (samples.grey) {
-    const glm::dvec3 voxel_mm = samples.grey->universe().lattice().spacing_mm();
-    double coarsest = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-      coarsest = std::max(coarsest, voxel_mm[axis] / glm::length(samples.scan_edges[axis]));
-    // Voxels between samples were interpolated once before.
-    const double interpolation = samples.voxels_are_samples ? 1.0 / 6.0 : (1.0 + coarsest * coarsest) / 6.0;
-    from.blur_samples2 = verify::blur_of(solid, from.sample_edges,
-                                         sampler_of(*samples.grey, samples.moved_from_still), interpolation);
+verify::SizeIntervals intervals_of_surface(const brep::Solid& solid,
+                                           const std::vector<SurfaceSamples>& sources) {
+  if (sources.size() == 1) return intervals_of_one(solid, sources.front());
+  const std::vector<double> shares = shares_of(solid, sources);
+  std::vector<verify::SharedIntervals> parts;
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    if (shares[i] > 0.0) parts.push_back({shares[i], intervals_of_one(solid, sources[i])});
+  return verify::weighed(parts);
+}
+
+std::optional<double> window_shift_mm(const voxel::Scene& scan, double low, double high) {
+  constexpr double most_units = 10.0;
+  double units = most_units;
+  if (scan.meaning != voxel::Meaning::Hounsfield) {
+    const voxel::Range range = voxel::range(scan);
+    units = std::min(most_units, 0.01 * (range.high - range.low));
   }
-  return verify::size_intervals(solid, from);
+  const double area_mm2 = faces_of(scan, low, high) / 1.5;
+  if (!(area_mm2 > 0.0)) return std::nullopt;
+  const auto gained = [&](double by) { return static_cast<double>(count_in(scan, low - by, high)); };
+  return 0.5 * (gained(units) - gained(-units)) * sample_mm3(scan) / area_mm2;
+}
+
+verify::SizeIntervals intervals_of_phases(const verify::TwoPhase& phases, verify::SizeIntervals by_surface) {
+  by_surface.volume_mm3 = phases.volume_mm3;
+  by_surface.area_mm2 = phases.area_mm2;
+  return by_surface;
+}
+
+verify::SizeIntervals intervals_of_labels(const voxel::Scene& scan, double low, double high,
+                                          verify::SizeIntervals by_surface) {
+  const double cell_mm3 = sample_mm3(scan);
+  const double value = static_cast<double>(count_in(scan, low, high)) * cell_mm3;
+  const double faces = by_surface.area_mm2.value / std::cbrt(cell_mm3 * cell_mm3);
+  const double half_width = 3.0 * 0.26 * cell_mm3 * std::sqrt(faces);
+  by_surface.volume_mm3 = {value, half_width, {{"samples", "3 * 0.26 v sqrt(F)", half_width}}};
+  return by_surface;
+}
+
+void add_voxels(const glm::dvec3& voxel_mm, double area_mm2, verify::SizeIntervals& found) {
+  const double cell_mm2 = std::pow(voxel_mm.x * voxel_mm.y * voxel_mm.z, 2.0 / 3.0);
+  const double of_volume = 0.13 * cell_mm2 * std::sqrt(std::max(area_mm2, 0.0));
+  const double of_area = 0.13 * std::sqrt(cell_mm2 * std::max(area_mm2, 0.0));
+  const auto add = [](verify::Interval& interval, const char* formula, double half_width) {
+    interval.half_width = std::hypot(interval.half_width, half_width);
+    interval.sources.push_back({"voxels", formula, half_width});
+  };
+  add(found.volume_mm3, "0.13 v^(2/3) sqrt(S)", of_volume);
+  add(found.area_mm2, "0.13 v^(1/3) sqrt(S)", of_area);
+}
+
+std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is_of_phases, bool has_core,
+                                     const std::array<std::optional<double>, 2>& kernels_mm3) {
+  std::vector<std::string> findings;
+  const double value = found.volume_mm3.value;
+  const auto& [voxels_mm3, mesh_mm3] = kernels_mm3;
+  const double rounding = 1e-6 * value;
+  if (voxels_mm3 && mesh_mm3 &&
+      (value > std::max(*voxels_mm3, *mesh_mm3) + rounding ||
+       value < std::min(*voxels_mm3, *mesh_mm3) - rounding))
+    findings.push_back(
+        "WARN volume: the recommended " + grouped(value, 1) +
+        " mm\u00b3 lies outside of both kernels' answers (voxels " + grouped(*voxels_mm3, 1) + ", mesh " +
+        grouped(*mesh_mm3, 1) + " mm\u00b3): " +
+        (!is_of_phases ? "labels are counted in the scan's own samples"
+         : has_core    ? "the threshold's surface loses what is thin or sharp under the scan's blur, the sum "
+                         "of the samples does not"
+                       : "no part is thicker than the scan's blur; the sum of the samples is taken, with the "
+                         "window's bound as the half level"));
+  for (const auto& [name, interval] :
+       {std::pair("volume", &found.volume_mm3), std::pair("area", &found.area_mm2)})
+    if (interval->half_width > interval->value)
+      findings.push_back(std::string("WARN ") + name + ": its interval is wider than its value (" +
+                         three_figures(interval->value) + " \u00b1 " + three_figures(interval->half_width) +
+                         "): the scan does not resolve this object");
+  return findings;
 }
 
 verify::SizeIntervals intervals_of_count(const voxel::Measures& measures, const Digitised& digitised,

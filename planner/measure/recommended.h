@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "planner/measure/half_width.h"
 #include "planner/measure/result_json.h"
 #include "verify/size_interval.h"
+#include "verify/two_phase.h"
+#include "voxel/space/scene.h"
 #include "voxel/tree/grey_octree.h"
 
 // The recommended volume and area of an object, each one number with one interval.
@@ -18,15 +24,40 @@ Json to_json(const verify::Interval& interval, const std::string& unit);
 
 /// Where an object's surface was sampled.
 struct SurfaceSamples {
-  glm::dmat3 scan_edges{1.0};        ///< columns: steps of the scan's lattice in LPS millimetres, unmoved
-  glm::dmat4 moved_from_still{1.0};  ///< LPS to LPS, of all motions since
-  std::optional<voxel::GreyOctree> grey;  ///< of that scan; none: no blur is looked for
-  bool voxels_are_samples = false;        ///< of the grey octree
-  std::optional<double> window_shift_mm;
+  glm::dmat4 lps_from_scan{1.0};               ///< the scan's lattice, unmoved
+  glm::dmat4 moved_from_still{1.0};            ///< LPS to LPS, of all motions since
+  std::optional<voxel::GreyOctree> grey = {};  ///< of that scan; none and no samples: no blur is looked for
+  std::shared_ptr<const voxel::Scene> samples = {};  ///< the scan's own, which are taken before the octree's
+  bool voxels_are_samples = false;                   ///< of the grey octree
+  std::optional<double> window_shift_mm = {};
   std::optional<glm::dvec3> along_lps_mm = {};  ///< as verify::SampledFrom's
+  /// The samples at which the surface lies; several sources are told apart by them.
+  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+  bool has_upper() const { return high < std::numeric_limits<double>::infinity(); }
 };
-/// By the mesh kernel, whose surface samples place to a part of their spacing.
-verify::SizeIntervals intervals_of_surface(const brep::Solid& solid, const SurfaceSamples& samples);
+/// How far a window's surface moves where its lower bound is off: by ten sample units of a scan in HU, of
+/// others by a hundredth of their range and at most ten. From the scan's own samples, whatever their unit.
+/// None where nothing is inside. Cost: four passes over the samples.
+std::optional<double> window_shift_mm(const voxel::Scene& scan, double low, double high);
+
+/// The numbers of a solid of one density, of which the scan shows the whole: those of the sum of its samples.
+verify::SizeIntervals intervals_of_phases(const verify::TwoPhase& phases, verify::SizeIntervals by_surface);
+/// Labels are counted: the number of samples, and what a boundary between them may be off.
+verify::SizeIntervals intervals_of_labels(const voxel::Scene& scan, double low, double high,
+                                          verify::SizeIntervals by_surface);
+/// Adds what voxels of the plan or the verb, by which the other kernel checks the numbers, may be off.
+void add_voxels(const glm::dvec3& voxel_mm, double area_mm2, verify::SizeIntervals& found);
+
+/// What people must be told of recommended numbers: one that leaves both kernels' answers, with the reason,
+/// and an interval wider than its value. Empty strings in `kernels` have no answer.
+std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is_of_phases, bool has_core,
+                                     const std::array<std::optional<double>, 2>& kernels_mm3);
+
+/// By the mesh kernel, whose surface samples place to a part of their spacing. An object of several scans or
+/// motions has the interval of each for the share of its surface that the source shows; a cut has none.
+/// Precondition: at least one source.
+verify::SizeIntervals intervals_of_surface(const brep::Solid& solid,
+                                           const std::vector<SurfaceSamples>& sources);
 
 /// By counting, where there are voxels alone: volume_half_width(); the area by Crofton's formula with flat
 /// parts along the lattice as they are, its half-width what the formula may lose of oblique planes. Both are

@@ -36,27 +36,102 @@ void check(const Measure& measure, const Place& place) {
     points.refuse("has its second point twice: an angle needs two legs");
 }
 
+/// A recommended volume and area, and what is told of them.
+struct Recommended {
+  verify::SizeIntervals intervals;
+  bool is_of_phases = false, has_core = false;
+};
+
+/// What the samples of a window's scan show of two densities; kept, as several objects come from one window.
+const std::optional<verify::TwoPhase>& phases_of(const AnswerBench& bench, const Shown& window) {
+  std::shared_ptr<const void>& kept =
+      bench.kept["phases of " + window.scan + " from " + std::to_string(window.threshold)];
+  if (!kept) {
+    std::optional<verify::TwoPhase> found;
+    if (window.samples && std::isinf(window.high) && window.samples->meaning != voxel::Meaning::Label)
+      found = verify::two_phase(*window.samples, window.threshold, {bench.stop, {}});
+    kept = std::make_shared<const std::optional<verify::TwoPhase>>(std::move(found));
+  }
+  return *static_cast<const std::optional<verify::TwoPhase>*>(kept.get());
+}
+
+/// Whether the object is all that a window shows, moved or not.
+bool is_whole_window(const Objects& objects, const Object& object) {
+  return object.moved ? is_whole_window(objects, objects.at(object.moved->object)) : object.kind == "window";
+}
+
+/// What the sum of the samples says beyond the surface: of a whole window, its numbers; of a part, doubt by
+/// its share of the window's surface, as nothing says where thin walls are.
+void take_phases(const AnswerBench& bench, const Object& object, Recommended& found) {
+  std::vector<const Shown*> windows;
+  for (const Shown& window : object.bound.windows)
+    if (std::none_of(windows.begin(), windows.end(), [&](const Shown* known) {
+          return known->scan == window.scan && known->threshold == window.threshold;
+        }))
+      windows.push_back(&window);
+  for (const Shown* window : windows) {
+    const std::optional<verify::TwoPhase>& phases = phases_of(bench, *window);
+    if (!phases) continue;
+    if (is_whole_window(bench.objects, object)) {
+      found.intervals = intervals_of_phases(*phases, std::move(found.intervals));
+      found.is_of_phases = true;
+      found.has_core = phases->evidence.has_core;
+      return;
+    }
+    const double whole_mm2 = phases->evidence.level_mm2[0];
+    if (!(whole_mm2 > 0.0)) continue;
+    const double share = std::min(1.0, object.mesh.within->size().area_mm2 / whole_mm2);
+    const auto widen = [&](verify::Interval& interval, double lost) {
+      interval.half_width += share * lost;
+      interval.sources.push_back(
+          {"thin or sharp", "share of what the whole window's samples add", share * lost, true});
+    };
+    widen(found.intervals.volume_mm3,
+          std::abs(phases->volume_mm3.value - phases->evidence.counted_mm3) + phases->volume_mm3.half_width);
+    widen(found.intervals.area_mm2,
+          std::abs(phases->area_mm2.value - whole_mm2) + phases->area_mm2.half_width);
+  }
+}
+
 /// The recommended volume and area. The mesh's, where there is one: motions keep it and cuts are exact in it,
 /// so that a moved object has its still one's interval, and parts share the doubt of their whole's windows.
-verify::SizeIntervals intervals_of(const AnswerBench& bench, const Object& object,
-                                   const Digitised& digitised) {
+Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
+  const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
   if (!object.mesh.within || object.bound.spacing_mm == glm::dvec3(0.0))
-    return intervals_of_count(object.voxel.measures, digitised, bench.universe.lattice(),
-                              seen_size_of(object));
-  SurfaceSamples samples;
-  for (int axis = 0; axis < 3; ++axis) samples.scan_edges[axis] *= object.bound.spacing_mm[axis];
-  samples.window_shift_mm = digitised.shift_mm;
+    return {
+        intervals_of_count(object.voxel.measures, digitised, bench.universe.lattice(), seen_size_of(object))};
+  if (object.mesh.within->empty())
+    return {verify::nothing_found(glm::max(object.bound.spacing_mm, voxel_mm))};
+  std::vector<SurfaceSamples> sources;
   for (const Shown& window : object.bound.windows) {
+    SurfaceSamples samples;
     samples.grey = window.grey;
+    samples.samples = window.samples;
     samples.moved_from_still = window.moved_from_still;
+    samples.window_shift_mm = digitised.shift_mm;
+    samples.low = window.threshold;
+    samples.high = window.high;
     for (const ScanRecord& scan : bench.scans) {
       if (scan.name != window.scan) continue;
-      samples.scan_edges = glm::dmat3(scan.lattice.lps_from_voxel);
+      samples.lps_from_scan = scan.lattice.lps_from_voxel;
       samples.voxels_are_samples = on_samples(scan.lattice, window.grey.universe().lattice());
     }
-    break;
+    if (std::none_of(sources.begin(), sources.end(), [&](const SurfaceSamples& known) {
+          return known.moved_from_still == samples.moved_from_still && known.low == samples.low &&
+                 known.high == samples.high && known.lps_from_scan == samples.lps_from_scan;
+        }))
+      sources.push_back(std::move(samples));
   }
-  return intervals_of_surface(*object.mesh.within, samples);
+  if (sources.empty()) {
+    SurfaceSamples samples;
+    for (int axis = 0; axis < 3; ++axis) samples.lps_from_scan[axis] *= object.bound.spacing_mm[axis];
+    samples.window_shift_mm = digitised.shift_mm;
+    sources.push_back(std::move(samples));
+  }
+  Recommended found{intervals_of_surface(*object.mesh.within, sources)};
+  take_phases(bench, object, found);
+  add_voxels(voxel_mm, object.mesh.within->size().area_mm2, found.intervals);
+  return found;
 }
 
 Json points_json(const Measure& asked, const AnswerBench& bench) {
@@ -117,13 +192,22 @@ Json size_json(const Measure& asked, const AnswerBench& bench) {
             {"difference_mm3", nullptr},
             {"difference_percent", nullptr}};
   const Digitised digitised = digitised_of(bench, object);
-  const verify::SizeIntervals recommended = intervals_of(bench, object, digitised);
+  const Recommended with_reason = intervals_of(bench, object, digitised);
+  const verify::SizeIntervals& recommended = with_reason.intervals;
   json["volume"] = to_json(recommended.volume_mm3, "mm3");
   json["area"] = to_json(recommended.area_mm2, "mm2");
   const HalfWidth width = volume_half_width(object.voxel.measures, digitised, seen_size_of(object));
   json["volume_half_width_mm3"] = width.value;
   json["volume_half_width_terms"] = to_json(width);
-  if (const auto finding = too_coarse_finding(object, width)) json["finding"] = *finding;
+  std::vector<std::string> findings = findings_of(
+      recommended, with_reason.is_of_phases, with_reason.has_core,
+      {voxels_mm3, object.mesh.within ? std::optional(object.mesh.within->size().volume_mm3) : std::nullopt});
+  if (const auto finding = too_coarse_finding(object, width)) findings.insert(findings.begin(), *finding);
+  if (!findings.empty()) {
+    std::string all;
+    for (const std::string& finding : findings) all += (all.empty() ? "" : "; ") + finding;
+    json["finding"] = all;
+  }
   json["area_half_width_mm2"] = nullptr;
   if (object.mesh.within) {
     const brep::Measures& measures = object.mesh.within->measures();

@@ -23,7 +23,6 @@
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/partial_volume.h"
-#include "voxel/space/drop_samples.h"
 #include "voxel/tree/grey_octree_build.h"
 #include "voxel/tree/octree_file.h"
 
@@ -34,19 +33,7 @@ FileAnswer said(Json json) {
   const auto value = [&](const char* key, int decimals) {
     return json[key].is_null() ? "none" : grouped(json[key].get<double>(), decimals);
   };
-  const auto doubtful = [&](const char* key, const char* half_width) {
-    return value(key, 1) + (json.contains(half_width)
-                                ? " \u00b1 " + three_figures(json[half_width].get<double>())
-                                : std::string());
-  };
-  std::vector<std::pair<std::string, std::string>> rows = {
-      {"volume", doubtful("volume_mm3", "volume_half_width_mm3") + " mm\u00b3, " +
-                     json["volume_estimator"].get<std::string>()},
-      {"partial", value("volume_partial_mm3", 1) + " mm\u00b3"},
-      {"area", doubtful("area_mm2", "area_half_width_mm2") + " mm\u00b2, " +
-                   json["area_estimator"].get<std::string>()},
-      {"components", value("components", 0)},
-      {"euler", value("euler", 0)}};
+  std::vector<std::pair<std::string, std::string>> rows;
   for (const char* key : {"volume", "area"}) {
     if (!json.contains(key)) continue;
     const Json& found = json[key];
@@ -55,10 +42,25 @@ FileAnswer said(Json json) {
                           three_figures(found["half_width"].get<double>()) +
                           (found["unit"] == "mm3" ? " mm\u00b3" : " mm\u00b2") + " in 99 of 100 cases");
   }
+  // The doubt of one estimator is no interval that holds the truth: it says so.
+  const auto doubtful = [&](const char* key, const char* half_width, const char* unit,
+                            const char* estimator) {
+    return value(key, 1) + unit + json[estimator].get<std::string>() +
+           (json.contains(half_width)
+                ? ", by digitising alone \u00b1 " + three_figures(json[half_width].get<double>())
+                : std::string());
+  };
+  rows.insert(rows.end(),
+              {{"volume", doubtful("volume_mm3", "volume_half_width_mm3", " mm\u00b3, ", "volume_estimator")},
+               {"partial", value("volume_partial_mm3", 1) + " mm\u00b3"},
+               {"area", doubtful("area_mm2", "area_half_width_mm2", " mm\u00b2, ", "area_estimator")},
+               {"components", value("components", 0)},
+               {"euler", value("euler", 0)}});
   const std::vector<std::pair<std::string, std::string>> asked = surface_rows(json);
   rows.insert(rows.end(), asked.begin(), asked.end());
   for (const Json& finding : json["findings"])
-    if (const auto text = finding.get<std::string>(); text.starts_with("volume_mm3: "))
+    if (const auto text = finding.get<std::string>();
+        text.starts_with("volume_mm3: ") || text.starts_with("WARN "))
       rows.emplace_back("finding", text);
   return {std::move(json), std::move(rows)};
 }
@@ -277,7 +279,7 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
 
 FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
   Timings& timings = bench.timings;
-  auto [scene, grey] = read_to_octree(file, asked, bench);
+  const auto [scene, grey] = read_to_octree(file, asked, bench);
   const voxel::Window window = window_of(grey, file, asked);
   const voxel::Octree inside = voxel::combine(grey.universe(), window);
   voxel::Measures measures;
@@ -285,30 +287,44 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   add_partial_volume(window, timings, json);
   Digitised digitised{grey.universe().lattice().spacing_mm(), scene.lattice.spacing_mm()};
   brep::Solid isosurface;
+  std::optional<verify::TwoPhase> phases;
+  const double high = asked.window->high_or_infinity();
+  const bool is_labels = scene.meaning == voxel::Meaning::Label;
   {
     const Stopwatch watch(timings, "isosurface");
-    brep::Triangles triangles = convert::isosurface(scene, window.low, asked.window->high_or_infinity());
-    voxel::drop_samples(scene);  // from here on the octree's serve
+    brep::Triangles triangles = convert::isosurface(scene, window.low, high);
     // Both have parts that take one thread alone.
     tbb::parallel_invoke(
         [&] { isosurface = brep::trusted_solid(std::move(triangles), brep::Proof::Construction); },
         [&] {
-          const Stopwatch own_watch(timings, "half_width");
-          digitised.shift_mm = window_shift_mm(window);
+          if (!is_labels && !asked.window->high) phases = verify::two_phase(scene, window.low);
           digitised.flat_mm2 = voxel::flat_parts_mm2(inside);
         });
   }
   const Stopwatch watch(timings, "intervals");
   const brep::Size& surface = isosurface.size();
+  digitised.shift_mm = window_shift_mm(scene, window.low, high);
   add_half_width(measures, digitised, grey.universe().lattice(),
                  Seen{{"isosurface", surface.volume_mm3, surface.area_mm2},
                       "the isosurface of the samples encloses",
                       "take smaller ones, --voxel"},
                  json);
-  const verify::SizeIntervals recommended =
-      intervals_of_surface(isosurface, {glm::dmat3(scene.lattice.lps_from_voxel), glm::dmat4(1.0), grey,
-                                        on_samples(scene.lattice, grey.universe().lattice()),
-                                        digitised.shift_mm, digitised.sample_mm});
+  const SurfaceSamples source{.lps_from_scan = scene.lattice.lps_from_voxel,
+                              .samples = std::shared_ptr<const voxel::Scene>(std::shared_ptr<void>(), &scene),
+                              .window_shift_mm = digitised.shift_mm,
+                              .along_lps_mm = digitised.sample_mm,
+                              .low = window.low,
+                              .high = high};
+  verify::SizeIntervals recommended = isosurface.empty() ? verify::nothing_found(digitised.sample_mm)
+                                                         : intervals_of_surface(isosurface, {source});
+  if (phases) recommended = intervals_of_phases(*phases, std::move(recommended));
+  if (is_labels && !isosurface.empty())
+    recommended = intervals_of_labels(scene, window.low, high, std::move(recommended));
+  add_voxels(digitised.voxel_mm, surface.area_mm2, recommended);
+  for (const std::string& finding :
+       findings_of(recommended, phases.has_value(), phases && phases->evidence.has_core,
+                   {measures.volume_mm3, surface.volume_mm3}))
+    json["findings"].push_back(finding);
   const HalfWidth width =
       area_half_width({recommended.triangles.area_mm2, recommended.triangles.curvature_mm}, digitised);
   json["area_half_width_mm2"] = width.value;

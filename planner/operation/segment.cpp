@@ -295,7 +295,11 @@ void bound(const Segment& segment, const BoundBench& bench, Object& made) {
   made.bound.voxels_are_samples = on_samples(lattice, bench.universe.lattice());
   // Depth is interpolated where samples pass the lower bound; an upper bound inside the object breaks that.
   if (!segment.window || why_voxels_alone(segment) != nullptr) return;
-  made.bound.windows = {Shown{scan.grey, segment.window->low, segment.scan.name}};
+  made.bound.windows = {{.grey = scan.grey,
+                         .threshold = segment.window->low,
+                         .scan = segment.scan.name,
+                         .samples = scan.shared,
+                         .high = segment.window->high_or_infinity()}};
   if (!segment.window->high) made.shown = made.bound.windows.front();
   made.witness = verify::witness_of_window(scan.shared, segment.window->low,
                                            segment.window->high_or_infinity(), bench.universe);

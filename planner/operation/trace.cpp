@@ -92,6 +92,8 @@ void carry(const Object& still, const glm::dmat4& moved_from_still, const voxel:
   made.bound.spacing_mm = still.bound.spacing_mm;
   made.bound.planes = still.bound.planes;
   made.bound.windows = still.bound.windows;
+  for (Shown& window : made.bound.windows)
+    window.moved_from_still = moved_from_still * window.moved_from_still;
   made.bound.shift_mm = still.bound.shift_mm;
   if (still.bound.scan_box_mm) {
     const auto ends =

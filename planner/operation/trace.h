@@ -22,7 +22,7 @@ std::vector<CutPlane> planes_of(const voxel::RegionMask& mask);
 /// Adds an operand's walls and bound terms to those of an object made of it.
 void inherit(const Object& operand, Object& made);
 
-/// The same for an object that is one moved: its walls, planes and samples move along.
+/// The same for an object that is one moved or mirrored: its walls, planes, windows and samples move along.
 void carry(const Object& still, const glm::dmat4& moved_from_still, const voxel::Universe& universe,
            Object& made);
 

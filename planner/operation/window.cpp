@@ -83,7 +83,11 @@ void bound(const Window& window, const BoundBench& bench, Object& made) {
   // Depth is interpolated where samples pass the lower bound; an upper bound inside the object breaks that.
   made.witness = verify::witness_of_window(
       scan.shared, window.low, window.high.value_or(std::numeric_limits<double>::infinity()), bench.universe);
-  made.bound.windows = {Shown{scan.grey, window.low, window.scan.name}};
+  made.bound.windows = {{.grey = scan.grey,
+                         .threshold = window.low,
+                         .scan = window.scan.name,
+                         .samples = scan.shared,
+                         .high = window.high.value_or(std::numeric_limits<double>::infinity())}};
   if (!window.high) made.shown = made.bound.windows.front();
 }
 

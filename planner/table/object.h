@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <glm/glm.hpp>
+#include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -16,6 +17,7 @@
 #include "verify/reading.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/expression.h"
+#include "voxel/space/scene.h"
 #include "voxel/tree/grey_octree.h"
 #include "voxel/tree/octree.h"
 
@@ -61,6 +63,8 @@ struct Shown {
   double threshold = 0.0;
   std::string scan;                  ///< that grey is of
   glm::dmat4 moved_from_still{1.0};  ///< LPS to LPS, of all the steps that moved it since
+  std::shared_ptr<const voxel::Scene> samples = {};  ///< the scan's own; none: grey alone shows it
+  double high = std::numeric_limits<double>::infinity();  ///< the window's upper bound
 };
 
 /// What a certificate's bound is made of.
