@@ -26,7 +26,11 @@ std::string described(const std::map<int, std::vector<int>>& overlaps,
     }
     text += ", as number " + std::to_string(number);
   }
-  return more > 0 ? text + "; and " + std::to_string(more) + " more combinations" : text;
+  if (more > 0) text += "; and " + std::to_string(more) + " more combinations";
+  return text +
+         ": each segment keeps its samples; a window on numbers does not, and a label map that is written "
+         "has "
+         "the lowest number there";
 }
 
 Scene with_lowest_labels(const Scene& scene) {

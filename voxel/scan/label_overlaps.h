@@ -43,8 +43,8 @@ class LabelOverlaps {
   std::map<int, std::vector<int>> overlaps_;
 };
 
-/// "500 samples lie in 1 'Mandible' and 2 'Teeth', as number 3; ..." for the audit. `counts` has the samples
-/// of each number.
+/// "500 samples lie in 1 'Mandible' and 2 'Teeth', as number 3; ...", and what that means, for the audit.
+/// `counts` has the samples of each number.
 std::string described(const std::map<int, std::vector<int>>& overlaps,
                       const std::map<int, std::size_t>& counts, const std::map<int, std::string>& names);
 

@@ -226,10 +226,7 @@ class SegReader {
     scene_.overlaps = overlaps.all();
     std::erase_if(scene_.overlaps, [&](const auto& each) { return counts[each.first] == 0; });
     if (!scene_.overlaps.empty())
-      scene_.audit.push_back({"overlaps", Verdict::Warn,
-                              described(scene_.overlaps, counts, names_) +
-                                  ": each segment keeps its samples; a window on numbers does not, "
-                                  "and a label map that is written has the lowest number there"});
+      scene_.audit.push_back({"overlaps", Verdict::Warn, described(scene_.overlaps, counts, names_)});
   }
 
   const fs::path& path_;

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/scan/read_volume.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
+#include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "voxel/scan/air_level.h"
 #include "voxel/scan/audit.h"
+#include "voxel/scan/label_names.h"
+#include "voxel/scan/label_overlaps.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
 #include "voxel/volume/sample_files.h"
@@ -98,6 +104,92 @@ std::optional<Meaning> meaning_of(const std::string& word) {
   return std::nullopt;
 }
 
+/// The layers of a segmentation of 3D Slicer as one label map, in which a number stands for several labels
+/// where segments overlap.
+class LayerReader {
+ public:
+  LayerReader(const fs::path& path, const VolumeHeader& header, const std::vector<SlicerSegment>& segments)
+      : path_(path), layers_(static_cast<std::size_t>(header.layers)) {
+    for (const SlicerSegment& segment : segments) {
+      number_of_[{segment.layer, segment.value}] = segment.number;
+      names_[segment.number] = segment.name;
+      largest_ = std::max(largest_, segment.number);
+    }
+    wide_.lattice.dims = header.geometry.dims;
+    wide_.lattice.dims.x *= header.layers;
+    need_memory(path, wide_.lattice.sample_count(),
+                bytes_of(header.samples.stored.type) + 2 * sizeof(std::int16_t));
+    read_samples(path, header.samples, {}, wide_);
+  }
+
+  void fill(Scene& scene) {
+    scene.audit.insert(scene.audit.end(), wide_.audit.begin(), wide_.audit.end());
+    number_unlisted();
+    LabelOverlaps overlaps(largest_);
+    // Half of int16's numbers are left for overlaps.
+    constexpr int most_of_int16 = 1 << 14;
+    largest_ <= most_of_int16 ? fill_as<std::int16_t>(overlaps, 2 * most_of_int16 - 1, scene)
+                              : fill_as<float>(overlaps, 1 << 24, scene);
+  }
+
+ private:
+  int value_at(std::size_t index) const {
+    return std::visit(
+        [&](const auto& samples) {
+          const double value = samples[index];
+          return value >= 0.5 && value <= 1 << 24 ? static_cast<int>(std::lround(value)) : 0;
+        },
+        wide_.samples);
+  }
+
+  /// Gives numbers beyond the listed ones to values that no segment has.
+  void number_unlisted() {
+    for (std::size_t i = 0; i < wide_.lattice.sample_count(); ++i)
+      if (const int value = value_at(i); value != 0) {
+        const auto [entry, is_new] = number_of_.try_emplace({static_cast<int>(i % layers_), value}, 0);
+        if (is_new) entry->second = ++largest_;
+      }
+  }
+
+  template <typename Sample>
+  void fill_as(LabelOverlaps& overlaps, int most, Scene& scene) {
+    Samples<Sample> samples(scene.lattice.sample_count(), Sample{0});
+    std::map<int, std::size_t> counts;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      int number = 0;
+      for (std::size_t layer = 0; layer < layers_; ++layer)
+        if (const int value = value_at(i * layers_ + layer); value != 0)
+          number = overlaps.joined(number, number_of_.at({static_cast<int>(layer), value}));
+      if (overlaps.largest() > most) refuse(path_, "its segments overlap in too many combinations");
+      if (overlaps.all().contains(number)) ++counts[number];
+      samples[i] = static_cast<Sample>(number);
+    }
+    scene.samples = std::move(samples);
+    scene.overlaps = overlaps.all();
+    std::erase_if(scene.overlaps, [&](const auto& each) { return counts[each.first] == 0; });
+    if (!scene.overlaps.empty())
+      scene.audit.push_back({"overlaps", Verdict::Warn, described(scene.overlaps, counts, names_)});
+  }
+
+  const fs::path& path_;
+  std::size_t layers_;
+  Scene wide_;
+  std::map<std::pair<int, int>, int> number_of_;  ///< of a layer and a value in it
+  std::map<int, std::string> names_;
+  int largest_ = 0;
+};
+
+/// Whether the file lists 3D Slicer's segments, whose labels its samples are; lists them in the audit.
+bool take_segments(const std::vector<SlicerSegment>& segments, Scene& scene) {
+  std::string list;
+  for (const SlicerSegment& segment : segments)
+    list += (list.empty() ? "" : ", ") + std::to_string(segment.number) + " '" + segment.name + "'";
+  if (list.empty()) return false;
+  scene.meaning = Meaning::Label;
+  scene.audit.push_back({"segments", Verdict::Pass, list});
+  return true;
+}
+
 void take_meaning(const VolumeHeader& header, const SmallNumbers& small, Scene& scene) {
   scene.modality = header.modality;
   const std::optional<Meaning> stated = meaning_of(header.meaning);
@@ -127,11 +219,18 @@ Scene read_volume(const fs::path& path, VolumeFormat format, const ReadOptions& 
   if (!scene.lattice.right_handed())
     scene.audit.push_back(
         {"handedness", Verdict::Pass, "voxel axes are left-handed; positions allow for it"});
+  const std::vector<SlicerSegment> segments =
+      format == VolumeFormat::Nrrd ? slicer_segments(path) : std::vector<SlicerSegment>{};
+  if (header.layers > 1) {
+    LayerReader(path, header, segments).fill(scene);
+    take_segments(segments, scene);
+    return scene;
+  }
   need_memory(path, scene.lattice.sample_count(),
               are_own(header.samples) ? sizeof(std::int16_t)
                                       : bytes_of(header.samples.stored.type) + sizeof(std::int16_t));
   const SmallNumbers small = read_samples(path, header.samples, options, scene);
-  take_meaning(header, small, scene);
+  if (!take_segments(segments, scene)) take_meaning(header, small, scene);
   return scene;
 }
 

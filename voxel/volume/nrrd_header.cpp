@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Headers of NRRD by its definition (teem.sourceforge.net/nrrd/format.html, Teem 1.9). Departures: one value
-// a sample and one volume only; bzip2 and blocks are refused. Axes that are none of space are passed over
-// where they have the length 1. Without `centers` a sample stands in the middle of its cell, as Teem assumes.
+// a sample and one volume only, but for the layers of 3D Slicer's segmentations; bzip2 and blocks are
+// refused. Axes that are none of space are passed over where they have the length 1. Without `centers` a
+// sample stands in the middle of its cell, as Teem assumes.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -125,7 +126,9 @@ class NrrdReader {
       const std::string kind = kinds.empty() ? "" : lower_case(kinds[axis]);
       const bool is_of_space =
           has_directions_ ? lower_case(directions[axis]) != "none" && kind != "time" : is_kind_of_space(kind);
-      if (is_of_space && (sizes[axis] != 1.0 || lengths.size() < 3)) {
+      if (!is_of_space && axis == 0 && sizes[axis] > 1.0 && lists_segments()) {
+        take_layers(sizes[axis]);
+      } else if (is_of_space && (sizes[axis] != 1.0 || lengths.size() < 3)) {
         lengths.push_back(sizes[axis]);
         space_axes_.push_back(axis);
       } else if (sizes[axis] != 1.0) {
@@ -137,8 +140,24 @@ class NrrdReader {
     }
     if (lengths.size() < 2) refuse_field("sizes", "has fewer than two axes of space");
     header_.geometry.dims = dims_of(path_, lengths);
+    if (header_.geometry.dims.x > std::numeric_limits<int>::max() / header_.layers)
+      refuse_field("sizes", "are too large");
     space_axes_.resize(std::min<std::size_t>(space_axes_.size(), 3));
     directions_ = directions;
+  }
+
+  /// Whether 3D Slicer wrote its segments into the header.
+  bool lists_segments() const {
+    return std::any_of(text_.keys.begin(), text_.keys.end(), [](const auto& key) {
+      return key.first.starts_with("segment") && key.first.ends_with("_labelvalue");
+    });
+  }
+
+  void take_layers(double count) {
+    constexpr double most_layers = 4096.0;
+    if (!(count <= most_layers) || count != std::trunc(count))
+      refuse_field("sizes", "has no number of layers");
+    header_.layers = static_cast<int>(count);
   }
 
   static bool is_kind_of_space(const std::string& kind) {

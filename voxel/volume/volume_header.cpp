@@ -127,7 +127,9 @@ VolumeHeader read_volume_header(const fs::path& path, VolumeFormat format) {
   VolumeHeader header = format == VolumeFormat::Nifti  ? read_nifti_header(path)
                         : format == VolumeFormat::Nrrd ? read_nrrd_header(path)
                                                        : read_meta_header(path);
-  need_bytes(path, header.geometry.dims, header.samples);
+  glm::ivec3 stored = header.geometry.dims;
+  stored.x *= header.layers;
+  need_bytes(path, stored, header.samples);
   return header;
 }
 

@@ -53,6 +53,9 @@ struct VolumeHeader {
   std::map<std::string, std::string> fields;  ///< of a NRRD or MetaImage, by name in lower case
   StatedGeometry geometry;
   SampleFiles samples;
+  /// Of a segmentation of 3D Slicer whose segments overlap: samples of so many label maps stand at each
+  /// place, one behind the other.
+  int layers = 1;
   std::string meaning;         ///< "HU", "raw" or "label"; empty if the file states none
   std::string modality;        ///< DICOM's two letters; empty if the file states none
   std::vector<Finding> audit;  ///< lines on its other statements

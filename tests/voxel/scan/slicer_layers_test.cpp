@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "tests/voxel/scratch_folder.h"
+#include "voxel/scan/label_names.h"
+#include "voxel/scan/read_scene.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::voxel {
+namespace {
+
+using tests::ScratchFolder;
+
+/// 3D Slicer's segmentation of 4 x 2 x 1 places in two layers, whose samples alternate. Both layers have the
+/// value 1.
+std::filesystem::path layered(const ScratchFolder& folder, const std::string& sizes = "2 4 2 1") {
+  std::ofstream out(folder / "s.seg.nrrd", std::ios::binary);
+  out << "NRRD0005\ntype: unsigned char\ndimension: 4\nspace: left-posterior-superior\nsizes: " << sizes
+      << "\nspace directions: none (0.5,0,0) (0,0.5,0) (0,0,2)\nkinds: list domain domain domain\n"
+         "encoding: raw\nspace origin: (1,2,3)\n"
+         "Segment0_ID:=S1\nSegment0_LabelValue:=1\nSegment0_Layer:=0\nSegment0_Name:=Mandible\n"
+         "Segment1_ID:=S2\nSegment1_LabelValue:=1\nSegment1_Layer:=1\nSegment1_Name:=Teeth\n"
+         "Segment2_ID:=S3\nSegment2_LabelValue:=2\nSegment2_Layer:=0\nSegment2_Name:=Skull\n\n";
+  const char samples[8][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {2, 1}, {2, 0}, {0, 0}, {7, 0}};
+  for (const auto& place : samples) out.write(place, 2);
+  return folder / "s.seg.nrrd";
+}
+
+TEST(SlicerLayers, SegmentsThatOverlapKeepTheirSamplesUnderNumbersOfTheirOwn) {
+  const ScratchFolder folder;
+  const auto path = layered(folder);
+  const std::map<int, std::string> names = label_names(path);
+  EXPECT_EQ(names, (std::map<int, std::string>{{1, "Mandible"}, {2, "Skull"}, {3, "Teeth"}}))
+      << "the value 1 of the second layer is another segment's: it gets the next free number";
+  const Scene scene = read_scene(path);
+  EXPECT_EQ(scene.meaning, Meaning::Label);
+  EXPECT_EQ(scene.lattice.dims, glm::ivec3(4, 2, 1));
+  EXPECT_EQ(scene.lattice.spacing_mm(), glm::dvec3(0.5, 0.5, 2));
+  EXPECT_EQ(scene.lattice.lps_mm({0, 0, 0}), glm::dvec3(1, 2, 3));
+  // 4 is the value 7, which no segment has; 5 and 6 stand for several labels.
+  EXPECT_EQ(std::get<Int16Samples>(scene.samples), (Int16Samples{0, 1, 5, 3, 6, 2, 0, 4}));
+  EXPECT_EQ(scene.overlaps, (std::map<int, std::vector<int>>{{5, {1, 3}}, {6, {2, 3}}}));
+  const auto told = std::find_if(scene.audit.begin(), scene.audit.end(),
+                                 [](const Finding& finding) { return finding.check == "overlaps"; });
+  ASSERT_NE(told, scene.audit.end());
+  EXPECT_EQ(told->verdict, Verdict::Warn);
+  EXPECT_NE(told->detail.find("1 sample lies in 1 'Mandible' and 3 'Teeth'"), std::string::npos)
+      << told->detail;
+}
+
+TEST(SlicerLayers, MoreLayersThanTheFileHoldsAreRefused) {
+  const ScratchFolder folder;
+  for (const char* sizes : {"3 4 2 1", "5000 4 2 1", "2 2000000000 2 1", "2.5 4 2 1"})
+    EXPECT_THROW(read_scene(layered(folder, sizes)), Error) << sizes;
+}
+
+}  // namespace
+}  // namespace octotomy::voxel
