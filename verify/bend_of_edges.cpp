@@ -29,7 +29,8 @@ OCTOTOMY_VECTOR_CLONES void measure_faces(FaceBatch& faces, const BendFrame& wit
     faces.across.set(i, across);
     faces.size[i] = glm::length(across);
     faces.along.set(i, across * frame.units);
-    faces.part.set(i, glm::floor(frame.from_lps * ((a + b + c) / 3.0 - frame.origin_mm) / frame.part_samples));
+    faces.part.set(i,
+                   glm::floor(frame.from_lps * ((a + b + c) / 3.0 - frame.origin_mm) / frame.part_samples));
   }
 }
 

@@ -24,9 +24,9 @@ struct Vectors {
 
 /// The lattice of the samples and the cells by which parts of a surface are told apart.
 struct BendFrame {
-  glm::dmat3 from_lps{1.0};  ///< to samples
+  glm::dmat3 from_lps{1.0};   ///< to samples
   glm::dvec3 origin_mm{0.0};  ///< a corner of a part; parts move with the samples
-  glm::dmat3 units{1.0};     ///< columns: the lattice's directions
+  glm::dmat3 units{1.0};      ///< columns: the lattice's directions
   glm::dvec3 spacing_mm{1.0};
   double part_samples = 6.0;
   glm::dvec3 cell_mm{1.0};  ///< along the LPS axes

@@ -19,7 +19,7 @@ struct LineCount {
 struct LineCountOptions {
   std::uint64_t seed = 1;
   std::uint64_t lines = 12000;  ///< about so many: accuracy grows a little faster than with their root
-  voxel::Box world_mm{};       ///< where an object without an end of its own ends
+  voxel::Box world_mm{};        ///< where an object without an end of its own ends
   voxel::Progress progress{};
 };
 

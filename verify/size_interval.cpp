@@ -30,13 +30,13 @@
 //
 // sources  interpolation: all that a half level would lose, or the difference to samples counted, which do
 //          not depend on how samples are joined: between coarse slices the surface of a low threshold bulges,
-//          and that of thin walls shrinks. digitisation, edges: a share of the former. blur: what blur would have taken, and a share of
-//          it. flat: a plane along the lattice lies between samples of shares 1, f and 0, and linear
-//          interpolation misplaces it by up to 0.086 s, the whole of it alike. Noise
-//          tilts its triangles, so that a part whose mean normal is along the lattice counts whole. sheet:
-//          the blur of its other side lowers a sheet's samples (step_share()). window: the surface's shift
-//          for ten sample units. The constants were calibrated with solids of all groups in poses of other
-//          seeds than interval_suite()'s, so that its 99th percentile is held.
+//          and that of thin walls shrinks. digitisation, edges: a share of the former. blur: what blur would
+//          have taken, and a share of it. flat: a plane along the lattice lies between samples of shares 1, f
+//          and 0, and linear interpolation misplaces it by up to 0.086 s, the whole of it alike. Noise tilts
+//          its triangles, so that a part whose mean normal is along the lattice counts whole. sheet: the blur
+//          of its other side lowers a sheet's samples (step_share()). window: the surface's shift for ten
+//          sample units. The constants were calibrated with solids of all groups in poses of other seeds than
+//          interval_suite()'s, so that its 99th percentile is held.
 #include "verify/size_interval.h"
 
 #include <algorithm>

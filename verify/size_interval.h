@@ -50,9 +50,9 @@ struct SizeIntervals {
   Interval volume_mm3, area_mm2;
   AreaAndCurvature triangles;
 };
-/// Of a surface that samples were interpolated for; the value is the triangles'. An edge sharper than an isosurface has is a cut, which
-/// errs by nothing. Motions keep both; a part has the doubt of its own surface, so that parts of one whole
-/// add up to it. Cost: n log n in edges.
+/// Of a surface that samples were interpolated for; the value is the triangles'. An edge sharper than an
+/// isosurface has is a cut, which errs by nothing. Motions keep both; a part has the doubt of its own
+/// surface, so that parts of one whole add up to it. Cost: n log n in edges.
 SizeIntervals size_intervals(const brep::Solid& solid, const SampledFrom& from);
 
 /// Upper bounds of what could have been missed where nothing is found: a ball two samples across.

@@ -61,8 +61,8 @@ struct CutPlane {
 struct Shown {
   voxel::GreyOctree grey;
   double threshold = 0.0;
-  std::string scan;                  ///< that grey is of
-  glm::dmat4 moved_from_still{1.0};  ///< LPS to LPS, of all the steps that moved it since
+  std::string scan;                                  ///< that grey is of
+  glm::dmat4 moved_from_still{1.0};                  ///< LPS to LPS, of all the steps that moved it since
   std::shared_ptr<const voxel::Scene> samples = {};  ///< the scan's own; none: grey alone shows it
   double high = std::numeric_limits<double>::infinity();  ///< the window's upper bound
 };

@@ -124,7 +124,8 @@ TEST_F(ScanVerbs, VoxelsThatPassOverAThinObjectSayHowMuchTheyMiss) {
   // Samples that voxels meet well have one finding: the sum of the samples sees more than a threshold.
   const SortedJson ball = json("measure " + at("ball.nrrd") + " --window 0:");
   ASSERT_EQ(ball["findings"].size(), 1U) << ball["findings"];
-  EXPECT_NE(ball["findings"][0].get<std::string>().find("outside of both kernels' answers"), std::string::npos)
+  EXPECT_NE(ball["findings"][0].get<std::string>().find("outside of both kernels' answers"),
+            std::string::npos)
       << ball["findings"];
   EXPECT_NEAR(ball["volume"]["value"].get<double>(), tests::ball_mm3(12.0),
               ball["volume"]["half_width"].get<double>());
