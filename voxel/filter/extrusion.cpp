@@ -212,18 +212,8 @@ class Finder {
       for (int x = 0; x < view_.size[0]; ++x) lasting[view_.column(x, y)] = lasts({x, y}, window) ? 1 : 0;
     });
     without_thick(lasting);
-    double all = 0.0;
-    for (const Column& column : columns_) all += static_cast<double>(column.solid);
     for (const Part& part : parts_of(lasting))
-      if (is_support(part, lasting) && 2.0 * solid_of(part) <= all) mark(part, window);
-  }
-
-  /// The solid columns of a part; more than half of all are the patient.
-  double solid_of(const Part& part) const {
-    double solid = 0.0;
-    for (const glm::ivec2& p : part.columns)
-      solid += static_cast<double>(columns_[view_.column(p.x, p.y)].solid);
-    return solid;
+      if (is_support(part, lasting)) mark(part, window);
   }
 
   /// Fills columns_ for a window: of at most slices_per_median slices, evenly chosen.

@@ -324,9 +324,6 @@ class Parter {
       const bool is_kept = std::any_of(part.begin(), part.end(), [&](auto i) { return keeps[i] != 0; });
       const bool reaches =
           std::any_of(part.begin(), part.end(), [&](auto i) { return static_cast<double>(away[i]) > near2; });
-      const double touch2 = glm::dot(grid_.mm, grid_.mm);
-      const bool hangs = std::any_of(part.begin(), part.end(),
-                                     [&](auto i) { return static_cast<double>(away[i]) <= touch2; });
       const auto front =
           std::count_if(part.begin(), part.end(), [&](auto i) { return y_mm(grid_.cell(i)) < middle_y_mm_; });
       const bool is_ahead =
@@ -341,7 +338,7 @@ class Parter {
           body_[i] = 1;
         else if (is_ahead)
           (is_far ? doubtful_ : body_)[i] = 1;
-        else if (is_far || !hangs || (is_behind && static_cast<double>(away[i]) > contact_mm * contact_mm))
+        else if (is_far || (is_behind && static_cast<double>(away[i]) > contact_mm * contact_mm))
           support_[i] = 1;
         else
           body_[i] = 1;
