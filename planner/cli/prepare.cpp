@@ -4,14 +4,12 @@
 
 #include "planner/cli/verbs.h"
 #include "planner/file/outputs.h"
-#include "planner/picture/removed_picture.h"
 #include "planner/table/field_json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "planner/table/number_format.h"
 #include "planner/verb/octree_out.h"
 #include "planner/verb/scan_in.h"
-#include "voxel/scan/image_file.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/volume/volume_header.h"
 
@@ -21,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct PrepareText {
-  fs::path in, out, removed, picture;
+  fs::path in, out, removed;
   std::vector<std::string> steps, keep;
   ScanIn scan;
 };
@@ -82,9 +80,7 @@ void check_outputs(const PrepareText& text) {
   if (!text.removed.empty()) need_octree_extension(text.removed);
   std::vector<fs::path> read{text.in};
   for (const std::string& step : text.steps) read.push_back(read_by(step));
-  if (!text.picture.empty() && text.picture.extension() != ".png")
-    throw std::runtime_error(text.picture.string() + ": the picture of what is removed is a .png file");
-  need_outputs({text.out, text.removed, text.picture}, read);
+  need_outputs({text.out, text.removed}, read);
 }
 
 void write_removed(const PrepareText& text, const voxel::GreyOctree& removed, Outputs& outputs,
@@ -105,14 +101,9 @@ int prepare(const Program& program, const PrepareText& text) {
   if (std::count_if(steps.begin(), steps.end(),
                     [](const Action& step) { return step.operation().name == "remove_headrest"; }) > 1)
     throw CLI::ValidationError("--step", "remove_headrest is once enough: what it takes out is in one file");
-  if (!text.picture.empty() && std::none_of(steps.begin(), steps.end(), [](const Action& step) {
-        return step.operation().name == "remove_headrest";
-      }))
-    throw CLI::ValidationError("--picture", "only remove_headrest has one: add --step remove_headrest");
   Timings timings;
   voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
   std::optional<voxel::GreyOctree> removed;
-  std::optional<RemovedPicture> picture;
   Json did = Json::array();
   std::vector<std::pair<std::string, std::string>> rows;
   for (const Action& step : steps) {
@@ -133,10 +124,6 @@ int prepare(const Program& program, const PrepareText& text) {
     if (made.removed) {
       removed = std::move(made.removed);
       said["removed"] = text.removed.string();
-      if (!text.picture.empty()) {
-        picture = removed_picture(scene, *removed);
-        said["picture"] = text.picture.string();
-      }
     }
     for (const std::string& finding : made.findings) {
       said["finding"] = finding;
@@ -147,10 +134,7 @@ int prepare(const Program& program, const PrepareText& text) {
     rows.emplace_back(
         name, dims_text(dims) +
                   (said.contains("volume_removed_mm3")
-                       ? ", " + grouped(said["volume_removed_mm3"].get<double>(), 0) +
-                             " mm\u00b3 solid and " + grouped(said["foam_removed_mm3"].get<double>(), 0) +
-                             " mm\u00b3 of foam and edges removed, " +
-                             grouped(said["dense_removed_mm3"].get<double>(), 0) + " as dense as bone"
+                       ? ", " + grouped(said["volume_removed_mm3"].get<double>(), 0) + " mm\u00b3 removed"
                        : ""));
     did.push_back(std::move(said));
   }
@@ -161,9 +145,6 @@ int prepare(const Program& program, const PrepareText& text) {
     outputs.write(text.out, [&](const fs::path& file) { voxel::write_scene(scene, file); });
   }
   if (removed) write_removed(text, *removed, outputs, timings);
-  if (picture)
-    outputs.write(text.picture,
-                  [&](const fs::path& file) { voxel::write_image(file, picture->size_px, picture->rgb); });
   outputs.commit();
   Json json = scan_answer(scene, timings);
   json["path"] = text.out.string();
@@ -180,8 +161,7 @@ void add_prepare(Program& program) {
   CLI::App& verb = program.verb(
       "prepare", "Crops, resamples, smooths and cleans a scan, step by step in the order given",
       "octotomy prepare head.nrrd -o ready.nrrd --step crop=-90,-120,-80,90,110,90 --step slices=1,cubic\n"
-      "  octotomy prepare head.nrrd -o clean.nrrd --step remove_headrest --removed table.octree --picture "
-      "table.png\n"
+      "  octotomy prepare head.nrrd -o clean.nrrd --step remove_headrest --removed table.octree\n"
       "  octotomy prepare clean.nrrd -o head_again.nrrd --step restore=table.octree",
       [&program, text] { return prepare(program, *text); });
   std::string forms;
@@ -192,7 +172,6 @@ void add_prepare(Program& program) {
   verb.add_option("-o,--out", text->out, "A .nrrd, .nii.gz or .mha file")->required();
   verb.add_option("--step", text->steps, "Again for more: " + forms)->required()->expected(1)->take_all();
   verb.add_option("--removed", text->removed, "The .octree file that keeps what remove_headrest takes out");
-  verb.add_option("--picture", text->picture, "A .png file that shows in red what remove_headrest takes out");
   verb.add_option("--keep", text->keep, "X,Y,Z in mm of a part that remove_headrest leaves, again for more")
       ->expected(1)
       ->take_all();

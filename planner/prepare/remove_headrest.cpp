@@ -1,52 +1,23 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The scan without boards, couches, foam and holders. What is in front of the patient's coronal middle stays.
+// The scan without solid parts that are not the patient.
 #include <cmath>
 
 #include "planner/table/json.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/filter/headrest.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
 
 struct RemoveHeadrest {
   ScanName scan;
-  double threshold = voxel::PatientOptions{}.threshold;
-  double near_mm = voxel::PatientOptions{}.near_mm;
+  double threshold = voxel::HeadrestOptions{}.threshold;
+  double near_mm = voxel::HeadrestOptions{}.near_mm;
   std::optional<double> detach_mm, board_mm;
   std::vector<glm::dvec3> keep_mm;
 };
-
-/// Less that stays is a strap's buckle, a wire or noise.
-constexpr double least_kept_mm3 = 1000.0;
-
-/// What was removed, and what was kept that may be a support. Recommends no value: a part that could not be
-/// parted surely must not be cut off by another number.
-std::vector<std::string> findings_of(const voxel::HeadrestRemoval& removal) {
-  const auto cm3 = [](double mm3) { return plain(std::round(mm3 / 100.0) / 10.0) + " cm\u00b3"; };
-  std::vector<std::string> findings;
-  if (removal.voxels == 0)
-    findings.emplace_back(
-        "nothing was removed: no board, foam or holder was found behind the patient's coronal middle; take "
-        "out "
-        "a support that lies closely against the head by a crop step or a mask");
-  if (removal.bone_mm3 >= least_kept_mm3)
-    findings.push_back("of the " + cm3(removal.solid_mm3 + removal.foam_mm3) + " removed, " +
-                       cm3(removal.bone_mm3) + " are as dense as bone (" + plain(voxel::dense_hu) +
-                       " and more): look at the picture of what was removed");
-  if (removal.front_mm3 >= least_kept_mm3)
-    findings.push_back(
-        cm3(removal.front_mm3) + " beside the patient lie in front of its coronal middle (y = " +
-        plain(std::round(removal.middle_y_mm)) + " mm) and were kept, " + cm3(removal.extruded_front_mm3) +
-        " of them of a board or cradle: the patient may lie on the face or the side, or the "
-        "scan's frame may be turned");
-  if (removal.behind_mm3 >= least_kept_mm3)
-    findings.push_back(cm3(removal.behind_mm3) +
-                       " behind the patient's coronal middle may be a support, but cannot be parted surely, "
-                       "and were kept: take them out by a crop step or a mask");
-  return findings;
-}
 
 MadeScan made(const RemoveHeadrest& step, const ScanBench& bench) {
   voxel::HeadrestOptions options;
@@ -72,7 +43,6 @@ MadeScan made(const RemoveHeadrest& step, const ScanBench& bench) {
                  {"kept_front_extruded_mm3", removal.extruded_front_mm3},
                  {"kept_behind_mm3", removal.behind_mm3}},
                 std::move(removal.removed)};
-  made.findings = findings_of(removal);
   return made;
 }
 
@@ -80,20 +50,19 @@ MadeScan made(const RemoveHeadrest& step, const ScanBench& bench) {
 
 Operation remove_headrest_operation() {
   return Describe<RemoveHeadrest>("remove_headrest",
-                                  "Takes boards, couches, foam and holders behind the patient out of a scan.",
-                                  Makes::Scan)
+                                  "Takes solid parts out of a scan that are not the patient.", Makes::Scan)
       .takes(field("scan", &RemoveHeadrest::scan, "The scan.").required())
       .takes(field("threshold", &RemoveHeadrest::threshold,
                    "Samples from here on are solid, in the scan's unit."))
-      .takes(field(
-          "near_mm", &RemoveHeadrest::near_mm,
-          "Parts wholly within this distance of the patient stay, unless they are foam or part of a board."))
+      .takes(field("near_mm", &RemoveHeadrest::near_mm,
+                   "Parts wholly within this distance of the patient stay."))
+      .takes(field("detach_mm", &RemoveHeadrest::detach_mm,
+                   "Links thinner than a ball of this radius are cut. Default: none is."))
       .takes(
-          field("detach_mm", &RemoveHeadrest::detach_mm,
-                "Links behind the patient that are thinner than a ball of this radius are cut. Default: 6."))
-      .takes(field("board_mm", &RemoveHeadrest::board_mm,
-                   "The thickest solid board or couch, flush with the patient or not. Default: 40.")
-                 .greater_than(0.0))
+          field("board_mm", &RemoveHeadrest::board_mm,
+                "Takes out a board or couch that runs through the scan, flush with the patient or not, up to "
+                "this thickness. Default: none is sought.")
+              .greater_than(0.0))
       .takes(field("keep_mm", &RemoveHeadrest::keep_mm, "Points of parts that stay, LPS."))
       .example(R"({"id": "head", "do": "remove_headrest", "scan": "ct"})")
       .on_files("remove_headrest=THRESHOLD,NEAR,DETACH,BOARD (needs --removed)")

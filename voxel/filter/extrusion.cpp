@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 Estimate how the table is inclined to the lattice: the slope for which edges of a coarse copy line up
-// best. 2 Take the median of each column along the table, over all slices and then over shorter windows. 3 A
-// column is extruded where its samples are material and stay near the medians of its neighbourhood. 4 Join
-// extruded columns to parts; a part that is thick, narrow or enclosed belongs to the body. 5 Follow each part
-// beyond its window, slice by slice, while most of its samples still agree; mark them.
+// 1 Estimate how the table is inclined to the lattice: the slope for which edges of a coarse copy line up best.
+// 2 Take the median of each column along the table, over all slices and then over shorter windows.
+// 3 A column is extruded where its samples are material and stay near the medians of its neighbourhood.
+// 4 Join extruded columns to parts; a part that is thick, narrow or enclosed belongs to the body.
+// 5 Follow each part beyond its window, slice by slice, while most of its samples still agree; mark them.
 #include "voxel/filter/extrusion.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr double above_air = 50.0;  ///< HU: the noise of air stays below it, the lightest foam lies there
+constexpr double above_air = 50.0;        ///< HU: the noise of air stays below it, the lightest foam lies there
 constexpr double least_width_mm = 40.0;   ///< less is a strap, a tube or an arm
 constexpr double fringe_mm = 8.0;         ///< a body's outline beyond the discs that fit into it
 constexpr double least_window_mm = 60.0;  ///< a head's outline changes over less
@@ -38,12 +38,9 @@ struct View {
     return static_cast<std::size_t>(side) * stride[0] + static_cast<std::size_t>(back) * stride[1] +
            static_cast<std::size_t>(along) * stride[2];
   }
-  std::size_t columns() const {
-    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
-  }
+  std::size_t columns() const { return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]); }
   std::size_t column(int side, int back) const {
-    return static_cast<std::size_t>(back) * static_cast<std::size_t>(size[0]) +
-           static_cast<std::size_t>(side);
+    return static_cast<std::size_t>(back) * static_cast<std::size_t>(size[0]) + static_cast<std::size_t>(side);
   }
   bool holds(const glm::ivec2& p) const { return p.x >= 0 && p.y >= 0 && p.x < size[0] && p.y < size[1]; }
 };
@@ -81,8 +78,7 @@ class Slope {
     });
   }
 
-  /// Of the edges across `axis` (0: side, 1: back), in mm per mm. Zero unless another slope is clearly
-  /// better.
+  /// Of the edges across `axis` (0: side, 1: back), in mm per mm. Zero unless another slope is clearly better.
   double along(std::size_t axis) const {
     if (coarse_.empty()) return 0.0;
     const double cell = view_.mm[axis] * factor_[axis];
@@ -163,7 +159,7 @@ struct Window {
 
 /// What a column holds over a window.
 struct Column {
-  float median = 0.0F, spread = 0.0F;   ///< median, and median distance from it
+  float median = 0.0F, spread = 0.0F;  ///< median, and median distance from it
   float material = 0.0F, solid = 0.0F;  ///< shares of the samples
 };
 
@@ -482,8 +478,7 @@ double air_level(const Scene& scene, const Int16Samples& samples) {
             }
         const double mean = sum / (block.x * block.y * block.z);
         // One value throughout is padding, unless a sample is a block.
-        if ((low == high && block != glm::ivec3(1) && low <= -1024) || mean < -1100.0 || mean >= -850.0)
-          continue;
+        if ((low == high && block != glm::ivec3(1) && low <= -1024) || mean < -1100.0 || mean >= -850.0) continue;
         ++counts[static_cast<std::size_t>((mean + 1100.0) / 5.0)];
       }
   const auto most = std::max_element(counts.begin(), counts.end());

@@ -21,22 +21,21 @@ struct HeadrestRemoval {
   /// The removed samples, on a universe of the scene's own voxels (universe_on()). The background is a value
   /// that no removed sample has. restore() undoes the removal with it.
   GreyOctree removed;
-  Octree solid;              ///< the removed voxels of at least the threshold
-  std::uint64_t parts = 0;   ///< of `solid`, joined by faces
+  Octree solid;             ///< the removed voxels of at least the threshold
+  std::uint64_t parts = 0;  ///< of `solid`, joined by faces
   std::uint64_t voxels = 0;  ///< all removed voxels, rim and foam included
   double solid_mm3 = 0.0;
-  double foam_mm3 = 0.0;     ///< removed below the threshold: foam, cloth, blurred edges
-  double bone_mm3 = 0.0;     ///< removed from dense_hu on: metal, carbon, dense plastic
+  double foam_mm3 = 0.0;  ///< removed below the threshold: foam, cloth, blurred edges
+  double bone_mm3 = 0.0;  ///< removed from dense_hu on: metal, carbon, dense plastic
   double middle_y_mm = 0.0;  ///< the patient's coronal middle, LPS; nothing in front of it is removed
   double front_mm3 = 0.0, behind_mm3 = 0.0, extruded_front_mm3 = 0.0;  ///< as in PatientParts
 };
 /// Samples from here on are as dense as bone.
 constexpr double dense_hu = 300.0;
 
-/// Overwrites with air what is a support by patient_parts(): nothing in front of the patient's coronal
-/// middle, and nothing that the patient's skin or bone encloses. Throws as patient_parts();
-/// std::runtime_error if nothing is solid. Same bits on any thread count. Memory: the result, and that of
-/// patient_parts().
+/// Overwrites with air what is a support by patient_parts(): nothing in front of the patient's coronal middle,
+/// and nothing that the patient's skin or bone encloses. Throws as patient_parts(); std::runtime_error if
+/// nothing is solid. Same bits on any thread count. Memory: the result, and that of patient_parts().
 HeadrestRemoval remove_headrest(Scene scene, const HeadrestOptions& options = {});
 
 /// Restores the samples that remove_headrest() removed and returns their number. Throws std::invalid_argument

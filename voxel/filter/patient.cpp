@@ -24,12 +24,12 @@ namespace octotomy::voxel {
 namespace {
 
 constexpr double cell_mm = 2.0;
-constexpr double above_air = 40.0;         ///< HU of a cell's mean; the noise of a mean is a fraction of it
-constexpr double contact_mm = 3.0;         ///< what is cut off leaves this much where it hung on the core
-constexpr double silhouette_mm = 10.0;     ///< within the core's outline from behind: where no ear is
-constexpr double close_mm = 4.0;           ///< gaps in the skin up to twice this width are closed
-constexpr double foam_limit = -200.0;      ///< HU: from here on soft tissue lies below the threshold
-constexpr double least_core_share = 0.3;   ///< of the largest part; less, and the object is thin throughout
+constexpr double above_air = 40.0;        ///< HU of a cell's mean; the noise of a mean is a fraction of it
+constexpr double contact_mm = 3.0;        ///< what is cut off leaves this much where it hung on the core
+constexpr double silhouette_mm = 10.0;    ///< within the core's outline from behind: where no ear is
+constexpr double close_mm = 4.0;          ///< gaps in the skin up to twice this width are closed
+constexpr double foam_limit = -200.0;     ///< HU: from here on soft tissue lies below the threshold
+constexpr double least_core_share = 0.3;  ///< of the largest part; less, and the object is thin throughout
 constexpr double most_front_share = 0.25;  ///< a thick part that lies farther in front is no support
 constexpr double thick_mm = 4.0;           ///< a part is thick if it holds a ball of this radius
 
@@ -176,10 +176,7 @@ void fill_slices(const Grid& grid, Cells& set, int along) {
 class Parter {
  public:
   Parter(const Scene& scene, const Int16Samples& samples, const PatientOptions& options)
-      : scene_(scene),
-        samples_(samples),
-        options_(options),
-        axes_(patient_axes(scene.lattice)),
+      : scene_(scene), samples_(samples), options_(options), axes_(patient_axes(scene.lattice)),
         grid_(scene.lattice) {
     const bool hounsfield = scene.meaning == Meaning::Hounsfield;
     air_ = hounsfield ? air_level(scene, samples) : options.threshold - 700.0;
@@ -206,9 +203,6 @@ class Parter {
   double y_mm(const glm::ivec3& cell) const {
     return scene_.lattice.lps_mm((glm::dvec3(cell) + 0.5) * glm::dvec3(grid_.factor) - 0.5).y;
   }
-
-  /// What a ball of detach_mm does not reach of the patient's own surface is near in any case.
-  double near_mm() const { return std::max(options_.near_mm, options_.detach_mm + 2.0 * cell_mm); }
 
   void average() {
     mean_.resize(grid_.count());
@@ -239,11 +233,11 @@ class Parter {
   void find_core() {
     const std::vector<std::size_t> whole = largest(grid_, solid_);
     if (whole.empty())
-      throw Error(ErrorCode::Geometry, scene_.source + ": no sample beside the table is at or above " +
-                                           std::to_string(options_.threshold) + ": choose another threshold");
-    const Cells opened =
-        dilated(grid_, cells_of(grid_, largest(grid_, eroded(grid_, solid_, options_.detach_mm))),
-                options_.detach_mm);
+      throw Error(ErrorCode::Geometry,
+                  scene_.source + ": no sample beside the table is at or above " +
+                      std::to_string(options_.threshold) + ": choose another threshold");
+    const Cells opened = dilated(
+        grid_, cells_of(grid_, largest(grid_, eroded(grid_, solid_, options_.detach_mm))), options_.detach_mm);
     core_.assign(grid_.count(), 0);
     std::size_t count = 0;
     for (std::size_t i = 0; i < core_.size(); ++i) count += core_[i] = opened[i] & solid_[i];
@@ -252,8 +246,8 @@ class Parter {
     set_middle();
   }
 
-  /// Half-way between the foremost and the rearmost cell of the core and of what hangs on it and is near,
-  /// such as the nose, with half a cell of care.
+  /// Half-way between the foremost and the rearmost cell of the core and of what hangs on it and is near, such
+  /// as the nose, with half a cell of care.
   void set_middle() {
     Cells rest(grid_.count(), 0);
     for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = solid_[i] != 0 && core_[i] == 0 ? 1 : 0;
@@ -266,7 +260,7 @@ class Parter {
     };
     for (std::size_t i = 0; i < core_.size(); ++i)
       if (core_[i] != 0) add(i);
-    const double touch2 = glm::dot(grid_.mm, grid_.mm), near2 = near_mm() * near_mm();
+    const double touch2 = glm::dot(grid_.mm, grid_.mm), near2 = options_.near_mm * options_.near_mm;
     for_each_part(grid_, rest, [&](const std::vector<std::size_t>& part) {
       const auto is_within = [&](double limit) {
         return [this, limit](std::size_t i) { return static_cast<double>(away_[i]) <= limit; };
@@ -320,12 +314,12 @@ class Parter {
     support_.assign(grid_.count(), 0);
     doubtful_.assign(grid_.count(), 0);
     for_each_part(grid_, rest, [&](const std::vector<std::size_t>& part) {
-      const double near2 = near_mm() * near_mm();
+      const double near2 = options_.near_mm * options_.near_mm;
       const bool is_kept = std::any_of(part.begin(), part.end(), [&](auto i) { return keeps[i] != 0; });
-      const bool reaches =
-          std::any_of(part.begin(), part.end(), [&](auto i) { return static_cast<double>(away[i]) > near2; });
-      const auto front =
-          std::count_if(part.begin(), part.end(), [&](auto i) { return y_mm(grid_.cell(i)) < middle_y_mm_; });
+      const bool reaches = std::any_of(part.begin(), part.end(),
+                                       [&](auto i) { return static_cast<double>(away[i]) > near2; });
+      const auto front = std::count_if(part.begin(), part.end(),
+                                       [&](auto i) { return y_mm(grid_.cell(i)) < middle_y_mm_; });
       const bool is_ahead =
           static_cast<double>(front) > most_front_share * static_cast<double>(part.size()) &&
           std::any_of(part.begin(), part.end(), [&](auto i) { return thick[i] != 0; });
@@ -399,24 +393,15 @@ class Parter {
     foam_.assign(grid_.count(), 0);
     if (!seeks_foam_) return;
     Cells dense(grid_.count(), 0);
-    // The patient's blurred edge would make air beside it foam.
     for_each_box_behind([&](std::size_t cell, const std::vector<std::size_t>& box) {
-      double sum = 0.0, count = 0.0;
-      for (const std::size_t i : box) {
-        if (edge_[i] != 0) continue;
-        sum += std::min(static_cast<double>(mean_[i]), options_.threshold);
-        count += 1.0;
-      }
-      dense[cell] = count > 0.0 && sum > (air_ + above_air) * count ? 1 : 0;
+      float sum = 0.0F;
+      for (const std::size_t i : box) sum += std::min(mean_[i], static_cast<float>(options_.threshold));
+      dense[cell] = static_cast<double>(sum) > (air_ + above_air) * static_cast<double>(box.size()) ? 1 : 0;
     });
     for_each_box_behind([&](std::size_t cell, const std::vector<std::size_t>& box) {
-      std::size_t count = 0, all = 0;
-      for (const std::size_t i : box) {
-        if (edge_[i] != 0) continue;
-        count += dense[i];
-        ++all;
-      }
-      foam_[cell] = dense[cell] != 0 && 2 * count > all ? 1 : 0;
+      std::size_t count = 0;
+      for (const std::size_t i : box) count += dense[i];
+      foam_[cell] = dense[cell] != 0 && 2 * count > box.size() ? 1 : 0;
     });
   }
 

@@ -14,11 +14,11 @@ struct PatientOptions {
   double threshold = -300.0;  ///< samples of at least this value are solid
   double detach_mm = 6.0;     ///< links thinner than a ball of this radius are cut
   /// Parts wholly within this distance of the patient are not supports, such as an ear that was cut off, bone
-  /// fragments or teeth. At least detach_mm and four millimetres, which hold what the ball does not reach.
+  /// fragments or teeth.
   double near_mm = 25.0;
-  double board_mm = 40.0;           ///< above 0: the thickest solid board or couch
-  double rim_mm = 2.0;              ///< width of the patient's blurred edge, which is never a support's
-  std::vector<glm::dvec3> keep_mm;  ///< LPS points of parts that are no support, such as a dry skull's jaw
+  double board_mm = 40.0;            ///< above 0: the thickest solid board or couch
+  double rim_mm = 2.0;               ///< width of the patient's blurred edge, which is never a support's
+  std::vector<glm::dvec3> keep_mm;   ///< LPS points of parts that are no support, such as a dry skull's jaw
   Progress progress{};
 };
 
@@ -35,9 +35,9 @@ struct PatientParts {
   /// The coronal middle: half-way between the patient's foremost and rearmost point, LPS. No sample in front
   /// of it is a support's.
   double middle_y_mm = 0.0;
-  glm::dvec2 table_slope{0.0};      ///< how far the table shifts per mm along it: to the side and to the back
-  double front_mm3 = 0.0;           ///< doubtful samples in front of the middle
-  double behind_mm3 = 0.0;          ///< doubtful samples behind it
+  glm::dvec2 table_slope{0.0};  ///< how far the table shifts per mm along it: to the side and to the back
+  double front_mm3 = 0.0;       ///< doubtful samples in front of the middle
+  double behind_mm3 = 0.0;      ///< doubtful samples behind it
   double extruded_front_mm3 = 0.0;  ///< of front_mm3: what belongs to a board or cradle
 };
 
@@ -46,9 +46,9 @@ struct PatientParts {
 /// detach_mm. The patient is the largest solid part into which such a ball fits, or the largest part of all
 /// for thin objects such as a dry skull. What the skin or bone encloses slice by slice is the patient's. Foam
 /// is sought only in Hounsfield units and below the threshold. LPS frame of the scene. Throws
-/// std::invalid_argument if samples are not int16 or an option is out of its range; Error, Geometry, if
-/// nothing is solid; Stopped. Same bits on any thread count. Cost: linear; memory: two bytes per sample and
-/// 20 per cell of two millimetres.
+/// std::invalid_argument if samples are not int16 or an option is out of its range; Error, Geometry, if nothing
+/// is solid; Stopped. Same bits on any thread count. Cost: linear; memory: two bytes per sample and 20 per cell
+/// of two millimetres.
 PatientParts patient_parts(const Scene& scene, const PatientOptions& options = {});
 
 }  // namespace octotomy::voxel

@@ -44,7 +44,7 @@ TEST(PreparedScan, AHeadrestIsTakenOutAndThePlansScanStays) {
   EXPECT_EQ(evaluation.scans[1].details["parts_removed"], 1);
 }
 
-TEST(PreparedScan, TakesOutASupportThatHangsOnTheHeadAndSaysWhereThereIsNone) {
+TEST(PreparedScan, WarnsOfASupportThatHangsOnTheHeadAndTheAdviceTakesItOut) {
   const ScratchFolder folder;
   // A ball of 20 mm, a board of 4 mm behind it, and a bridge of 2 mm between them.
   const auto field = [](bool has_board, bool has_bridge) {
@@ -65,19 +65,23 @@ TEST(PreparedScan, TakesOutASupportThatHangsOnTheHeadAndSaysWhereThereIsNone) {
                                folder.path()));
   };
   const Evaluation hanging = step(field(true, true), "");
-  // The board's four layers, and of the bridge, two samples wide and seven long, what lies beyond its foot.
-  EXPECT_NEAR(hanging.scans[1].details["volume_removed_mm3"].get<double>(), 80 * 4 * 40, 2 * 7 * 40);
-  EXPECT_NEAR(hanging.object("skin").voxel.measures.volume_mm3,
-              step(field(false, false), "").object("skin").voxel.measures.volume_mm3, 800)
-      << "a foot of the bridge stays";
-  // Nothing hangs on a head alone: the finding says so, and recommends no value.
+  EXPECT_EQ(hanging.scans[1].details["parts_removed"], 0);
+  EXPECT_NEAR(hanging.scans[1].details["remains_mm3"].get<double>(), 80 * 4 * 40, 1500);
+  ASSERT_FALSE(hanging.scans[1].audit.empty());
+  const std::string advice = hanging.scans[1].audit.back().detail;
+  ASSERT_NE(advice.find("remove_headrest=-300,25,3 takes it out"), std::string::npos) << advice;
+  const Evaluation followed = step(field(true, true), R"(, "detach_mm": 3)");
+  EXPECT_NEAR(followed.object("skin").voxel.measures.volume_mm3,
+              step(field(false, false), "").object("skin").voxel.measures.volume_mm3, 500)
+      << "the rim of what is cut off takes a little of the skin around the link";
+  EXPECT_TRUE(followed.scans[1].details["remains_mm3"].is_null());
+  // Nothing hangs on a head alone: the finding says so, and recommends nothing that does nothing.
   const Evaluation alone = step(field(false, false), "");
-  EXPECT_EQ(alone.scans[1].details["samples_removed"], 0);
+  EXPECT_TRUE(alone.scans[1].details["remains_mm3"].is_null());
   EXPECT_NE(alone.scans[1].audit.back().detail.find("crop"), std::string::npos);
-  EXPECT_EQ(alone.scans[1].audit.back().detail.find("remove_headrest="), std::string::npos);
 }
 
-TEST(PreparedScan, TakesOutABoardThatIsFlushWithTheHead) {
+TEST(PreparedScan, NamesABoardThatIsFlushWithTheHeadAndTheAdviceTakesItOut) {
   const ScratchFolder folder;
   voxel::Scene scene;
   scene.lattice = voxel::axis_aligned_lattice({80, 80, 40}, {1, 1, 1}, {-39.5, -39.5, -19.5});
@@ -100,10 +104,13 @@ TEST(PreparedScan, TakesOutABoardThatIsFlushWithTheHead) {
                                folder.path()));
   };
   const Evaluation flush = step("");
-  EXPECT_NEAR(flush.object("skin").voxel.measures.volume_mm3, ball_mm3(18.0), 0.03 * ball_mm3(18.0));
-  EXPECT_NEAR(flush.scans[1].details["volume_removed_mm3"].get<double>(), 70 * 8 * 40, 0.05 * 70 * 8 * 40);
-  // The twin: a board thicker than the limit is none, and is too much of the patient to cut.
-  EXPECT_LT(step(R"(, "board_mm": 4)").scans[1].details["volume_removed_mm3"].get<double>(), 70 * 8 * 40);
+  EXPECT_NEAR(flush.scans[1].details["board_remains_mm3"].get<double>(), 70 * 8 * 40, 1);
+  EXPECT_TRUE(std::any_of(flush.scans[1].audit.begin(), flush.scans[1].audit.end(), [](const auto& finding) {
+    return finding.detail.find("remove_headrest=-300,25,0,30 takes it out") != std::string::npos;
+  }));
+  const Evaluation followed = step(R"(, "board_mm": 30)");
+  EXPECT_NEAR(followed.object("skin").voxel.measures.volume_mm3, ball_mm3(18.0), 0.03 * ball_mm3(18.0));
+  EXPECT_TRUE(followed.scans[1].details["board_remains_mm3"].is_null());
 }
 
 TEST(PreparedScan, NamesAndValuesThatCannotBeAreRefused) {

@@ -26,9 +26,9 @@ struct SupportOptions {
   bool mask = false;    ///< a shell over the face that runs down to the table at the sides
   bool marker = false;  ///< a wire in the air before the nose
   double couch_mm = 70.0;
-  double sink_mm = 1.0;  ///< how deep the table's face lies within the head's back; negative is a gap
+  double sink_mm = 1.0;         ///< how deep the table's face lies within the head's back; negative is a gap
   double board_hu = 150.0, foam_hu = -900.0;
-  double table_tilt_deg = 0.0;    ///< of the table's top about the patient's x axis
+  double table_tilt_deg = 0.0;  ///< of the table's top about the patient's x axis
   glm::dvec3 head_turn_deg{0.0};  ///< about x, y and z
   glm::dvec3 voxel_mm{2.0};
   double blur_mm = 0.0, noise_hu = 10.0;
@@ -63,9 +63,9 @@ inline const voxel::Scene& bare_head() {
 /// Blurs along each axis by a Gaussian.
 inline void blur(std::vector<float>& values, const voxel::Lattice& lattice, double sigma_mm) {
   const glm::dvec3 spacing = lattice.spacing_mm();
-  const std::array<std::size_t, 3> strides{
-      1, static_cast<std::size_t>(lattice.dims.x),
-      static_cast<std::size_t>(lattice.dims.x) * static_cast<std::size_t>(lattice.dims.y)};
+  const std::array<std::size_t, 3> strides{1, static_cast<std::size_t>(lattice.dims.x),
+                                           static_cast<std::size_t>(lattice.dims.x) *
+                                               static_cast<std::size_t>(lattice.dims.y)};
   for (int axis = 0; axis < 3; ++axis) {
     const int reach = static_cast<int>(std::ceil(3.0 * sigma_mm / spacing[axis]));
     std::vector<double> weights;
@@ -118,8 +118,7 @@ class Supports {
  private:
   std::optional<std::pair<double, Truth>> table(const glm::dvec3& p, double depth) const {
     switch (options_.table) {
-      case SupportOptions::Table::None:
-        return std::nullopt;
+      case SupportOptions::Table::None: return std::nullopt;
       case SupportOptions::Table::Board:
         if (depth < 0.0 || depth > 12.0 || std::abs(p.x) > 130.0) return std::nullopt;
         return std::pair{options_.board_hu, Truth::Support};
@@ -147,7 +146,8 @@ class Supports {
 
   bool mask(const glm::dvec3& p, double skin_mm) const {
     if (std::abs(p.z) > 80.0) return false;
-    return p.y < face_mm_ - 110.0 ? skin_mm < 3.0 : p.y < face_mm_ && std::abs(std::abs(p.x) - 92.0) < 1.5;
+    return p.y < face_mm_ - 110.0 ? skin_mm < 3.0
+                                  : p.y < face_mm_ && std::abs(std::abs(p.x) - 92.0) < 1.5;
   }
 
   const SupportOptions& options_;
@@ -268,9 +268,7 @@ RemovalTally tally(const SupportedHead& head, const Removed& removed) {
         soft += mm3;
         tally.soft_mm3 += gone ? mm3 : 0.0;
         break;
-      case Truth::Bone:
-        tally.bone_mm3 += gone ? mm3 : 0.0;
-        break;
+      case Truth::Bone: tally.bone_mm3 += gone ? mm3 : 0.0; break;
       case Truth::Support:
         if (is_front) break;
         tally.support_l += mm3 * 1e-6;
@@ -282,8 +280,7 @@ RemovalTally tally(const SupportedHead& head, const Removed& removed) {
         tally.foam_left_l += gone ? 0.0 : mm3 * 1e-6;
         break;
       case Truth::Air:
-      case Truth::Front:
-        break;
+      case Truth::Front: break;
     }
   }
   tally.soft_share = soft > 0.0 ? tally.soft_mm3 / soft : 0.0;
