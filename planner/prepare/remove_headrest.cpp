@@ -5,6 +5,7 @@
 #include "planner/table/json.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "voxel/filter/board.h"
 #include "voxel/filter/headrest.h"
 #include "voxel/space/error.h"
 
@@ -19,30 +20,73 @@ struct RemoveHeadrest {
   std::vector<glm::dvec3> keep_mm;
 };
 
+/// A board or a cradle is larger than this; less that hangs on the head is an ear or a strap's buckle.
+constexpr double least_support_mm3 = 1000.0;
+
+/// What still hangs on the patient by thin links and reaches away from it: its volume, and the radius that
+/// cuts it off. Nothing if no radius up to 10 mm does.
+std::optional<std::pair<double, double>> remains_of(const voxel::Scene& scene,
+                                                    voxel::HeadrestOptions options) {
+  const double cut_mm = options.detach_mm.value_or(0.0);
+  options.progress.report = {};
+  for (const double radius_mm : {3.0, 6.0, 10.0}) {
+    if (radius_mm <= cut_mm) continue;
+    options.detach_mm = radius_mm;
+    try {
+      const double found_mm3 = voxel::remove_headrest(scene, options).solid_mm3;
+      if (found_mm3 >= least_support_mm3) return std::pair{found_mm3, radius_mm};
+    } catch (const voxel::Error& error) {
+      if (error.code() != voxel::ErrorCode::Geometry) throw;
+      return std::nullopt;  // the patient is thinner than the ball
+    }
+  }
+  return std::nullopt;
+}
+
 MadeScan made(const RemoveHeadrest& step, const ScanBench& bench) {
   voxel::HeadrestOptions options;
-  options.patient.threshold = step.threshold;
-  options.patient.near_mm = step.near_mm;
-  if (step.detach_mm) options.patient.detach_mm = *step.detach_mm;
-  if (step.board_mm) options.patient.board_mm = *step.board_mm;
-  options.patient.keep_mm = step.keep_mm;
-  options.patient.progress = bench.progress;
+  options.threshold = step.threshold;
+  options.near_mm = step.near_mm;
+  options.detach_mm = step.detach_mm;
+  options.board_mm = step.board_mm;
+  options.keep_mm = step.keep_mm;
+  options.progress = bench.progress;
   voxel::HeadrestRemoval removal = voxel::remove_headrest(bench.samples(step.scan.name), options);
   MadeScan made{std::move(removal.scene),
-                {{"threshold", options.patient.threshold},
-                 {"near_mm", options.patient.near_mm},
-                 {"detach_mm", options.patient.detach_mm},
-                 {"board_mm", options.patient.board_mm},
+                {{"threshold", options.threshold},
+                 {"near_mm", options.near_mm},
+                 {"detach_mm", options.detach_mm ? Json(*options.detach_mm) : Json(nullptr)},
+                 {"board_mm", options.board_mm ? Json(*options.board_mm) : Json(nullptr)},
                  {"parts_removed", removal.parts},
                  {"volume_removed_mm3", removal.solid_mm3},
-                 {"foam_removed_mm3", removal.foam_mm3},
-                 {"dense_removed_mm3", removal.bone_mm3},
-                 {"samples_removed", removal.voxels},
-                 {"coronal_middle_mm", removal.middle_y_mm},
-                 {"kept_front_mm3", removal.front_mm3},
-                 {"kept_front_extruded_mm3", removal.extruded_front_mm3},
-                 {"kept_behind_mm3", removal.behind_mm3}},
+                 {"samples_removed", removal.voxels}},
                 std::move(removal.removed)};
+  const std::optional<voxel::Board> board = voxel::board_of(made.scene, {options.threshold});
+  const bool has_board = board && board->volume_mm3 >= least_support_mm3;
+  made.details["board_remains_mm3"] = has_board ? Json(board->volume_mm3) : Json(nullptr);
+  if (has_board)
+    made.findings.push_back("a board of about " + plain(std::round(board->volume_mm3 / 100.0) / 10.0) +
+                            " cm\u00b3, " + plain(std::round(board->wide_mm)) + " mm wide and about " +
+                            plain(std::round(board->thick_mm)) +
+                            " mm thick, runs through the scan behind the patient and remains: "
+                            "remove_headrest=" +
+                            plain(options.threshold) + "," + plain(options.near_mm) + "," +
+                            plain(options.detach_mm.value_or(0.0)) + "," +
+                            plain(voxel::BoardOptions{}.thick_mm) + " takes it out");
+  const auto remains = remains_of(made.scene, options);
+  made.details["remains_mm3"] = remains ? Json(remains->first) : Json(nullptr);
+  if (remains) {
+    const std::string radius = plain(remains->second);
+    made.findings.push_back("about " + plain(std::round(remains->first / 100.0) / 10.0) +
+                            " cm\u00b3 hang on the patient by links thinner than a ball of " + radius +
+                            " mm and reach farther than " + plain(options.near_mm) +
+                            " mm: look whether it is a support; remove_headrest=" + plain(options.threshold) +
+                            "," + plain(options.near_mm) + "," + radius + " takes it out");
+  } else if (removal.parts == 0 && !has_board) {
+    made.findings.emplace_back(
+        "nothing was removed: the patient is the only solid part, and no ball of up to 10 mm cuts anything "
+        "off; take out a support that lies closely against the head by a crop step or a mask");
+  }
   return made;
 }
 
