@@ -49,7 +49,7 @@ double rounding_step_mm(const std::vector<DicomSlice>& slices, int axis) {
   const bool changes = std::any_of(slices.begin(), slices.end(), [&](const DicomSlice& slice) {
     return slice.first_mm[axis] != slices.front().first_mm[axis];
   });
-  for (const double step_mm : {1.0, 0.5, 0.25, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001})
+  for (const double step_mm : {1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001})
     if (changes && std::all_of(slices.begin(), slices.end(), [&](const DicomSlice& slice) {
           const double steps = slice.first_mm[axis] / step_mm;
           return std::abs(steps - std::round(steps)) * step_mm < 1e-6;

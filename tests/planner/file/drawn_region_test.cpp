@@ -116,7 +116,8 @@ TEST_F(DrawnRegionFile, ClosedCurvesOfSlicerAreProjected) {
   const auto said = [&](const std::string& text) {
     return refusal([&] { read_drawn_region("left:" + write("bad.mrk.json", text)); });
   };
-  EXPECT_NE(said(curve("IJK", lps)).find("markups[1].coordinateSystem: is LPS or RAS"), std::string::npos);
+  EXPECT_NE(said(curve("IJK", lps)).find("markups[1]: the coordinate system 'IJK' is neither LPS"),
+            std::string::npos);
   EXPECT_NE(said(curve("LPS", point("1,2,3"))).find("markups[1]: has 1 points"), std::string::npos);
   EXPECT_NE(said(curve("LPS", point("1,2"))).find("controlPoints[0].position: must be a point"),
             std::string::npos);
