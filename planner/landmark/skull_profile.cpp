@@ -219,8 +219,7 @@ class Reader {
     }
     if (!is_notched_) {
       place("pogonion", foremost_chin);
-      if (foremost_chin == foremost(profile_, high, last))
-        add_flat("pogonion", foremost_chin, high, last, [&](int k) { return -back(k); });
+      add_flat("pogonion", foremost_chin, high, last, [&](int k) { return -back(k); });
     }
     if (found_.find("lower_incisor") == nullptr)
       return miss("b_point",
