@@ -96,20 +96,12 @@ export const usual_panes = (): PaneSetting[] =>
      pane("view", {azimuth: 35, elevation: 15}, "axial"),
 ];
 
-const first: State = {
-  link: "opening",
-  hello: null,
-  plan: null,
+/// What belongs to the plan that is shown, where none is.
+const without_plan = () => ({
   scan: null,
-  page: "start",
-  theme: "system",
-  panes: usual_panes(),
   maximised: null,
-  active_pane: 0,
   looks: {},
   selected: null,
-  cross_mm: [0, 0, 0],
-  grey: [500, 2000],
   draft_window: null,
   draft_step: null,
   preview: null,
@@ -119,6 +111,20 @@ const first: State = {
   arch_mm: [],
   marked: null,
   guesses: [],
+  pointer: "",
+});
+
+const first: State = {
+  ...without_plan(),
+  link: "opening",
+  hello: null,
+  plan: null,
+  page: "start",
+  theme: "system",
+  panes: usual_panes(),
+  active_pane: 0,
+  cross_mm: [0, 0, 0],
+  grey: [500, 2000],
   tool: "navigate",
   left_tab: "steps",
   right_tab: "inspector",
@@ -126,7 +132,6 @@ const first: State = {
   notices: [],
   tour: null,
   evaluations: 0,
-  pointer: "",
 };
 
 type Key = keyof State;
@@ -166,22 +171,7 @@ export function on_leaving_plan(call: () => void): void {
 /// Empties everything in this window that belongs to the plan shown so far, the tool in hand included.
 export function leave_plan(): void {
   for (const call of plan_leavers) call();
-  set({
-    looks: {},
-    selected: null,
-    draft_window: null,
-    draft_step: null,
-    preview: null,
-    overlap_mm3: null,
-    compare: null,
-    cut_plane: null,
-    arch_mm: [],
-    marked: null,
-    guesses: [],
-    scan: null,
-    maximised: null,
-    pointer: ""
-  });
+  set(without_plan());
 }
 
 // How a window looks at a plan is kept in the browser, by the plan's path; the plan itself is the server's.
