@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Passes:
-//   1 make the octree of the solid samples, on the scan's own voxels;
-//   2 take out a board that runs through the scan, if asked for; of the rest take its largest part for the
-//   patient, after an opening if links are to be cut; 3 mark each other part that has a voxel farther than
-//   near_mm from the patient; 4 mark the rim of these parts, except voxels as near to the patient; 5 keep the
-//   marked samples as a grey octree and overwrite them with air.
+// Parts the patient from supports, keeps the supports' samples as a grey octree and overwrites them with air.
 #include "voxel/filter/headrest.h"
 
 #include <algorithm>
@@ -14,36 +9,14 @@
 #include <stdexcept>
 #include <string>
 
-#include "voxel/filter/board.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/label_map.h"
-#include "voxel/filter/morphology.h"
 #include "voxel/filter/slice_work.h"
-#include "voxel/solid/combine.h"
 #include "voxel/tree/build.h"
 #include "voxel/tree/slice_build.h"
 
 namespace octotomy::voxel {
 namespace {
-
-void check_options(const HeadrestOptions& options) {
-  const auto is_length = [](double value) { return std::isfinite(value) && value >= 0.0; };
-  if (!std::isfinite(options.threshold) || !is_length(options.near_mm) || !is_length(options.rim_mm) ||
-      (options.detach_mm && !is_length(*options.detach_mm)) ||
-      (options.board_mm && !(is_length(*options.board_mm) && *options.board_mm > 0.0)))
-    throw std::invalid_argument("a headrest's threshold must be finite, its lengths finite and not negative");
-}
-
-// The first voxel of every run along x.
-std::vector<glm::ivec3> run_starts(const Octree& octree) {
-  std::vector<glm::ivec3> starts;
-  for_each_slice(octree, [&](int z, const SliceBits& slice) {
-    for (int y = 0; y < slice.side; ++y)
-      for (int first = 0, last = -1; last + 1 < slice.side && next_run(slice, y, last + 1, first, last);)
-        starts.emplace_back(first, y, z);
-  });
-  return starts;
-}
 
 // Calls `visit` for every voxel, z, y and x ascending.
 template <typename Visit>
@@ -53,19 +26,6 @@ void for_each_voxel(const Octree& octree, const Visit& visit) {
       for (int first = 0, last = -1; last + 1 < slice.side && next_run(slice, y, last + 1, first, last);)
         for (int x = first; x <= last; ++x) visit(glm::ivec3(x, y, z));
   });
-}
-
-// Pass 3: the parts of `rest` to remove.
-Octree foreign_parts(const Octree& rest, const Octree& patient, const Lattice& lattice,
-                     const HeadrestOptions& options) {
-  const Universe& universe = rest.universe();
-  const Octree far = combine(universe, Expression(rest) - dilate(patient, options.near_mm));
-  options.progress.at(0.6);
-  Octree foreign = components_at(rest, run_starts(far));
-  if (options.keep_mm.empty()) return foreign;
-  std::vector<glm::ivec3> kept;
-  for (const glm::dvec3& p_mm : options.keep_mm) kept.emplace_back(glm::floor(lattice.voxel(p_mm) + 0.5));
-  return combine(universe, Expression(foreign) - components_at(rest, kept));
 }
 
 // A value that no sample in the octree has.
@@ -118,46 +78,37 @@ Int16Samples& int16_samples(Scene& scene) {
 }  // namespace
 
 HeadrestRemoval remove_headrest(Scene scene, const HeadrestOptions& options) {
-  check(scene);
-  check_options(options);
+  const PatientParts parts = patient_parts(scene, options.patient);
   Int16Samples& samples = int16_samples(scene);
   const Lattice lattice = scene.lattice;
   const Universe universe = universe_on(lattice);
-  options.progress.at(0.0);
-  const Octree solid = octree_of_window(universe, scene, options.threshold, 32767.0);
-  if (solid.is_empty())
-    throw std::runtime_error(scene.source + ": no sample is at or above " +
-                             std::to_string(options.threshold) + ": choose another threshold");
-  options.progress.at(0.05);
-  std::optional<Board> board;
-  if (options.board_mm) board = board_of(scene, {options.threshold, *options.board_mm});
-  const Octree without = board ? combine(universe, Expression(solid) - board->solid) : solid;
-  const Octree patient = components(options.detach_mm ? open(without, *options.detach_mm) : without).largest;
-  if (patient.is_empty())
-    throw Error(ErrorCode::Geometry, scene.source + ": nothing is left after cutting links of " +
-                                         std::to_string(options.detach_mm.value_or(0.0)) +
-                                         " mm: choose a smaller radius");
-  options.progress.at(0.3);
-  const Octree rest = combine(universe, Expression(without) - patient);
-  Octree foreign = foreign_parts(rest, patient, lattice, options);
-  if (board) foreign = combine(universe, Expression(foreign) | board->solid);
-  options.progress.at(0.7);
-  const Octree body = combine(universe, Expression(solid) - foreign);
-  Octree taken = foreign;
-  if (!foreign.is_empty() && options.rim_mm > 0.0) {
-    const Octree rim = dilate(foreign, options.rim_mm);
-    options.progress.at(0.8);
-    // The universe reaches beyond the scan's samples.
-    const Octree samples_there = octree_of_window(universe, scene, -32768.0, 32767.0);
-    taken = combine(universe,
-                    ((Expression(rim) - dilate(body, options.rim_mm)) & samples_there) | Expression(foreign));
+  Scene mask{lattice, Int16Samples(samples.size(), 0), Meaning::Raw, {}, {}, {}};
+  auto& masked = std::get<Int16Samples>(mask.samples);
+  std::uint64_t voxels = 0, solid = 0, dense = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (parts.of[i] != Belongs::Support) continue;
+    const bool is_solid = samples[i] >= options.patient.threshold;
+    masked[i] = is_solid ? 2 : 1;
+    ++voxels;
+    solid += is_solid;
+    dense += samples[i] >= dense_hu;
   }
-  options.progress.at(0.9);
-  HeadrestRemoval result{{}, kept_samples(taken, lattice, samples), foreign};
-  result.parts = component_count(foreign);
-  result.voxels = taken.voxel_count();
-  result.solid_mm3 = static_cast<double>(foreign.voxel_count()) * lattice.voxel_mm3();
-  for_each_voxel(taken, [&](const glm::ivec3& p) { samples[sample_index(lattice.dims, p)] = options.fill; });
+  options.patient.progress.at(0.85);
+  HeadrestRemoval result{{},
+                         kept_samples(octree_of_window(universe, mask, 1.0, 2.0), lattice, samples),
+                         octree_of_window(universe, mask, 2.0, 2.0)};
+  result.parts = component_count(result.solid);
+  result.voxels = voxels;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (masked[i] != 0) samples[i] = options.fill;
+  const double voxel_mm3 = lattice.voxel_mm3();
+  result.solid_mm3 = static_cast<double>(solid) * voxel_mm3;
+  result.foam_mm3 = static_cast<double>(voxels - solid) * voxel_mm3;
+  result.bone_mm3 = static_cast<double>(dense) * voxel_mm3;
+  result.middle_y_mm = parts.middle_y_mm;
+  result.front_mm3 = parts.front_mm3;
+  result.behind_mm3 = parts.behind_mm3;
+  result.extruded_front_mm3 = parts.extruded_front_mm3;
   result.scene = std::move(scene);
   return result;
 }

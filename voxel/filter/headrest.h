@@ -2,10 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <vector>
 
-#include "voxel/space/progress.h"
+#include "voxel/filter/patient.h"
 #include "voxel/space/scene.h"
 #include "voxel/tree/grey_octree.h"
 #include "voxel/tree/octree.h"
@@ -14,22 +12,8 @@
 namespace octotomy::voxel {
 
 struct HeadrestOptions {
-  double threshold = -300.0;  ///< samples of at least this value are solid, HU
-  /// For a headrest that touches the patient: cuts links thinner than a ball of this radius. None: cuts no
-  /// link; parts are the components by voxel faces.
-  std::optional<double> detach_mm;
-  /// For a board or couch that lies flush with the patient: what board_of() finds up to this thickness is a
-  /// part of its own. None: no board is sought.
-  std::optional<double> board_mm;
-  /// Parts wholly within this distance of the patient belong to the patient, such as an ear that was cut off,
-  /// bone fragments or teeth. Parts that reach farther are removed.
-  double near_mm = 25.0;
-  std::vector<glm::dvec3>
-      keep_mm;  ///< LPS points of parts to keep at any distance, such as a dry skull's jaw
-  /// Width of the blurred edge that is removed with a part; voxels as near to the patient stay.
-  double rim_mm = 2.0;
+  PatientOptions patient{};
   std::int16_t fill = -1000;  ///< the value of removed samples: air
-  Progress progress{};
 };
 
 struct HeadrestRemoval {
@@ -37,16 +21,20 @@ struct HeadrestRemoval {
   /// The removed samples, on a universe of the scene's own voxels (universe_on()). The background is a value
   /// that no removed sample has. restore() undoes the removal with it.
   GreyOctree removed;
-  Octree solid;  ///< the removed voxels of at least the threshold
-  std::uint64_t parts = 0;
-  std::uint64_t voxels = 0;  ///< all removed voxels, rim included
+  Octree solid;              ///< the removed voxels of at least the threshold
+  std::uint64_t parts = 0;   ///< of `solid`, joined by faces
+  std::uint64_t voxels = 0;  ///< all removed voxels, rim and foam included
   double solid_mm3 = 0.0;
+  double foam_mm3 = 0.0;     ///< removed below the threshold: foam, cloth, blurred edges
+  double bone_mm3 = 0.0;     ///< removed from dense_hu on: metal, carbon, dense plastic
+  double middle_y_mm = 0.0;  ///< the patient's coronal middle, LPS; nothing in front of it is removed
+  double front_mm3 = 0.0, behind_mm3 = 0.0, extruded_front_mm3 = 0.0;  ///< as in PatientParts
 };
-/// Removes the solid parts that are not the patient, who is the largest part. A single part stays. Throws
-/// std::invalid_argument if samples are not int16, the axes are not perpendicular, or an option is negative
-/// or not finite; Error, Geometry, if nothing is solid; Stopped. Same bits on any thread count. Memory: the
-/// result, and 8 bytes per sample for distances.
-HeadrestRemoval remove_headrest(Scene scene, const HeadrestOptions& options);
+/// Overwrites with air what is a support by patient_parts(): nothing in front of the patient's coronal
+/// middle, and nothing that the patient's skin or bone encloses. Throws as patient_parts();
+/// std::runtime_error if nothing is solid. Same bits on any thread count. Memory: the result, and that of
+/// patient_parts().
+HeadrestRemoval remove_headrest(Scene scene, const HeadrestOptions& options = {});
 
 /// Restores the samples that remove_headrest() removed and returns their number. Throws std::invalid_argument
 /// if the removed voxels are not on the scene's lattice, to a thousandth of a voxel, or its samples are not

@@ -1,0 +1,552 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// 1 Estimate how the table is inclined to the lattice: the slope for which edges of a coarse copy line up
+// best. 2 Take the median of each column along the table, over all slices and then over shorter windows. 3 A
+// column is extruded where its samples are material and stay near the medians of its neighbourhood. 4 Join
+// extruded columns to parts; a part that is compact, narrow, enclosed, or thick without air around it belongs
+// to the body. 5 Follow each part
+// beyond its window, slice by slice, while most of its samples still agree; mark them.
+#include "voxel/filter/extrusion.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <tbb/parallel_for.h>
+
+#include "voxel/filter/slice_work.h"
+#include "voxel/measure/distance_map.h"
+
+namespace octotomy::voxel {
+namespace {
+
+constexpr double above_air = 50.0;  ///< HU: the noise of air stays below it, the lightest foam lies there
+constexpr double least_width_mm = 40.0;   ///< less is a strap, a tube or an arm
+constexpr double least_discs = 3.0;       ///< a part of fewer of the largest discs in it is a body's
+constexpr double fringe_mm = 8.0;         ///< a body's outline beyond the discs that fit into it
+constexpr double least_window_mm = 60.0;  ///< a head's outline changes over less
+constexpr int slices_per_median = 48;
+constexpr double lies_off_mm = 0.75;  ///< how far a part may leave its columns
+constexpr double calm_mm = 4.0;       ///< samples are averaged so far along the table, against noise
+constexpr double steepest = 0.45;
+
+/// Samples by side, back and along, in any order of the lattice's axes.
+struct View {
+  const Int16Samples* samples;
+  std::array<int, 3> size;            ///< side, back, along
+  std::array<std::size_t, 3> stride;  ///< of side, back, along
+  std::array<double, 3> mm;
+
+  std::size_t at(int side, int back, int along) const {
+    return static_cast<std::size_t>(side) * stride[0] + static_cast<std::size_t>(back) * stride[1] +
+           static_cast<std::size_t>(along) * stride[2];
+  }
+  std::size_t columns() const {
+    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
+  }
+  std::size_t column(int side, int back) const {
+    return static_cast<std::size_t>(back) * static_cast<std::size_t>(size[0]) +
+           static_cast<std::size_t>(side);
+  }
+  bool holds(const glm::ivec2& p) const { return p.x >= 0 && p.y >= 0 && p.x < size[0] && p.y < size[1]; }
+};
+
+View view_of(const Scene& scene, const Int16Samples& samples) {
+  const PatientAxes axes = patient_axes(scene.lattice);
+  const glm::ivec3 dims = scene.lattice.dims;
+  const glm::dvec3 spacing = scene.lattice.spacing_mm();
+  const std::array<std::size_t, 3> strides{1, static_cast<std::size_t>(dims.x), slice_size(scene.lattice)};
+  View view{&samples, {}, {}, {}};
+  int k = 0;
+  for (const int axis : {axes.side, axes.back, axes.along}) {
+    const auto i = static_cast<std::size_t>(k++);
+    view.size[i] = dims[axis];
+    view.stride[i] = strides[static_cast<std::size_t>(axis)];
+    view.mm[i] = spacing[axis];
+  }
+  return view;
+}
+
+/// Edges across one axis of a coarse copy, and the slope along which they line up.
+class Slope {
+ public:
+  Slope(const View& view, const ExtrusionOptions& options) : view_(view) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      factor_[i] = std::max(1, static_cast<int>(std::lround(4.0 / view.mm[i])));
+      size_[i] = view.size[i] / factor_[i];
+    }
+    if (size_[0] < 8 || size_[1] < 8 || size_[2] < 8) return;
+    coarse_.resize(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
+                   static_cast<std::size_t>(size_[2]));
+    tbb::parallel_for(0, size_[2], [&](int z) {
+      for (int y = 0; y < size_[1]; ++y)
+        for (int x = 0; x < size_[0]; ++x) coarse_[at(x, y, z)] = mean(x, y, z, options);
+    });
+  }
+
+  /// Of the edges across `axis` (0: side, 1: back), in mm per mm. Zero unless another slope is clearly
+  /// better.
+  double along(std::size_t axis) const {
+    if (coarse_.empty()) return 0.0;
+    const double cell = view_.mm[axis] * factor_[axis];
+    const double length = (size_[2] - 1) * view_.mm[2] * factor_[2];
+    const int reach = static_cast<int>(steepest * length / cell);
+    std::vector<double> scores(static_cast<std::size_t>(2 * reach + 1));
+    tbb::parallel_for(-reach, reach + 1,
+                      [&](int k) { scores[static_cast<std::size_t>(k + reach)] = score(axis, k); });
+    const auto best = std::max_element(scores.begin(), scores.end());
+    const double straight = scores[static_cast<std::size_t>(reach)];
+    if (*best < 1.1 * straight) return 0.0;
+    const double coarse = static_cast<double>(best - scores.begin() - reach);
+    std::array<double, 17> fine{};
+    tbb::parallel_for(std::size_t{0}, fine.size(), [&](std::size_t i) {
+      fine[i] = score(axis, coarse + (static_cast<double>(i) - 8.0) / 8.0);
+    });
+    const auto finest = static_cast<double>(std::max_element(fine.begin(), fine.end()) - fine.begin());
+    return (coarse + (finest - 8.0) / 8.0) * cell / length;
+  }
+
+ private:
+  std::size_t at(int x, int y, int z) const {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(size_[0]) +
+           static_cast<std::size_t>(x);
+  }
+
+  float mean(int x, int y, int z, const ExtrusionOptions& options) const {
+    double sum = 0.0;
+    for (int k = 0; k < factor_[2]; ++k)
+      for (int j = 0; j < factor_[1]; ++j)
+        for (int i = 0; i < factor_[0]; ++i)
+          sum += std::clamp<double>(
+              (*view_.samples)[view_.at(x * factor_[0] + i, y * factor_[1] + j, z * factor_[2] + k)],
+              options.air, options.threshold + 300.0);
+    return static_cast<float>(sum / (factor_[0] * factor_[1] * factor_[2]));
+  }
+
+  /// The sum of the cubes of the edges' means along a line that shifts by `cells` from end to end.
+  double score(std::size_t axis, double cells) const {
+    const int width = size_[axis], others = size_[1 - axis], slices = size_[2];
+    double total = 0.0;
+    std::vector<double> mean(static_cast<std::size_t>(width) - 1);
+    for (int other = 0; other < others; ++other) {
+      std::fill(mean.begin(), mean.end(), 0.0);
+      for (int z = 0; z < slices; ++z) {
+        const double shift = cells * (static_cast<double>(z) / (slices - 1) - 0.5);
+        const int whole = static_cast<int>(std::floor(shift));
+        const double part = shift - whole;
+        const auto value = [&](int p) {
+          p = std::clamp(p, 0, width - 1);
+          return axis == 0 ? coarse_[at(p, other, z)] : coarse_[at(other, p, z)];
+        };
+        const auto between = [&](int p) {
+          return (1.0 - part) * static_cast<double>(value(p + whole)) +
+                 part * static_cast<double>(value(p + whole + 1));
+        };
+        double before = between(0);
+        for (int p = 1; p < width; ++p) {
+          const double here = between(p);
+          mean[static_cast<std::size_t>(p) - 1] += here - before;
+          before = here;
+        }
+      }
+      for (const double edge : mean) total += std::abs(edge) * edge * edge;
+    }
+    return total;
+  }
+
+  const View& view_;
+  std::array<int, 3> factor_{}, size_{};
+  std::vector<float> coarse_;
+};
+
+struct Window {
+  int first, end;
+};
+
+/// What a column holds over a window.
+struct Column {
+  float median = 0.0F, spread = 0.0F;   ///< median, and median distance from it
+  float material = 0.0F, solid = 0.0F;  ///< shares of the samples
+};
+
+/// Extruded columns that touch each other.
+struct Part {
+  std::vector<glm::ivec2> columns;  ///< side, back, at the middle slice
+};
+
+class Finder {
+ public:
+  Finder(const View& view, const ExtrusionOptions& options, const glm::dvec2& slope, Extrusion& found)
+      : view_(view), options_(options), found_(found) {
+    const bool is_straight = slope == glm::dvec2(0.0);
+    for (std::size_t i = 0; i < 2; ++i)
+      lies_off_[static_cast<int>(i)] =
+          static_cast<float>(std::min(1.0, lies_off_mm / view.mm[i] + (is_straight ? 0.0 : 0.5)));
+    for (int along = 0; along < view.size[2]; ++along) {
+      const double mm = (along - 0.5 * (view.size[2] - 1)) * view.mm[2];
+      shifts_.emplace_back(static_cast<int>(std::lround(slope.x * mm / view.mm[0])),
+                           static_cast<int>(std::lround(slope.y * mm / view.mm[1])));
+    }
+    calm_ = std::clamp(static_cast<int>(calm_mm / view.mm[2]), 0, 2);
+  }
+
+  void run() {
+    const int slices = view_.size[2];
+    const double length = slices * view_.mm[2];
+    search({0, slices});
+    options_.progress.at(0.4);
+    const int window = static_cast<int>(std::ceil(std::max(least_window_mm, length / 3.0) / view_.mm[2]));
+    if (window < 2 || window * 3 > slices * 2) return;
+    for (int first = 0; first + window / 2 < slices; first += (window + 1) / 2)
+      search({std::min(first, slices - window), std::min(first + window, slices)});
+  }
+
+ private:
+  /// The place of a column in a slice; it may lie outside.
+  glm::ivec2 place(const glm::ivec2& column, int along) const {
+    return column + shifts_[static_cast<std::size_t>(along)];
+  }
+
+  void search(const Window& window) {
+    gather(window);
+    std::vector<std::uint8_t> lasting(view_.columns(), 0);
+    tbb::parallel_for(0, view_.size[1], [&](int y) {
+      for (int x = 0; x < view_.size[0]; ++x) lasting[view_.column(x, y)] = lasts({x, y}, window) ? 1 : 0;
+    });
+    const DistanceMap depth = distances([&](std::size_t i) { return !is_solid(i); });
+    // A slab thicker than thick_mm is a couch only where air surrounds nearly all of it.
+    take(lasting, depth, 0.8, window);
+    without_thick(lasting, depth);
+    take(lasting, depth, 0.4, window);
+  }
+
+  /// Marks the supports among the lasting columns, and takes their columns out.
+  void take(std::vector<std::uint8_t>& lasting, const DistanceMap& depth, double least_free,
+            const Window& window) {
+    for (const Part& part : parts_of(lasting)) {
+      if (!is_support(part, lasting, least_free) || !is_flat(part, depth)) continue;
+      mark(part, window);
+      for (const glm::ivec2& p : part.columns) lasting[view_.column(p.x, p.y)] = 0;
+    }
+  }
+
+  bool is_solid(std::size_t column) const { return columns_[column].solid >= 0.9F; }
+
+  /// Whether a part is much larger than the largest solid disc in it, as no head, neck or limb is, and the
+  /// disc is at most twice as wide as thick_mm.
+  bool is_flat(const Part& part, const DistanceMap& depth) const {
+    double radius = 0.0;
+    const double half = 0.5 * std::min(view_.mm[0], view_.mm[1]);
+    for (const glm::ivec2& p : part.columns) {
+      const glm::dvec2 border = glm::dvec2(glm::min(p + 1, glm::ivec2(view_.size[0], view_.size[1]) - p)) *
+                                glm::dvec2(view_.mm[0], view_.mm[1]);
+      radius =
+          std::max(radius, std::min({std::sqrt(static_cast<double>(depth.square_mm2[view_.column(p.x, p.y)])),
+                                     border.x, border.y}) -
+                               half);
+    }
+    const double area = static_cast<double>(part.columns.size()) * view_.mm[0] * view_.mm[1];
+    return radius <= options_.thick_mm && area >= least_discs * std::numbers::pi * radius * radius;
+  }
+
+  /// Fills columns_ for a window: of at most slices_per_median slices, evenly chosen, without what is marked.
+  /// A column that is marked over more than a fifth holds nothing new.
+  void gather(const Window& window) {
+    columns_.assign(view_.columns(), {});
+    const int length = window.end - window.first, used = std::min(length, slices_per_median);
+    tbb::parallel_for(0, view_.size[1], [&](int y) {
+      const auto width = static_cast<std::size_t>(view_.size[0]);
+      std::vector<std::int16_t> rows(width * static_cast<std::size_t>(used));
+      std::vector<int> counts(width, 0), marked(width, 0);
+      for (int k = 0; k < used; ++k) {
+        const int along = window.first + static_cast<int>((k + 0.5) * length / used);
+        for (int x = 0; x < view_.size[0]; ++x) {
+          const glm::ivec2 p = place({x, y}, along);
+          if (!view_.holds(p)) continue;
+          const std::size_t index = view_.at(p.x, p.y, along);
+          const auto column = static_cast<std::size_t>(x);
+          if (found_.marks[index] != 0) {
+            ++marked[column];
+            continue;
+          }
+          rows[column * static_cast<std::size_t>(used) + static_cast<std::size_t>(counts[column]++)] =
+              (*view_.samples)[index];
+        }
+      }
+      for (int x = 0; x < view_.size[0]; ++x) {
+        const auto column = static_cast<std::size_t>(x);
+        if (5 * counts[column] >= 3 * used && 5 * marked[column] <= used)
+          columns_[view_.column(x, y)] =
+              column_of(&rows[column * static_cast<std::size_t>(used)], counts[column]);
+      }
+    });
+  }
+
+  /// Sorts the samples.
+  Column column_of(std::int16_t* samples, int count) const {
+    Column column;
+    for (int i = 0; i < count; ++i) {
+      column.material += static_cast<float>(samples[i] > options_.air + above_air);
+      column.solid += static_cast<float>(samples[i] >= options_.threshold);
+    }
+    column.material /= static_cast<float>(count);
+    column.solid /= static_cast<float>(count);
+    std::int16_t* const middle = samples + count / 2;
+    std::nth_element(samples, middle, samples + count);
+    const std::int16_t median = *middle;
+    column.median = median;
+    for (int i = 0; i < count; ++i)
+      samples[i] = static_cast<std::int16_t>(std::min(std::abs(samples[i] - median), 32767));
+    std::nth_element(samples, middle, samples + count);
+    column.spread = *middle;
+    return column;
+  }
+
+  /// The values that a column's samples may have: its median's, and with `is_wide` those between it and its
+  /// neighbours', as far as a part may lie off.
+  std::pair<float, float> allowed(const glm::ivec2& p, bool is_wide) const {
+    const Column& own = columns_[view_.column(p.x, p.y)];
+    float low = own.median, high = own.median;
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i) {
+        if (!is_wide || !view_.holds(p + glm::ivec2(i, j))) continue;
+        const float share = std::min(i != 0 ? lies_off_.x : 1.0F, j != 0 ? lies_off_.y : 1.0F);
+        const float beside =
+            own.median + share * (columns_[view_.column(p.x + i, p.y + j)].median - own.median);
+        low = std::min(low, beside);
+        high = std::max(high, beside);
+      }
+    const float noise = std::max(40.0F, 2.5F * own.spread);
+    return {low - noise, high + noise};
+  }
+
+  /// A column's sample in a slice, averaged along the table.
+  float calm_sample(const glm::ivec2& column, int along) const {
+    float sum = 0.0F, count = 0.0F;
+    for (int k = std::max(0, along - calm_); k <= std::min(view_.size[2] - 1, along + calm_); ++k) {
+      const glm::ivec2 p = place(column, k);
+      if (!view_.holds(p)) continue;
+      sum += static_cast<float>((*view_.samples)[view_.at(p.x, p.y, k)]);
+      count += 1.0F;
+    }
+    return sum / count;
+  }
+
+  bool lasts(const glm::ivec2& p, const Window& window) const {
+    const Column& column = columns_[view_.column(p.x, p.y)];
+    if (column.material < 0.9F || column.spread > 100.0F) return false;
+    const auto [low, high] = allowed(p, true);
+    const int step = std::max(1, (window.end - window.first) / slices_per_median);
+    int agree = 0, all = 0;
+    for (int along = window.first; along < window.end; along += step) {
+      const glm::ivec2 q = place(p, along);
+      if (!view_.holds(q)) continue;
+      const float sample = calm_sample(p, along);
+      agree += sample >= low && sample <= high;
+      ++all;
+    }
+    return 20 * agree >= 17 * all;
+  }
+
+  /// Distances in mm, squared, to the columns that a function chooses.
+  template <typename Chosen>
+  DistanceMap distances(const Chosen& chosen) const {
+    DistanceMap map{{glm::ivec3(0), glm::ivec3(view_.size[0] - 1, view_.size[1] - 1, 0)}, {}};
+    map.square_mm2.resize(view_.columns());
+    for (std::size_t i = 0; i < view_.columns(); ++i)
+      map.square_mm2[i] = chosen(i) ? 0.0F : std::numeric_limits<float>::infinity();
+    Universe plane;
+    plane.lps_from_voxel = glm::dmat4(view_.mm[0], 0, 0, 0, 0, view_.mm[1], 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
+    spread(map, plane);
+    return map;
+  }
+
+  /// Takes out the columns of discs wider than thick_mm that are solid, with the fringe that is left of them.
+  void without_thick(std::vector<std::uint8_t>& lasting, const DistanceMap& depth) const {
+    const double radius = 0.5 * options_.thick_mm, reach = radius + fringe_mm;
+    const auto centre = [&](std::size_t i) {
+      return static_cast<double>(depth.square_mm2[i]) > radius * radius && is_solid(i);
+    };
+    const DistanceMap away = distances(centre);
+    for (std::size_t i = 0; i < lasting.size(); ++i)
+      if (static_cast<double>(away.square_mm2[i]) <= reach * reach) lasting[i] = 0;
+  }
+
+  std::vector<Part> parts_of(const std::vector<std::uint8_t>& lasting) const {
+    std::vector<Part> parts;
+    std::vector<std::uint8_t> seen(lasting.size(), 0);
+    for (int y = 0; y < view_.size[1]; ++y)
+      for (int x = 0; x < view_.size[0]; ++x) {
+        if (lasting[view_.column(x, y)] == 0 || seen[view_.column(x, y)] != 0) continue;
+        Part part{{{x, y}}};
+        seen[view_.column(x, y)] = 1;
+        for (std::size_t i = 0; i < part.columns.size(); ++i)
+          for (int k = 0; k < 9; ++k) {
+            const glm::ivec2 p = part.columns[i] + glm::ivec2(k % 3 - 1, k / 3 - 1);
+            if (!view_.holds(p) || lasting[view_.column(p.x, p.y)] == 0 || seen[view_.column(p.x, p.y)] != 0)
+              continue;
+            seen[view_.column(p.x, p.y)] = 1;
+            part.columns.push_back(p);
+          }
+        parts.push_back(std::move(part));
+      }
+    return parts;
+  }
+
+  /// Whether a part is wide, and a share of its neighbours is free of solid samples.
+  bool is_support(const Part& part, const std::vector<std::uint8_t>& lasting, double least_free) const {
+    glm::ivec2 low = part.columns.front(), high = low;
+    int free = 0, border = 0;
+    for (const glm::ivec2& p : part.columns) {
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+      for (const glm::ivec2& step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+        const glm::ivec2 beside = p + step;
+        if (view_.holds(beside) && lasting[view_.column(beside.x, beside.y)] != 0) continue;
+        // Two columns on, because the blurred edge of a part is solid on some slices. Such edges run within
+        // parts, too, as between a cradle and its foam.
+        const glm::ivec2 next = beside + step;
+        if (view_.holds(next) && lasting[view_.column(next.x, next.y)] != 0) continue;
+        ++border;
+        free += !view_.holds(next) || columns_[view_.column(next.x, next.y)].solid <= 0.1F;
+      }
+    }
+    const glm::dvec2 size = glm::dvec2(high - low + 1) * glm::dvec2(view_.mm[0], view_.mm[1]);
+    return glm::length(size) >= least_width_mm && free >= least_free * border;
+  }
+
+  /// Marks a part's samples in its window, and beyond it while they are still the part's.
+  void mark(const Part& part, const Window& window) {
+    std::vector<std::pair<float, float>> wide, narrow;
+    for (const glm::ivec2& p : part.columns) {
+      wide.push_back(allowed(p, true));
+      narrow.push_back(allowed(p, false));
+    }
+    const auto within = [](float sample, const std::pair<float, float>& values) {
+      return sample >= values.first && sample <= values.second;
+    };
+    const auto goes_on = [&](int along) {
+      std::size_t agree = 0, all = 0;
+      for (std::size_t i = 0; i < part.columns.size(); ++i) {
+        if (!view_.holds(place(part.columns[i], along))) continue;
+        agree += within(calm_sample(part.columns[i], along), wide[i]);
+        ++all;
+      }
+      return all > 0 && 10 * agree >= 8 * all;
+    };
+    Window whole = window;
+    while (whole.first > 0 && goes_on(whole.first - 1)) --whole.first;
+    while (whole.end < view_.size[2] && goes_on(whole.end)) ++whole.end;
+    tbb::parallel_for(whole.first, whole.end, [&](int along) {
+      std::vector<std::size_t> unsure;
+      for (std::size_t i = 0; i < part.columns.size(); ++i) {
+        const glm::ivec2 p = place(part.columns[i], along);
+        if (!view_.holds(p)) continue;
+        const float sample = calm_sample(part.columns[i], along);
+        if (!within(sample, wide[i])) continue;
+        found_.marks[view_.at(p.x, p.y, along)] = 1;
+        if (!within(sample, narrow[i])) unsure.push_back(i);
+      }
+      unmark_at_contact(part, along, unsure);
+    });
+    ++found_.parts;
+  }
+
+  /// Where something solid that is not the part's touches it, a sample that differs from its column is not
+  /// the part's either.
+  void unmark_at_contact(const Part& part, int along, const std::vector<std::size_t>& unsure) {
+    std::vector<std::size_t> taken;
+    for (const std::size_t i : unsure) {
+      const glm::ivec2 p = place(part.columns[i], along);
+      for (const glm::ivec2& step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+        const glm::ivec2 q = p + step;
+        if (!view_.holds(q)) continue;
+        const std::size_t beside = view_.at(q.x, q.y, along);
+        if (found_.marks[beside] != 0 || (*view_.samples)[beside] < options_.threshold) continue;
+        taken.push_back(view_.at(p.x, p.y, along));
+        break;
+      }
+    }
+    for (const std::size_t index : taken) found_.marks[index] = 0;
+  }
+
+  const View& view_;
+  const ExtrusionOptions& options_;
+  Extrusion& found_;
+  glm::vec2 lies_off_{1.0F};        ///< in columns
+  std::vector<glm::ivec2> shifts_;  ///< of the columns, for each slice
+  int calm_ = 0;                    ///< slices before and behind that are averaged
+  std::vector<Column> columns_;
+};
+
+}  // namespace
+
+PatientAxes patient_axes(const Lattice& lattice) {
+  const auto nearest = [&](int patient, int taken) {
+    int best = -1;
+    double most = -1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const glm::dvec3 direction = glm::normalize(glm::dvec3(lattice.lps_from_voxel[axis]));
+      if (axis == taken || std::abs(direction[patient]) <= most) continue;
+      most = std::abs(direction[patient]);
+      best = axis;
+    }
+    return best;
+  };
+  PatientAxes axes;
+  axes.along = nearest(2, -1);
+  axes.back = nearest(1, axes.along);
+  axes.side = 3 - axes.along - axes.back;
+  return axes;
+}
+
+double air_level(const Scene& scene, const Int16Samples& samples) {
+  const glm::ivec3 dims = scene.lattice.dims;
+  const glm::ivec3 block = glm::clamp(glm::ivec3(6.0 / scene.lattice.spacing_mm() + 0.5), 1, 16);
+  constexpr int bins = 50;
+  std::array<std::uint64_t, bins> counts{};
+  for (int z = 0; z + block.z <= dims.z; z += block.z)
+    for (int y = 0; y + block.y <= dims.y; y += block.y)
+      for (int x = 0; x + block.x <= dims.x; x += block.x) {
+        double sum = 0.0;
+        std::int16_t low = 32767, high = -32768;
+        for (int k = 0; k < block.z; ++k)
+          for (int j = 0; j < block.y; ++j)
+            for (int i = 0; i < block.x; ++i) {
+              const std::int16_t sample = samples[sample_index(dims, {x + i, y + j, z + k})];
+              sum += sample;
+              low = std::min(low, sample);
+              high = std::max(high, sample);
+            }
+        const double mean = sum / (block.x * block.y * block.z);
+        // One value throughout is padding, unless a sample is a block.
+        if ((low == high && block != glm::ivec3(1) && low <= -1024) || mean < -1100.0 || mean >= -850.0)
+          continue;
+        ++counts[static_cast<std::size_t>((mean + 1100.0) / 5.0)];
+      }
+  const auto most = std::max_element(counts.begin(), counts.end());
+  return *most == 0 ? -1000.0 : 5.0 * static_cast<double>(most - counts.begin()) - 1097.5;
+}
+
+Extrusion extrusion_of(const Scene& scene, const ExtrusionOptions& options) {
+  check(scene);
+  if (!(options.thick_mm > 0.0)) throw std::invalid_argument("a board's thickness must be above 0 mm");
+  const auto* samples = std::get_if<Int16Samples>(&scene.samples);
+  if (samples == nullptr)
+    throw std::invalid_argument(scene.source + ": a support is sought among int16 samples");
+  const View view = view_of(scene, *samples);
+  Extrusion found;
+  found.marks.assign(samples->size(), 0);
+  const Slope slope(view, options);
+  found.slope = {slope.along(0), slope.along(1)};
+  options.progress.at(0.2);
+  Finder(view, options, found.slope, found).run();
+  std::uint64_t solid = 0;
+  for (std::size_t i = 0; i < samples->size(); ++i)
+    solid += found.marks[i] != 0 && (*samples)[i] >= options.threshold;
+  found.solid_mm3 = static_cast<double>(solid) * scene.lattice.voxel_mm3();
+  return found;
+}
+
+}  // namespace octotomy::voxel
