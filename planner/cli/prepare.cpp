@@ -4,12 +4,14 @@
 
 #include "planner/cli/verbs.h"
 #include "planner/file/outputs.h"
+#include "planner/picture/removed_picture.h"
 #include "planner/table/field_json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "planner/table/number_format.h"
 #include "planner/verb/octree_out.h"
 #include "planner/verb/scan_in.h"
+#include "voxel/scan/image_file.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/volume/volume_header.h"
 
@@ -19,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct PrepareText {
-  fs::path in, out, removed;
+  fs::path in, out, removed, picture;
   std::vector<std::string> steps, keep;
   ScanIn scan;
 };
@@ -54,7 +56,7 @@ Action step_of(const std::string& text, const PrepareText& given) {
     step["scan"] = "scan";
     if (name == "remove_headrest" && given.removed.empty())
       throw std::runtime_error(
-          "say with --removed FILE.octree where what is taken out is kept, so that it can be undone");
+          "give --removed FILE.octree, which keeps the removed samples so that restore can undo the step");
     for (const Field& field : operation->fields)
       if (field.name == "keep_mm" && !given.keep.empty())
         step[field.name] = json_of_words(field, action.value(), given.keep);
@@ -80,7 +82,9 @@ void check_outputs(const PrepareText& text) {
   if (!text.removed.empty()) need_octree_extension(text.removed);
   std::vector<fs::path> read{text.in};
   for (const std::string& step : text.steps) read.push_back(read_by(step));
-  need_outputs({text.out, text.removed}, read);
+  if (!text.picture.empty() && text.picture.extension() != ".png")
+    throw std::runtime_error(text.picture.string() + ": the picture of what is removed is a .png file");
+  need_outputs({text.out, text.removed, text.picture}, read);
 }
 
 void write_removed(const PrepareText& text, const voxel::GreyOctree& removed, Outputs& outputs,
@@ -100,10 +104,17 @@ int prepare(const Program& program, const PrepareText& text) {
   for (const std::string& step : text.steps) steps.push_back(step_of(step, text));
   if (std::count_if(steps.begin(), steps.end(),
                     [](const Action& step) { return step.operation().name == "remove_headrest"; }) > 1)
-    throw CLI::ValidationError("--step", "remove_headrest is once enough: what it takes out is in one file");
+    throw CLI::ValidationError(
+        "--step", "'remove_headrest' may be given only once: what it removes is kept in one file");
+  if (!text.picture.empty() && std::none_of(steps.begin(), steps.end(), [](const Action& step) {
+        return step.operation().name == "remove_headrest";
+      }))
+    throw CLI::ValidationError("--picture",
+                               "only remove_headrest draws a picture: add --step remove_headrest");
   Timings timings;
   voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
   std::optional<voxel::GreyOctree> removed;
+  std::optional<RemovedPicture> picture;
   Json did = Json::array();
   std::vector<std::pair<std::string, std::string>> rows;
   for (const Action& step : steps) {
@@ -117,6 +128,7 @@ int prepare(const Program& program, const PrepareText& text) {
           {[&](const std::string&) -> const voxel::Scene& { return scene; }, timings, progress});
     }
     if (progress.report) progress.report(1.0);
+    if (made.removed && !text.picture.empty()) picture = removed_picture(scene, made.scene);
     scene = std::move(made.scene);
     const glm::ivec3 dims = scene.lattice.dims;
     Json said{{"do", name}};
@@ -124,9 +136,12 @@ int prepare(const Program& program, const PrepareText& text) {
     if (made.removed) {
       removed = std::move(made.removed);
       said["removed"] = text.removed.string();
+      if (picture) said["picture"] = text.picture.string();
     }
+    std::string all;
     for (const std::string& finding : made.findings) {
-      said["finding"] = finding;
+      all += (all.empty() ? "" : "; ") + finding;
+      said["finding"] = all;
       warn(name + ": " + finding);
     }
     said["dims"] = {dims.x, dims.y, dims.z};
@@ -134,7 +149,10 @@ int prepare(const Program& program, const PrepareText& text) {
     rows.emplace_back(
         name, dims_text(dims) +
                   (said.contains("volume_removed_mm3")
-                       ? ", " + grouped(said["volume_removed_mm3"].get<double>(), 0) + " mm\u00b3 removed"
+                       ? ", " + grouped(said["volume_removed_mm3"].get<double>(), 0) +
+                             " mm\u00b3 solid and " + grouped(said["foam_removed_mm3"].get<double>(), 0) +
+                             " mm\u00b3 of foam and edges removed, " +
+                             grouped(said["dense_removed_mm3"].get<double>(), 0) + " as dense as bone"
                        : ""));
     did.push_back(std::move(said));
   }
@@ -145,6 +163,9 @@ int prepare(const Program& program, const PrepareText& text) {
     outputs.write(text.out, [&](const fs::path& file) { voxel::write_scene(scene, file); });
   }
   if (removed) write_removed(text, *removed, outputs, timings);
+  if (picture)
+    outputs.write(text.picture,
+                  [&](const fs::path& file) { voxel::write_image(file, picture->size_px, picture->rgb); });
   outputs.commit();
   Json json = scan_answer(scene, timings);
   json["path"] = text.out.string();
@@ -161,7 +182,8 @@ void add_prepare(Program& program) {
   CLI::App& verb = program.verb(
       "prepare", "Crops, resamples, smooths and cleans a scan, step by step in the order given",
       "octotomy prepare head.nrrd -o ready.nrrd --step crop=-90,-120,-80,90,110,90 --step slices=1,cubic\n"
-      "  octotomy prepare head.nrrd -o clean.nrrd --step remove_headrest --removed table.octree\n"
+      "  octotomy prepare head.nrrd -o clean.nrrd --step remove_headrest --removed table.octree --picture "
+      "table.png\n"
       "  octotomy prepare clean.nrrd -o head_again.nrrd --step restore=table.octree",
       [&program, text] { return prepare(program, *text); });
   std::string forms;
@@ -172,6 +194,7 @@ void add_prepare(Program& program) {
   verb.add_option("-o,--out", text->out, "A .nrrd, .nii.gz or .mha file")->required();
   verb.add_option("--step", text->steps, "Again for more: " + forms)->required()->expected(1)->take_all();
   verb.add_option("--removed", text->removed, "The .octree file that keeps what remove_headrest takes out");
+  verb.add_option("--picture", text->picture, "A .png file that shows in red what remove_headrest takes out");
   verb.add_option("--keep", text->keep, "X,Y,Z in mm of a part that remove_headrest leaves, again for more")
       ->expected(1)
       ->take_all();
