@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "planner/picture/removed_picture.h"
 #include "planner/plan/dependence.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/scan/image_file.h"
@@ -62,10 +63,6 @@ struct Seen {
 Seen seen_of(const Plan& plan, const Step& step) {
   const Operation& operation = step.action.operation();
   switch (operation.makes) {
-    case Makes::Scan:
-      throw std::runtime_error("'" + step.id +
-                               "' makes a scan, which has no surface: preview a step that uses "
-                               "it, or draw the scan by octotomy slice");
     case Makes::Object:
       return {{step.id}, operation.is_tool ? cut_by(plan, step.id) : origin_of(plan, step.id)};
     case Makes::Names: {
@@ -121,10 +118,31 @@ std::vector<voxel::DrawnObject> scene_of(const Plan& plan, const Step& step, con
   return scene;
 }
 
+/// Slices of the scan before a step, in red where the step changed it.
+Preview changes(const Plan& plan, const Step& step, EvaluateOptions options) {
+  options.wanted = {step.id};
+  options.keep_scans = true;
+  options.meshes = options.certify = false;
+  Preview made{evaluate(plan, options), {}, {}, {}};
+  const auto scene = [&](const std::string& name) -> const voxel::Scene& {
+    return made.evaluation.loaded.at(name)->scene();
+  };
+  const voxel::Scene &before = scene(scans_used(step.action).front()), &after = scene(step.id);
+  if (before.lattice != after.lattice || before.samples.index() != 0 || after.samples.index() != 0)
+    throw std::runtime_error("'" + step.id +
+                             "' makes a scan of other voxels, so that no change can be drawn: preview a step "
+                             "that uses it, or draw the scan by octotomy slice");
+  const Stopwatch watch(made.evaluation.timings, "render");
+  const RemovedPicture picture = removed_picture(before, after);
+  made.png = voxel::encode_image("png", picture.size_px, picture.rgb);
+  return made;
+}
+
 }  // namespace
 
 Preview preview(const Plan& plan, const std::string& id, const PreviewOptions& options) {
   const Step& step = step_of(plan, id);
+  if (step.action.operation().makes == Makes::Scan) return changes(plan, step, options.evaluation);
   const Seen seen = seen_of(plan, step);
   EvaluateOptions evaluation = options.evaluation;
   evaluation.wanted = seen.objects;

@@ -26,8 +26,9 @@ struct Preview {
 
 /// Draws one step, in the voxel kernel alone and without certificates. What a step makes is in colour; the
 /// bone that it was cut from, or that stays behind, is pale. A mask shows what it holds of the object that it
-/// cuts, a landmarks step its points as balls. Throws std::runtime_error where the plan has no such step,
-/// with the nearest name, or the step makes a scan; what evaluate() throws.
+/// cuts, a landmarks step its points as balls. A step that makes a scan shows removed_picture(), whatever the
+/// views are. Throws std::runtime_error where the plan has no such step, with the nearest name, or the step
+/// makes a scan of other voxels; what evaluate() throws.
 Preview preview(const Plan& plan, const std::string& step, const PreviewOptions& options = {});
 
 }  // namespace octotomy::planner

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "planner/picture/removed_picture.h"
+#include "tests/planner/ct_scene.h"
 #include "tests/planner/operation/ball_operation.h"
+#include "voxel/scan/image_file.h"
 
 namespace octotomy::planner {
 namespace {
@@ -56,6 +59,35 @@ TEST(Preview, LandmarksAreBallsOnTheFirstPiece) {
   ASSERT_EQ(made.objects.size(), 2u);
   EXPECT_EQ(made.objects[1].name, "front");
   EXPECT_GT(voxels(made, 1), 20u);
+}
+
+TEST(Preview, AStepThatMakesAScanShowsInRedWhatItRemoves) {
+  const ScratchFolder folder;
+  // A head, and a board that hangs 20 mm behind it.
+  voxel::write_scene(ct_scene({80, 90, 40}, {1, 1, 1}, {-39.5, -39.5, -19.5},
+                              [](const glm::ivec3& /*at*/, const glm::dvec3& p) {
+                                return glm::length(p) < 20 || (p.y > 40 && p.y < 46) ? 60 : -1000;
+                              }),
+                     folder / "ct.nrrd");
+  const Plan plan = parse_plan(R"({"octotomy_plan": 1, "name": "n", "scans": {"ct": {"path": "ct.nrrd"}},
+      "steps": [{"id": "head", "do": "remove_headrest", "scan": "ct"},
+                {"id": "face", "do": "crop", "scan": "ct", "low_mm": [-25, -25, -15], "high_mm": [25, 25, 15]},
+                {"id": "skin", "do": "window", "scan": "head", "low": 0}]})",
+                               folder.path());
+  const Preview made = preview(plan, "head");
+  EXPECT_TRUE(made.objects.empty());
+  const RemovedPicture picture =
+      removed_picture(made.evaluation.loaded.at("ct")->scene(), made.evaluation.loaded.at("head")->scene());
+  EXPECT_EQ(made.png, voxel::encode_image("png", picture.size_px, picture.rgb));
+  EXPECT_NE(picture.rgb, removed_picture(made.evaluation.loaded.at("ct")->scene(),
+                                         made.evaluation.loaded.at("ct")->scene())
+                             .rgb);
+  try {
+    preview(plan, "face");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("'face'"), std::string::npos) << error.what();
+  }
 }
 
 TEST(Preview, AStepThatIsNotThereIsRefusedWithTheNearest) {
