@@ -326,6 +326,10 @@ class Parter {
     }
     inside_ = std::move(closed);
     edge_ = with_edge(grid_, inside_, options_.rim_mm);
+    // The blurred edge of a doubtful part is as doubtful.
+    Cells beside = with_edge(grid_, doubtful_, options_.rim_mm);
+    for (std::size_t i = 0; i < beside.size(); ++i) beside[i] &= support_[i] ^ 1;
+    doubtful_ = std::move(beside);
     Cells others = support_;
     const glm::ivec3 dims = scene_.lattice.dims;
     std::size_t at = 0;

@@ -11,7 +11,7 @@ namespace {
 using namespace tests;
 
 /// One step of every operation that moves an object, and some of operations that do not.
-constexpr const char* steps = R"(
+constexpr const char* motion_steps = R"(
     {"id": "apart", "do": "move", "object": "lower", "translate_mm": [0, 0, -2]},
     {"id": "met", "do": "advance", "object": "apart", "against": "upper", "towards": "up", "gap_mm": 1},
     {"id": "seated", "do": "occlude", "object": "apart", "against": "upper", "about_mm": 3,
@@ -25,7 +25,7 @@ constexpr const char* steps = R"(
 
 TEST(Motion, TheTableSaysOfEachOperationWhetherItsObjectCarriesAMotion) {
   const ScratchFolder folder;
-  const Plan plan = ball_plan(folder, ball_caps(steps));
+  const Plan plan = ball_plan(folder, ball_caps(motion_steps));
   const Evaluation evaluation = evaluate(plan);
   std::set<std::string> seen;
   for (const Step& step : plan.steps) {
@@ -42,13 +42,13 @@ TEST(Motion, TheTableSaysOfEachOperationWhetherItsObjectCarriesAMotion) {
 TEST(Motion, ADeckAndAnotherPieceFollowEveryKindOfMotion) {
   const ScratchFolder folder;
   for (const char* id : {"apart", "met", "seated", "closed", "laid"}) {
-    const std::string more = std::string(steps) +
+    const std::string more = std::string(motion_steps) +
                              R"(, {"id": "follows", "do": "move", "object": "upper", "with": ")" + id +
                              R"("}, {"id": "deck", "do": "export", "object": "ball", "path": "ball.inp",
          "moved": [")" + id + R"("], "fixed": ["upper"]})";
     EXPECT_EQ(ball_refusal(folder, ball_caps(more)), "") << id;
   }
-  const std::string still = std::string(steps) + R"(, {"id": "deck", "do": "export", "object": "ball",
+  const std::string still = std::string(motion_steps) + R"(, {"id": "deck", "do": "export", "object": "ball",
       "path": "ball.inp", "moved": ["larger"], "fixed": ["upper"]})";
   EXPECT_NE(ball_refusal(folder, ball_caps(still)).find("'larger' was made by 'offset'"), std::string::npos);
 }

@@ -63,6 +63,41 @@ TEST(RemoveHeadrest, LeavesTheMarkerBeforeTheNoseAndTakesThePillow) {
   expect_parted(options);
 }
 
+TEST(RemoveHeadrest, TakesAnInclinedCradleWithFoamThatTheHeadLiesIn) {
+  SupportOptions options = on(SupportOptions::Table::Cradle);
+  options.pillow = true;
+  options.table_tilt_deg = -5.0;
+  options.noise_hu = 55.0;
+  options.head_turn_deg = {0, 0, 12};
+  options.voxel_mm = glm::dvec3(2.0);
+  expect_parted(options);
+}
+
+TEST(RemoveHeadrest, TakesAThickSolidCouchAndAStrapAndLeavesAnArmOnIt) {
+  SupportOptions options = on(SupportOptions::Table::Slab);
+  options.strap = true;
+  options.arm_mm = 30.0;
+  expect_parted(options);
+}
+
+TEST(RemoveHeadrest, OfRandomHeadsTakesTheSupportAndNothingOfThePatient) {
+  int tables = 0, arms = 0;
+  for (std::uint64_t seed = 100; seed < 106; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "random_supports(" << seed << ")");
+    SupportOptions options = random_supports(seed);
+    options.voxel_mm = glm::max(options.voxel_mm, glm::dvec3(2.0));
+    tables += options.table != SupportOptions::Table::None;
+    arms += options.arm_mm > 0.0;
+    const RemovalTally tally = removed_from(head_on_supports(options));
+    EXPECT_LE(tally.left_l, 0.05 * tally.support_l);
+    EXPECT_EQ(tally.bone_mm3, 0.0);
+    EXPECT_LT(tally.soft_share, 0.001);
+    EXPECT_EQ(tally.front_mm3, 0.0);
+  }
+  EXPECT_GT(tables, 2);
+  EXPECT_GT(arms, 0);
+}
+
 TEST(RemoveHeadrest, TakesLessThanOneInTenThousandOfAHeadWithoutASupport) {
   const SupportedHead head = head_on_supports(on(SupportOptions::Table::None));
   const RemovalTally tally = removed_from(head);
