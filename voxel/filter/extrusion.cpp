@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 
@@ -21,9 +20,11 @@ namespace octotomy::voxel {
 namespace {
 
 constexpr double above_air = 50.0;  ///< HU: the noise of air stays below it, the lightest foam lies there
-constexpr double least_width_mm = 40.0;   ///< less is a strap, a tube or an arm
-constexpr double least_discs = 3.0;       ///< a part of fewer of the largest discs in it is a body's
-constexpr double fringe_mm = 8.0;         ///< a body's outline beyond the discs that fit into it
+constexpr double least_width_mm = 40.0;  ///< less is a strap, a tube or an arm
+constexpr double limb_mm = 10.0;         ///< radius of discs that fit into a child's arm
+constexpr double limb_edge_mm = 2.5;     ///< its blurred edge
+constexpr double least_length = 2.5;  ///< of a board or couch, in its thicknesses; a head has 1.6, an arm 1.3
+constexpr double fringe_mm = 8.0;     ///< a body's outline beyond the discs that fit into it
 constexpr double least_window_mm = 60.0;  ///< a head's outline changes over less
 constexpr int slices_per_median = 48;
 constexpr double lies_off_mm = 0.75;  ///< how far a part may leave its columns
@@ -215,6 +216,7 @@ class Finder {
       for (int x = 0; x < view_.size[0]; ++x) lasting[view_.column(x, y)] = lasts({x, y}, window) ? 1 : 0;
     });
     const DistanceMap depth = distances([&](std::size_t i) { return !is_solid(i); });
+    without_compact(lasting, depth);
     // A slab thicker than thick_mm is a couch only where air surrounds nearly all of it.
     take(lasting, depth, 0.8, window);
     without_thick(lasting, depth);
@@ -225,7 +227,7 @@ class Finder {
   void take(std::vector<std::uint8_t>& lasting, const DistanceMap& depth, double least_free,
             const Window& window) {
     for (const Part& part : parts_of(lasting)) {
-      if (!is_support(part, lasting, least_free) || !is_flat(part, depth)) continue;
+      if (!is_support(part, lasting, least_free) || disc_mm(part, depth) > options_.thick_mm) continue;
       mark(part, window);
       for (const glm::ivec2& p : part.columns) lasting[view_.column(p.x, p.y)] = 0;
     }
@@ -233,21 +235,43 @@ class Finder {
 
   bool is_solid(std::size_t column) const { return columns_[column].solid >= 0.9F; }
 
-  /// Whether a part is much larger than the largest solid disc in it, as no head, neck or limb is, and the
-  /// disc is at most twice as wide as thick_mm.
-  bool is_flat(const Part& part, const DistanceMap& depth) const {
-    double radius = 0.0;
-    const double half = 0.5 * std::min(view_.mm[0], view_.mm[1]);
+  /// The radius of the largest disc of solid columns around a column; the scan's border ends it.
+  double disc_mm(const glm::ivec2& p, const DistanceMap& depth) const {
+    const glm::dvec2 border = glm::dvec2(glm::min(p + 1, glm::ivec2(view_.size[0], view_.size[1]) - p)) *
+                              glm::dvec2(view_.mm[0], view_.mm[1]);
+    const double solid = std::sqrt(static_cast<double>(depth.square_mm2[view_.column(p.x, p.y)]));
+    return std::min({solid, border.x, border.y}) - 0.5 * std::min(view_.mm[0], view_.mm[1]);
+  }
+
+  double disc_mm(const Part& part, const DistanceMap& depth) const {
+    double largest = 0.0;
+    for (const glm::ivec2& p : part.columns) largest = std::max(largest, disc_mm(p, depth));
+    return largest;
+  }
+
+  glm::dvec2 size_mm(const Part& part) const {
+    glm::ivec2 low = part.columns.front(), high = low;
     for (const glm::ivec2& p : part.columns) {
-      const glm::dvec2 border = glm::dvec2(glm::min(p + 1, glm::ivec2(view_.size[0], view_.size[1]) - p)) *
-                                glm::dvec2(view_.mm[0], view_.mm[1]);
-      radius =
-          std::max(radius, std::min({std::sqrt(static_cast<double>(depth.square_mm2[view_.column(p.x, p.y)])),
-                                     border.x, border.y}) -
-                               half);
+      low = glm::min(low, p);
+      high = glm::max(high, p);
     }
-    const double area = static_cast<double>(part.columns.size()) * view_.mm[0] * view_.mm[1];
-    return radius <= options_.thick_mm && area >= least_discs * std::numbers::pi * radius * radius;
+    return glm::dvec2(high - low + 1) * glm::dvec2(view_.mm[0], view_.mm[1]);
+  }
+
+  /// Takes out the columns of discs of limb_mm where these discs together are little longer than wide, as in
+  /// a head, a neck or an arm, which may lie on a couch.
+  void without_compact(std::vector<std::uint8_t>& lasting, const DistanceMap& depth) const {
+    std::vector<std::uint8_t> inner(lasting.size(), 0), compact(lasting.size(), 0);
+    for (int y = 0; y < view_.size[1]; ++y)
+      for (int x = 0; x < view_.size[0]; ++x)
+        inner[view_.column(x, y)] = is_solid(view_.column(x, y)) && disc_mm({x, y}, depth) > limb_mm ? 1 : 0;
+    for (const Part& part : parts_of(inner))
+      if (glm::length(size_mm(part)) + 2.0 * limb_mm < least_length * 2.0 * disc_mm(part, depth))
+        for (const glm::ivec2& p : part.columns) compact[view_.column(p.x, p.y)] = 1;
+    const DistanceMap away = distances([&](std::size_t i) { return compact[i] != 0; });
+    const double reach = limb_mm + limb_edge_mm;
+    for (std::size_t i = 0; i < lasting.size(); ++i)
+      if (static_cast<double>(away.square_mm2[i]) <= reach * reach) lasting[i] = 0;
   }
 
   /// Fills columns_ for a window: of at most slices_per_median slices, evenly chosen, without what is marked.
@@ -396,11 +420,8 @@ class Finder {
 
   /// Whether a part is wide, and a share of its neighbours is free of solid samples.
   bool is_support(const Part& part, const std::vector<std::uint8_t>& lasting, double least_free) const {
-    glm::ivec2 low = part.columns.front(), high = low;
     int free = 0, border = 0;
     for (const glm::ivec2& p : part.columns) {
-      low = glm::min(low, p);
-      high = glm::max(high, p);
       for (const glm::ivec2& step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
         const glm::ivec2 beside = p + step;
         if (view_.holds(beside) && lasting[view_.column(beside.x, beside.y)] != 0) continue;
@@ -412,8 +433,7 @@ class Finder {
         free += !view_.holds(next) || columns_[view_.column(next.x, next.y)].solid <= 0.1F;
       }
     }
-    const glm::dvec2 size = glm::dvec2(high - low + 1) * glm::dvec2(view_.mm[0], view_.mm[1]);
-    return glm::length(size) >= least_width_mm && free >= least_free * border;
+    return glm::length(size_mm(part)) >= least_width_mm && free >= least_free * border;
   }
 
   /// Marks a part's samples in its window, and beyond it while they are still the part's.

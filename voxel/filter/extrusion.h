@@ -40,7 +40,7 @@ struct Extrusion {
 /// Finds parts whose samples keep their values over at least 60 mm, or a third of the scan, along the
 /// lattice's axis nearest to the table's. The parts may be inclined to that axis by up to 24 degrees. A part
 /// is at least 40 mm wide, at most thick_mm thick where it is solid, and borders air along two fifths of its
-/// outline; a body's core does not. It is three times as large as the largest solid disc in it; a head, a
+/// outline; a body's core does not. What is thicker than 20 mm is 2.5 times as long as thick, too; a head, a
 /// neck and a limb are not. A part that the patient's tissue covers is cut off where its samples change.
 /// Throws std::invalid_argument if samples are not int16; Stopped. Same bits on any thread count. Cost:
 /// linear; memory: one byte per sample.
