@@ -187,6 +187,7 @@ FindingsOfRun::~FindingsOfRun() {
   if (findings > most_findings)
     warn(std::to_string(findings - most_findings) + " more findings: --json gives them all");
   findings = 0;
+  choose_mesh_reading({}, {});
 }
 
 std::string line_of(const std::string& text) {

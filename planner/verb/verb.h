@@ -75,7 +75,8 @@ void warn(const std::string& line);
 /// thousands.
 void warn_finding(const std::string& finding);
 
-/// A run of the program, at whose end the number of findings is said that warn_finding() has kept back.
+/// A run of the program. Its end states the number of findings that warn_finding() has kept back, and forgets
+/// how meshes were to be read and which were.
 struct FindingsOfRun {
   FindingsOfRun() = default;
   FindingsOfRun(const FindingsOfRun&) = delete;

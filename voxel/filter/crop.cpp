@@ -89,8 +89,11 @@ Scene average_down(const Scene& scene, const glm::ivec3& factor, const Progress&
           double sum = 0.0;
           for (int z = low.z; z < high.z; ++z)
             for (int y = low.y; y < high.y; ++y)
-              for (int x = low.x; x < high.x; ++x)
-                sum += static_cast<double>(samples[sample_index(from, {x, y, z})]);
+              for (int x = low.x; x < high.x; ++x) {
+                const auto sample = samples[sample_index(from, {x, y, z})];
+                if (scene.padding && static_cast<double>(sample) == *scene.padding) return sample;
+                sum += static_cast<double>(sample);
+              }
           const glm::ivec3 size = high - low;
           return rounded<typename Held::value_type>(sum / (static_cast<double>(size.x) * size.y * size.z));
         };

@@ -18,9 +18,9 @@ Scene crop(const Scene& scene, const VoxelRange& range);
 
 /// Replaces each block of factor.x x factor.y x factor.z samples by their mean, at the block's middle;
 /// integers are rounded to the nearest, halves upwards. A block that the scene's end cuts off takes the mean
-/// of its remaining samples, at the middle of a whole block. Throws std::invalid_argument if a factor is less
-/// than 1 or the scene is a label map, because labels have no mean; Stopped. Parallel, same bits on any
-/// thread count.
+/// of its remaining samples, at the middle of a whole block. A block with padding in it is padding. Throws
+/// std::invalid_argument if a factor is less than 1 or the scene is a label map, because labels have no mean;
+/// Stopped. Parallel, same bits on any thread count.
 Scene average_down(const Scene& scene, const glm::ivec3& factor, const Progress& progress = {});
 
 }  // namespace octotomy::voxel

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "voxel/filter/measured.h"
 #include "voxel/filter/slice_work.h"
 #include "voxel/filter/smooth.h"
 
@@ -65,6 +66,8 @@ Scene made_of(const Scene& scene, const Progress& progress, const Value& value) 
 
 Scene zucker_hummel(const Scene& scene, const Progress& progress) {
   check_values(scene, "an edge operator cannot take a label map");
+  if (scene.padding)
+    return on_measured(scene, [&](const Scene& whole) { return zucker_hummel(whole, progress); });
   const glm::dmat3 mm_from_index = glm::transpose(glm::inverse(glm::dmat3(scene.lattice.lps_from_voxel)));
   return std::visit(
       [&](const auto& samples) {
@@ -85,6 +88,8 @@ Scene marr_hildreth(const Scene& scene, double sigma_mm, const Progress& progres
     if (std::abs(glm::dot(axes[axis], axes[(axis + 1) % 3])) >
         0x1p-20 * spacing_mm[axis] * spacing_mm[(axis + 1) % 3])
       throw std::invalid_argument("a Laplacian needs perpendicular axes: resample the sheared scan first");
+  if (scene.padding)
+    return on_measured(scene, [&](const Scene& whole) { return marr_hildreth(whole, sigma_mm, progress); });
   Scene exact{scene.lattice, {}, scene.meaning, scene.modality, scene.source, {}};
   std::visit([&](const auto& samples) { exact.samples = FloatSamples(samples.begin(), samples.end()); },
              scene.samples);

@@ -5,8 +5,8 @@
 #include "voxel/space/scene.h"
 
 // Edge operators in three dimensions (thesis 2.3.2.2.2). Their results are scenes, for slices, windows and
-// region growing. Beyond the scene's faces the border samples repeat. Both throw std::invalid_argument for
-// label maps; Stopped. Parallel, same bits on any thread count.
+// region growing. Beyond the scene's faces and in its padding the border samples repeat; padding stays. Both
+// throw std::invalid_argument for label maps; Stopped. Parallel, same bits on any thread count.
 namespace octotomy::voxel {
 
 /// The length of the gradient, in sample units per millimetre, by Zucker and Hummel's operator (IEEE PAMI 3,

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -12,22 +14,29 @@
 namespace octotomy::voxel {
 namespace {
 
-// About a million samples at equal steps, in ascending order; all samples if there are fewer.
+// About a million samples at equal steps, in ascending order; all samples if there are fewer. Without
+// padding, unless there is nothing else.
 template <typename Sample>
-std::vector<Sample> sorted(const Samples<Sample>& samples) {
+std::vector<Sample> sorted(const Samples<Sample>& samples, std::optional<double> padding) {
   constexpr std::size_t enough = 1'000'000;
   const std::size_t stride = std::max<std::size_t>(1, samples.size() / enough);
   std::vector<Sample> some;
   some.reserve(samples.size() / stride + 1);
-  for (std::size_t i = 0; i < samples.size(); i += stride) some.push_back(samples[i]);
+  for (std::size_t i = 0; i < samples.size(); i += stride)
+    if (static_cast<double>(samples[i]) != padding) some.push_back(samples[i]);
+  if (some.empty()) some.push_back(samples.front());
   std::sort(some.begin(), some.end());
   return some;
 }
 
-// The count of each possible sample value.
-std::vector<std::uint64_t> counts_of_values(const Int16Samples& samples) {
+// The count of each possible sample value, without padding unless there is nothing else.
+std::vector<std::uint64_t> counts_of_values(const Int16Samples& samples, std::optional<double> padding) {
   std::vector<std::uint64_t> counts(65536, 0);
   for (const std::int16_t sample : samples) ++counts[static_cast<std::size_t>(sample + 32768)];
+  if (padding) {
+    std::uint64_t& padded = counts[static_cast<std::size_t>(*padding + 32768.0)];
+    if (padded < samples.size()) padded = 0;
+  }
   return counts;
 }
 
@@ -47,11 +56,11 @@ Range percentile_range(const Scene& scene) {
     return static_cast<std::size_t>(part * static_cast<double>(count - 1));
   };
   if (const auto* samples = std::get_if<Int16Samples>(&scene.samples)) {
-    const std::vector<std::uint64_t> counts = counts_of_values(*samples);
-    return {value_at(counts, rank(outer, samples->size())),
-            value_at(counts, rank(1 - outer, samples->size()))};
+    const std::vector<std::uint64_t> counts = counts_of_values(*samples, scene.padding);
+    const auto count = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+    return {value_at(counts, rank(outer, count)), value_at(counts, rank(1 - outer, count))};
   }
-  const std::vector<float> some = sorted(std::get<FloatSamples>(scene.samples));
+  const std::vector<float> some = sorted(std::get<FloatSamples>(scene.samples), scene.padding);
   return {static_cast<double>(some[rank(outer, some.size())]),
           static_cast<double>(some[rank(1 - outer, some.size())])};
 }
@@ -72,6 +81,7 @@ Histogram histogram(const Scene& scene, int bins) {
   std::visit(
       [&](const auto& samples) {
         for (const auto sample : samples) {
+          if (static_cast<double>(sample) == scene.padding) continue;
           const double place = std::clamp((static_cast<double>(sample) - shown.low) * scale, 0.0, bins - 1.0);
           ++result.counts[static_cast<std::size_t>(std::lround(place))];
         }

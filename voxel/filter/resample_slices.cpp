@@ -78,13 +78,14 @@ std::vector<float> slice_distances(const Scene& scene, int k, const ShapeOptions
       framed, std::vector<float>(
                   (static_cast<std::size_t>(dims.x) + 2) * (static_cast<std::size_t>(dims.y) + 2), 0.0F)};
   bool any = false;
+  const double low = above_padding(scene, options.low);
   std::visit(
       [&](const auto& samples) {
         for (int y = 0; y < dims.y; ++y)
           for (int x = 0; x < dims.x; ++x) {
             const std::size_t at = to_inside.index({x, y, 0});
             const auto sample = static_cast<double>(samples[static_cast<std::size_t>(k) * size + at]);
-            if (sample < options.low || sample > options.high) continue;
+            if (sample < low || sample > options.high) continue;
             any = true;
             to_inside.square_mm2[at] = 0.0F;
             to_outside.square_mm2[to_outside.index({x, y, 0})] = far_away;
@@ -138,6 +139,10 @@ Scene resample_slices(const Scene& scene, double spacing_mm, SliceKernel kernel,
   const double from_mm = scene.lattice.spacing_mm().z;
   const std::size_t size = slice_size(scene.lattice);
   const int last = scene.lattice.dims.z - 1;
+  // Without padding no sample equals it. A kernel that overshoots stays above it.
+  const double padding = scene.padding.value_or(std::numeric_limits<double>::quiet_NaN());
+  const double least = scene.padding ? *scene.padding + std::max(1.0, 0x1p-20 * std::abs(*scene.padding))
+                                     : -std::numeric_limits<double>::infinity();
   std::visit(
       [&](const auto& samples) {
         using Held = std::decay_t<decltype(samples)>;
@@ -152,9 +157,14 @@ Scene resample_slices(const Scene& scene, double spacing_mm, SliceKernel kernel,
                 samples.data() + static_cast<std::size_t>(std::clamp(weights.first + i, 0, last)) * size;
           for (std::size_t at = 0; at < size; ++at) {
             double value = 0.0;
-            for (std::size_t i = 0; i < static_cast<std::size_t>(weights.count); ++i)
-              value += weights.weight[i] * static_cast<double>(slices[i][at]);
-            out[static_cast<std::ptrdiff_t>(at)] = rounded<typename Held::value_type>(value);
+            bool is_padded = false;
+            for (std::size_t i = 0; i < static_cast<std::size_t>(weights.count); ++i) {
+              const auto sample = static_cast<double>(slices[i][at]);
+              value += weights.weight[i] * sample;
+              is_padded |= sample == padding;
+            }
+            out[static_cast<std::ptrdiff_t>(at)] =
+                rounded<typename Held::value_type>(is_padded ? padding : std::max(value, least));
           }
         });
         result.samples = std::move(made);
@@ -167,6 +177,7 @@ Scene interpolate_shape(const Scene& scene, const ShapeOptions& options) {
   check(scene);
   Scene result = empty_scene_like(scene, with_slice_spacing(scene.lattice, options.spacing_mm));
   result.meaning = Meaning::Label;
+  result.padding.reset();
   need_memory(scene.source, result.lattice.sample_count(), sizeof(std::int16_t));
   const double from_mm = scene.lattice.spacing_mm().z;
   const std::size_t size = slice_size(scene.lattice);

@@ -38,7 +38,7 @@ inline void check_values(const Scene& scene, const std::string& refusal) {
 /// All of a scene but samples and holes, on a lattice.
 inline Scene empty_scene_like(const Scene& scene, const Lattice& lattice) {
   return {lattice,     {}, scene.meaning,  scene.modality, scene.source,
-          scene.audit, {}, scene.identity, scene.overlaps};
+          scene.audit, {}, scene.identity, scene.overlaps, scene.padding};
 }
 
 /// A sample of a value: rounded to the nearest integer, halves upwards, and clamped to int16's range.

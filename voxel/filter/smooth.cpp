@@ -18,6 +18,7 @@
 #include <string>
 #include <tbb/task_arena.h>
 
+#include "voxel/filter/measured.h"
 #include "voxel/filter/slice_work.h"
 
 namespace octotomy::voxel {
@@ -110,6 +111,8 @@ Scene median(const Scene& scene, const glm::ivec3& radius, const Progress& progr
   check_values(scene, "a label map cannot be smoothed");
   if (glm::any(glm::lessThan(radius, glm::ivec3(0))) || glm::any(glm::greaterThan(radius, glm::ivec3(16))))
     refuse("a median's radius must be 0 to 16 samples along each axis");
+  if (scene.padding)
+    return on_measured(scene, [&](const Scene& whole) { return median(whole, radius, progress); });
   return filtered(scene, radius.z, progress, [&]<typename Sample>(Sample /*tag*/) {
     auto filter = itk::MedianImageFilter<Image<Sample>, Image<Sample>>::New();
     filter->SetRadius({static_cast<itk::SizeValueType>(radius.x), static_cast<itk::SizeValueType>(radius.y),
@@ -125,6 +128,8 @@ Scene gaussian(const Scene& scene, double sigma_mm, const Progress& progress) {
   if (!(sigma_mm > 0.0) || !(sigma_mm <= 32.0 * finest_mm))
     refuse("a Gaussian's sigma must be above 0 and at most 32 samples, " + std::to_string(32.0 * finest_mm) +
            " mm here, not " + std::to_string(sigma_mm) + " mm");
+  if (scene.padding)
+    return on_measured(scene, [&](const Scene& whole) { return gaussian(whole, sigma_mm, progress); });
   // ITK cuts the weights off before four standard deviations and two samples.
   const int reach = static_cast<int>(std::ceil(4.0 * sigma_mm / spacing_mm.z)) + 2;
   return filtered(scene, reach, progress, [&]<typename Sample>(Sample /*tag*/) {
@@ -143,6 +148,7 @@ Scene diffuse(const Scene& scene, const DiffusionOptions& options) {
     refuse("diffusion takes 1 to 1000 iterations, not " + std::to_string(options.iterations));
   if (!(options.conductance > 0.0) || !std::isfinite(options.conductance))
     refuse("diffusion needs a positive conductance, not " + std::to_string(options.conductance));
+  if (scene.padding) return on_measured(scene, [&](const Scene& whole) { return diffuse(whole, options); });
   options.progress.at(0.0);
   Scene result = empty_scene_like(scene, scene.lattice);
   const Lattice& lattice = scene.lattice;

@@ -5,9 +5,9 @@
 #include "voxel/space/scene.h"
 
 // Removal of noise from a scene, by ITK's filters. The lattice stays; int16 stays int16, rounded to the
-// nearest, halves upwards. Beyond the scene's faces the border samples repeat. All throw
-// std::invalid_argument for label maps, because labels have no order or mean; Stopped. Same bits on any
-// thread count.
+// nearest, halves upwards. Beyond the scene's faces and in its padding the border samples repeat; padding
+// stays. All throw std::invalid_argument for label maps, because labels have no order or mean; Stopped. Same
+// bits on any thread count.
 namespace octotomy::voxel {
 
 /// Replaces each sample by the median of the samples at most `radius` samples away along each axis. Removes

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct SliceCounts {
 };
 
 template <typename Sample>
-SliceCounts clamp_slice(Sample* slice, const Lattice& lattice, const StreakOptions& options) {
+SliceCounts clamp_slice(Sample* slice, const Lattice& lattice, std::optional<double> padding,
+                        const StreakOptions& options) {
   const glm::ivec3 dims(lattice.dims.x, lattice.dims.y, 1);
   DistanceMap map{{glm::ivec3(0), dims - 1}, {}};
   map.square_mm2.assign(static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y),
@@ -35,6 +37,7 @@ SliceCounts clamp_slice(Sample* slice, const Lattice& lattice, const StreakOptio
   for (std::size_t at = 0; at < map.square_mm2.size(); ++at) {
     if (static_cast<double>(map.square_mm2[at]) > most_mm2) continue;
     const auto sample = static_cast<double>(slice[at]);
+    if (sample == padding) continue;
     if (sample < options.low) {
       slice[at] = static_cast<Sample>(options.low);
       ++counts.raised;
@@ -61,8 +64,8 @@ StreakClamp clamp_streaks(const Scene& scene, const StreakOptions& options) {
   std::visit(
       [&](auto& samples) {
         for_each_slice(slices, options.progress, [&](int k) {
-          counts[static_cast<std::size_t>(k)] =
-              clamp_slice(samples.data() + static_cast<std::size_t>(k) * size, scene.lattice, options);
+          counts[static_cast<std::size_t>(k)] = clamp_slice(
+              samples.data() + static_cast<std::size_t>(k) * size, scene.lattice, scene.padding, options);
         });
       },
       result.scene.samples);

@@ -25,7 +25,7 @@ struct StreakClamp {
   int slices = 0;             ///< that hold metal
 };
 /// Clamps samples near metal, slice by slice (index z), to the range of tissue, so that streaks neither
-/// stretch windows nor shift interpolated surfaces. Streaks between the bounds stay. Throws
+/// stretch windows nor shift interpolated surfaces. Streaks between the bounds stay, and padding. Throws
 /// std::invalid_argument if low is not below high, a number is not finite, the reach is negative, or the
 /// first two axes are not perpendicular; Stopped. Parallel over slices. Memory: the result.
 StreakClamp clamp_streaks(const Scene& scene, const StreakOptions& options);

@@ -34,17 +34,23 @@ double as_written(double number) {
   return std::strtod(dicom_decimal(number).c_str(), nullptr);
 }
 
+/// Scene::padding as it is stored: no measured sample has this number, since padding lies below all.
+constexpr std::int16_t stored_padding = std::numeric_limits<std::int16_t>::min();
+
 /// Slope 1 and intercept 0 for integers in int16's range, else the finest power of two for which the range of
 /// samples fits 16 bits. Samples that are multiples of the slope, as halves are, then keep their values;
 /// others change by half a slope at most.
 Rescale rescale_of(const Scene& scene) {
-  const auto is_exact = [](double value) {
-    return value >= std::numeric_limits<std::int16_t>::min() &&
+  const auto is_exact = [&](double value) {
+    return value >= stored_padding + (scene.padding ? 1 : 0) &&
            value <= std::numeric_limits<std::int16_t>::max() && value == std::trunc(value);
   };
   if (std::holds_alternative<Int16Samples>(scene.samples)) return {};
   const auto& samples = std::get<FloatSamples>(scene.samples);
-  if (std::all_of(samples.begin(), samples.end(), is_exact)) return {};
+  const auto is_padding = [&](float value) { return static_cast<double>(value) == scene.padding; };
+  if (std::all_of(samples.begin(), samples.end(),
+                  [&](float value) { return is_padding(value) || is_exact(value); }))
+    return {};
   if (!std::all_of(samples.begin(), samples.end(), [](float value) { return std::isfinite(value); }))
     throw std::invalid_argument("a sample is not finite: DICOM stores numbers only");
   const Range values = range(scene);
@@ -119,7 +125,10 @@ class SeriesWriter {
         [&](const auto& samples) {
           for (std::size_t i = 0; i < area; ++i) {
             const auto value = static_cast<double>(samples[static_cast<std::size_t>(k) * area + i]);
-            slice[i] = static_cast<std::int16_t>(std::lround((value - rescale_.intercept) / rescale_.slope));
+            slice[i] =
+                value == scene_.padding
+                    ? stored_padding
+                    : static_cast<std::int16_t>(std::lround((value - rescale_.intercept) / rescale_.slope));
           }
         },
         scene_.samples);
@@ -200,6 +209,7 @@ class SeriesWriter {
     slice.put_short(0x00280101, 16);
     slice.put_short(0x00280102, 15);
     slice.put_short(0x00280103, 1);
+    if (scene_.padding) slice.put(0x00280120, "SS", std::string("\x00\x80", 2));
     slice.put(0x7fe00010, "OW",
               {reinterpret_cast<const char*>(samples.data()), samples.size() * sizeof samples[0]});
   }

@@ -12,14 +12,14 @@
 namespace octotomy::voxel {
 
 /// Writes a scene in the format of the extension: .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd. Where labels
-/// overlap, the lowest stays. The samples' type, their meaning and the modality survive a round trip; frame
-/// and unit of length are stated. Geometry is kept in double precision; NIfTI files, single precision by
-/// themselves, keep it in an extension that other readers skip. Written beside and renamed into place, so
-/// that a failure leaves an older file intact. The samples of .nhdr and .mhd go into a data file beside the
-/// header under a name that was free, so that an older header never reads them; those of the older header are
-/// removed last. Throws Error, Input or Resource, with path and reason, before a byte is written where the
-/// disk cannot take it; as need_own_data_file(); std::invalid_argument for MetaImage, whose readers take
-/// none, if the lattice's axes are not perpendicular.
+/// overlap, the lowest stays. The samples' type, their meaning, the modality and the padding survive a round
+/// trip; frame and unit of length are stated. Geometry is kept in double precision; NIfTI files, single
+/// precision by themselves, keep it in an extension that other readers skip. Written beside and renamed into
+/// place, so that a failure leaves an older file intact. The samples of .nhdr and .mhd go into a data file
+/// beside the header under a name that was free, so that an older header never reads them; those of the older
+/// header are removed last. Throws Error, Input or Resource, with path and reason, before a byte is written
+/// where the disk cannot take it; as need_own_data_file(); std::invalid_argument for MetaImage, whose readers
+/// take none, if the lattice's axes are not perpendicular.
 void write_scene(const Scene& scene, const std::filesystem::path& path);
 
 /// Of .nhdr and .mhd, whose samples go into a data file beside them: throws Error (Input) where a file of
@@ -58,8 +58,8 @@ void need_no_slices(const std::filesystem::path& folder);
 /// one that is there gets them one after the other. A lattice whose third axis is not
 /// perpendicular to the first two becomes a series with gantry tilt. Samples are written as int16: integers
 /// with slope 1 and intercept 0, others with the finest slope for which their range fits, a power of two; the
-/// rescale type of a CT says if it is not Hounsfield. Viewers get a window: level 500, width 2000 in
-/// Hounsfield units, else all values. Unique identifiers come from the
+/// rescale type of a CT says if it is not Hounsfield. Padding is stored as -32768 and stated as such. Viewers
+/// get a window: level 500, width 2000 in Hounsfield units, else all values. Unique identifiers come from the
 /// content: the same scene and options give the same files, byte by byte. Throws Error, Input or Resource,
 /// with path and reason, also as need_no_slices(); std::invalid_argument if a sample is not finite, the first
 /// two axes are not perpendicular or a text is too long.

@@ -222,6 +222,7 @@ class MetaReader {
   void take_meaning() {
     header_.meaning = text_.field(meaning_key).value_or("");
     header_.modality = text_.field(modality_key).value_or("");
+    take_padding(text_.field(padding_key), header_);
     const std::string modality = text_.field("modality").value_or("");
     if (header_.modality.empty() && (modality == "MET_MOD_CT" || modality == "MET_MOD_MR" ||
                                      modality == "MET_MOD_NM" || modality == "MET_MOD_US"))

@@ -441,7 +441,12 @@ class NiftiReader {
 
   void take_meaning() {
     if (fields_.description.starts_with(nifti_mark)) {
-      const std::string rest = fields_.description.substr(nifti_mark.size());
+      std::string rest = fields_.description.substr(nifti_mark.size());
+      if (const std::size_t at = rest.find(nifti_padding_mark); at != std::string::npos) {
+        take_padding(trimmed(rest.substr(at + nifti_padding_mark.size())), header_);
+        rest.erase(at);
+      }
+      rest = trimmed(rest);
       const std::size_t gap = rest.find(' ');
       header_.meaning = rest.substr(0, gap);
       if (gap != std::string::npos) header_.modality = trimmed(rest.substr(gap));

@@ -375,6 +375,7 @@ class NrrdReader {
     };
     header_.meaning = key(meaning_key);
     header_.modality = key(modality_key);
+    if (text_.keys.contains(padding_key)) take_padding(key(padding_key), header_);
     const std::optional<std::string> unit = text_.field("sampleunits");
     if (!unit) return;
     std::string name = lower_case(*unit);

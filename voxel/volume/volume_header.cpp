@@ -2,6 +2,7 @@
 #include "voxel/volume/volume_header.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -109,6 +110,23 @@ Finding rescale_finding(const StoredSamples& stored, const std::string& says) {
           print("values are %.9g * stored %c %.9g (", stored.slope, stored.intercept < 0.0 ? '-' : '+',
                 std::abs(stored.intercept)) +
               says + ")"};
+}
+
+void take_padding(const std::optional<std::string>& text, VolumeHeader& header) {
+  if (!text) return;
+  double padding = 0.0;
+  const char* const end = text->data() + text->size();
+  const auto [rest, error] = std::from_chars(text->data(), end, padding);
+  if (error == std::errc() && rest == end && std::isfinite(padding)) {
+    header.padding = padding;
+    header.audit.push_back(
+        {"padding", Verdict::Pass,
+         print("samples of %.9g are padding: the scanner measured nothing there", padding)});
+  } else {
+    header.audit.push_back(
+        {"padding", Verdict::Warn,
+         "the file states a padding that is no number: every sample is taken as measured"});
+  }
 }
 
 void add_third_axis(VolumeHeader& header) {

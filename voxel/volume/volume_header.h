@@ -56,9 +56,10 @@ struct VolumeHeader {
   /// Of a segmentation of 3D Slicer whose segments overlap: samples of so many label maps stand at each
   /// place, one behind the other.
   int layers = 1;
-  std::string meaning;         ///< "HU", "raw" or "label"; empty if the file states none
-  std::string modality;        ///< DICOM's two letters; empty if the file states none
-  std::vector<Finding> audit;  ///< lines on its other statements
+  std::string meaning;                 ///< "HU", "raw" or "label"; empty if the file states none
+  std::string modality;                ///< DICOM's two letters; empty if the file states none
+  std::optional<double> padding = {};  ///< Scene::padding, of our own files
+  std::vector<Finding> audit;          ///< lines on its other statements
 
   std::optional<std::string> field(const std::string& name) const;
 };
@@ -66,8 +67,11 @@ struct VolumeHeader {
 // Names under which our own files keep what the formats have no field for.
 inline constexpr const char* meaning_key = "octotomy_meaning";
 inline constexpr const char* modality_key = "octotomy_modality";
-/// NIfTI has one free text, the description: this mark, the meaning and the modality.
+inline constexpr const char* padding_key = "octotomy_padding";
+/// NIfTI has one free text, the description: this mark, the meaning, the modality, and behind
+/// nifti_padding_mark the padding.
 inline constexpr std::string_view nifti_mark = "octotomy ";
+inline constexpr std::string_view nifti_padding_mark = "padding=";
 /// NIfTI-1 keeps positions in single precision. Our own files add them in double precision, in an extension
 /// of plain text (code 6, which others skip): this mark, then the first three rows of lps_from_voxel.
 inline constexpr std::string_view nifti_geometry_mark = "octotomy lps_from_voxel ";
@@ -77,6 +81,10 @@ inline constexpr std::int32_t nifti_text_extension = 6;
 /// (more than one value a sample, several volumes), or claims more samples than its files can hold. Memory: a
 /// few megabytes.
 VolumeHeader read_volume_header(const std::filesystem::path& path, VolumeFormat format);
+
+/// Takes the text of Scene::padding, with a line of the audit. A text that is no number is passed over with a
+/// WARN; nothing is done for none.
+void take_padding(const std::optional<std::string>& text, VolumeHeader& header);
 
 /// The audit's line on slope and intercept. `says` names them as the format does.
 Finding rescale_finding(const StoredSamples& stored, const std::string& says);

@@ -148,6 +148,10 @@ void put_qform(const glm::dmat4& ras, const glm::dvec3& spacing_mm, nifti_1_head
   header.qform_code = NIFTI_XFORM_SCANNER_ANAT;
 }
 
+std::string padding_text(const Scene& scene) {
+  return print("%.17g", *scene.padding);
+}
+
 /// The sform always, and the qform, too, where it can say the same.
 nifti_1_header nifti_header(const Scene& scene, const fs::path& path, std::size_t samples_at) {
   nifti_1_header header{};
@@ -169,7 +173,8 @@ nifti_1_header nifti_header(const Scene& scene, const fs::path& path, std::size_
   header.scl_slope = 1.0f;
   header.xyzt_units = NIFTI_UNITS_MM;
   if (scene.meaning == Meaning::Label) header.intent_code = NIFTI_INTENT_LABEL;
-  const std::string text = std::string(nifti_mark) + word_of(scene.meaning) + " " + scene.modality;
+  std::string text = std::string(nifti_mark) + word_of(scene.meaning) + " " + scene.modality;
+  if (scene.padding) text += " " + std::string(nifti_padding_mark) + padding_text(scene);
   std::memcpy(header.descrip, text.data(), std::min(text.size(), sizeof header.descrip - 1));
   glm::dmat4 ras = scene.lattice.lps_from_voxel;
   for (int column = 0; column < 4; ++column)
@@ -228,6 +233,7 @@ void write_nrrd(const Scene& scene, const fs::path& path) {
   if (is_detached) header += "data file: " + data.replace_extension(".raw.gz").filename().string() + "\n";
   header += std::string(meaning_key) + ":=" + word_of(scene.meaning) + "\n";
   if (!scene.modality.empty()) header += std::string(modality_key) + ":=" + scene.modality + "\n";
+  if (scene.padding) header += std::string(padding_key) + ":=" + padding_text(scene) + "\n";
   OutFile out(path);
   out.write(header);
   if (!is_detached) out.write("\n");
@@ -265,6 +271,7 @@ void write_meta(const Scene& scene, const fs::path& path) {
             modality_of_meta(scene.modality) + "DimSize = " + dims_text(scene) + "\n" + meaning_key + " = " +
             word_of(scene.meaning) + "\n";
   if (!scene.modality.empty()) header += std::string(modality_key) + " = " + scene.modality + "\n";
+  if (scene.padding) header += std::string(padding_key) + " = " + padding_text(scene) + "\n";
   header +=
       std::string("ElementType = ") + (is_int16(scene) ? "MET_SHORT" : "MET_FLOAT") + "\nElementDataFile = ";
   fs::path data = path;
