@@ -215,7 +215,7 @@ class Reading {
 
   /// False: the scan is not of two densities.
   bool run(PhaseEvidence& found) {
-    if (glm::any(glm::lessThan(grid_.dims, glm::ivec3(8)))) return false;
+    if (scan_.padding || glm::any(glm::lessThan(grid_.dims, glm::ivec3(8)))) return false;
     if (grid_.size() > most_samples || !find_background()) return false;
     std::visit([&](const auto& samples) { values_.assign(samples.begin(), samples.end()); }, scan_.samples);
     std::array<Values, 4> at_blur;

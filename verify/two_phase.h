@@ -37,10 +37,10 @@ struct TwoPhase {
 
 /// The solid whose half level is `low`. None where the scan is not of two densities: samples below `low`
 /// differ by more than noise away from the solid, those deep in it are not as far above `low` as the
-/// background is below, a thick solid stays far below `low`, nothing rises above noise, or the solid meets
-/// the scan's border. Throws voxel::Stopped. Parallel; same bits on any thread count. Memory: four bytes a
-/// sample, five times. Cost: three blurs of the scan; a scan of many densities is left after one look at its
-/// samples.
+/// background is below, a thick solid stays far below `low`, nothing rises above noise, the solid meets the
+/// scan's border, or parts of the scan were not measured (Scene::padding). Throws voxel::Stopped. Parallel;
+/// same bits on any thread count. Memory: four bytes a sample, five times. Cost: three blurs of the scan; a
+/// scan of many densities is left after one look at its samples.
 std::optional<TwoPhase> two_phase(const voxel::Scene& scan, double low, const voxel::Progress& progress = {});
 
 }  // namespace octotomy::verify

@@ -18,12 +18,14 @@ class ScanSampler {
   /// An LPS point in the scan's voxel indices.
   glm::dvec3 voxel(const glm::dvec3& p_mm) const { return voxel_from_lps_ * glm::dvec4(p_mm, 1.0); }
   glm::dvec3 lps_mm(const glm::dvec3& v) const { return scan_.lattice.lps_mm(v); }
-  /// Whether a position is in one of the scan's voxels.
+  /// Whether a position is in one of the scan's voxels, and its value is made of measured samples alone.
   bool holds(const glm::dvec3& v) const {
     return glm::all(glm::greaterThanEqual(v, glm::dvec3(-0.5))) &&
-           glm::all(glm::lessThanEqual(v, glm::dvec3(scan_.lattice.dims) - 0.5));
+           glm::all(glm::lessThanEqual(v, glm::dvec3(scan_.lattice.dims) - 0.5)) &&
+           !(scan_.padding && at(v) == *scan_.padding);
   }
-  /// Beyond the outermost samples, the nearest of them.
+  /// Beyond the outermost samples, the nearest of them. The padding if one of the samples that it would be
+  /// made of is.
   double at(const glm::dvec3& v) const {
     const glm::dvec3 most(scan_.lattice.dims - 1);
     const glm::dvec3 inside = glm::clamp(v, glm::dvec3(0.0), most);
@@ -34,7 +36,10 @@ class ScanSampler {
       const glm::ivec3 step(k & 1, (k >> 1) & 1, k >> 2);
       const double weight =
           (step.x != 0 ? t.x : 1.0 - t.x) * (step.y != 0 ? t.y : 1.0 - t.y) * (step.z != 0 ? t.z : 1.0 - t.z);
-      if (weight > 0.0) sum += weight * sample(low + step);
+      if (!(weight > 0.0)) continue;
+      const double value = sample(low + step);
+      if (scan_.padding && value == *scan_.padding) return value;
+      sum += weight * value;
     }
     return sum;
   }

@@ -17,6 +17,7 @@ namespace {
 
 /// The number of samples in a window.
 std::size_t count_in(const voxel::Scene& scan, double low, double high) {
+  low = voxel::above_padding(scan, low);
   return std::visit(
       [&](const auto& samples) {
         return tbb::parallel_reduce(
@@ -36,6 +37,7 @@ std::size_t count_in(const voxel::Scene& scan, double low, double high) {
 /// The area between samples in a window and neighbours out of it, which overstate a boundary of all
 /// directions by 3/2.
 double faces_of(const voxel::Scene& scan, double low, double high) {
+  low = voxel::above_padding(scan, low);
   const glm::ivec3 dims = scan.lattice.dims;
   const glm::dvec3 spacing_mm = scan.lattice.spacing_mm();
   const double cell_mm3 = spacing_mm.x * spacing_mm.y * spacing_mm.z;

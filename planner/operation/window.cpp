@@ -31,11 +31,12 @@ std::string unit_of(const voxel::Scene& scene) {
 }
 
 bool has_samples_in(const voxel::Scene& scene, const Window& window) {
+  const double low = voxel::above_padding(scene, window.low);
   const double high = window.high.value_or(std::numeric_limits<double>::infinity());
   return std::visit(
       [&](const auto& samples) {
         return std::any_of(samples.begin(), samples.end(),
-                           [&](auto sample) { return sample >= window.low && sample <= high; });
+                           [&](auto sample) { return sample >= low && sample <= high; });
       },
       scene.samples);
 }

@@ -113,10 +113,11 @@ bool within(const glm::dvec3& p_voxel, const glm::ivec3& dims) {
          glm::all(glm::lessThan(p_voxel, glm::dvec3(dims) - 0.5));
 }
 
-// As interpolate() of a grey octree; beyond the border its samples repeat.
+// As interpolate() of a grey octree; beyond the border its samples repeat. None where it would be made of
+// padding.
 template <typename Samples>
-double interpolated(const Samples& samples, const glm::ivec3& dims, const glm::dvec3& p_voxel,
-                    Interpolation interpolation) {
+std::optional<double> interpolated(const Samples& samples, const glm::ivec3& dims, const glm::dvec3& p_voxel,
+                                   Interpolation interpolation, std::optional<double> padding) {
   std::array<Stencil, 3> along;
   for (int axis = 0; axis < 3; ++axis)
     along[static_cast<std::size_t>(axis)] = stencil(p_voxel[axis], interpolation);
@@ -131,9 +132,12 @@ double interpolated(const Samples& samples, const glm::ivec3& dims, const glm::d
       const std::size_t row =
           (place(2, k) * static_cast<std::size_t>(dims.y) + place(1, j)) * static_cast<std::size_t>(dims.x);
       double line = 0.0;
-      for (int i = 0; i < along[0].count; ++i)
-        line +=
-            along[0].weight[static_cast<std::size_t>(i)] * static_cast<double>(samples[row + place(0, i)]);
+      for (int i = 0; i < along[0].count; ++i) {
+        const auto sample = static_cast<double>(samples[row + place(0, i)]);
+        const double weight = along[0].weight[static_cast<std::size_t>(i)];
+        if (sample == padding && weight != 0.0) return std::nullopt;
+        line += weight * sample;
+      }
       plane += along[1].weight[static_cast<std::size_t>(j)] * line;
     }
     value += along[2].weight[static_cast<std::size_t>(k)] * plane;
@@ -221,10 +225,11 @@ SheetSamples sample(const Scene& scene, const Sheet& sheet, Interpolation interp
       [&](const auto& samples) {
         for_each_pixel(sheet, progress, [&](std::size_t pixel, const glm::dvec3& p_mm) {
           const glm::dvec3 p_voxel = voxel_of(p_mm);
-          result.inside[pixel] = within(p_voxel, dims) ? 1 : 0;
           // The index of a pixel far outside must not overflow an int.
           const glm::dvec3 near = glm::clamp(p_voxel, glm::dvec3(-1.0), glm::dvec3(dims));
-          result.image.values[pixel] = static_cast<float>(interpolated(samples, dims, near, interpolation));
+          const auto value = interpolated(samples, dims, near, interpolation, scene.padding);
+          result.inside[pixel] = value && within(p_voxel, dims) ? 1 : 0;
+          result.image.values[pixel] = static_cast<float>(value.value_or(scene.padding.value_or(0.0)));
         });
       },
       scene.samples);

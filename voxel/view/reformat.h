@@ -53,13 +53,13 @@ struct CurveOptions {
 /// projected polyline or `up` has no length.
 Sheet curved_sheet(const CurveOptions& options);
 
-/// Samples at a sheet's pixels; `inside` is 0 for pixels beyond the scan.
+/// Samples at a sheet's pixels; `inside` is 0 for pixels beyond what was scanned.
 struct SheetSamples {
   RayImage image;
   std::vector<std::uint8_t> inside;
 };
-/// Samples a scene at a sheet's pixels; pixels beyond the scan take its border's values. Throws Stopped.
-/// Parallel over rows, same bits on any thread count.
+/// Samples a scene at a sheet's pixels; pixels beyond the scan take its border's values, those made of
+/// padding are not inside. Throws Stopped. Parallel over rows, same bits on any thread count.
 SheetSamples sample(const Scene& scene, const Sheet& sheet, Interpolation interpolation,
                     const Progress& progress = {});
 /// Samples a grey octree; pixels beyond the universe take the background.
