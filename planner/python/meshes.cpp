@@ -2,6 +2,7 @@
 // Triangles and solids as arrays.
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -11,6 +12,7 @@
 #include "brep/mesh/health.h"
 #include "brep/mesh/solid.h"
 #include "convert/surface/isosurface.h"
+#include "planner/file/mesh_in.h"
 #include "planner/measure/result_json.h"
 #include "planner/python/arrays.h"
 #include "planner/python/module.h"
@@ -85,9 +87,10 @@ void write(const Triangles& triangles, const std::filesystem::path& path) {
 }  // namespace
 
 void add_meshes(py::module_& module) {
-  py::class_<Triangles, SharedTriangles>(module, "Mesh",
-                                         "Triangles in LPS millimetres; nothing is promised of them.")
-      .def(
+  py::class_<Triangles, SharedTriangles> mesh(
+      module, "Mesh", "Triangles in LPS millimetres; nothing is promised of them.", py::dynamic_attr());
+  mesh.attr("audit") = py::list();  // of meshes that no file was read for
+  mesh.def(
           py::init(&triangles_of_arrays), py::arg("vertices_mm"), py::arg("triangles"),
           "Copies vertices (n, 3) and the numbers of each triangle's vertices (m, 3), counter-clockwise seen "
           "from outside.")
@@ -148,11 +151,19 @@ void add_meshes(py::module_& module) {
 
   module.def(
       "read_mesh",
-      [](const std::filesystem::path& path) {
-        return without_lock(
-            [&](const std::stop_token&) { return std::make_shared<Triangles>(brep::read_triangles(path)); });
+      [](const std::filesystem::path& path, const std::optional<std::string>& frame,
+         const std::optional<std::string>& unit) {
+        brep::MeshFile file = without_lock([&](const std::stop_token&) {
+          return brep::read_mesh(path, {frame, unit});
+        });
+        py::object mesh = py::cast(std::make_shared<Triangles>(std::move(file.triangles)));
+        mesh.attr("audit") = python_of(to_json(file.audit));
+        return mesh;
       },
-      py::arg("path"), "Reads .stl, .ply, .obj, .off, .vtk, .vtp, .vtu, .glb or .3mf.");
+      py::arg("path"), py::arg("frame") = py::none(), py::arg("unit") = py::none(),
+      "Reads .stl, .ply, .obj, .off, .vtk, .vtp, .vtu, .glb or .3mf. The mesh's `audit` says which frame and "
+      "unit the file states, and what was assumed; `frame` (\"RAS\") and `unit` (\"inch\") are taken "
+      "instead.");
   module.def("isosurface", &isosurface, py::arg("scan"), py::arg("low"), py::arg("high") = 32767.0,
              "The surface on which a scan's samples enter low..high.");
 }

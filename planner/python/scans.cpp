@@ -79,9 +79,10 @@ py::array shown_samples(const py::object& self) {
 std::shared_ptr<Scene> read_scan(const std::filesystem::path& path, const std::string& series,
                                  const std::optional<Numbers>& spacing_mm,
                                  const std::optional<std::string>& frame,
-                                 const std::optional<std::string>& unit) {
+                                 const std::optional<std::string>& unit, bool join) {
   voxel::ReadOptions options;
   options.series = series;
+  options.join = join;
   if (frame) options.frame = voxel::parse_frame(*frame);
   if (unit) options.unit = voxel::parse_unit(*unit);
   if (spacing_mm) options.spacing_mm = vector_of(*spacing_mm, "spacing_mm");
@@ -124,6 +125,9 @@ void add_scans(py::module_& module) {
       .def_property_readonly("meaning", &meaning_of)
       .def_property_readonly("unit", [](const Scene& scene) { return voxel::unit(scene); })
       .def_readonly("modality", &Scene::modality)
+      .def_readonly(
+          "padding", &Scene::padding,
+          "The sample where the scanner measured nothing, below all measured ones; None without any.")
       .def_property_readonly("source", [](const Scene& scene) { return text_of(scene.source); })
       .def_property_readonly("audit", [](const Scene& scene) { return python_of(to_json(scene.audit)); })
       .def(
@@ -147,10 +151,13 @@ void add_scans(py::module_& module) {
           },
           py::arg("path"), "Writes .nrrd, .nii, .nii.gz or .mha as the name ends.");
 
-  module.def("read_scan", &read_scan, py::arg("path"), py::arg("series") = "",
-             py::arg("spacing_mm") = py::none(), py::arg("frame") = py::none(), py::arg("unit") = py::none(),
-             "Reads a scan: DICOM folder or file, NIfTI, NRRD, MetaImage, images. `series` chooses a DICOM "
-             "series by number, UID or part of its description.");
+  module.def(
+      "read_scan", &read_scan, py::arg("path"), py::arg("series") = "", py::arg("spacing_mm") = py::none(),
+      py::arg("frame") = py::none(), py::arg("unit") = py::none(), py::arg("join") = false,
+      "Reads a scan: DICOM folder or file, NIfTI, NRRD, MetaImage, images. `series` chooses a DICOM "
+      "series by number, UID or part of its description; `join` takes slices of one geometry together "
+      "whose identifiers differ, which the audit then fails. `frame` (\"RAS\") and `unit` (\"um\") say "
+      "what the file does not, or wrongly.");
 }
 
 }  // namespace octotomy::planner::python

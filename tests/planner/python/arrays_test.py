@@ -45,6 +45,25 @@ class Scans(unittest.TestCase):
                     np.testing.assert_array_equal(read.samples, scan.samples)
                     np.testing.assert_array_equal(read.lps_from_voxel, LATTICE)
 
+    def test_a_mesh_says_what_its_file_says_of_frame_and_unit(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "m.obj"
+            path.write_text("# SPACE=RAS\nv 1 2 3\nv 4 2 3\nv 1 5 3\nf 1 2 3\n")
+            mesh = octotomy.read_mesh(path)
+            np.testing.assert_allclose(mesh.vertices_mm[0], [-1, -2, 3])
+            checks = {line["check"]: line for line in mesh.audit}
+            self.assertEqual(checks["frame"]["verdict"], "PASS")
+            self.assertEqual(checks["unit"]["verdict"], "WARN")
+            known = octotomy.read_mesh(path, frame="LPS", unit="cm")
+            np.testing.assert_allclose(known.vertices_mm[0], [10, 20, 30])
+            self.assertIn("cm", {line["check"]: line for line in known.audit}["unit"]["detail"])
+            with self.assertRaisesRegex(ValueError, "up"):
+                octotomy.read_mesh(path, frame="up")
+        self.assertEqual(octotomy.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).audit, [])
+
+    def test_a_scan_without_padding_has_none(self):
+        self.assertIsNone(octotomy.Scan(noise(), LATTICE).padding)
+
     def test_arrays_of_a_wrong_shape_or_type_are_refused(self):
         with self.assertRaisesRegex(ValueError, r"\(z, y, x\)"):
             octotomy.Scan(np.zeros((3, 3), np.int16), LATTICE)
