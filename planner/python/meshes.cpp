@@ -7,6 +7,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "brep/boolean/boolean.h"
+#include "brep/io/mesh_statements.h"
 #include "brep/io/read_mesh.h"
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/health.h"
@@ -89,7 +90,7 @@ void write(const Triangles& triangles, const std::filesystem::path& path) {
 void add_meshes(py::module_& module) {
   py::class_<Triangles, SharedTriangles> mesh(
       module, "Mesh", "Triangles in LPS millimetres; nothing is promised of them.", py::dynamic_attr());
-  mesh.attr("audit") = py::list();  // of meshes that no file was read for
+  mesh.attr("audit") = py::tuple();  // of meshes that no file was read for
   mesh.def(
           py::init(&triangles_of_arrays), py::arg("vertices_mm"), py::arg("triangles"),
           "Copies vertices (n, 3) and the numbers of each triangle's vertices (m, 3), counter-clockwise seen "
@@ -153,6 +154,11 @@ void add_meshes(py::module_& module) {
       "read_mesh",
       [](const std::filesystem::path& path, const std::optional<std::string>& frame,
          const std::optional<std::string>& unit) {
+        if (frame && !brep::frame_named(*frame))
+          throw std::invalid_argument(
+              "'" + *frame + "' is no frame: give three letters for where x, y and z point, LPS or RAS");
+        if (unit && !brep::length_unit(*unit))
+          throw std::invalid_argument("'" + *unit + "' is no unit: give um, mm, cm, m, inch or foot");
         brep::MeshFile file = without_lock([&](const std::stop_token&) {
           return brep::read_mesh(path, {frame, unit});
         });

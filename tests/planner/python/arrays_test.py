@@ -59,7 +59,7 @@ class Scans(unittest.TestCase):
             self.assertIn("cm", {line["check"]: line for line in known.audit}["unit"]["detail"])
             with self.assertRaisesRegex(ValueError, "up"):
                 octotomy.read_mesh(path, frame="up")
-        self.assertEqual(octotomy.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).audit, [])
+        self.assertEqual(octotomy.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).audit, ())
 
     def test_a_scan_without_padding_has_none(self):
         self.assertIsNone(octotomy.Scan(noise(), LATTICE).padding)
