@@ -7,7 +7,6 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "brep/boolean/boolean.h"
-#include "brep/io/mesh_statements.h"
 #include "brep/io/read_mesh.h"
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/health.h"
