@@ -2,10 +2,14 @@
 #include "planner/serve/answers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <set>
 
+#include "brep/io/read_mesh.h"
 #include "planner/anatomy/movement.h"
+#include "planner/file/mesh_in.h"
 #include "planner/measure/result_json.h"
 #include "planner/outcome/outcome.h"
 #include "planner/plan/answers.h"
@@ -184,6 +188,31 @@ Json movement(Desk& desk, const Json& said, const Watched&) {
   for (const Json& row : movements_json(snapshot.evaluation->objects, snapshot.plan->landmarks))
     if (id.empty() || row.value("object", "") == id) rows.push_back(row);
   return {{"rows", rows}};
+}
+
+Json mesh_audit(Desk& desk, const Json& said, const Watched&) {
+  const fs::path folder =
+      desk.with_document([](const Document& document) { return document.path().parent_path(); });
+  const fs::path path = desk.folders.need_readable(folder / said.at("path").get<std::string>());
+  const auto word = [&](const char* name) -> std::optional<std::string> {
+    if (!said.contains(name) || said[name].is_null()) return std::nullopt;
+    return said[name].get<std::string>();
+  };
+  const brep::MeshReadOptions options{word("frame"), word("unit")};
+  if (options.frame && !brep::frame_named(*options.frame)) refuse("frame: '" + *options.frame + "' is none");
+  if (options.unit && !brep::length_unit(*options.unit)) refuse("unit: '" + *options.unit + "' is none");
+  brep::MeshFile file = brep::read_mesh(path, options);
+  const Json scans = desk.state().at("scans");
+  if (!scans.empty()) {
+    const auto bounds = scans.front().at("bounds_mm").get<std::array<std::array<double, 3>, 2>>();
+    const auto corner = [&](std::size_t i) { return glm::dvec3(bounds[i][0], bounds[i][1], bounds[i][2]); };
+    for (const brep::MeshFinding& finding :
+         brep::findings_beside(file.extent(), {corner(0), corner(1)}, "the scan"))
+      file.audit.push_back(finding);
+  }
+  Json audit = planner::to_json(file.audit);
+  for (Json& line : audit) line["sentence"] = line.value("detail", "");
+  return {{"audit", audit}};
 }
 
 Json place_landmark(Desk& desk, const Json& said, const Watched&) {

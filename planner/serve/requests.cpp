@@ -228,6 +228,7 @@ const std::vector<Word>& words() {
       {"overlap", Lane::Overlap, false, overlap},
       {"measure", Lane::Long, false, measure},
       {"movement", Lane::Long, false, movement},
+      {"mesh_audit", Lane::Long, false, mesh_audit},
       {"certify", Lane::Long, false, certify, true},
       {"export", Lane::Long, false, export_file},
       {"report", Lane::Long, false, report},

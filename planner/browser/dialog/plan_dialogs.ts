@@ -6,7 +6,8 @@ import {look_of, object_ids} from "../drawn_objects";
 import {button, el} from "../base/html";
 import {icon} from "../base/icons";
 import {all_panes} from "../pane/pane_grid";
-import {audit_rows, scan_facts} from "./start_page";
+import {audit_rows} from "../panel/audit";
+import {scan_facts} from "./start_page";
 import {notify, state, step_of} from "../state";
 
 const kinds: [string, string, string][] = [
@@ -126,7 +127,7 @@ export async function write_report(): Promise<void> {
 export function open_audit(): void {
   const dialog = open_dialog("The scan's audit", "audit-dialog");
   dialog.refill(
-      (state.plan?.scans ?? []).map((scan) => [el("h3", {}, scan.name), audit_rows(scan), scan_facts(scan)]));
+      (state.plan?.scans ?? []).map((scan) => [el("h3", {}, scan.name), audit_rows(scan.audit), scan_facts(scan)]));
 }
 
 /// The panes as they are, in one PNG.

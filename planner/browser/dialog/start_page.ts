@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The start page, and the audit of a scan that is shown before anything else.
 import {open_plan} from "../actions";
+import {audit_rows} from "../panel/audit";
 import {grouped} from "../panel/certificate_badge";
 import {dialogs} from "../commands";
 import {upload} from "./files";
@@ -62,30 +63,6 @@ function offer(name: IconName, title: string, says: string, run: () => void, mor
       el("span", {}, says));
 }
 
-const words = {
-  PASS: "in order",
-  WARN: "to know",
-  FAIL: "a problem"
-} as const;
-
-/// What was found in a scan, worst first.
-export function audit_rows(scan: ScanState): Child {
-  const order = {FAIL: 0, WARN: 1, PASS: 2};
-  const rows = [...scan.audit].sort((a, b) => order[a.verdict] - order[b.verdict]);
-  return el(
-      "ul", {class: "audit"},
-      rows.map(
-          (row) => el(
-              "li", {},
-              el("span",
-                 {class: `badge ${row.verdict.toLowerCase()}`, role: "img", "aria-label": words[row.verdict]},
-                 row.verdict === "PASS"     ? "✓" :
-                     row.verdict === "WARN" ? "!" :
-                                              "✕"),
-              el("span", {}, row.check ? el("b", {}, `${row.check.replace(/_/g, " ")}: `) : null,
-                 row.sentence))));
-}
-
 export function scan_facts(scan: ScanState): Child {
   const fact = (name: string, value: string): Child => [el("dt", {}, name), el("dd", {}, value)];
   return el(
@@ -115,7 +92,7 @@ function audit_page(): Child {
       "main", {class: "start audit-page"},
       el("header", {}, el("h1", {}, headline),
          el("p", {}, "The audit checks what a plan relies on: orientation, spacing, units, gaps.")),
-      el("section", {class: "card wide"}, audit_rows(scan), scan_facts(scan)),
+      el("section", {class: "card wide"}, audit_rows(scan.audit), scan_facts(scan)),
       el("div", {class: "row"},
          button(
              "Continue", "Continue to the planner",

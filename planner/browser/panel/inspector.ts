@@ -2,6 +2,7 @@
 // The right column: the tool in hand and the selected step, the plan's numbers with their certificates, and
 // how far each piece and landmark moves.
 import {add_step, replace_step} from "../actions";
+import {mesh_audit} from "./audit";
 import {badge, measured_text} from "./certificate_badge";
 import {is_piece} from "../drawn_objects";
 import {makes_shape} from "../operations";
@@ -56,7 +57,7 @@ function inspector(): Child {
              onchange: (event: Event) =>
                  set({draft_step: {...draft, id: (event.target as HTMLInputElement).value}})
            })),
-        step_form(draft, (step) => set({draft_step: step})),
+        step_form(draft, (step) => set({draft_step: step})), mesh_audit(draft),
         el("div", {class: "row"},
            button(
                "Add step", "Adds the step to the plan",
@@ -108,5 +109,6 @@ function step_card(step: Step, has_motion: boolean): Child {
                     null,
       step_form(
           step, (next) => void replace_step(step.id, next, `${step.id} changed`),
-          has_motion ? ["by", "turn"] : []));
+          has_motion ? ["by", "turn"] : []),
+      mesh_audit(step));
 }

@@ -369,6 +369,23 @@ class Desk(Served):
         told = self.window.ask("command", step="moved")
         self.assertIn('plan.move("moved", object="piece", by={"forward_mm": 6.0})', told["python"])
 
+    def test_a_meshs_own_statements_are_told_before_it_is_used(self):
+        (self.folder / "block.obj").write_text("# SPACE=RAS\nv 0 0 0\nv 0.03 0 0\nv 0 0.03 0\nv 0 0 0.03\n"
+                                               "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
+        rows = {row["check"]: row for row in self.window.ask("mesh_audit", path="block.obj")["audit"]}
+        self.assertEqual(rows["frame"]["verdict"], "PASS")
+        self.assertIn("RAS", rows["frame"]["sentence"])
+        self.assertEqual(rows["unit"]["verdict"], "WARN")
+        self.assertEqual(rows["scale"]["verdict"], "WARN")
+        self.assertIn("--unit m", rows["scale"]["sentence"])
+        rows = {row["check"]: row for row in
+                self.window.ask("mesh_audit", path="block.obj", frame="LPS", unit="m")["audit"]}
+        self.assertNotIn("scale", rows)
+        for said, why in (({"path": "block.obj", "unit": "ell"}, "unit"), ({"path": "/etc/hostname.stl"}, "folder"),
+                          ({"path": "none.stl"}, "none.stl")):
+            with self.assertRaisesRegex(RuntimeError, why):
+                self.window.ask("mesh_audit", **said)
+
     def test_a_procedure_is_placed_by_its_landmarks_and_keeps_others(self):
         marks = {"piriform_left": [12, -84, -25], "piriform_right": [-12, -84, -25], "buttress_left": [30, -68, -28],
                  "buttress_right": [-30, -68, -28], "pterygoid_left": [20, -39, -30],

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What the audit found in a scan, or in the mesh file that a step reads.
+import {try_to} from "../actions";
+import {Child, el} from "../base/html";
+import {schema_of} from "../operations";
+import {AuditRow, Step} from "../protocol";
+import {on_leaving_plan, set, state} from "../state";
+
+const words = {
+  PASS: "in order",
+  WARN: "to know",
+  FAIL: "a problem"
+} as const;
+const marks = {
+  PASS: "✓",
+  WARN: "!",
+  FAIL: "✕"
+} as const;
+
+/// The lines of an audit, worst first.
+export function audit_rows(audit: readonly AuditRow[]): Child {
+  const order = {FAIL: 0, WARN: 1, PASS: 2};
+  const rows = [...audit].sort((a, b) => order[a.verdict] - order[b.verdict]);
+  return el(
+      "ul", {class: "audit"},
+      rows.map(
+          (row) => el(
+              "li", {},
+              el("span",
+                 {class: `badge ${row.verdict.toLowerCase()}`, role: "img", "aria-label": words[row.verdict]},
+                 marks[row.verdict]),
+              el("span", {}, row.check ? el("b", {}, `${row.check.replace(/_/g, " ")}: `) : null,
+                 row.sentence))));
+}
+
+/// Audits by what was read; null while the answer is on its way, and where the file cannot be read.
+const audits = new Map<string, AuditRow[]|null>();
+on_leaving_plan(() => audits.clear());
+
+/// The audit of the mesh that a step reads, for steps with a path, a frame and a unit; null for others.
+export function mesh_audit(step: Step): Child {
+  const fields = schema_of(step)?.properties;
+  if (!fields?.path || !fields.frame || !fields.unit || typeof step.path !== "string") return null;
+  const asked = {path: step.path, frame: step.frame ?? null, unit: step.unit ?? null};
+  const key = JSON.stringify(asked);
+  if (!audits.has(key)) {
+    audits.set(key, null);
+    void try_to<{audit: AuditRow[]}>("mesh_audit", asked).then((answer) => {
+      if (!answer) return;
+      audits.set(key, answer.audit);
+      set({right_tab: state.right_tab});
+    });
+  }
+  const audit = audits.get(key);
+  return audit ? [el("h4", {}, "What the file says"), audit_rows(audit)] : null;
+}
