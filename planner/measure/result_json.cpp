@@ -238,6 +238,7 @@ Json scan_answer(const voxel::Scene& scene, const Timings& timings) {
   json["spacing_mm"] = to_json(scene.lattice.spacing_mm());
   json["lps_from_voxel"] = to_json(scene.lattice.lps_from_voxel);
   json["range"] = {finite(range.low), finite(range.high)};
+  json["padding"] = scene.padding ? Json(*scene.padding) : Json(nullptr);
   json["modality"] = scene.modality;
   json["unit"] = voxel::unit(scene);
   json["identity"] = identity_json(scene.identity);

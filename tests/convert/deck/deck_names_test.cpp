@@ -38,7 +38,8 @@ TEST(DeckNames, ThatDifferByCaseOrAreTheDecksOwnAreMadeUniqueWithWhatRefersToThe
   EXPECT_EQ(options.prescribed[1].node_set, "PIN_2");
   EXPECT_EQ(options.surfaces[1].name, "skin_2");
   EXPECT_EQ(options.surfaces[2].name, "Region1_2");
-  EXPECT_EQ(options.surfaces[3].name, "EBONE_2");
+  // Ebone_2 is the element set of the second material.
+  EXPECT_EQ(options.surfaces[3].name, "EBONE_3");
   EXPECT_EQ(options.contacts[0].slave, "SKIN");
   EXPECT_EQ(options.contacts[0].master, "skin_2");
   EXPECT_EQ(options.contacts[1].slave, "skin_2");

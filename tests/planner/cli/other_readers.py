@@ -62,6 +62,22 @@ def dicom(folder):
     return samples, places
 
 
+def padded(image):
+    """Where the scanner measured nothing, of a slice's stored pixels."""
+    value = image.get("PixelPaddingValue")
+    if value is None:
+        return numpy.zeros(image.pixel_array.shape, bool).T
+    low, high = sorted((value, image.get("PixelPaddingRangeLimit", value)))
+    return ((image.pixel_array >= low) & (image.pixel_array <= high)).T
+
+
+def measured_of(folder):
+    """The measured samples of each slice."""
+    for image in slices_of(folder):
+        values = image.pixel_array.T * float(image.get("RescaleSlope", 1)) + float(image.get("RescaleIntercept", 0))
+        yield values[~padded(image)]
+
+
 def nifti(path):
     image = nibabel.load(path)
     return numpy.asanyarray(image.dataobj), numpy.diag([-1.0, -1.0, 1.0, 1.0]) @ image.affine
@@ -179,6 +195,9 @@ def main():
         "lps_from_voxel": places.tolist(),
         "range": [float(samples.min()), float(samples.max())],
     }
+    if kind == "dicom":
+        measured = numpy.concatenate([part.ravel() for part in measured_of(arguments[0])])
+        said["range"] = [float(measured.min()), float(measured.max())]
     if len(arguments) > used:
         said.update(compared(samples, places, arguments[used]))
     print(json.dumps(said))

@@ -21,10 +21,10 @@ SUBJECTS = int(os.environ.get("OCTOTOMY_SUBJECTS", "8"))  # the long run, ninja 
 
 
 def ball(path, radius, side=24):
-    """A ball's scan, its surface at 0 HU."""
+    """A ball's scan, its surface at 0 HU and as sharp as samples of 1 mm show it."""
     at = np.mgrid[0:side, 0:side, 0:side] - (side - 1) / 2
     distance = np.sqrt((at**2).sum(axis=0))
-    samples = np.clip((radius - distance) * 500, -1000, 1000).astype(np.int16)
+    samples = np.clip((radius - distance) * 2000, -1000, 1000).astype(np.int16)
     octotomy.Scan(samples, np.diag([1, 1, 1, 1])).write(path)
 
 
