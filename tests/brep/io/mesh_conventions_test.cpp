@@ -14,6 +14,7 @@
 #include "brep/mesh/measure.h"
 #include "tests/brep/io/zip_bytes.h"
 #include "tests/brep/shapes.h"
+#include "tests/page_rows.h"
 #include "tests/voxel/scratch_folder.h"
 
 namespace octotomy::brep {
@@ -262,6 +263,7 @@ const MeshFinding& finding(const MeshFile& file, const std::string& check) {
 }
 
 TEST(MeshConventions, EveryStatementOfAFilePutsTheBoxInItsPlace) {
+  std::vector<std::string> found;
   for (const Row& row : rows()) {
     SCOPED_TRACE(row.states);
     const MeshFile file = read_row(row);
@@ -275,10 +277,10 @@ TEST(MeshConventions, EveryStatementOfAFilePutsTheBoxInItsPlace) {
     EXPECT_TRUE(health(file.triangles).solid());
     EXPECT_EQ(finding(file, "frame").verdict, row.frame) << finding(file, "frame").detail;
     EXPECT_EQ(finding(file, "unit").verdict, row.unit) << finding(file, "unit").detail;
-    std::printf("%-45s frame %s: %s\n%-45s unit  %s: %s\n", row.states.c_str(), to_string(row.frame).c_str(),
-                finding(file, "frame").detail.c_str(), "", to_string(row.unit).c_str(),
-                finding(file, "unit").detail.c_str());
+    found.push_back("| " + row.states + " | " + to_string(row.frame) + ": " + finding(file, "frame").detail +
+                    " | " + to_string(row.unit) + ": " + finding(file, "unit").detail + " |");
   }
+  tests::expect_on_page(found, OCTOTOMY_SOURCE_DIR "/brep/io/statements.md", "");
 }
 
 std::string refusal(const Row& row) {

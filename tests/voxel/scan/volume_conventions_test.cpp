@@ -4,7 +4,6 @@
 // of its first and its last sample in the patient, its range, and the audit's verdict on the statement. Who
 // says so: nifti1.h and nibabel, the definition of NRRD, MetaIO.
 #include <bit>
-#include <cstdio>
 #include <cstring>
 #include <functional>
 #include <gtest/gtest.h>
@@ -12,10 +11,12 @@
 #include <nifti/nifti1.h>
 
 #include "tests/file_bytes.h"
+#include "tests/page_rows.h"
 #include "tests/voxel/linear_scene.h"
 #include "tests/voxel/scan/volume_bytes.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/scan/read_scene.h"
+#include "voxel/space/printed.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -482,9 +483,10 @@ void expect_near(const glm::dvec3& got, const glm::dvec3& right) {
       << got.x << " " << got.y << " " << got.z << ", right " << right.x << " " << right.y << " " << right.z;
 }
 
-/// Reads each row's file, compares, and prints the row.
+/// Reads each row's file and compares it. The rows stand in the manual, too.
 void expect_rows(const char* format, const std::vector<Row>& table) {
   const tests::ScratchFolder folder;
+  std::vector<std::string> found;
   for (const Row& row : table) {
     SCOPED_TRACE(std::string(format) + ": " + row.statement);
     write_bytes(folder / row.name, row.bytes);
@@ -501,13 +503,14 @@ void expect_rows(const char* format, const std::vector<Row>& table) {
       const Finding* const line = tests::finding(scene, row.check);
       ASSERT_NE(line, nullptr) << "the audit has no line '" << row.check << "'";
       EXPECT_EQ(line->verdict, row.verdict) << line->detail;
-      std::printf("| %s | %s | %g %g %g | %g..%g | %s %s: %s |\n", format, row.statement.c_str(),
-                  row.first_mm.x, row.first_mm.y, row.first_mm.z, row.range.low, row.range.high,
-                  word_of(line->verdict), row.check, line->detail.c_str());
+      found.push_back(print("| %s | %s | %g %g %g | %g to %g | ", format, row.statement.c_str(),
+                            row.first_mm.x, row.first_mm.y, row.first_mm.z, row.range.low, row.range.high) +
+                      word_of(line->verdict) + " " + row.check + ": " + line->detail + " |");
     } catch (const std::exception& error) {
       ADD_FAILURE() << "refused: " << error.what();
     }
   }
+  tests::expect_on_page(found, OCTOTOMY_SOURCE_DIR "/voxel/volume/statements.md", std::string(format) + " |");
 }
 
 TEST(VolumeConventions, HoldForWhatNiftiStates) {
