@@ -66,7 +66,7 @@ def end_on_full_disk(subject, verb, room):
 
 
 ROOM = 1 << 16
-DEFLATE = 1032  # bytes that deflate makes one of, at most
+DEFLATE = 1400  # bytes that packed samples are counted as one of, at most: more than deflate reaches
 
 # Verbs whose answer has a least size that is known before the work: where the table has it, or else by what is written
 # once there is room; and the room that the disk has, less than that.
@@ -74,7 +74,6 @@ REFUSED = (
     (("phantom", "head", "--voxel", "1", "-o", "disk/fine.nii"), 2 * 200 * 240 * 240, ROOM),
     (("convert", "head.nrrd", "-o", "disk/copy.nii"), 0, ROOM),
     (("convert", "head.nrrd", "-o", "disk/series"), 0, ROOM),
-    (("prepare", "head.nrrd", "--step", "gaussian=4", "-o", "disk/soft.nii.gz"), 0, 0),
     (("mesh", "head.nrrd", "--window", "300:", "-o", "disk/head.stl"), 0, ROOM),
     (("mirror", "head.stl", "-o", "disk/mirrored.ply"), 0, ROOM),
     (("run", "map.plan.json", "-o", "disk/result"), 2 * 256**3 // DEFLATE, 1 << 12),
@@ -100,10 +99,9 @@ def end_refused(subject, arguments, least, room):
         return None if size >= 0.9 * least else f"told {size:.0f} bytes of {least}"
     subject.need(*arguments)
     written = size_of(disk / Path(arguments[-1]).name)
-    packed = arguments[-1].endswith(".gz")
     for path in list(disk.iterdir()):
         shutil.rmtree(path) if path.is_dir() else path.unlink()
-    return None if packed or 0.5 * written <= size <= 1.001 * written else f"told {size:.0f} bytes of {written}"
+    return None if 0.5 * written <= size <= 1.001 * written else f"told {size:.0f} bytes of {written}"
 
 
 def main():

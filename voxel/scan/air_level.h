@@ -19,8 +19,8 @@ struct AirLevel {
 AirLevel air_level_of_ct(const Scene& scene);
 
 /// For files that do not state their modality. Hounsfield if air is seen and is a peak: at least twice as
-/// many samples as in the equally wide band above it. Warn, since it is a guess. Otherwise Raw, Pass: nothing is
-/// assumed.
+/// many samples as in the equally wide band above it. Warn, since it is a guess. Otherwise Raw, Pass: nothing
+/// is assumed.
 AirLevel air_level_of_unnamed(const Scene& scene);
 
 }  // namespace octotomy::voxel

@@ -32,9 +32,9 @@ struct ReadOptions {
   /// UID, or a part of its description or of the attributes that tell its stacks apart. Empty: the series
   /// with most slices.
   std::string series;
-  /// Joins the images of all DICOM series of a folder, and those of several studies and frames of reference in
-  /// one series, as if they were one: for exports that give each image identifiers of its own. Their patient
-  /// and modality must be one. The audit has a Fail that says so.
+  /// Joins the images of all DICOM series of a folder, and those of several studies and frames of reference
+  /// in one series, as if they were one: for exports that give each image identifiers of its own. Their
+  /// patient and modality must be one. The audit has a Fail that says so.
   bool join = false;
   /// Of the chosen DICOM series: the images to keep, counted from 1 at the lowest along the normal. Empty:
   /// all.

@@ -44,7 +44,7 @@ class BidsSubjects : public testing::Test {
   }
   static Plan plan_of(const std::vector<std::string>& scans) {
     Plan plan;
-    for (const std::string& scan : scans) plan.scans[scan] = {"head.nrrd"};
+    for (const std::string& scan : scans) plan.scans[scan].path = "head.nrrd";
     return plan;
   }
   std::vector<std::string> labels(const std::filesystem::path& input, const Plan& plan) {

@@ -35,8 +35,9 @@ TEST(Motion, TheTableSaysOfEachOperationWhetherItsObjectCarriesAMotion) {
     seen.insert(operation.name);
   }
   for (const Operation& operation : operations())
-    if (operation.is_motion)
+    if (operation.is_motion) {
       EXPECT_TRUE(seen.contains(operation.name)) << operation.name << " has no step here";
+    }
 }
 
 TEST(Motion, ADeckAndAnotherPieceFollowEveryKindOfMotion) {

@@ -31,8 +31,8 @@ void write_egg(const std::filesystem::path& path) {
                      path);
 }
 
-/// Below "piece", the lower part of an egg, stand the steps; each object that `moved` names is measured.
-Json sizes(const std::string& steps, const std::vector<std::string>& moved) {
+/// Below "piece", the lower part of an egg, stand further steps; each object that `moved` names is measured.
+Json sizes(const std::string& further, const std::vector<std::string>& moved) {
   const ScratchFolder folder;
   write_egg(folder / "egg.nrrd");
   std::string text = R"({"octotomy_plan": 1, "name": "egg", "scans": {"ct": {"path": "egg.nrrd"}},
@@ -41,7 +41,7 @@ Json sizes(const std::string& steps, const std::vector<std::string>& moved) {
         "polygons_mm": [[[-20, 1], [20, 3], [20, -20], [-20, -20]]]}]},
       {"id": "piece", "do": "combine", "expression": "egg & low"},
       {"id": "rest", "do": "combine", "expression": "egg - low"})" +
-                     steps;
+                     further;
   for (const std::string& name : moved)
     text += R"(, {"id": "size_)" + name + R"(", "do": "measure", "object": ")" + name + "\"}";
   const Plan plan = parse_plan(text + "]}", folder.path());
@@ -67,7 +67,7 @@ TEST(MovedSize, IsTheStillOnesAfterMotionsAndMirrorsByChance) {
   };
   constexpr int of_a_plan = 12;
   for (int first = 0; first < motion_count(); first += of_a_plan) {
-    std::string steps;
+    std::string motions;
     std::vector<std::string> names{"piece"};
     for (int i = first; i < std::min(first + of_a_plan, motion_count()); ++i) {
       verify::Chance chance(static_cast<std::uint64_t>(i));
@@ -76,16 +76,16 @@ TEST(MovedSize, IsTheStillOnesAfterMotionsAndMirrorsByChance) {
       const std::string from = i % 3 == 2 && i > first ? names.back() : "piece";
       const glm::dvec3 axis = by(chance, 1.0), to_mm = by(chance, 3.0);
       if (i % 4 == 3)
-        steps += R"(, {"id": ")" + name + R"(", "do": "mirror", "object": ")" + from + R"(", "point_mm": )" +
-                 triple(to_mm) + R"(, "normal": )" + triple(axis) + "}";
+        motions += R"(, {"id": ")" + name + R"(", "do": "mirror", "object": ")" + from +
+                   R"(", "point_mm": )" + triple(to_mm) + R"(, "normal": )" + triple(axis) + "}";
       else
-        steps += R"(, {"id": ")" + name + R"(", "do": "move", "object": ")" + from +
-                 R"(", "translate_mm": )" + triple(to_mm) + R"(, "rotate": {"degrees": )" +
-                 std::to_string(chance.between(-180, 180)) + R"(, "axis": )" + triple(axis) +
-                 R"(, "about_mm": [0, 0, -5]}})";
+        motions += R"(, {"id": ")" + name + R"(", "do": "move", "object": ")" + from +
+                   R"(", "translate_mm": )" + triple(to_mm) + R"(, "rotate": {"degrees": )" +
+                   std::to_string(chance.between(-180, 180)) + R"(, "axis": )" + triple(axis) +
+                   R"(, "about_mm": [0, 0, -5]}})";
       names.push_back(name);
     }
-    const Json all = sizes(steps, names);
+    const Json all = sizes(motions, names);
     for (std::size_t i = 1; i < all.size(); ++i) expect_same_size(all[i], all[0]);
   }
 }
