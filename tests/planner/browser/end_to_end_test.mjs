@@ -112,7 +112,7 @@ test('two landmarks and a distance that the command line finds, too', async () =
     field.value = 'lower';
     field.dispatchEvent(new Event('input'));
   }, { once: true }));
-  for (const [name, at] of [['upper', [-5, -38]], ['lower', [-5, -57]]]) {
+  for (const [name, at] of [['upper', [-5, -38]], ['lower', [-18, -67]]]) {
     await one.click_at(0, at);
     await one.until(() => one.plan(plan_path).steps.some((each) => each.do === 'landmarks' && each.points.some((point) => point.name === name)), name);
     await one.page.locator('.lists .words', { hasText: 'landmarks' }).waitFor();
