@@ -208,20 +208,22 @@ void take_meaning(const VolumeHeader& header, const SmallNumbers& small, Scene& 
   scene.audit.push_back(air.finding);
 }
 
-/// Padding is below every measured sample; a file that states another is not believed.
-void need_padding_below_all(Scene& scene) {
-  if (!scene.padding) return;
-  const bool is_below = std::visit(
-      [&](const auto& samples) {
-        return static_cast<double>(*std::min_element(samples.begin(), samples.end())) >= *scene.padding;
+/// Takes the padding that the file states where it is the least sample, as padding is below every measured
+/// one.
+void take_padding_below_all(std::optional<double> stated, Scene& scene) {
+  if (!stated) return;
+  const double least = std::visit(
+      [](const auto& samples) {
+        return static_cast<double>(*std::min_element(samples.begin(), samples.end()));
       },
       scene.samples);
-  if (is_below) return;
-  scene.padding.reset();
-  scene.audit.push_back(
-      {"padding", Verdict::Warn,
-       "samples below the padding that the file states show that it is none: every sample is "
-       "taken as measured"});
+  if (least == *stated)
+    scene.padding = stated;
+  else if (least < *stated)
+    scene.audit.push_back(
+        {"padding", Verdict::Warn,
+         "samples below the padding that the file states show that it is none: every sample is "
+         "taken as measured"});
 }
 
 }  // namespace
@@ -235,7 +237,6 @@ Scene read_volume(const fs::path& path, VolumeFormat format, const ReadOptions& 
   if (!scene.lattice.right_handed())
     scene.audit.push_back(
         {"handedness", Verdict::Pass, "voxel axes are left-handed; positions allow for it"});
-  scene.padding = header.padding;
   const std::vector<SlicerSegment> segments =
       format == VolumeFormat::Nrrd ? slicer_segments(path) : std::vector<SlicerSegment>{};
   if (header.layers > 1) {
@@ -247,7 +248,7 @@ Scene read_volume(const fs::path& path, VolumeFormat format, const ReadOptions& 
               are_own(header.samples) ? sizeof(std::int16_t)
                                       : bytes_of(header.samples.stored.type) + sizeof(std::int16_t));
   const SmallNumbers small = read_samples(path, header.samples, options, scene);
-  need_padding_below_all(scene);
+  take_padding_below_all(header.padding, scene);
   if (!take_segments(segments, scene)) take_meaning(header, small, scene);
   return scene;
 }

@@ -166,6 +166,12 @@ TEST(Padding, SurvivesEveryFileFormatThatWeWrite) {
   EXPECT_TRUE(std::any_of(read.audit.begin(), read.audit.end(), [](const Finding& finding) {
     return finding.check == "padding" && finding.verdict == Verdict::Warn;
   }));
+  // One that no sample has, of any size, is no padding either.
+  scene.padding = -1e9;
+  write_scene(scene, folder / "c.nrrd");
+  const Scene whole = read_scene(folder / "c.nrrd");
+  EXPECT_FALSE(whole.padding);
+  EXPECT_GT(histogram(whole).counts.size(), 1U);
 }
 
 TEST(Padding, OfValuesThatAreNoIntegersSurvivesADicomSeries) {
