@@ -161,9 +161,9 @@ void add_meshes(py::module_& module) {
         brep::MeshFile file = without_lock([&](const std::stop_token&) {
           return brep::read_mesh(path, {frame, unit});
         });
-        py::object mesh = py::cast(std::make_shared<Triangles>(std::move(file.triangles)));
-        mesh.attr("audit") = python_of(to_json(file.audit));
-        return mesh;
+        py::object read = py::cast(std::make_shared<Triangles>(std::move(file.triangles)));
+        read.attr("audit") = python_of(to_json(file.audit));
+        return read;
       },
       py::arg("path"), py::arg("frame") = py::none(), py::arg("unit") = py::none(),
       "Reads .stl, .ply, .obj, .off, .vtk, .vtp, .vtu, .glb or .3mf. The mesh's `audit` says which frame and "

@@ -24,7 +24,7 @@ using tests::field_scene;
 using tests::for_each_index;
 using tests::sample_at;
 
-const Lattice lattice = axis_aligned_lattice({24, 20, 12}, {1, 1, 2}, {-12, -10, 0});
+const Lattice scan_lattice = axis_aligned_lattice({24, 20, 12}, {1, 1, 2}, {-12, -10, 0});
 
 bool is_measured(const glm::dvec3& p) {
   return p.x * p.x + p.y * p.y < 64.0 && p.z < 20.0;
@@ -33,7 +33,7 @@ bool is_measured(const glm::dvec3& p) {
 /// 100 on the left and 300 on the right of a disc; around it and in the last slices nothing was measured.
 template <typename Sample>
 Scene padded(double mark) {
-  Scene scene = field_scene<Sample>(lattice, [&](const glm::dvec3& p) {
+  Scene scene = field_scene<Sample>(scan_lattice, [&](const glm::dvec3& p) {
     return !is_measured(p) ? mark : p.x < 0.0 ? 100.0 : 300.0;
   });
   scene.padding = mark;
@@ -71,8 +71,8 @@ TEST(Padding, StaysAndIsMixedWithNothingBySmoothing) {
     believed.padding.reset();
     double least = 300.0;
     const Scene mixed = gaussian(believed, 2.0);
-    for_each_index(lattice, 0, [&](const glm::ivec3& p) {
-      if (is_measured(lattice.lps_mm(p))) least = std::min(least, sample_at(mixed, p));
+    for_each_index(scan_lattice, 0, [&](const glm::ivec3& p) {
+      if (is_measured(scan_lattice.lps_mm(p))) least = std::min(least, sample_at(mixed, p));
     });
     EXPECT_LT(least, 0.0);
   }
@@ -84,8 +84,8 @@ TEST(Padding, MakesNoEdge) {
   const Scene laplacian = marr_hildreth(scene, 1.0);
   EXPECT_EQ(padded_samples(edges), padded_samples(scene));
   EXPECT_EQ(padded_samples(laplacian), padded_samples(scene));
-  for_each_index(lattice, 0, [&](const glm::ivec3& p) {
-    if (!is_measured(lattice.lps_mm(p))) return;
+  for_each_index(scan_lattice, 0, [&](const glm::ivec3& p) {
+    if (!is_measured(scan_lattice.lps_mm(p))) return;
     // The step from 100 to 300 lies between x = -1 and 0; its gradient is at most 100 a millimetre.
     EXPECT_LE(sample_at(edges, p), 100.0 + 1e-3);
     EXPECT_LT(std::abs(sample_at(laplacian, p)), 200.0);
@@ -119,7 +119,7 @@ TEST(Padding, GoesWithACropAndOutOfTheHistogram) {
   EXPECT_EQ(counts.high, 300.0);
   std::uint64_t all = 0;
   for (const std::uint64_t count : counts.counts) all += count;
-  EXPECT_EQ(all, lattice.sample_count() - padded_samples(scene));
+  EXPECT_EQ(all, scan_lattice.sample_count() - padded_samples(scene));
 }
 
 TEST(Padding, IsNoDarkStreak) {
@@ -138,8 +138,8 @@ TEST(Padding, IsShapedToNothingByAWindowThatHoldsItsValue) {
   options.low = -3000.0;
   const Scene shape = interpolate_shape(scene, options);
   EXPECT_FALSE(shape.padding);
-  for_each_index(lattice, 0, [&](const glm::ivec3& p) {
-    EXPECT_EQ(sample_at(shape, p), is_measured(lattice.lps_mm(p)) ? 1.0 : 0.0);
+  for_each_index(scan_lattice, 0, [&](const glm::ivec3& p) {
+    EXPECT_EQ(sample_at(shape, p), is_measured(scan_lattice.lps_mm(p)) ? 1.0 : 0.0);
   });
 }
 
