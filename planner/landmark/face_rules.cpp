@@ -8,22 +8,25 @@ namespace octotomy::planner {
 namespace {
 
 /// Lengths of a face, in millimetres.
-constexpr double rim_step = 8.0;          ///< by which a rim stands before what is behind it
-constexpr double rim_reach = 3.0;         ///< along which a rim goes on
-constexpr double above_spine = 4.0;       ///< where the piriform rim is taken, over the nasal spine
-constexpr double below_rim = 8.0;         ///< where the buttress is taken, under the piriform rim
-constexpr double broken = 4.0;            ///< a surface falls back farther where it ends
-constexpr double most_hole = 9.0;         ///< of thin bone, across which it goes on
-constexpr double orbit_above_nose = 6.0;  ///< a height within the orbits, over the nose's opening
+constexpr double rim_step = 8.0;           ///< by which a rim stands before what is behind it
+constexpr double rim_reach = 3.0;          ///< along which a rim goes on
+constexpr double above_spine = 4.0;        ///< where the piriform rim is taken, over the nasal spine
+constexpr double below_rim = 8.0;          ///< where the buttress is taken, under the piriform rim
+constexpr double deepest_buttress = 42.0;  ///< behind the nasal spine; a ramus stands deeper
+constexpr double broken = 4.0;             ///< a surface falls back farther where it ends
+constexpr double most_hole = 9.0;          ///< of thin bone, across which it goes on
+constexpr double orbit_above_nose = 6.0;   ///< a height within the orbits, over the nose's opening
 constexpr double least_orbit = 18.0, most_orbit = 42.0;  ///< from the mid-plane
 constexpr double orbit_height = 32.0;
-constexpr double crest = 6.0;  ///< below a rim's crest nothing stands before it for so long
-constexpr double arch_begin = 15.0, arch_end = 75.0;  ///< behind the nasal spine
+constexpr double two_rims = 6.0;  ///< between the answers of two rules for a rim, beyond which neither is one
+constexpr double crest = 6.0;     ///< below a rim's crest nothing stands before it for so long
+constexpr double as_far = 1.0;    ///< within which places are as far out as the outermost
+constexpr double arch_begin = 15.0, arch_end = 78.0;  ///< behind the nasal spine
 constexpr double least_half_face = 45.0, most_half_face = 80.0;
 constexpr double least_angle = 34.0, most_angle = 75.0;  ///< the mandible's, from the mid-plane
 constexpr double angle_begin = 40.0, angle_end = 82.0;   ///< behind the chin
-constexpr double below_teeth = 15.0;  ///< below the incisors' edge; metal in teeth draws streaks beside them
-constexpr double nose_root = 12.0;    ///< over the nose's opening
+constexpr double angle_share = 0.6;  ///< of the way from chin to nasal spine, below which an angle lies
+constexpr double nose_root = 12.0;   ///< over the nose's opening
 constexpr double nose_root_width = 2.0, nose_root_depth = 30.0;  ///< beside the mid-plane; behind the nose
 
 using Side = std::pair<const char*, double>;
@@ -43,6 +46,7 @@ class Face {
 
  private:
   void place(const std::string& name, const glm::dvec3& at) { found_.places[name + side_.first] = at; }
+  void doubt(const std::string& name, double mm) { found_.doubt_mm[name + side_.first] = mm; }
   void miss(const std::string& name, const std::string& why) { found_.missing[name + side_.first] = why; }
   /// How far back the bone begins, `out` to this side.
   double front(double out_mm, int row) const {
@@ -75,12 +79,26 @@ class Face {
       miss("piriform", "no rim stands before the nose's inside");
       return miss("buttress", "no rim stands before the nose's inside");
     }
-    place("piriform", {side_.second * rim, front(rim, row), maps_.front.y_mm(row)});
+    // Another rule: where the surface steps back most within a millimetre and a half.
+    double step_back = rim, most = 0.0;
+    for (double out = 4.0; out <= 24.0; out += step()) {
+      const double deep = front(out, row),
+                   rise = std::min(std::isnan(deep) ? 60.0 : deep - front(out + 1.5, row), 60.0);
+      const double next = front(out + 1.5, row);
+      if (std::isfinite(next) && rise > most) most = rise, step_back = out + 1.5;
+    }
+    if (std::abs(step_back - rim) > two_rims)
+      miss("piriform", "two rules for the rim of the nose's opening answer more than 6 mm apart");
+    else {
+      place("piriform", {side_.second * rim, front(rim, row), maps_.front.y_mm(row)});
+      doubt("piriform", 0.7 * std::abs(step_back - rim));
+    }
     const int lower = maps_.front.row(ans->z + above_spine - below_rim + higher_mm_);
     double out = std::max(rim_at(lower), rim) + 1.0;
     for (double next = out + step(); next < std::min(out + most_hole, most_half_face); next += step())
       if (std::abs(front(next, lower) - front(out, lower)) < broken) out = next;
-    if (out + step() >= most_half_face || !(out > rim + 10.0))
+    if (out + step() >= most_half_face || !(out > rim + 10.0) ||
+        front(out, lower) > ans->y + deepest_buttress)
       return miss("buttress", "the maxilla's outer end is not seen from the front");
     place("buttress", {side_.second * out, front(out, lower), maps_.front.y_mm(lower)});
   }
@@ -100,13 +118,23 @@ class Face {
     return -1;
   }
 
+  /// From a crest, the row a little higher where the rim looks as much up as forward.
+  int edge_row(double out, int crest_row) const {
+    if (crest_row < 0) return crest_row;
+    int best = crest_row;
+    const auto reach = [&](int j) { return maps_.front.y_mm(j) - front(out, j); };
+    for (int j = crest_row; j <= crest_row + static_cast<int>(crest / step()); ++j)
+      if (reach(j) > reach(best)) best = j;
+    return best;
+  }
+
   void orbit() {
     const int first = maps_.front.row(nose_.top_mm + orbit_above_nose);
     // The median of five columns leaves single ones, as with a foramen, out.
     std::vector<std::pair<int, double>> rims;
     std::vector<int> rows;
     for (double out = least_orbit; out <= most_orbit; out += step()) {
-      rows.push_back(rim_row(out, first));
+      rows.push_back(edge_row(out, rim_row(out, first)));
       if (rows.size() < 5) continue;
       std::array<int, 5> five{};
       std::copy(rows.end() - 5, rows.end(), five.begin());
@@ -120,12 +148,13 @@ class Face {
       if (row <= lowest + 1) across.push_back(out);
     const double out = across[across.size() / 2];
     place("orbitale", {side_.second * out, front(out, lowest), maps_.front.y_mm(lowest)});
+    doubt("orbitale", 0.5 * (across.back() - across.front()));
   }
 
   /// The mean of the places of the map from this side that reach farthest by a measure, within its limits.
   template <typename Reach>
-  std::optional<glm::dvec3> farthest(const glm::dvec2& low, const glm::dvec2& high,
-                                     const Reach& reach) const {
+  std::optional<glm::dvec3> farthest(const std::string& name, const glm::dvec2& low, const glm::dvec2& high,
+                                     const Reach& reach) {
     const HeadMap& map = from_side();
     double most = -std::numeric_limits<double>::infinity();
     std::vector<std::pair<double, glm::dvec3>> near;
@@ -134,19 +163,26 @@ class Face {
         const double out = map.at(i, j);
         if (!std::isfinite(out)) continue;
         const std::optional<double> value = reach(out, map.x_mm(i), map.y_mm(j));
-        if (!value || *value < most - step()) continue;
+        if (!value || *value < most - as_far) continue;
         most = std::max(most, *value);
         near.emplace_back(*value, glm::dvec3(side_.second * out, map.x_mm(i), map.y_mm(j)));
       }
     glm::dvec3 sum(0.0);
     double count = 0.0;
     for (const auto& [value, at] : near)
-      if (value >= most - step()) {
+      if (value >= most - as_far) {
         sum += at;
         count += 1.0;
       }
     if (count == 0.0) return std::nullopt;
-    return sum / count;
+    const glm::dvec3 mean = sum / count;
+    // At the window's end it is no extremum of the bone.
+    if (mean.y > high.x - 1.0 || mean.y < low.x + 1.0 || mean.z > high.y - 1.0) return std::nullopt;
+    double far_mm = 0.0;
+    for (const auto& [value, at] : near)
+      if (value >= most - as_far) far_mm = std::max(far_mm, glm::distance(at, mean));
+    doubt(name, 0.6 * far_mm);
+    return mean;
   }
 
   void arch() {
@@ -154,8 +190,9 @@ class Face {
     const glm::dvec3* orbitale = found_.find(std::string("orbitale") + side_.first);
     if (ans == nullptr || orbitale == nullptr)
       return miss("zygoma", "it is sought between the nasal spine and the orbit, which were not both found");
-    const auto outermost = farthest({ans->y + arch_begin, ans->z}, {ans->y + arch_end, orbitale->z + 5.0},
-                                    [](double out, double, double) { return std::optional(out); });
+    const auto outermost =
+        farthest("zygoma", {ans->y + arch_begin, ans->z}, {ans->y + arch_end, orbitale->z + 5.0},
+                 [](double out, double, double) { return std::optional(out); });
     if (!outermost || std::abs(outermost->x) < least_half_face)
       return miss("zygoma", "no arch is seen from the side");
     place("zygoma", *outermost);
@@ -163,11 +200,11 @@ class Face {
 
   void angle() {
     const glm::dvec3* menton = found_.find("menton");
-    const glm::dvec3* incisor = found_.find("incisor");
-    if (menton == nullptr || incisor == nullptr)
-      return miss("gonion", "it is sought between chin and teeth, which were not both found");
-    const auto most = farthest({menton->y + angle_begin, menton->z - 5.0},
-                               {menton->y + angle_end, incisor->z - below_teeth},
+    const glm::dvec3* ans = found_.find("ans");
+    if (menton == nullptr || ans == nullptr)
+      return miss("gonion", "it is sought between chin and nasal spine, which were not both found");
+    const auto most = farthest("gonion", {menton->y + angle_begin, menton->z - 5.0},
+                               {menton->y + angle_end, menton->z + angle_share * (ans->z - menton->z)},
                                [](double out, double back, double up) -> std::optional<double> {
                                  if (out < least_angle || out > most_angle) return std::nullopt;
                                  return (back - up) / std::sqrt(2.0);
@@ -189,25 +226,17 @@ void find_face_places(const HeadMaps& maps, const NasalOpening& nose, double hig
   for (const Side& side : sides) Face(maps, nose, higher_mm, side, found).find();
 }
 
-void find_midline_places(const HeadMaps& maps, const NasalOpening& nose, FoundPlaces& found) {
+void find_nose_root(const HeadMaps& maps, const NasalOpening& nose, FoundPlaces& found) {
   const Profile profile = profile_of(maps.front, nose_root_width);
   const auto back = [&](double up_mm) {
     return profile.back_mm[static_cast<std::size_t>(profile.row(up_mm))];
   };
   const double root_mm = nose.top_mm + nose_root;
   if (back(root_mm) < back(nose.top_mm) + nose_root_depth)
-    found.places["midline_front"] = {0.0, back(root_mm), root_mm};
-  // Of the bone seen from the left: the hindmost above the nose's floor, and the highest.
-  std::optional<glm::dvec2> behind, top;
-  for (int j = maps.left.row(nose.floor_mm); j < maps.left.size().y; ++j)
-    for (int i = 0; i < maps.left.size().x; ++i) {
-      if (!std::isfinite(maps.left.at(i, j))) continue;
-      const glm::dvec2 at(maps.left.x_mm(i), maps.left.y_mm(j));
-      if (!behind || at.x > behind->x) behind = at;
-      if (!top || at.y > top->y) top = at;
-    }
-  if (behind) found.places["midline_back"] = {0.0, behind->x, behind->y};
-  if (top) found.places["midline_top"] = {0.0, top->x, top->y};
+    found.places["midline_front"] = {profile.middle_mm[static_cast<std::size_t>(profile.row(root_mm))],
+                                     back(root_mm), root_mm};
+  else
+    found.missing["midline_front"] = "no bone is seen over the nose's opening";
 }
 
 }  // namespace octotomy::planner

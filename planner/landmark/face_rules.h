@@ -10,7 +10,7 @@ namespace octotomy::planner {
 /// profile gave. `higher_mm` shifts the heights that a rule sets itself.
 void find_face_places(const HeadMaps& maps, const NasalOpening& nose, double higher_mm, FoundPlaces& found);
 
-/// Three points of the mid-plane: at the nose's root, at the back of the head and at its top.
-void find_midline_places(const HeadMaps& maps, const NasalOpening& nose, FoundPlaces& found);
+/// The point of the mid-line at the nose's root.
+void find_nose_root(const HeadMaps& maps, const NasalOpening& nose, FoundPlaces& found);
 
 }  // namespace octotomy::planner

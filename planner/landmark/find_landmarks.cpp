@@ -48,15 +48,16 @@ Json guess_json(const SkullGuess& guess) {
   Json json{{"mid_plane",
              {{"point_mm", to_json(guess.mid_plane.plane.point_mm)},
               {"normal", to_json(guess.mid_plane.plane.normal)},
-              {"rms_mm", guess.mid_plane.rms_mm}}},
+              {"rms_mm", guess.mid_plane.rms_mm},
+              {"uncertainty_deg", guess.mid_plane_within_deg}}},
             {"landmarks", Json::array()},
             {"missing", Json::array()},
-            {"findings", guess.mid_plane.findings}};
+            {"findings", guess.findings}};
   for (const LandmarkGuess& one : guess.found)
     json["landmarks"].push_back({{"name", one.name},
                                  {"says", means.at(one.name).says},
                                  {"point_mm", to_json(one.p_mm)},
-                                 {"uncertainty_mm", std::max(one.within_mm, means.at(one.name).least_mm)},
+                                 {"uncertainty_mm", one.within_mm + means.at(one.name).least_mm},
                                  {"confirmed", false}});
   for (const auto& [name, why] : guess.missing)
     json["missing"].push_back({{"name", name}, {"says", means.at(name).says}, {"why", why}});
@@ -129,7 +130,7 @@ FileAnswer on_files(const FindLandmarks& asked, const FileBench& bench) {
                                  grouped(one["uncertainty_mm"].get<double>(), 1) + " mm");
   }
   for (const auto& [name, why] : guess.missing) answer.rows.emplace_back(name, "not found: " + why);
-  answer.findings = guess.mid_plane.findings;
+  answer.findings = guess.findings;
   return answer;
 }
 

@@ -13,21 +13,21 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_px = 1024;
 
 /// A view's picture: the depth along `look` at every pixel, over (right, up).
-HeadMap depths(const voxel::DrawnObject& bone, const voxel::View& view) {
+HeadMap depths(const voxel::DrawnObject& bone, const voxel::View& view, double step_mm) {
   // A frame about the bone of any size tells its extent; the picture itself has pixels of a known width.
   const voxel::Frame about = voxel::frame_about({bone}, view, {256, 256});
   voxel::RenderOptions options;
   options.view = view;
-  const int side = std::clamp(static_cast<int>(std::ceil(about.width_mm / head_map_step_mm)), 16, most_px);
+  const int side = std::clamp(static_cast<int>(std::ceil(about.width_mm / step_mm)), 16, most_px);
   options.size_px = {side, side};
   options.centre_mm = about.centre_mm;
-  options.width_mm = side * head_map_step_mm;
+  options.width_mm = side * step_mm;
   options.algorithm = voxel::Algorithm::RayCast;
   options.shading = voxel::Shading::Silhouette;
   options.occlusion = options.antialias = false;
   const voxel::Picture picture = voxel::render({bone}, options);
-  const double half_mm = (side - 1) * head_map_step_mm * 0.5;
-  HeadMap map({side, side}, about.centre_mm - half_mm, head_map_step_mm);
+  const double half_mm = (side - 1) * step_mm * 0.5;
+  HeadMap map({side, side}, about.centre_mm - half_mm, step_mm);
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i) {
       const auto pixel = static_cast<std::size_t>(side - 1 - j) * static_cast<std::size_t>(side) +
@@ -80,10 +80,10 @@ double& HeadMap::set(int i, int j) {
                  static_cast<std::size_t>(i)];
 }
 
-HeadMaps map_head(const voxel::DrawnObject& bone, const HeadFrame& frame) {
-  const HeadMap front = depths(bone, {frame.back, frame.up, frame.left});
-  const HeadMap from_left = depths(bone, {-frame.left, frame.up, frame.back});
-  const HeadMap from_right = depths(bone, {frame.left, frame.up, -frame.back});
+HeadMaps map_head(const voxel::DrawnObject& bone, const HeadFrame& frame, double step_mm) {
+  const HeadMap front = depths(bone, {frame.back, frame.up, frame.left}, step_mm);
+  const HeadMap from_left = depths(bone, {-frame.left, frame.up, frame.back}, step_mm);
+  const HeadMap from_right = depths(bone, {frame.left, frame.up, -frame.back}, step_mm);
   // Depths grow away from the observer: to the right in the view from the left, and the other way about; the
   // view from the right has the back on its left.
   const int last = from_right.size().x - 1;

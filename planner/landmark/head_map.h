@@ -56,7 +56,7 @@ struct HeadMaps {
 };
 inline constexpr double head_map_step_mm = 0.5;
 
-/// Draws the maps. Cost: three pictures of the skull by ray casting.
-HeadMaps map_head(const voxel::DrawnObject& bone, const HeadFrame& frame);
+/// Draws the maps with cells of step_mm. Cost: three pictures of the skull by ray casting.
+HeadMaps map_head(const voxel::DrawnObject& bone, const HeadFrame& frame, double step_mm = head_map_step_mm);
 
 }  // namespace octotomy::planner

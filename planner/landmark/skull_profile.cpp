@@ -2,6 +2,7 @@
 #include "planner/landmark/skull_profile.h"
 
 #include <algorithm>
+#include <array>
 
 namespace octotomy::planner {
 namespace {
@@ -23,6 +24,18 @@ constexpr double most_nasal_bone = 25.0;  ///< above the opening
 constexpr double widest_end = 25.0;  ///< of bone that ends by itself, from front to back, in its lowest row
 constexpr double scan_end = 2.0;     ///< within which of a scan's end nothing is bone's own
 constexpr double least_brow = 12.0, most_brow = 45.0;  ///< above the nose's tip
+constexpr double stands_out = 0.7;  ///< by which a spine's tip lies before the bone below it
+constexpr double spine_end = 1.1;   ///< by which its upper end may lie behind its foremost point
+constexpr double spine_line =
+    12.0;  ///< below the opening's floor, the end of the line before which the spine stands
+constexpr double flat = 0.4;  ///< within which places of an extremum cannot be told apart
+/// Of the height from nasion to spine: the least distance of an upper incisor's edge from the spine, and of a
+/// lower one's from the chin. Without teeth the ridge lies at a third of it, and at six tenths.
+constexpr double most_upper_tooth = 0.85;
+constexpr double least_upper_tooth = 0.38, least_lower_tooth = 0.7;
+constexpr double notch = 5.0;  ///< by which a whole chin's lower border rises at most in the middle
+/// About a row, over which both sides are compared; beside the middle; and how far the middle is sought.
+constexpr double like_height = 8.0, like_begin = 3.0, like_end = 24.0, most_aside = 9.0;
 
 /// The row that lies foremost of first..last; of equals, to a third of a millimetre, the middle one.
 int foremost(const Profile& profile, int first, int last) {
@@ -39,7 +52,8 @@ int foremost(const Profile& profile, int first, int last) {
 
 class Reader {
  public:
-  Reader(const Profile& profile, const NasalOpening& nose) : profile_(profile), nose_(nose) {}
+  Reader(const Profile& profile, const NasalOpening& nose)
+      : profile_(profile), nose_(nose), is_notched_(profile.chin_notch_mm > notch) {}
 
   FoundPlaces read() {
     above_nose();
@@ -58,7 +72,17 @@ class Reader {
     if (profile_.up_mm(k) < profile_.cut_mm + scan_end) return miss(name, "the scan ends there");
     place(name, k);
   }
-  void place(const char* name, int k) { found_.places[name] = {0.0, back(k), profile_.up_mm(k)}; }
+  void place(const char* name, int k) {
+    found_.places[name] = {profile_.middle_mm[static_cast<std::size_t>(k)], back(k), profile_.up_mm(k)};
+  }
+  /// Adds the length over which the profile, turned so that the extremum lies foremost, is as far in front.
+  template <typename Depth>
+  void add_flat(const char* name, int k, int first, int last, const Depth& depth) {
+    int low = k, high = k;
+    while (low > first && depth(low - 1) >= depth(k) - flat) --low;
+    while (high < last && depth(high + 1) >= depth(k) - flat) ++high;
+    found_.doubt_mm[name] += 0.6 * std::max(k - low, high - k) * profile_.step_mm;
+  }
   void miss(const char* name, const char* why) { found_.missing[name] = why; }
 
   /// The nose's root lies deepest behind the line from the nasal bones' foremost point that touches the brow,
@@ -81,17 +105,52 @@ class Reader {
     // The spine's tip is the highest of rows as far in front.
     int tip = ans;
     while (tip > floor && back(tip - 1) <= back(ans) + 0.5) --tip;
-    place("ans", tip);
+    place_spine(floor, tip);
     const int last = end_of_front(tip);
+    const glm::dvec3* nasion = found_.find("nasion");
+    nose_height_ = nasion == nullptr ? 0.0 : nasion->z - profile_.up_mm(tip);
     const int incisor = incisor_below(tip, last);
     if (incisor < 0) {
       for (const char* name : {"incisor", "a_point", "lower_incisor"})
         miss(name, "no edge of upper incisors is seen below the nasal spine");
+    } else if ((incisor - tip) * profile_.step_mm < least_upper_tooth * nose_height_) {
+      for (const char* name : {"incisor", "a_point", "lower_incisor"})
+        miss(
+            name,
+            "the bone's edge lies too near to the nasal spine for a tooth's: the upper incisors are missing");
     } else {
       place_end("incisor", incisor);
       place_hollow("a_point", tip, incisor - rows_of(crown));
     }
     mandible(incisor < 0 ? tip : incisor, last);
+  }
+
+  /// The tip is the first row that stands before what follows it, and, by another rule that no pitch of the
+  /// head changes, the row farthest before the line from the opening's floor to the bone below.
+  void place_spine(int floor, int foremost_row) {
+    const int end = within(floor + rows_of(spine_line));
+    int first = -1;
+    double most = infinite;
+    for (int k = floor, at = floor; k <= end + rows_of(2.0) && first < 0; ++k) {
+      if (back(k) < most) most = back(k), at = k;
+      if (back(k) > most + stands_out && k > at) first = at;
+    }
+    const auto before = [&](int k) {
+      return back(floor) + (back(end) - back(floor)) * (k - floor) / std::max(end - floor, 1) - back(k);
+    };
+    int second = floor;
+    for (int k = floor; k < end; ++k)
+      if (before(k) > before(second)) second = k;
+    const bool is_prominent = before(second) >= 1.0;
+    if (first < 0 && !is_prominent)
+      return miss("ans", "no spine stands before the bone below the nose's opening");
+    // Of a spine that runs on into the bone below it, the tip is its upper end.
+    const int lies = first < 0 ? foremost_row : first;
+    int tip = lies;
+    while (tip > floor && back(tip - 1) <= back(lies) + spine_end) --tip;
+    place("ans", tip);
+    const double apart = std::max(lies - tip, is_prominent ? std::abs(tip - second) : 0) * profile_.step_mm;
+    found_.doubt_mm["ans"] = 0.5 * std::min(apart, 6.0);
   }
 
   /// The last row of the face: below, all bone lies far behind, and for as long as a mouth opens.
@@ -116,6 +175,12 @@ class Reader {
     if (most < tooth_step) return -1;
     int k = first;
     while (fall(k) < 0.6 * most) ++k;
+    // The edge of the ridge may fall back as far as that of the teeth in it, which lies lower.
+    const int near = tip + static_cast<int>(least_upper_tooth * nose_height_ / profile_.step_mm) + 1;
+    const int far =
+        std::min(lowest, tip + static_cast<int>(most_upper_tooth * nose_height_ / profile_.step_mm));
+    for (int lower = near; lower <= far && k < near; ++lower)
+      if (fall(lower) >= std::max(0.6 * most, tooth_step)) k = lower;
     // The step's own row: the greatest fall from one row to the next.
     int at = k;
     for (int i = k; i < k + over; ++i)
@@ -129,22 +194,53 @@ class Reader {
       for (const char* name : {"menton", "pogonion", "b_point", "lower_incisor"}) miss(name, none);
       return;
     }
-    place_end("menton", last);
+    if (is_notched_)
+      for (const char* name : {"menton", "pogonion"})
+        miss(name,
+             "the chin's lower border rises in the middle: bone is missing, or was not told from what is "
+             "beside");
+    else
+      place_end("menton", last);
     int first = above + 1;
     while (first < last && back(first) >= back(above) + edge + crown) ++first;
     const bool is_seen = first > above + 1 && found_.find("incisor") != nullptr;
-    if (is_seen)
+    if (is_seen && (last - first) * profile_.step_mm < least_lower_tooth * nose_height_)
+      miss("lower_incisor",
+           "the bone's edge lies too near to the chin for a tooth's: the lower incisors are missing");
+    else if (is_seen)
       place("lower_incisor", first);
     else
       miss("lower_incisor", "it stands behind the upper incisors as seen from the front");
     const int high = std::max(first + rows_of(crown), last - rows_of(chin));
-    const int foremost_chin = foremost(profile_, high, last);
-    if (foremost_chin <= high + 1) {
+    const int foremost_chin = pogonion_between(high, last);
+    if (foremost_chin < 0) {
       miss("pogonion", "the chin has no point before the bone above it");
       return miss("b_point", "the chin has no point before the bone above it");
     }
-    place("pogonion", foremost_chin);
+    if (!is_notched_) {
+      place("pogonion", foremost_chin);
+      add_flat("pogonion", foremost_chin, high, last, [&](int k) { return -back(k); });
+    }
+    if (found_.find("lower_incisor") == nullptr)
+      return miss("b_point",
+                  "it is sought between the lower incisors and the chin, which were not both found");
     place_hollow("b_point", first + rows_of(crown) / 2, foremost_chin);
+  }
+
+  /// The foremost row, or, where a chin recedes or a jaw is open, the row farthest before the line between
+  /// both; -1: none stands before it by two millimetres.
+  int pogonion_between(int high, int last) {
+    const int row = foremost(profile_, high, last);
+    if (row > high + 1) return row;
+    const auto before = [&](int k) {
+      return back(high) + (back(last) - back(high)) * (k - high) / std::max(last - high, 1) - back(k);
+    };
+    int best = high;
+    for (int k = high; k <= last; ++k)
+      if (before(k) > before(best)) best = k;
+    if (!(before(best) >= 2.0)) return -1;
+    found_.doubt_mm["pogonion"] += 3.0;
+    return best;
   }
 
   /// The row farthest behind the line between two rows.
@@ -161,12 +257,45 @@ class Reader {
       if (back(k) < infinite && (at < 0 || depth(k) > depth(at))) at = k;
     if (at < 0 || !(depth(at) >= hollow)) return miss(name, why);
     place(name, at);
+    add_flat(name, at, first, last, [&](int k) { return back(k) < infinite ? depth(k) : -infinite; });
   }
 
   const Profile& profile_;
   NasalOpening nose_;
+  bool is_notched_;
+  double nose_height_ = 0.0;  ///< from the spine to the nasion; 0: not known
   FoundPlaces found_;
 };
+
+/// Where both sides of the front are most alike about a row: left of the mid-plane, which it is itself unless
+/// another place is clearly better.
+double middle_at(const HeadMap& front, int row) {
+  const int high = static_cast<int>(like_height / front.step_mm()),
+            step = std::max(1, static_cast<int>(1.0 / front.step_mm()));
+  const auto unlike = [&](double aside) {
+    std::vector<double> off;
+    for (int j = row - high; j <= row + high; j += step)
+      for (double out = like_begin; out <= like_end; out += 1.0) {
+        const double left = front.at(front.column(aside + out), j),
+                     right = front.at(front.column(aside - out), j);
+        if (std::isfinite(left) && std::isfinite(right))
+          off.push_back(std::abs(left - right));
+        else if (std::isfinite(left) != std::isfinite(right))
+          off.push_back(15.0);
+      }
+    if (off.size() < 20) return infinite;
+    // The mean of the better two thirds: streaks and holes are on one side alone.
+    const auto kept = static_cast<std::ptrdiff_t>(off.size() * 2 / 3);
+    std::nth_element(off.begin(), off.begin() + kept, off.end());
+    double sum = 0.0;
+    for (auto at = off.begin(); at != off.begin() + kept; ++at) sum += std::min(*at, 15.0);
+    return sum / static_cast<double>(kept);
+  };
+  double best = unlike(0.0) * 0.85, at = 0.0;
+  for (double aside = -most_aside; aside <= most_aside; aside += 0.5)
+    if (const double here = unlike(aside); here < best) best = here, at = aside;
+  return at;
+}
 
 /// Whether bone stands on both sides of a height before what is seen in the mid-line.
 bool is_between_rims(const HeadMap& front, int row, double back_mm) {
@@ -189,13 +318,43 @@ Profile profile_of(const HeadMap& front, double within_mm) {
   Profile profile;
   profile.step_mm = front.step_mm();
   profile.top_mm = front.y_mm(front.size().y - 1);
+  // The middle of every few rows, and of five of those the median one.
+  const int apart = std::max(1, static_cast<int>(std::lround(4.0 / front.step_mm())));
+  std::vector<double> middles;
+  for (int j = front.size().y - 1; j >= 0; j -= apart) middles.push_back(middle_at(front, j));
+  const auto middle = [&](int row) {
+    const int at = (front.size().y - 1 - row) / apart, last = static_cast<int>(middles.size()) - 1;
+    std::array<double, 5> five{};
+    for (int k = 0; k < 5; ++k)
+      five[static_cast<std::size_t>(k)] = middles[static_cast<std::size_t>(std::clamp(at + k - 2, 0, last))];
+    std::sort(five.begin(), five.end());
+    return five[2];
+  };
   for (int j = front.size().y - 1; j >= 0; --j) {
     double foremost_mm = infinite;
-    for (int i = front.column(-within_mm); i <= front.column(within_mm); ++i)
+    profile.middle_mm.push_back(middle(j));
+    const double at = profile.middle_mm.back();
+    for (int i = front.column(at - within_mm); i <= front.column(at + within_mm); ++i)
       if (const double back_mm = front.at(i, j); back_mm < foremost_mm) foremost_mm = back_mm;
     profile.back_mm.push_back(foremost_mm);
   }
   return profile;
+}
+
+double chin_notch(const HeadMap& front, const Profile& profile, const NasalOpening& nose) {
+  // Bone of the front alone: a neck stands far behind.
+  const double floor_mm = profile.back_mm[static_cast<std::size_t>(profile.row(nose.floor_mm))];
+  int lowest = profile.rows() - 1;
+  while (lowest > 0 && !(profile.back_mm[static_cast<std::size_t>(lowest)] < floor_mm + receding)) --lowest;
+  const double middle = profile.middle_mm[static_cast<std::size_t>(lowest)];
+  const auto end = [&](double aside) {
+    for (int j = 0; j < front.size().y; ++j)
+      if (front.at(front.column(middle + aside), j) < floor_mm + receding) return front.y_mm(j);
+    return infinite;
+  };
+  double beside = infinite;
+  for (double aside = 5.0; aside <= 16.0; aside += 1.0) beside = std::min({beside, end(aside), end(-aside)});
+  return end(0.0) - beside;
 }
 
 FoundPlaces places_of_profile(const Profile& profile, const NasalOpening& nose) {
