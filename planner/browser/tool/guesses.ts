@@ -37,7 +37,7 @@ export async function ask_guesses(): Promise<boolean> {
     notify(found.findings[0] ?? "Every landmark that can be guessed is placed.", "warning");
     return false;
   }
-  const missing = found.missing.map((one) => one.name.replace(/_/g, " ")).join(", ");
+  const missing = found.missing.map((one) => `${one.name.replace(/_/g, " ")} (${one.why})`).join(", ");
   notify(`${count} landmarks are guessed. Look at each: keep it, or click where it is.${
       missing ? ` Not found: ${missing}.` : ""}`);
   return true;
