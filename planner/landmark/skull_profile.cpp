@@ -219,7 +219,8 @@ class Reader {
     }
     if (!is_notched_) {
       place("pogonion", foremost_chin);
-      add_flat("pogonion", foremost_chin, high, last, [&](int k) { return -back(k); });
+      if (foremost_chin == foremost(profile_, high, last))
+        add_flat("pogonion", foremost_chin, high, last, [&](int k) { return -back(k); });
     }
     if (found_.find("lower_incisor") == nullptr)
       return miss("b_point",
