@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // 1 The patient's bone is parted from what lies beside it.
-// 2 Its mid-plane gives left and right. Up follows from nasion and nasal spine, found at several pitches.
+// 2 Its mid-plane gives left and right. Up follows from nose and orbits, found at several pitches.
 // 3 All rules are applied once to fine maps, then with everything that they depend on changed, to coarse
 // ones. 4 How far the answers scatter, with each rule's own doubt, is the interval; what scatters widely is
 // missing.
@@ -14,6 +14,7 @@
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "planner/landmark/face_rules.h"
 #include "planner/landmark/head_part.h"
@@ -24,22 +25,28 @@
 namespace octotomy::planner {
 namespace {
 
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr double least_left = 0.86;  ///< of the mid-plane's normal: turned and rolled by 20 degrees
 /// Shares of the surface that have a counterpart, for the fit and for its doubt.
 constexpr double usual_overlap = 0.7;
 constexpr std::array<double, 2> other_overlaps{0.55, 0.85};
+constexpr double plane_rest_mm =
+    0.02;                          ///< a round that moves the surface less ends a fit: it turns no answer
 constexpr double coarse_mm = 1.0;  ///< step of the maps of other trials
-/// Pitches in degrees at which a face is sought, nearest first; how often its pitch is corrected; the
-/// direction from spine to nasion, leaning back from square to the Frankfurt plane.
+/// Pitches in degrees at which a face is sought, nearest first; how often its pitch is corrected.
 constexpr std::array<double, 5> first_pitches{0.0, 12.0, -12.0, 24.0, -24.0};
 constexpr int corrections = 2;
-constexpr double nose_lean_deg = 1.0;
+/// In a head held by its Frankfurt plane: the direction from spine to nasion leans back from upright; the way
+/// from the orbit's rim back to the arch's outermost point falls, by some 4 mm on 45; and more than that is
+/// no face's.
+constexpr double nose_lean_deg = 1.0, arch_fall_deg = 5.0, most_lean_deg = 35.0;
 /// For the doubt: the head's pitch in degrees, the profile's half width and the rules' heights in mm.
 constexpr std::array<std::array<double, 3>, 4> other_ways{
     {{6.0, 1.0, 1.5}, {3.0, 3.0, -1.0}, {-3.0, 1.0, 1.0}, {-6.0, 3.0, -1.5}}};
 constexpr double threshold_share = 1.25;  ///< a higher threshold over the usual one, from -150 on
 /// Of the scatter, the interval; and of the coarsest voxel edge.
 constexpr double of_scatter = 1.3, of_voxel = 0.7;
+constexpr double scan_end_mm = 2.0;      ///< a voxel and more, as with skull_profile.cpp's
 constexpr double most_within_mm = 15.0;  ///< what may be farther off is no guess
 constexpr double least_plane_deg = 0.5;
 
@@ -48,6 +55,7 @@ brep::MirrorFit mid_plane_of(const brep::Mesh& surface, double overlap,
   brep::MirrorFitOptions options;
   options.overlap = overlap;
   options.start = start;
+  options.rest_mm = plane_rest_mm;
   options.stop = progress.stop;
   try {
     return brep::fit_mirror_plane(surface, options);
@@ -107,31 +115,53 @@ HeadFrame frame_of(const Trial& trial) {
   return head_frame(trial.plane.point_mm, trial.plane.normal, trial.pitch_deg);
 }
 
-/// The pitch at which nasion and nasal spine are as in a head held by its Frankfurt plane; none: no face.
+/// By how much the head would have to be raised to be held by its Frankfurt plane, in degrees: the mean of
+/// what the line from nasal spine to nasion says and of what the one from orbit to zygomatic arch says. Each
+/// differs by some 4 degrees from face to face. None without either line.
+std::optional<double> to_raise_deg(const FoundPlaces& found) {
+  double sum = 0.0, count = 0.0;
+  const auto add = [&](double lean_deg, double usual_deg) {
+    if (std::abs(lean_deg) > most_lean_deg) return;
+    sum += lean_deg - usual_deg;
+    count += 1.0;
+  };
+  const glm::dvec3 *nasion = found.find("nasion"), *spine = found.find("ans");
+  if (nasion != nullptr && spine != nullptr)
+    add(glm::degrees(std::atan2(nasion->y - spine->y, nasion->z - spine->z)), nose_lean_deg);
+  for (const char* side : {"_left", "_right"}) {
+    const glm::dvec3 *rim = found.find(std::string("orbitale") + side),
+                     *arch = found.find(std::string("zygoma") + side);
+    if (rim == nullptr || arch == nullptr) continue;
+    add(glm::degrees(std::atan2(rim->z - arch->z, arch->y - rim->y)), arch_fall_deg);
+    break;
+  }
+  return count > 0.0 ? std::optional(sum / count) : std::nullopt;
+}
+
+/// The pitch at which the face is as in a head held by its Frankfurt plane; none: no face.
 std::optional<double> held_pitch(const voxel::DrawnObject& bone, const brep::MirrorPlane& plane,
                                  const voxel::Progress& progress) {
-  std::optional<double> without_nasion;
+  std::optional<double> of_face_alone;
   for (const double first : first_pitches) {
     Trial trial{&bone, plane, first};
     for (int round = 0; round <= corrections; ++round) {
       progress.at(0.0);
       const FoundPlaces found = apply(trial, frame_of(trial));
       if (found.places.empty()) break;
-      const glm::dvec3 *nasion = found.find("nasion"), *spine = found.find("ans");
-      if (nasion == nullptr || spine == nullptr) {
-        if (!without_nasion) without_nasion = trial.pitch_deg;
+      const std::optional<double> raise_deg = to_raise_deg(found);
+      if (!raise_deg) {
+        if (!of_face_alone) of_face_alone = trial.pitch_deg;
         break;
       }
-      const double lean = glm::degrees(std::atan2(nasion->y - spine->y, nasion->z - spine->z));
-      if (std::abs(lean) > 35.0) break;
-      trial.pitch_deg += lean - nose_lean_deg;
-      if (std::abs(lean - nose_lean_deg) < 2.0 || round == corrections) return trial.pitch_deg;
+      trial.pitch_deg += *raise_deg;
+      if (std::abs(*raise_deg) < 2.0 || round == corrections) return trial.pitch_deg;
     }
   }
-  return without_nasion;
+  return of_face_alone;
 }
 
-/// How far the trials' answers lie from the first one's; infinite where two have none.
+/// How far the trials' answers lie from the first one's. One trial may have none, or one so far off that it
+/// is of something else, as where a higher threshold opens thin bone; unbounded where two have.
 double scatter(const std::string& name, const glm::dvec3& first_mm, const std::vector<FoundPlaces>& others,
                const glm::dvec3& across) {
   // Any point of the mid-line does; only how far it may lie beside counts.
@@ -140,10 +170,12 @@ double scatter(const std::string& name, const glm::dvec3& first_mm, const std::v
   int without = 0;
   for (const FoundPlaces& other : others) {
     const glm::dvec3* at = other.find(name);
-    if (at == nullptr && ++without > 1) return std::numeric_limits<double>::infinity();
-    if (at == nullptr) continue;
-    const glm::dvec3 off = *at - first_mm;
-    most = std::max(most, is_of_midline ? std::abs(glm::dot(off, across)) : glm::length(off));
+    const glm::dvec3 off = at == nullptr ? glm::dvec3(unbounded) : *at - first_mm;
+    const double off_mm = is_of_midline && at != nullptr ? std::abs(glm::dot(off, across)) : glm::length(off);
+    if (off_mm <= most_within_mm)
+      most = std::max(most, off_mm);
+    else if (++without > 1)
+      return unbounded;
   }
   return most;
 }
@@ -154,11 +186,25 @@ std::optional<voxel::DrawnObject> with_higher_threshold(const voxel::DrawnObject
   constexpr double zero = -150.0;
   voxel::DrawnObject other = bone;
   other.threshold = zero + threshold_share * (bone.threshold - zero);
-  voxel::Expression window(
-      voxel::Window{*bone.grey, other.threshold, std::numeric_limits<double>::infinity()});
+  voxel::Expression window(voxel::Window{*bone.grey, other.threshold, unbounded});
   if (bone.moved_from_still) window = moved(window, *bone.moved_from_still);
   other.octree = voxel::combine(bone.octree.universe(), voxel::Expression(bone.octree) & window);
   return other;
+}
+
+/// Whether the samples end within scan_end_mm of a point, so that the bone may go on beyond.
+bool is_at_scan_end(const voxel::DrawnObject& bone, const glm::dvec3& p_mm) {
+  if (!bone.grey) return false;
+  const voxel::Lattice lattice = bone.octree.universe().lattice();
+  const std::optional<glm::dmat4> still = bone.still_from_voxel();
+  for (int way = 0; way < 6; ++way) {
+    glm::dvec3 off(0.0);
+    off[way / 2] = way % 2 == 0 ? -scan_end_mm : scan_end_mm;
+    const glm::dvec3 voxel = lattice.voxel(p_mm + off);
+    const glm::dvec3 sample = still ? glm::dvec3(*still * glm::dvec4(voxel, 1.0)) : voxel;
+    if (!bone.grey->scan().contains(glm::ivec3(glm::round(sample)))) return true;
+  }
+  return false;
 }
 
 double angle_deg(const glm::dvec3& a, const glm::dvec3& b) {
@@ -221,13 +267,21 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   }
   guess.mid_plane_within_deg = least_plane_deg + of_scatter * plane_deg;
   add_brain_case(head, frame, first);
+  // Halves that are not alike leave open by about their distance where their middle is.
+  for (const auto& [name, place] : first.places)
+    if (name.starts_with("midline_")) first.doubt_mm[name] += guess.mid_plane.rms_mm;
   std::vector<FoundPlaces> others;
+  bool is_one_faceless = false;
   for (const Trial& trial : trials) {
-    progress.at(0.3 + 0.7 * static_cast<double>(others.size()) / static_cast<double>(trials.size()));
+    progress.at(0.3 + 0.7 * static_cast<double>(&trial - trials.data()) / static_cast<double>(trials.size()));
     const HeadFrame other = frame_of(trial);
-    others.push_back(apply(trial, other));
-    add_brain_case(head, other, others.back());
-    for (auto& [name, place] : others.back().places) place = other.lps_mm(place);
+    FoundPlaces found = apply(trial, other);
+    // A trial without a face, as where a higher threshold opens the orbits' floors, says nothing; another one
+    // counts as without an answer.
+    if (found.places.empty() && !std::exchange(is_one_faceless, true)) continue;
+    add_brain_case(head, other, found);
+    for (auto& [name, place] : found.places) place = other.lps_mm(place);
+    others.push_back(std::move(found));
   }
 
   keep_plausible(first);
@@ -243,11 +297,21 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
     const double aside = is_of_middle ? 0.5 * std::abs(place.x) : 0.0;
     const double within_mm =
         std::hypot(of_scatter * moved, first.doubt_mm[name], aside) + of_voxel * voxel_mm;
-    if (!(within_mm <= most_within_mm))
+    if (is_at_scan_end(bone, p_mm))
+      missing[name] = "the scan ends there";
+    else if (first.doubt_mm[name] > most_within_mm)
+      missing[name] = "the bone is so flat there that its extremal point is not known to 15 mm";
+    else if (!(within_mm <= most_within_mm))
       missing[name] = "it is found elsewhere or not at all where the head is held a little otherwise";
     else
       guess.found.push_back({name, p_mm, within_mm});
   }
+  // As in keep_plausible(): of the two buttresses neither is known without the other.
+  for (const auto& [one, other] :
+       {std::pair("buttress_left", "buttress_right"), {"buttress_right", "buttress_left"}})
+    if (missing.contains(other) &&
+        std::erase_if(guess.found, [&](const LandmarkGuess& at) { return at.name == one; }) > 0)
+      missing[one] = "the other side's was not found, which it must match";
   guess.missing.assign(missing.begin(), missing.end());
   guess.findings = guess.mid_plane.findings;
   if (head.removed_count > 0)

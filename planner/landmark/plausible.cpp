@@ -39,10 +39,11 @@ constexpr std::array<Relation, 14> relations{{
 struct Pair {
   const char* name;
   double least_out, most_out, most_across, most_along;
+  bool is_known_by_both = false;  ///< missing where the other side is
 };
 constexpr std::array<Pair, 5> pairs{{{"piriform", 6.5, 19.0, 5.0, 8.0},
                                      {"orbitale", 18.0, 48.0, 14.0, 9.0},
-                                     {"buttress", 20.0, 62.0, 14.0, 14.0},
+                                     {"buttress", 20.0, 62.0, 14.0, 14.0, true},
                                      {"zygoma", 48.0, 80.0, 9.0, 14.0},
                                      {"gonion", 34.0, 72.0, 12.0, 14.0}}};
 
@@ -82,9 +83,13 @@ void keep_alike(FoundPlaces& found) {
           take_out(found, name, "it would lie farther from or nearer to the middle than in any face");
     const glm::dvec3 *a = found.find(left), *b = found.find(right);
     if (a == nullptr || b == nullptr) {
-      // One side alone cannot be compared.
-      for (const std::string& name : {left, right})
+      // One side alone cannot be compared. The maxilla's outer end, which the rule takes for reached at the
+      // first wide hole, is not known without.
+      for (const std::string& name : {left, right}) {
         if (found.find(name) != nullptr) found.doubt_mm[name] += 2.0;
+        if (pair.is_known_by_both)
+          take_out(found, name, "the other side's was not found, which it must match");
+      }
       continue;
     }
     const double across = std::abs(a->x + b->x), along = std::hypot(a->y - b->y, a->z - b->z);

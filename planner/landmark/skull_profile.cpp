@@ -19,6 +19,7 @@ constexpr double crown = 9.0;             ///< of an incisor
 constexpr double receding = 28.0;         ///< a chin's, at most, behind the nasal spine
 constexpr double least_mandible = 20.0;   ///< its height in the mid-line
 constexpr double chin = 22.0;             ///< its height
+constexpr double between_chins = 3.0;     ///< a chin's foremost point and that before its line, half way
 constexpr double hollow = 1.0;            ///< least depth of a concavity between its neighbours
 constexpr double most_nasal_bone = 25.0;  ///< above the opening
 constexpr double widest_end = 25.0;  ///< of bone that ends by itself, from front to back, in its lowest row
@@ -75,13 +76,14 @@ class Reader {
   void place(const char* name, int k) {
     found_.places[name] = {profile_.middle_mm[static_cast<std::size_t>(k)], back(k), profile_.up_mm(k)};
   }
-  /// Adds the length over which the profile, turned so that the extremum lies foremost, is as far in front.
+  /// Adds how far the farthest row lies that is as far in front, in the profile turned so that the extremum
+  /// lies foremost: noise and the samples' distance may put the extremum there, also beyond rows between.
   template <typename Depth>
   void add_flat(const char* name, int k, int first, int last, const Depth& depth) {
     int low = k, high = k;
-    while (low > first && depth(low - 1) >= depth(k) - flat) --low;
-    while (high < last && depth(high + 1) >= depth(k) - flat) ++high;
-    found_.doubt_mm[name] += 0.6 * std::max(k - low, high - k) * profile_.step_mm;
+    for (int i = first; i <= last; ++i)
+      if (depth(i) >= depth(k) - flat) low = std::min(low, i), high = std::max(high, i);
+    found_.doubt_mm[name] += std::max(k - low, high - k) * profile_.step_mm;
   }
   void miss(const char* name, const char* why) { found_.missing[name] = why; }
 
@@ -217,30 +219,33 @@ class Reader {
       miss("pogonion", "the chin has no point before the bone above it");
       return miss("b_point", "the chin has no point before the bone above it");
     }
-    if (!is_notched_) {
-      place("pogonion", foremost_chin);
-      if (foremost_chin == foremost(profile_, high, last))
-        add_flat("pogonion", foremost_chin, high, last, [&](int k) { return -back(k); });
-    }
+    if (!is_notched_) place("pogonion", foremost_chin);
     if (found_.find("lower_incisor") == nullptr)
       return miss("b_point",
                   "it is sought between the lower incisors and the chin, which were not both found");
-    place_hollow("b_point", first + rows_of(crown) / 2, foremost_chin);
+    place_hollow("b_point", first + rows_of(crown), foremost_chin);
   }
 
-  /// The foremost row, or, where a chin recedes or a jaw is open, the row farthest before the line between
-  /// both; -1: none stands before it by two millimetres.
+  /// The foremost row, if the bone above lies behind it as clearly as a hollow. Otherwise, where a chin is
+  /// flat or recedes or a jaw is open, the row farthest before the line between both, which no pitch of the
+  /// head changes much; -1: none stands before it as clearly.
   int pogonion_between(int high, int last) {
     const int row = foremost(profile_, high, last);
-    if (row > high + 1) return row;
+    double above = back(row);
+    for (int k = high; k < row; ++k) above = std::max(above, back(k));
+    if (above >= back(row) + hollow) {
+      add_flat("pogonion", row, high, last, [&](int k) { return -back(k); });
+      return row;
+    }
     const auto before = [&](int k) {
       return back(high) + (back(last) - back(high)) * (k - high) / std::max(last - high, 1) - back(k);
     };
     int best = high;
     for (int k = high; k <= last; ++k)
       if (before(k) > before(best)) best = k;
-    if (!(before(best) >= 2.0)) return -1;
-    found_.doubt_mm["pogonion"] += 3.0;
+    if (!(before(best) >= hollow)) return -1;
+    found_.doubt_mm["pogonion"] += between_chins;
+    add_flat("pogonion", best, high, last, before);
     return best;
   }
 

@@ -4,16 +4,19 @@
 //   z' = height(z);  y' = back(y - forward(z));  x' = (x - mid(z)) * width(z) * side(sign).
 // All lengths of a head are drawn: the heights of its thirds, how far its jaws stand before the skull, its
 // width by height, and, where crooked, how far its middle leaves the plane and how one side differs.
-#include "verify/random_head.h"
+#include "tests/planner/landmark/random_head.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "verify/chance.h"
 #include "verify/head_solids.h"
 
-namespace octotomy::verify {
+namespace octotomy::tests {
+
+using verify::Chance;
+using verify::HeadBricks;
+
 namespace {
 
 /// Canonical heights between which a face is stretched: neck, chin, bite, nasal spine, orbit, brow, crown.
@@ -196,4 +199,4 @@ bool RandomHead::is_bone(const glm::dvec3& p) const {
   return holds(HeadBricks::Bone) && !was_removed(q, holds(HeadBricks::Teeth));
 }
 
-}  // namespace octotomy::verify
+}  // namespace octotomy::tests

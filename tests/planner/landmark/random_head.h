@@ -9,10 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "verify/chance.h"
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 
-namespace octotomy::verify {
+namespace octotomy::tests {
 
 /// What is special about a random head besides its proportions, its scan and how it is held.
 enum class HeadKind {
@@ -40,7 +41,7 @@ struct Knots {
 };
 
 /// The head phantom with other proportions, parts and things beside it, in closed form: a point of the head,
-/// in millimetres of its own frame, is looked up in head_solids() at canonical_mm().
+/// in millimetres of its own frame, is looked up in verify::head_solids() at canonical_mm().
 class RandomHead {
  public:
   /// The same head for the same kind and seed.
@@ -82,8 +83,8 @@ class RandomHead {
     double skin_hu = 0.0, core_hu = 0.0;
   };
 
-  void draw_proportions(class Chance& chance, bool is_crooked);
-  void draw_things(class Chance& chance, HeadKind kind);
+  void draw_proportions(verify::Chance& chance, bool is_crooked);
+  void draw_things(verify::Chance& chance, HeadKind kind);
   bool was_removed(const glm::dvec3& canonical_mm, bool is_tooth) const;
   void find_truths();
 
@@ -104,4 +105,4 @@ class RandomHead {
   std::map<std::string, glm::dvec3> truths_mm_;
 };
 
-}  // namespace octotomy::verify
+}  // namespace octotomy::tests

@@ -7,9 +7,9 @@
 #include <functional>
 #include <limits>
 
-#include "verify/random_head.h"
+#include "tests/planner/landmark/random_head.h"
 
-namespace octotomy::verify {
+namespace octotomy::tests {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -213,4 +213,4 @@ double RandomHead::error_mm(const std::string& name, const glm::dvec3& p_mm) con
   return infinite;
 }
 
-}  // namespace octotomy::verify
+}  // namespace octotomy::tests

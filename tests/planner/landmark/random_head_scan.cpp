@@ -11,12 +11,15 @@
 #include <numbers>
 #include <tbb/parallel_for.h>
 
-#include "verify/chance.h"
+#include "tests/planner/landmark/random_head.h"
 #include "verify/head_solids.h"
-#include "verify/random_head.h"
 #include "voxel/space/shared_progress.h"
 
-namespace octotomy::verify {
+namespace octotomy::tests {
+
+using verify::Chance;
+using verify::HeadBricks;
+
 namespace {
 
 constexpr double air_hu = -1000.0;
@@ -103,7 +106,7 @@ class HeadScan {
          {HeadBricks::Skin, HeadBricks::Air, HeadBricks::Bone, HeadBricks::ToothCore, HeadBricks::Teeth}) {
       if (places[field] < 0) {
         const double at = prune(from[field], q, radius_mm, pruned[field]);
-        places[field] = place(at, radius_mm);
+        places[field] = verify::place(at, radius_mm);
         if (field == HeadBricks::Skin && head_.mask_mm_ > 0.0 && at > 0.0 && at < radius_mm + 4.0)
           places[field] = -1;
       }
@@ -299,4 +302,4 @@ voxel::Scene RandomHead::scan(const voxel::Progress& progress) const {
   return HeadScan(*this).scan(progress);
 }
 
-}  // namespace octotomy::verify
+}  // namespace octotomy::tests
