@@ -18,7 +18,7 @@ constexpr double most_hole = 9.0;          ///< of thin bone, across which it go
 constexpr double orbit_above_nose = 6.0;   ///< a height within the orbits, over the nose's opening
 constexpr double least_orbit = 18.0, most_orbit = 42.0;  ///< from the mid-plane
 constexpr double orbit_height = 32.0;
-constexpr double two_rims = 6.0;  ///< between the answers of two rules for a rim, beyond which neither is one
+constexpr double two_rims = 8.0;  ///< between the answers of two rules for a rim, beyond which neither is one
 constexpr double crest = 6.0;     ///< below a rim's crest nothing stands before it for so long
 constexpr double as_far = 1.0;    ///< within which places are as far out as the outermost
 constexpr double arch_begin = 15.0, arch_end = 78.0;  ///< behind the nasal spine
@@ -88,7 +88,7 @@ class Face {
       if (std::isfinite(next) && rise > most) most = rise, step_back = out + 1.5;
     }
     if (std::abs(step_back - rim) > two_rims)
-      miss("piriform", "two rules for the rim of the nose's opening answer more than 6 mm apart");
+      miss("piriform", "two rules for the rim of the nose's opening answer more than 8 mm apart");
     else {
       place("piriform", {side_.second * rim, front(rim, row), maps_.front.y_mm(row)});
       doubt("piriform", 0.7 * std::abs(step_back - rim));

@@ -20,7 +20,7 @@ struct LandmarkGuess {
   ///   head pitched by up to 6 degrees either way (faces' own lines differ by some 4 from the Frankfurt
   ///   plane), other heights, a coarser map, a higher threshold, mid-planes of other shares of the surface;
   /// - what the rule itself leaves open (FoundPlaces::doubt_mm): the length over which its extremum is flat,
-  ///   half the way to a second rule's answer, half the difference of both sides; of midline_... points how
+  ///   half the way to a second rule's answer, the difference of both sides; of midline_... points how
   ///   far the two halves lie apart, MirrorFit::rms_mm;
   /// - of a point of the middle, half of how far it lies beside the mid-plane.
   /// The two factors are chosen, not derived; random heads of closed form test the result. What observers

@@ -98,7 +98,8 @@ void keep_alike(FoundPlaces& found) {
         take_out(found, name, "left and right would differ more than the sides of a face");
       continue;
     }
-    for (const std::string& name : {left, right}) found.doubt_mm[name] += 0.5 * std::hypot(across, along);
+    // Which of them is wrong is not known, so each may be by all of it.
+    for (const std::string& name : {left, right}) found.doubt_mm[name] += std::hypot(across, along);
   }
 }
 
