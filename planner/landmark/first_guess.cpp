@@ -276,11 +276,15 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
     progress.at(0.3 + 0.7 * static_cast<double>(&trial - trials.data()) / static_cast<double>(trials.size()));
     const HeadFrame other = frame_of(trial);
     FoundPlaces found = apply(trial, other);
-    // A trial without a face, as where a higher threshold opens the orbits' floors, says nothing; another one
-    // counts as without an answer.
-    if (found.places.empty() && !std::exchange(is_one_faceless, true)) continue;
+    const bool has_face = !found.places.empty();
     add_brain_case(head, other, found);
     for (auto& [name, place] : found.places) place = other.lps_mm(place);
+    // A trial without this face, as where a higher threshold opens the orbits' floors or another edge passes
+    // for the spine, from which other rules count, says nothing; another one counts as it is.
+    const glm::dvec3 *spine = first.find("ans"), *its = found.find("ans");
+    const bool is_this_face = has_face && (spine == nullptr || its == nullptr ||
+                                           glm::distance(frame.lps_mm(*spine), *its) <= most_within_mm);
+    if (!is_this_face && !std::exchange(is_one_faceless, true)) continue;
     others.push_back(std::move(found));
   }
 
