@@ -6,6 +6,7 @@
 // OCTOTOMY_REASONS=1 prints why each other point is missing.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <gtest/gtest.h>
@@ -130,6 +131,20 @@ void print_head(const Subject& subject, bool has_reasons) {
   }
 }
 
+/// The most of `count` points that lie beyond what is told in 999 of 1000 samples, where one in a hundred
+/// does: a few heads cannot show the share itself, which the long run prints.
+int most_by_chance(int count) {
+  constexpr double share = 0.01;
+  double term = std::pow(1.0 - share, count), sum = term;
+  int most = 0;
+  while (sum < 0.999 && most < count) {
+    term *= (count - most) * share / ((most + 1) * (1.0 - share));
+    sum += term;
+    ++most;
+  }
+  return most;
+}
+
 TEST(RandomHeads, NinetyNineOfAHundredPointsLieWithinWhatIsToldAndMostAreFound) {
   const std::map<std::string, double> least_mm = least_by_name();
   std::vector<Subject> subjects(static_cast<std::size_t>(wanted_heads()));
@@ -148,8 +163,14 @@ TEST(RandomHeads, NinetyNineOfAHundredPointsLieWithinWhatIsToldAndMostAreFound) 
   print_table(subjects, least_mm);
   std::printf("%d heads, %d points: %d found, %d of these beyond what is told\n", wanted_heads(), there,
               found, beyond);
-  EXPECT_LE(beyond * 100, found);
+  EXPECT_LE(beyond, most_by_chance(found));
   EXPECT_GE(found * 100, there * 70);
+}
+
+TEST(RandomHeads, AFewBeyondAreChanceAndManyAreNot) {
+  EXPECT_EQ(most_by_chance(1), 1);
+  EXPECT_EQ(most_by_chance(160), 7);
+  EXPECT_LT(most_by_chance(4500), 70);
 }
 
 TEST(RandomHead, TellsTruthsOfWhatItHasAlone) {
