@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -52,7 +53,7 @@ void lower(Certificate& certificate, Verdict verdict, const std::string& reason)
 void add_comparison(Certificate& certificate, Comparison comparison, Verdict worst_verdict) {
   // Written so that a difference that is no number fails.
   const auto within = [&](double allowed) { return comparison.difference <= allowed; };
-  if (comparison.judged && comparison.tolerance && !within(*comparison.tolerance)) {
+  if (comparison.tolerance && !within(*comparison.tolerance)) {
     comparison.verdict =
         std::min(within(doubt * *comparison.tolerance) ? Verdict::Warn : Verdict::Fail, worst_verdict);
     lower(certificate, comparison.verdict, disagreement(certificate, comparison));
@@ -70,12 +71,38 @@ bool is_evident(const Certificate& certificate) {
 }
 
 void judge_evidence(Certificate& certificate) {
-  const double object_mm3 = certificate.larger_mm3(), unseen_mm3 = certificate.unseen_mm3();
+  const double object_mm3 = certificate.larger_mm3();
+  const double unseen_mm3 = std::max(certificate.unseen_mm3(), certificate.tolerance_mm3);
   if (certificate.unresolved || !(object_mm3 > 0.0) || unseen_mm3 <= evident_share * object_mm3) return;
   certificate.unresolved = {
       std::nullopt, "a wrong part of " + voxel::rounded(unseen_mm3) + " mm3 could pass, " +
                         voxel::rounded(100.0 * unseen_mm3 / object_mm3) + " % of the object; " +
                         voxel::rounded(100.0 * evident_share) + " % are allowed: take smaller voxels"};
+}
+
+void judge_emptiness(Certificate& certificate, double missed_mm3) {
+  if (certificate.larger_mm3() > 0.0 || certificate.mesh.area_mm2 > 0.0) return;
+  lower(certificate, Verdict::Warn,
+        "Both answers are empty, so that nothing was compared. A part of up to " +
+            voxel::rounded(missed_mm3) + " mm3 could have been missed.");
+  if (!certificate.unresolved) certificate.unresolved = {std::nullopt, "both answers are empty"};
+}
+
+std::vector<std::string> shared_makers(const Answer& a, const Answer& b) {
+  std::vector<std::string> shared;
+  std::set_intersection(a.makers.begin(), a.makers.end(), b.makers.begin(), b.makers.end(),
+                        std::back_inserter(shared));
+  return shared;
+}
+
+void judge_independence(Certificate& certificate) {
+  const std::vector<std::string> shared = shared_makers(certificate.voxel, certificate.mesh);
+  if (shared.empty()) return;
+  std::string names;
+  for (const std::string& maker : shared) names += (names.empty() ? "" : "; ") + maker;
+  lower(certificate, Verdict::Warn,
+        "The answers are not independent, as the same code made both: " + names +
+            ". Their agreement shows nothing of what that code does.");
 }
 
 std::string text_of(const WorstPlace& worst) {
@@ -86,7 +113,7 @@ std::string text_of(const WorstPlace& worst) {
 double worst_share(const Certificate& certificate) {
   double worst = 0.0;
   for (const Comparison& comparison : certificate.comparisons) {
-    if (!comparison.judged || !comparison.tolerance || comparison.difference == 0.0) continue;
+    if (!comparison.tolerance || comparison.difference == 0.0) continue;
     assert(*comparison.tolerance >= 0.0);
     worst = std::max(worst, *comparison.tolerance > 0.0 ? comparison.difference / *comparison.tolerance
                                                         : std::numeric_limits<double>::infinity());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "brep/mesh/solid.h"
+#include "verify/line_count.h"
 #include "voxel/space/scene.h"
 #include "voxel/tree/octree.h"
 
@@ -23,7 +24,11 @@ struct Answer {
   double volume_mm3 = 0.0;
   double area_mm2 = 0.0;
   std::optional<glm::dvec3> centroid_mm;
+  /// The code that made the answer and its operands, down to the scan, a clause each, sorted.
+  std::vector<std::string> makers = {};
 };
+/// The makers that two answers share.
+std::vector<std::string> shared_makers(const Answer& a, const Answer& b);
 
 /// One source of difference that theory allows.
 struct ToleranceTerm {
@@ -46,7 +51,6 @@ struct Comparison {
   /// Empty: both answers are quoted.
   std::string statement = {};
   Verdict verdict = Verdict::Pass;
-  bool judged = true;  ///< false: for information, as every place was judged by itself
 };
 
 /// An object that is too small or too thin for its voxels: a PASS proves little, a FAIL stays one.
@@ -70,7 +74,7 @@ inline constexpr const char* part_of_voxels_only = "the voxels have a part there
 
 /// The smallest error that a certificate would have seen in this very object, found by making errors in it.
 struct DetectionLimit {
-  double volume_mm3 = 0.0;         ///< of a part that is lost or added, in one place
+  double volume_mm3 = 0.0;         ///< of a part that one kernel or both lose or add, in one place
   std::optional<double> shift_mm;  ///< of the whole, in any direction; none: not even four voxels
 };
 
@@ -91,13 +95,19 @@ struct Certificate {
   std::optional<double> hausdorff95_mm;  ///< 95th percentile, as the definition in the report says
   std::optional<WorstPlace> worst;       ///< none: the answers are equal, or there is no mesh to compare
   std::optional<DetectionLimit> limit;   ///< where the places were judged
-  std::vector<Comparison> comparisons;   ///< every quantity that was compared
+  std::optional<LineCount> third;        ///< amounts by lines through the scan, by code of neither kernel
+  /// What both kernels take from one place without its being an answer of either: values that a step finds,
+  /// filters.
+  std::vector<std::string> shared_values;
+  std::vector<Comparison> comparisons;  ///< every quantity that was compared
   Verdict verdict = Verdict::Pass;
   std::vector<std::string> reasons;  ///< why not PASS
   std::optional<Unresolved> unresolved;
   double milliseconds = 0.0;
 
   bool resolved() const { return !unresolved; }
+  /// Whether no code made both answers.
+  bool independent() const { return shared_makers(voxel, mesh).empty(); }
   /// Volume of the largest wrong part that could pass: the limit, where places were judged, or the tolerance.
   double unseen_mm3() const { return limit ? limit->volume_mm3 : tolerance_mm3; }
   /// The larger of both answers.
@@ -107,9 +117,14 @@ struct Certificate {
 /// Whether the verdict rests on evidence: voxels resolve the object, or the limit is within evident_share of
 /// a thin one.
 bool is_evident(const Certificate& certificate);
-/// Sets `unresolved`, unless it is set, where more than evident_share of the object could be wrong unseen.
-/// Two empty answers leave nothing to be wrong.
+/// Sets `unresolved`, unless it is set, where more than evident_share of the object could be wrong unseen, or
+/// its volume off within the tolerance.
 void judge_evidence(Certificate& certificate);
+/// Lowers the verdict to WARN where both answers are empty, which compares nothing, and says what could have
+/// been missed.
+void judge_emptiness(Certificate& certificate, double missed_mm3);
+/// Lowers the verdict to WARN and names the makers where the answers share some.
+void judge_independence(Certificate& certificate);
 
 /// Adds a comparison and sets its verdict: PASS up to the tolerance, WARN up to twice that, FAIL beyond it
 /// and if the difference is not a number, but no worse than `worst_verdict`. Lowers the certificate's verdict

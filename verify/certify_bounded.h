@@ -28,6 +28,9 @@ struct BoundInputs {
   bool voxels_are_samples = false;
   /// Judges the places at which the answers differ. Without one, distances and areas do.
   Witness witness = {};
+  /// The object as it reaches beyond the universe, for a third reading of its amounts. Default: the
+  /// witness's.
+  LineReading lines = {};
 };
 
 /// Compares an octree with a solid of separate lineage (tier Bounded). The source derives the terms. A solid

@@ -23,6 +23,7 @@
 #include "brep/shape/prism.h"
 #include "convert/surface/isosurface.h"
 #include "verify/certify_surface.h"
+#include "verify/chance.h"
 #include "verify/exact_agreement.h"
 #include "verify/head_phantom.h"
 #include "verify/implicit_solid.h"
@@ -83,14 +84,18 @@ voxel::Octree voxel_answer(const Subject& subject, const Making& making) {
   return voxel::combine(subject.universe, voxel::moved(still, motion_of(subject, making)));
 }
 
+brep::Solid solid_of(const voxel::Box& box) {
+  const glm::dvec3 a = box.low_mm, b = box.high_mm;
+  return brep::solid_of(brep::Prism{
+      {0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {{{a.x, a.z}, {b.x, a.z}, {b.x, b.z}, {a.x, b.z}}}, a.y, b.y});
+}
+
 brep::Triangles mesh_answer(const Subject& subject, const Making& making) {
   const brep::Solid window = brep::trusted_solid(
       convert::isosurface(scan_of(subject, making), making.low, std::numeric_limits<double>::infinity()),
       brep::Proof::Construction);
-  const glm::dvec3 a = subject.box.low_mm + making.box_shift_mm,
-                   b = subject.box.high_mm + making.box_shift_mm;
-  const brep::Solid box = brep::solid_of(brep::Prism{
-      {0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {{{a.x, a.z}, {b.x, a.z}, {b.x, b.z}, {a.x, b.z}}}, a.y, b.y});
+  const brep::Solid box =
+      solid_of({subject.box.low_mm + making.box_shift_mm, subject.box.high_mm + making.box_shift_mm});
   const brep::Solid still = making.swapped ? brep::boolean(box, brep::Operation::Difference, window).solid
                                            : brep::boolean(window, brep::Operation::Difference, box).solid;
   return brep::triangles_of(brep::moved(still, motion_of(subject, making)));
@@ -120,6 +125,23 @@ brep::Triangles with_shell_twice(brep::Triangles triangles) {
     triangles.faces.push_back(face);
   }
   return triangles;
+}
+/// The triangles and, beside them, those of another surface.
+brep::Triangles with_shell_again(brep::Triangles triangles, const brep::Triangles& again) {
+  const auto points = static_cast<std::uint32_t>(triangles.points_mm.size());
+  triangles.points_mm.insert(triangles.points_mm.end(), again.points_mm.begin(), again.points_mm.end());
+  for (const std::array<std::uint32_t, 3>& face : again.faces)
+    triangles.faces.push_back({face[0] + points, face[1] + points, face[2] + points});
+  return triangles;
+}
+/// An answer with a box or without it.
+voxel::Octree changed(const voxel::Octree& octree, const voxel::Box& box, brep::Operation operation) {
+  const Expression all(octree), part(box);
+  return voxel::combine(octree.universe(), operation == brep::Operation::Union ? all | part : all - part);
+}
+brep::Triangles changed(const brep::Triangles& triangles, const voxel::Box& box, brep::Operation operation) {
+  const brep::Solid solid = brep::trusted_solid(triangles, brep::Proof::Connection);
+  return brep::triangles_of(brep::boolean(solid, operation, solid_of(box)).solid);
 }
 brep::Triangles shifted(brep::Triangles triangles, const glm::dvec3& by_mm) {
   for (glm::dvec3& p : triangles.points_mm) p += by_mm;
@@ -162,6 +184,9 @@ constexpr const char* window_sixteenth = "window edge off by 1/16";
 constexpr const char* stale_result = "stale result";
 constexpr const char* stale_box = "stale box, two voxels off";
 constexpr const char* wrong_pivot = "rotation about the wrong point";
+constexpr const char* shell_thrice = "shell three times";
+constexpr const char* both_empty = "both kernels empty";
+constexpr const char* lost_by_both = "half lost by both kernels";
 
 /// One clean question's pair, and how to spoil it.
 class Trials {
@@ -172,6 +197,16 @@ class Trials {
                                              std::numeric_limits<double>::infinity(), subject.universe);
     witness_ = both(carried(without(window, witness_of_box(subject.box)), motion_of(subject, clean_)),
                     witness_of_box(voxel::bounds(subject.universe.lattice())));
+  }
+
+  /// Alterations by chance of the clean answers.
+  std::vector<Alteration> altered(int count, Chance& chance) {
+    octree_ = voxel_answer(subject_, clean_);
+    triangles_ = mesh_answer(subject_, clean_);
+    const Certificate right = certified("clean", *octree_, triangles_);
+    std::vector<Alteration> made;
+    for (int i = 0; i < count; ++i) made.push_back(altered(right, chance));
+    return made;
   }
 
   std::vector<FaultTrial> run() {
@@ -193,6 +228,14 @@ class Trials {
     certify(flipped_shell, "mesh", *octree_, turned_inside_out(triangles_));
     certify(lost_triangle, "mesh", *octree_, with_lost_triangle(triangles_));
     certify(duplicated_shell, "mesh", *octree_, with_shell_twice(triangles_));
+    certify(shell_thrice, "mesh", *octree_, with_shell_again(with_shell_twice(triangles_), triangles_));
+    certify(both_empty, "both", voxel::Octree::empty(subject_.universe), {});
+    const voxel::Box world = voxel::bounds(subject_.universe.lattice());
+    const voxel::Box half{
+        world.low_mm - h,
+        {0.5 * (world.low_mm.x + world.high_mm.x) + 0.3 * h, world.high_mm.y + h, world.high_mm.z + h}};
+    certify(lost_by_both, "both", changed(*octree_, half, brep::Operation::Difference),
+            changed(triangles_, half, brep::Operation::Difference));
     certify(half_voxel, "mesh", *octree_, shifted(triangles_, {0.5 * h, 0.0, 0.0}));
     certify(quarter_voxel, "mesh", *octree_, shifted(triangles_, {0.0, 0.25 * h, 0.0}));
     certify(eighth_voxel, "mesh", *octree_, shifted(triangles_, {0.0, 0.0, 0.125 * h}));
@@ -220,16 +263,77 @@ class Trials {
     return all;
   }
 
+  /// A box of one to a sixth of the universe's voxels a side, about a vertex of the mesh.
+  voxel::Box box_by_chance(Chance& chance) const {
+    const auto count = static_cast<double>(triangles_.points_mm.size());
+    const glm::dvec3 middle_mm =
+        triangles_.points_mm[static_cast<std::size_t>(chance.between(0.0, count - 1e-6))];
+    glm::dvec3 half_mm;
+    for (int axis = 0; axis < 3; ++axis)
+      half_mm[axis] = 0.5 * edge_mm(subject_) * std::exp(chance.between(0.0, std::log(voxels_ / 6.0)));
+    return {middle_mm - half_mm, middle_mm + half_mm};
+  }
+
+  Alteration altered(const Certificate& right, Chance& chance) const {
+    constexpr std::array<const char*, 9> kinds{
+        "box lost by the voxels",  "box lost by the mesh",  "box lost by both kernels",
+        "box added to the voxels", "box added to the mesh", "box added to both kernels",
+        "mesh several times",      "mesh shifted",          "both kernels empty"};
+    const auto kind = static_cast<std::size_t>(chance.between(0.0, 9.0 - 1e-9));
+    Alteration made;
+    made.kind = kinds[kind];
+    made.subject = subject_.name + ", " + std::to_string(voxels_) + " voxels a side";
+    voxel::Octree octree = *octree_;
+    brep::Triangles triangles = triangles_;
+    const double whole_mm3 = right.mesh.volume_mm3;
+    if (kind < 6) {
+      const voxel::Box box = box_by_chance(chance);
+      const auto operation = kind < 3 ? brep::Operation::Difference : brep::Operation::Union;
+      if (kind % 3 != 1) octree = changed(octree, box, operation);
+      if (kind % 3 != 0) triangles = changed(triangles, box, operation);
+      const double of_mesh_mm3 =
+          std::abs(brep::trusted_solid(triangles, brep::Proof::Connection).size().volume_mm3 - whole_mm3);
+      const double of_voxels_mm3 =
+          std::abs(static_cast<double>(octree.voxel_count()) - static_cast<double>(octree_->voxel_count())) *
+          octree.universe().lattice().voxel_mm3();
+      made.altered_mm3 = kind % 3 == 0   ? of_voxels_mm3
+                         : kind % 3 == 1 ? of_mesh_mm3
+                                         : std::min(of_mesh_mm3, of_voxels_mm3);
+    } else if (kind == 6) {
+      const int times = 1 + static_cast<int>(chance.between(1.0, 4.0));
+      for (int i = 1; i < times; ++i) triangles = with_shell_again(std::move(triangles), triangles_);
+      made.altered_mm3 = whole_mm3 * (times - 1);
+    } else if (kind == 7) {
+      glm::dvec3 by_mm(0.0);
+      const int axis = static_cast<int>(chance.between(0.0, 3.0 - 1e-9));
+      by_mm[axis] = edge_mm(subject_) * chance.even() * 2.0;
+      triangles = shifted(std::move(triangles), by_mm);
+      made.is_over_limit =
+          right.limit && right.limit->shift_mm && std::abs(by_mm[axis]) > *right.limit->shift_mm;
+    } else {
+      octree = voxel::Octree::empty(subject_.universe);
+      triangles = {};
+      made.altered_mm3 = whole_mm3;
+    }
+    made.is_over_limit = made.is_over_limit || made.altered_mm3 > right.limit->volume_mm3;
+    made.verdict = certified(made.kind, octree, triangles).verdict;
+    return made;
+  }
+
   void certify(const std::string& fault, const std::string& kernel, const voxel::Octree& octree,
                const brep::Triangles& triangles) {
+    trials_.push_back({fault, kernel, subject_.name, voxels_, false, certified(fault, octree, triangles)});
+  }
+
+  Certificate certified(const std::string& fault, const voxel::Octree& octree,
+                        const brep::Triangles& triangles) const {
     BoundInputs inputs;
     inputs.operation = subject_.name + ", (window - box) turned" + (fault.empty() ? "" : ", " + fault);
     inputs.voxel_lineage = "window on a grey octree of the scan, in one walk";
     inputs.mesh_lineage = "isosurface of the scan's own samples, corefinement";
     inputs.scan_spacing_mm = subject_.scan.lattice.spacing_mm();
     inputs.witness = witness_;
-    trials_.push_back(
-        {fault, kernel, subject_.name, voxels_, false, certify_surface(octree, triangles, inputs)});
+    return certify_surface(octree, triangles, inputs);
   }
 
   const Subject& subject_;
@@ -378,7 +482,10 @@ const std::vector<Fault>& faults() {
       {window_sixteenth, "one kernel's window begins a sixteenth of the contrast higher", true},
       {stale_result, "one kernel has the object as it was before it was turned and moved", true},
       {stale_box, "one kernel has the box where it was before it moved by two voxels along each axis", true},
-      {wrong_pivot, "one kernel turns about the origin instead of the given point", true}};
+      {wrong_pivot, "one kernel turns about the origin instead of the given point", true},
+      {shell_thrice, "the mesh's surface is there three times", true},
+      {both_empty, "both kernels answer nothing", true},
+      {lost_by_both, "both kernels have lost what lies in one half of the universe", true}};
   return all;
 }
 
@@ -424,6 +531,25 @@ std::vector<FaultTrial> try_faults(const FaultOptions& options) {
       trials.push_back(std::move(trial));
     }
   return trials;
+}
+
+std::vector<Alteration> try_alterations(const AlterationOptions& options) {
+  constexpr std::array<const char*, 3> subjects{"ellipsoid", "ring", "head"};
+  std::vector<std::vector<Alteration>> parts(subjects.size());
+  voxel::SharedProgress done(options.progress, subjects.size());
+  tbb::parallel_for(std::size_t{0}, subjects.size(), [&](std::size_t i) {
+    done.one_more();
+    const std::string name = subjects[i];
+    const Subject subject =
+        name == "head" ? head_subject(options.voxels) : shape_subject(name, options.voxels);
+    Chance chance(options.seed * subjects.size() + i);
+    const int count = options.count / static_cast<int>(subjects.size());
+    parts[i] = Trials(subject, options.voxels).altered(count, chance);
+  });
+  std::vector<Alteration> all;
+  for (std::vector<Alteration>& part : parts)
+    all.insert(all.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
+  return all;
 }
 
 std::vector<DetectionPower> detection_power(const std::vector<FaultTrial>& trials) {

@@ -4,8 +4,12 @@
 //   surface, where the witness does not know the side, the kernels must agree.
 // 2 Triangles. A triangle's centroid must lie where the witness has a surface, each vertex where a surface
 //   has a vertex of its own or two surfaces cross.
-// 3 Groups. Voxels that fail, joined by faces, edges and corners; the largest is the worst place.
-// 4 Limit. Errors are made at random places of this object and judged as above: groups of voxels next to the
+// 3 Inside. What both kernels lack, or have too much of, has no boundary that step 1 would compare. So every
+// eighth
+//   voxel wherever the object may be is held against the witness: those with x + 2y + 4z a multiple of 8, one
+//   in each block of two voxels a side.
+// 4 Groups. Voxels that fail, joined by faces, edges and corners; the largest is the worst place.
+// 5 Limit. Errors are made at random places of this object and judged as above: groups of voxels next to the
 //   boundary are removed and added, pieces of the mesh are lost, the whole is shifted along both directions
 //   of three axes. The limit is the smallest size from which every one of them is found.
 #include "verify/places.h"
@@ -14,6 +18,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <tbb/blocked_range.h>
@@ -24,6 +29,8 @@
 #include "brep/mesh/components.h"
 #include "brep/mesh/distance.h"
 #include "brep/mesh/triangles.h"
+#include "verify/necks.h"
+#include "voxel/measure/distance_map.h"
 #include "voxel/solid/combine.h"
 #include "voxel/tree/octree_node.h"
 #include "voxel/tree/voxel_boundary.h"
@@ -156,6 +163,105 @@ std::vector<FailedVoxel> failed_voxels(const voxel::Octree& octree, const voxel:
   return failed;
 }
 
+/// Voxels of step 3.
+constexpr int sampled_one_in = 8;
+bool is_sampled(const glm::ivec3& voxel) {
+  return ((voxel.x + 2 * voxel.y + 4 * voxel.z) & (sampled_one_in - 1)) == 0;
+}
+/// The one of the block of two voxels a side that begins at a voxel.
+glm::ivec3 sampled_in_block(const glm::ivec3& first) {
+  glm::ivec3 at = first;
+  for (int i = 0; i < 8 && !is_sampled(at); ++i)
+    at = first + glm::ivec3((i + 1) & 1, ((i + 1) >> 1) & 1, (i + 1) >> 2);
+  return at;
+}
+
+/// A block of voxels and where it ends, exclusive.
+struct VoxelBlock {
+  glm::ivec3 low{0}, high{0};
+};
+/// The blocks of the universe in which the object may be, by its reading along lines, or voxels are.
+std::vector<VoxelBlock> blocks_of(const voxel::Octree& octree, const LineReading& lines) {
+  constexpr int block = 8;
+  const voxel::Lattice lattice = octree.universe().lattice();
+  glm::dvec3 low(octree.universe().side()), high(-1.0);
+  // A box with sides in infinity has no corners: it reaches over all.
+  const bool is_bounded = glm::all(glm::lessThan(glm::abs(lines.box_mm.low_mm), glm::dvec3(1e9))) &&
+                          glm::all(glm::lessThan(glm::abs(lines.box_mm.high_mm), glm::dvec3(1e9)));
+  const voxel::Box box = is_bounded ? lines.box_mm : voxel::bounds(lattice);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p_voxel =
+        lattice.voxel({corner & 1 ? box.high_mm.x : box.low_mm.x, corner & 2 ? box.high_mm.y : box.low_mm.y,
+                       corner & 4 ? box.high_mm.z : box.low_mm.z});
+    low = glm::min(low, p_voxel);
+    high = glm::max(high, p_voxel);
+  }
+  if (!octree.is_empty()) {
+    const voxel::VoxelRange range = voxel::range_of(octree);
+    low = glm::min(low, glm::dvec3(range.low));
+    high = glm::max(high, glm::dvec3(range.high));
+  }
+  const glm::ivec3 first(
+      glm::clamp(glm::floor(low), glm::dvec3(0.0), glm::dvec3(octree.universe().side() - 1))),
+      last(glm::clamp(glm::ceil(high), glm::dvec3(0.0), glm::dvec3(octree.universe().side() - 1)));
+  std::vector<VoxelBlock> blocks;
+  for (int z = first.z; z <= last.z; z += block)
+    for (int y = first.y; y <= last.y; y += block)
+      for (int x = first.x; x <= last.x; x += block)
+        blocks.push_back({{x, y, z}, glm::min(glm::ivec3(x, y, z) + block, last + 1)});
+  return blocks;
+}
+
+/// Sampled voxels on which both kernels agree and that the witness contradicts, but for `compared` ones,
+/// which are sorted. Empty where the object has no reading along lines, which says where to look.
+std::vector<FailedVoxel> failed_inside(const voxel::Octree& octree, const voxel::Octree& digitised,
+                                       const std::vector<glm::ivec3>& compared, const Witness& witness,
+                                       const voxel::Progress& progress) {
+  if (!witness.lines()) return {};
+  const voxel::Lattice lattice = octree.universe().lattice();
+  const std::vector<VoxelBlock> blocks = blocks_of(octree, witness.lines());
+  std::vector<std::vector<FailedVoxel>> found(blocks.size());
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+    if (progress.stop.stop_requested()) return;
+    const VoxelBlock& block = blocks[i];
+    const glm::dvec3 a = lattice.lps_mm(glm::dvec3(block.low) - 0.5),
+                     b = lattice.lps_mm(glm::dvec3(block.high) - 0.5);
+    const bool may_meet = witness.lines().may_meet({glm::min(a, b), glm::max(a, b)});
+    for (int z = block.low.z; z < block.high.z; ++z)
+      for (int y = block.low.y; y < block.high.y; ++y)
+        for (int x = block.low.x + ((8 - ((block.low.x + 2 * y + 4 * z) & 7)) & 7); x < block.high.x;
+             x += sampled_one_in) {
+          const glm::ivec3 at(x, y, z);
+          const bool inside = octree.contains(at);
+          if ((!may_meet && !inside) || digitised.contains(at) != inside) continue;
+          const Fault fault = fault_of(witness(lattice.lps_mm(glm::dvec3(at)), 0.0), inside, inside);
+          if (fault == Fault::None || std::binary_search(compared.begin(), compared.end(), at, before))
+            continue;
+          found[i].push_back({at, fault});
+        }
+  });
+  std::vector<FailedVoxel> failed;
+  for (const std::vector<FailedVoxel>& part : found) failed.insert(failed.end(), part.begin(), part.end());
+  return failed;
+}
+
+/// Each stands for its block.
+void add_inside(const std::vector<FailedVoxel>& failed, const voxel::Octree& octree, Places& places) {
+  if (failed.empty()) return;
+  const voxel::Lattice lattice = octree.universe().lattice();
+  const std::uint64_t count = failed.size() * static_cast<std::uint64_t>(sampled_one_in);
+  places.voxel_count += count;
+  if (count <= places.largest_count) return;
+  places.largest_count = count;
+  const double volume_mm3 = static_cast<double>(count) * lattice.voxel_mm3();
+  const FailedVoxel& middle = failed[failed.size() / 2];
+  const bool lacks = middle.fault == Fault::VoxelsLack || middle.fault == Fault::MeshLacks;
+  places.worst = WorstPlace{lattice.lps_mm(glm::dvec3(middle.at)), std::cbrt(volume_mm3),
+                            lacks ? "the scan has a part there that both kernels lack"
+                                  : "both kernels have a part there that the scan lacks",
+                            volume_mm3};
+}
+
 /// Whether no face connects a voxel that one kernel lacks with a part of which it might be. What certainly is
 /// there is another object's.
 bool hangs_on_no_face(const glm::ivec3& voxel, const voxel::Octree& octree, const voxel::Octree& digitised,
@@ -177,6 +283,7 @@ bool hangs_on_no_face(const glm::ivec3& voxel, const voxel::Octree& octree, cons
 void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& octree,
                 const voxel::Octree& digitised, const Witness& witness, Places& places) {
   const voxel::Lattice lattice = octree.universe().lattice();
+  Necks necks(octree, digitised);
   std::vector<std::uint8_t> seen(failed.size(), 0);
   const auto index_of = [&](const glm::ivec3& at) {
     const auto found =
@@ -203,6 +310,21 @@ void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& oct
                  hangs_on_no_face(failed[i].at, octree, digitised, witness);
         });
     if (is_chance) continue;
+    if (witness.chooses_parts() && std::all_of(group.begin(), group.end(), [&](std::size_t i) {
+          return failed[i].fault == Fault::Apart;
+        })) {
+      std::vector<glm::ivec3> part;
+      for (const std::size_t i : group) part.push_back(failed[i].at);
+      if (!necks.is_thick(part)) {
+        const double part_mm3 = static_cast<double>(part.size()) * lattice.voxel_mm3();
+        places.bridges.push_back({lattice.lps_mm(glm::dvec3(necks.neck(part))), std::cbrt(part_mm3),
+                                  octree.contains(part.front())
+                                      ? "the voxel kernel keeps a part beyond a thin neck"
+                                      : "the mesh kernel keeps a part beyond a thin neck",
+                                  part_mm3});
+        continue;
+      }
+    }
     places.voxel_count += group.size();
     if (group.size() <= places.largest_count) continue;
     places.largest_count = group.size();
@@ -222,6 +344,8 @@ void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& oct
     places.worst = WorstPlace{lattice.lps_mm(glm::dvec3(failed[*nearest].at)), std::cbrt(volume_mm3),
                               clauses[static_cast<std::size_t>(fault)], volume_mm3};
   }
+  std::stable_sort(places.bridges.begin(), places.bridges.end(),
+                   [](const WorstPlace& a, const WorstPlace& b) { return a.volume_mm3 > b.volume_mm3; });
 }
 
 /// A triangle's centroid and area.
@@ -310,8 +434,9 @@ bool is_compared(const voxel::Octree& octree, const glm::ivec3& voxel) {
   return has(voxel);
 }
 
-/// Whether the loss of a piece would be seen: it holds a voxel's centre that is compared, and at which the
-/// mesh would fail without it. Looked for beneath its triangles, up to two voxels deep.
+/// Whether the loss of a piece would be seen, by the mesh alone and by both kernels: it holds a voxel's
+/// centre that is compared, and at which the mesh would fail without it, and a sampled one at which both
+/// would. Looked for beneath its triangles, up to two voxels deep.
 bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const voxel::Octree& octree,
              const Witness& witness) {
   constexpr std::size_t most_faces = 4096, most_tried = 64;
@@ -326,6 +451,17 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
   const glm::dvec3 voxel_mm = lattice.spacing_mm();
   const bool is_small = std::abs(piece.volume_mm3) < chance_voxels * lattice.voxel_mm3();
   const std::size_t stride = 1 + own.faces.size() / most_tried;
+  bool seen_alone = false, seen_in_both = !witness.lines();
+  const auto is_lost = [&](const glm::ivec3& at, bool in_voxels) {
+    const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(at));
+    const Fault fault = fault_of(witness(centre, 0.0), in_voxels, false);
+    return fault != Fault::None && !(fault == Fault::Apart && is_small) && brep::is_inside(centre, own);
+  };
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  for (const glm::dvec3& p : own.points_mm) {
+    low = glm::min(low, lattice.voxel(p));
+    high = glm::max(high, lattice.voxel(p));
+  }
   for (std::size_t i = 0; i < own.faces.size(); i += stride)
     for (const double voxels : {0.5, 1.0, 2.0}) {
       const auto& [a, b, c] = own.faces[i];
@@ -335,12 +471,18 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
       if (!(length > 0.0)) continue;
       const glm::dvec3 beneath = (p + q + r) / 3.0 - voxels / length * across * voxel_mm;
       const glm::ivec3 voxel(glm::round(lattice.voxel(beneath)));
-      const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(voxel));
-      if (!is_compared(octree, voxel)) continue;
-      const Fault fault = fault_of(witness(centre, 0.0), octree.contains(voxel), false);
-      if (fault != Fault::None && !(fault == Fault::Apart && is_small) && brep::is_inside(centre, own))
-        return true;
+      if (!seen_alone && is_compared(octree, voxel)) seen_alone = is_lost(voxel, octree.contains(voxel));
+      if (!seen_in_both) seen_in_both = is_lost(sampled_in_block(voxel), false);
+      if (seen_alone && seen_in_both) return true;
     }
+  // A small piece has few sampled voxels: each is tried.
+  const glm::dvec3 box = glm::ceil(high) - glm::floor(low) + 1.0;
+  constexpr double most_voxels = 16384.0;
+  if (!seen_alone || box.x * box.y * box.z > most_voxels) return false;
+  for (int z = static_cast<int>(std::floor(low.z)); z <= high.z; ++z)
+    for (int y = static_cast<int>(std::floor(low.y)); y <= high.y; ++y)
+      for (int x = static_cast<int>(std::floor(low.x)); x <= high.x; ++x)
+        if (is_sampled({x, y, z}) && is_lost({x, y, z}, false)) return true;
   return false;
 }
 
@@ -409,6 +551,7 @@ Places contradictions(const voxel::Octree& octree, const voxel::Octree& digitise
   const std::vector<glm::ivec3> voxels = compared_voxels(octree, digitised, boundary);
   progress.at(0.2);
   add_groups(failed_voxels(octree, digitised, voxels, witness, progress), octree, digitised, witness, places);
+  add_inside(failed_inside(octree, digitised, voxels, witness, progress), octree, places);
   add_stray_triangles(solid.triangles(), witness, progress, places);
   return places;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "brep/mesh/solid.h"
 #include "verify/certificate.h"
@@ -19,6 +20,9 @@ struct Places {
   double stray_mm2 = 0.0;           ///< area of triangles where the witness has no surface
   /// The largest such group of voxels, otherwise the largest such triangle.
   std::optional<WorstPlace> worst;
+  /// Parts that one kernel joins to the object by a neck thinner than bridge_voxels and the other cuts there,
+  /// the largest first. No error of either: on the scan the neck may be there or not.
+  std::vector<WorstPlace> bridges;
   DetectionLimit limit;
 };
 

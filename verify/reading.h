@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "verify/line_reading.h"
+
 // A third reading of a plan's objects, at single points: neither octrees nor meshes, but the scan's samples
 // and the plan's own numbers, by code that neither kernel uses. It decides which of two kernels that differ
 // is wrong.
@@ -62,11 +64,25 @@ class Witness {
   Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked = Asked::Both) const {
     return read_(p_mm, slack_mm, asked);
   }
+  /// The same object along lines, by code of its own; may be empty.
+  const LineReading& lines() const { return lines_; }
+  Witness with_lines(LineReading lines) && {
+    lines_ = std::move(lines);
+    return std::move(*this);
+  }
+  /// Whether the object is some of another's connected parts, so that a thin neck decides what belongs to it.
+  bool chooses_parts() const { return chooses_parts_; }
+  Witness choosing_parts(bool chooses) && {
+    chooses_parts_ = chooses;
+    return std::move(*this);
+  }
   /// The mesh's word and the surfaces alone, at a fraction of the cost; nothing is said of the voxels.
   Reading of_mesh(const glm::dvec3& p_mm) const { return read_(p_mm, 0.0, Asked::MeshOnly); }
 
  private:
   Read read_;
+  LineReading lines_;
+  bool chooses_parts_ = false;
 };
 
 }  // namespace octotomy::verify

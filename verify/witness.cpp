@@ -26,6 +26,7 @@
 #include <stdexcept>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "brep/mesh/distance.h"
 #include "verify/expression_on_meshes.h"
@@ -191,17 +192,54 @@ class WindowWitness {
     return most;
   }
 
-  /// The mesh ends half a sample beyond the outermost ones, its triangles there within a sample.
+  /// Beyond the outermost samples the mesh ends half a sample away from each that is inside. In a cell there,
+  /// with p_i the distances beyond along the axes in samples, that is the plane where they add up to a half:
+  /// the surface where all of the cell's own samples are inside, and the farthest that it reaches where some
+  /// are.
+  Word word_beyond(const glm::dvec3& u, double slack) const {
+    double past = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+      past += std::max({0.0, -u[axis], u[axis] - static_cast<double>(dims_[axis] - 1)});
+    const double near =
+        rounding * (1.0 + static_cast<double>(std::max({dims_.x, dims_.y, dims_.z}))) + 3.0 * slack;
+    if (past > 0.5 + near) return certainly_out;
+    bool any_in = false, any_out = false;
+    for (const double v : own_corners(u, slack)) (v >= low_ && v <= high_ ? any_in : any_out) = true;
+    if (!any_in) return certainly_out;
+    return any_out || past > 0.5 - near ? on_surface : certainly_in;
+  }
+
+  /// The samples of the cell that holds a position beyond the outermost ones, each maybe several times; of
+  /// its neighbours, too, where the position lies within `slack` of them.
+  std::vector<double> own_corners(const glm::dvec3& u, double slack) const {
+    const double by = std::max(slack, 1e-6);
+    const Cell low = cell(u - by), high = cell(u + by);
+    std::vector<double> samples;
+    for (const Cell* at : {&low, &high})
+      for (std::size_t i = 0; i < 8; ++i) {
+        // A corner without weight belongs to the cell on the other side of the position.
+        double weight = 1.0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const double t = at->t[axis];
+          weight *= ((i >> axis) & 1) != 0 ? t : 1.0 - t;
+        }
+        if (weight > 0.0) samples.push_back(at->v[i]);
+      }
+    return samples;
+  }
+
+  /// The mesh's answer, beyond the outermost samples as word_beyond() has it.
   Word mesh_word(const glm::dvec3& u, double slack) const {
     const double past = beyond(u);
     if (past >= 1.0) return certainly_out;
+    if (past > rounding) return word_beyond(u, slack);
     const CellValue at = bounds_of(cell(u));
     // In a cell f changes by its samples' range a sample along each axis at most.
     const double moved = 3.0 * slack * (at.high - at.low);
     Word answer = word(at.value, at.above + moved, at.below + moved);
     // A cell with samples below and above the window has outside parts that are no mean of like corners.
     if (answer == certainly_in && at.low < low_ && at.high > high_) answer = on_surface;
-    return past > rounding && answer.in ? on_surface : answer;
+    return answer;
   }
 
   /// Where it is near, the surface has vertices on the edges between samples alone.
@@ -340,6 +378,49 @@ Reading joined(Word (*rule)(const Word&, const Word&), const Reading& a, const R
   return {rule(a.voxel, b.voxel), rule(a.mesh, b.mesh), a.surfaces + b.surfaces};
 }
 
+/// A straight piece of a blade: planes where the blade ends, and those through which it goes on in the next
+/// piece.
+struct BladePiece {
+  std::vector<HalfSpace> ends, joints;
+
+  /// Farthest beyond one of the planes, in millimetres; negative inside of all.
+  static double beyond_mm(const std::vector<HalfSpace>& planes, const glm::dvec3& p_mm) {
+    double most = -std::numeric_limits<double>::infinity();
+    for (const HalfSpace& plane : planes)
+      most = std::max(most, glm::dot(plane.normal, p_mm) - plane.offset_mm);
+    return most;
+  }
+};
+
+std::vector<BladePiece> pieces_of(const DrawnBlade& blade) {
+  const glm::dvec3 look = glm::normalize(blade.direction);
+  std::vector<glm::dvec3> line;
+  double first_mm = std::numeric_limits<double>::infinity();
+  for (const glm::dvec3& p : blade.line_mm) {
+    first_mm = std::min(first_mm, glm::dot(p, look));
+    const glm::dvec3 flat = p - glm::dot(p, look) * look;
+    if (line.empty() || glm::distance(flat, line.back()) > 0.0) line.push_back(flat);
+  }
+  if (line.size() < 2)
+    throw std::invalid_argument("a blade's line needs two points apart, seen along its direction");
+  std::vector<glm::dvec3> along;
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) along.push_back(glm::normalize(line[i + 1] - line[i]));
+  std::vector<BladePiece> pieces(along.size());
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    const glm::dvec3 aside = glm::cross(look, along[i]);
+    const double middle_mm = glm::dot(aside, line[i]), half_mm = 0.5 * blade.kerf_mm;
+    pieces[i].ends = {{aside, middle_mm + half_mm},
+                      {-aside, half_mm - middle_mm},
+                      {look, first_mm + blade.depth_mm},
+                      {-look, -first_mm}};
+    const glm::dvec3 back = i == 0 ? along[i] : glm::normalize(along[i - 1] + along[i]);
+    const glm::dvec3 on = i + 1 == along.size() ? along[i] : glm::normalize(along[i] + along[i + 1]);
+    (i == 0 ? pieces[i].ends : pieces[i].joints).push_back({-back, -glm::dot(back, line[i])});
+    (i + 1 == along.size() ? pieces[i].ends : pieces[i].joints).push_back({on, glm::dot(on, line[i + 1])});
+  }
+  return pieces;
+}
+
 /// A tree's reading from those of its leaves. Recursion is as deep as the text's parentheses, not as long as
 /// a row of operands.
 Reading reading_of(const ExpressionTree& tree, const std::vector<Reading>& leaves) {
@@ -360,25 +441,37 @@ Reading reading_of(const ExpressionTree& tree, const std::vector<Reading>& leave
 
 Witness witness_of_window(std::shared_ptr<const voxel::Scene> scan, double low, double high,
                           const voxel::Universe& universe) {
+  LineReading lines = lines_in_window(scan, low, high);
+  Witness made;
   if (std::holds_alternative<voxel::Int16Samples>(scan->samples))
-    return WindowWitness<std::int16_t>(std::move(scan), low, high, universe);
-  return WindowWitness<float>(std::move(scan), low, high, universe);
+    made = WindowWitness<std::int16_t>(std::move(scan), low, high, universe);
+  else
+    made = WindowWitness<float>(std::move(scan), low, high, universe);
+  return std::move(made).with_lines(std::move(lines));
 }
 
 Witness witness_of_regions(const std::vector<DrawnRegion>& regions) {
   const auto readers = std::make_shared<const std::vector<RegionWitness>>(regions.begin(), regions.end());
-  return [readers](const glm::dvec3& p_mm, double slack_mm) {
-    Reading all{certainly_in, certainly_in, 0};
-    for (const RegionWitness& reader : *readers) {
-      const Reading one = reader(p_mm, slack_mm);
-      all = {conjunction(all.voxel, one.voxel), conjunction(all.mesh, one.mesh), all.surfaces + one.surfaces};
-    }
-    return all;
-  };
+  LineReading lines;
+  for (const DrawnRegion& region : regions) {
+    const auto [right, up] = picture_axes(region.view);
+    LineReading one = lines_in_region(right, up, region.polygons_mm);
+    lines = lines ? lines_in_both(std::move(lines), std::move(one)) : std::move(one);
+  }
+  return Witness([readers](const glm::dvec3& p_mm, double slack_mm) {
+           Reading all{certainly_in, certainly_in, 0};
+           for (const RegionWitness& reader : *readers) {
+             const Reading one = reader(p_mm, slack_mm);
+             all = {conjunction(all.voxel, one.voxel), conjunction(all.mesh, one.mesh),
+                    all.surfaces + one.surfaces};
+           }
+           return all;
+         })
+      .with_lines(std::move(lines));
 }
 
 Witness witness_of_box(const voxel::Box& box) {
-  return [box](const glm::dvec3& p_mm, double slack_mm) {
+  const auto read = [box](const glm::dvec3& p_mm, double slack_mm) {
     int sides = 0;
     bool inside = true;
     for (int axis = 0; axis < 3; ++axis)
@@ -390,6 +483,32 @@ Witness witness_of_box(const voxel::Box& box) {
     const Word word = !inside ? certainly_out : sides > 0 ? on_surface : certainly_in;
     return Reading{word, word, inside ? sides : 0};
   };
+  return Witness(read).with_lines(lines_in_box(box));
+}
+
+Witness witness_of_blade(const DrawnBlade& blade) {
+  const std::vector<BladePiece> pieces = pieces_of(blade);
+  LineReading lines;
+  for (const BladePiece& piece : pieces) {
+    std::vector<HalfSpace> sides = piece.ends;
+    sides.insert(sides.end(), piece.joints.begin(), piece.joints.end());
+    LineReading one = lines_in_half_spaces(std::move(sides));
+    lines = lines ? lines_in_either(std::move(lines), std::move(one)) : std::move(one);
+  }
+  const auto read = [pieces](const glm::dvec3& p_mm, double slack_mm) {
+    const double near_mm = on_plane * (1.0 + glm::length(p_mm)) + slack_mm;
+    int sides = 0;
+    for (const BladePiece& piece : pieces) {
+      if (BladePiece::beyond_mm(piece.joints, p_mm) > near_mm) continue;
+      const double beyond_mm = BladePiece::beyond_mm(piece.ends, p_mm);
+      if (beyond_mm < -near_mm) return Reading{certainly_in, certainly_in, 0};
+      if (beyond_mm > near_mm) continue;
+      for (const HalfSpace& plane : piece.ends)
+        sides += std::abs(glm::dot(plane.normal, p_mm) - plane.offset_mm) <= near_mm ? 1 : 0;
+    }
+    return sides > 0 ? Reading{on_surface, on_surface, sides} : Reading{certainly_out, certainly_out, 0};
+  };
+  return Witness(read).with_lines(std::move(lines));
 }
 
 Witness witness_of_surface(brep::Solid solid) {
@@ -401,44 +520,62 @@ Witness witness_of_surface(brep::Solid solid) {
 }
 
 Witness both(Witness a, Witness b) {
-  return joined<conjunction>(std::move(a), std::move(b));
+  LineReading lines = lines_in_both(a.lines(), b.lines());
+  const bool chooses = a.chooses_parts() || b.chooses_parts();
+  return joined<conjunction>(std::move(a), std::move(b)).with_lines(std::move(lines)).choosing_parts(chooses);
 }
 
 Witness without(Witness a, Witness b) {
-  return both(std::move(a), complement(std::move(b)));
+  LineReading lines = lines_without(a.lines(), b.lines());
+  const bool chooses = a.chooses_parts() || b.chooses_parts();
+  return joined<conjunction>(std::move(a), complement(std::move(b)))
+      .with_lines(std::move(lines))
+      .choosing_parts(chooses);
 }
 
 Witness carried(Witness still, const glm::dmat4& moved_from_still) {
   if (!still) return {};
-  return [still = std::move(still), still_from_moved = glm::inverse(moved_from_still)](
-             const glm::dvec3& p_mm, double slack_mm, Asked asked) {
-    return still(glm::dvec3(still_from_moved * glm::dvec4(p_mm, 1.0)), slack_mm, asked);
-  };
+  LineReading lines = lines_moved(still.lines(), moved_from_still);
+  const bool chooses = still.chooses_parts();
+  return Witness([still = std::move(still), still_from_moved = glm::inverse(moved_from_still)](
+                     const glm::dvec3& p_mm, double slack_mm, Asked asked) {
+           return still(glm::dvec3(still_from_moved * glm::dvec4(p_mm, 1.0)), slack_mm, asked);
+         })
+      .with_lines(std::move(lines))
+      .choosing_parts(chooses);
 }
 
 Witness loosened(Witness tight, double by_mm) {
   if (!tight) return {};
-  return [tight = std::move(tight), by_mm](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
-    return tight(p_mm, slack_mm + by_mm, asked);
-  };
+  LineReading lines = tight.lines();
+  const bool chooses = tight.chooses_parts();
+  return Witness([tight = std::move(tight), by_mm](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
+           return tight(p_mm, slack_mm + by_mm, asked);
+         })
+      .with_lines(std::move(lines))
+      .choosing_parts(chooses);
 }
 
 Witness witness_of_parts(Witness whole) {
   if (!whole) return {};
-  return [whole = std::move(whole)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
-    const auto part = [](const Word& word) { return word == certainly_in ? untold : word; };
-    const Reading reading = whole(p_mm, slack_mm, asked);
-    return {part(reading.voxel), part(reading.mesh), reading.surfaces};
-  };
+  return Witness([whole = std::move(whole)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
+           const auto part = [](const Word& word) { return word == certainly_in ? untold : word; };
+           const Reading reading = whole(p_mm, slack_mm, asked);
+           return {part(reading.voxel), part(reading.mesh), reading.surfaces};
+         })
+      .choosing_parts(true);
 }
 
 Witness witness_of_filled(Witness hollow) {
   if (!hollow) return {};
-  return [hollow = std::move(hollow)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
-    const auto filled = [](const Word& word) { return word == certainly_out ? untold : word; };
-    const Reading reading = hollow(p_mm, slack_mm, asked);
-    return {filled(reading.voxel), filled(reading.mesh), reading.surfaces};
-  };
+  const bool chooses = hollow.chooses_parts();
+  return Witness(
+             [hollow = std::move(hollow)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
+               const auto filled = [](const Word& word) { return word == certainly_out ? untold : word; };
+               const Reading reading = hollow(p_mm, slack_mm, asked);
+               return {filled(reading.voxel), filled(reading.mesh), reading.surfaces};
+             })
+      .choosing_parts(chooses);
 }
 
 Witness witness_of_expression(std::string_view text,
@@ -450,12 +587,18 @@ Witness witness_of_expression(std::string_view text,
     leaves.push_back(lookup(name));
     if (!leaves.back()) return {};
   }
-  return [tree, leaves = std::move(leaves)](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
-    std::vector<Reading> readings;
-    readings.reserve(leaves.size());
-    for (const Witness& leaf : leaves) readings.push_back(leaf(p_mm, slack_mm, asked));
-    return reading_of(*tree, readings);
-  };
+  LineReading lines =
+      lines_in_expression(text, [&](const std::string& name) { return lookup(name).lines(); });
+  const bool chooses =
+      std::any_of(leaves.begin(), leaves.end(), [](const Witness& leaf) { return leaf.chooses_parts(); });
+  return Witness([tree, leaves = std::move(leaves)](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
+           std::vector<Reading> readings;
+           readings.reserve(leaves.size());
+           for (const Witness& leaf : leaves) readings.push_back(leaf(p_mm, slack_mm, asked));
+           return reading_of(*tree, readings);
+         })
+      .with_lines(std::move(lines))
+      .choosing_parts(chooses);
 }
 
 }  // namespace octotomy::verify

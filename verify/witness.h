@@ -31,6 +31,16 @@ struct DrawnRegion {
 /// The points whose projection lies inside of every region. Throws std::invalid_argument for an unknown view.
 Witness witness_of_regions(const std::vector<DrawnRegion>& regions);
 Witness witness_of_box(const voxel::Box& box);
+/// What a saw takes away along a line of straight pieces.
+struct DrawnBlade {
+  std::vector<glm::dvec3> line_mm;      ///< LPS
+  glm::dvec3 direction{0.0, 1.0, 0.0};  ///< in which the blade goes in; of any length
+  double depth_mm = 100.0;              ///< from that of the line's points which the blade meets first
+  double kerf_mm = 1.0;                 ///< half on either side of the line
+};
+/// Each piece by its half-spaces; pieces meet in the planes that halve their corners, the line's ends are
+/// square. Throws std::invalid_argument for a line without two points apart as seen along the direction.
+Witness witness_of_blade(const DrawnBlade& blade);
 /// Knows where the surface is and not which side is inside: for solids that come from no scan.
 Witness witness_of_surface(brep::Solid solid);
 

@@ -19,7 +19,19 @@ Json answer_of(const verify::Answer& side) {
   return {{"lineage", side.lineage},
           {"volume_mm3", finite(side.volume_mm3)},
           {"area_mm2", finite(side.area_mm2)},
-          {"centroid_mm", to_json(side.centroid_mm)}};
+          {"centroid_mm", to_json(side.centroid_mm)},
+          {"makers", side.makers}};
+}
+
+Json third_json(const std::optional<verify::LineCount>& third) {
+  if (!third) return nullptr;
+  return {
+      {"volume_mm3", finite(third->volume_mm3)},
+      {"deviation_mm3", finite(third->deviation_mm3)},
+      {"area_mm2", finite(third->area_mm2)},
+      {"lines", third->lines},
+      {"crossings", third->crossings},
+      {"estimator", "Cauchy-Crofton: lines in twelve directions through the plan's expression on the scan"}};
 }
 
 Json comparison_json(const verify::Comparison& comparison) {
@@ -159,6 +171,9 @@ Json to_json(const verify::Certificate& certificate) {
       {"not_resolved_because", certificate.unresolved ? Json(certificate.unresolved->reason) : Json(nullptr)},
       {"reasons", certificate.reasons},
       {"lineage", {{"voxel", certificate.voxel.lineage}, {"mesh", certificate.mesh.lineage}}},
+      {"independent", certificate.independent()},
+      {"shared_makers", verify::shared_makers(certificate.voxel, certificate.mesh)},
+      {"shared_values", certificate.shared_values},
       {"voxel", answer_of(certificate.voxel)},
       {"mesh", answer_of(certificate.mesh)},
       {"difference_mm3", finite(certificate.difference_mm3)},
@@ -172,6 +187,7 @@ Json to_json(const verify::Certificate& certificate) {
       {"hausdorff95_mm", finite(certificate.hausdorff95_mm)},
       {"worst", worst},
       {"detection_limit", limit},
+      {"third_reading", third_json(certificate.third)},
       {"comparisons", comparisons},
       {"timings_ms", {{"certify", certificate.milliseconds}}}};
 }

@@ -67,7 +67,8 @@ void bound(const Saw& saw, const BoundBench& bench, Object& made) {
   const Object& object = bench.objects.at(saw.object.name);
   inherit(object, made);
   made.shown = object.shown;
-  made.witness = verify::without(object.witness, verify::witness_of_surface(brep::saw_blade(cut_of(saw))));
+  made.witness = verify::without(
+      object.witness, verify::witness_of_blade({saw.line_mm, saw.direction, saw.depth_mm, saw.kerf_mm}));
   made.ends_with_universe = true;
   const std::vector<CutPlane> sides =
       planes_of(voxel::saw_blade_sides({saw.line_mm, saw.direction, saw.depth_mm, saw.kerf_mm}));

@@ -371,15 +371,20 @@ class Evaluator {
     const std::vector<std::string> interpolated = interpolated_parts(step, object);
     object.is_interpolated = !interpolated.empty();
     object.findings.insert(object.findings.end(), interpolated.begin(), interpolated.end());
+    // The kernels cannot disagree over samples that both take from the same interpolation.
+    for (const std::string& part : interpolated)
+      object.caveats.push_back({voxel::Verdict::Warn, part, false});
+    add_caveats(step, object);
+    add_makers(step, object, !told.empty());
     if (options_.ahead) work_ahead(object);
     if (object.mesh.within && options_.certify && options_.meshes && !object.is_tool && operation.voxel) {
       if (certifies_beside()) {
         Uncertified& made = uncertified_.emplace_back(Uncertified{object, result_.objects.size(), {}, {}});
-        made.certify = [&made, interpolated](const std::stop_token& stop) {
-          certify_made(made.object, interpolated, made.timings, stop);
+        made.certify = [&made](const std::stop_token& stop) {
+          certify_made(made.object, made.timings, stop);
         };
       } else {
-        certify_made(object, interpolated, result_.timings, options_.stop);
+        certify_made(object, result_.timings, options_.stop);
       }
     }
     if (object.ends_with_universe) {
@@ -401,14 +406,69 @@ class Evaluator {
   /// A cache keeps objects with their certificates.
   bool certifies_beside() const { return options_.cache == nullptr; }
 
-  static void certify_made(Object& object, const std::vector<std::string>& interpolated, Timings& timings,
-                           const std::stop_token& stop) {
+  static void certify_made(Object& object, Timings& timings, const std::stop_token& stop) {
     // Certificates overlap: their times add up to more than passes.
     const Stopwatch watch(timings, "certify");
     certify(object, object.id + " = " + object.definition, {stop, {}});
-    // The kernels cannot disagree over samples that both take from the same interpolation.
-    for (const std::string& part : interpolated)
-      verify::lower(*object.certificate, verify::Verdict::Warn, part);
+  }
+
+  /// What an object's operands and its scans' samples leave in doubt.
+  void add_caveats(const Step& step, Object& object) {
+    for (const std::string& scan : scans_used(step.action)) {
+      const std::uint64_t count = numberless_samples(scan_(scan).scene());
+      if (count == 0) continue;
+      object.caveats.push_back(
+          {voxel::Verdict::Warn,
+           std::to_string(count) + " samples of '" + scan +
+               "' are no finite numbers: what lies there is in no window, and both kernels "
+               "leave it out; fill them by a step that makes a scan",
+           false});
+      object.findings.push_back(object.caveats.back().reason);
+    }
+    for (const std::string& name : objects_used(step.action))
+      for (const Caveat& caveat : result_.objects.at(name).caveats) {
+        const std::string reason =
+            caveat.is_inherited ? caveat.reason : "made of '" + name + "': " + caveat.reason;
+        const bool is_known = std::any_of(object.caveats.begin(), object.caveats.end(),
+                                          [&](const Caveat& known) { return known.reason == reason; });
+        if (!is_known && !(object.is_interpolated && result_.objects.at(name).is_interpolated))
+          object.caveats.push_back({voxel::Verdict::Warn, reason, true});
+      }
+  }
+
+  static std::uint64_t numberless_samples(const voxel::Scene& scene) {
+    const auto* samples = std::get_if<voxel::FloatSamples>(&scene.samples);
+    if (samples == nullptr) return 0;
+    return static_cast<std::uint64_t>(
+        std::count_if(samples->begin(), samples->end(), [](float sample) { return !std::isfinite(sample); }));
+  }
+
+  /// The code that made the object in each kernel, from its operands on, and what both took from one place.
+  void add_makers(const Step& step, Object& object, bool found_values) {
+    const Operation& operation = step.action.operation();
+    const auto add = [](std::vector<std::string>& to, const std::vector<std::string>& from) {
+      to.insert(to.end(), from.begin(), from.end());
+      std::sort(to.begin(), to.end());
+      to.erase(std::unique(to.begin(), to.end()), to.end());
+    };
+    for (const std::string& name : objects_used(step.action)) {
+      const Object& operand = result_.objects.at(name);
+      add(object.voxel.makers, operand.voxel.makers);
+      add(object.mesh.makers, operand.mesh.makers);
+      add(object.shared_values, operand.shared_values);
+    }
+    add(object.voxel.makers, {operation.name + ": " + object.voxel.lineage});
+    if (object.mesh.whole) add(object.mesh.makers, {operation.name + ": " + object.mesh.lineage});
+    // The voxels of what the mesh kernel alone does are its mesh's.
+    if (!operation.voxel) add(object.voxel.makers, object.mesh.makers);
+    if (found_values)
+      add(object.shared_values, {operation.name + ": values that the step finds once for both kernels"});
+    if (operation.is_of_head && result_.objects.lps_from_head != glm::dmat3(1.0))
+      add(object.shared_values, {operation.name + ": how the head is held"});
+    for (const std::string& scan : scans_used(step.action))
+      for (const ScanRecord& record : result_.scans)
+        if (record.name == scan && !record.made_by.empty())
+          add(object.shared_values, {"the samples of '" + scan + "', made by " + record.made_by});
   }
 
   /// Begins the work on the files that this object was the last to wait for.
@@ -524,10 +584,26 @@ class Evaluator {
       object.findings.push_back(std::string("the mesh kernel cannot cut it at the universe's border: ") +
                                 error.what());
     }
-    if (object.bound.spacing_mm != glm::dvec3(0.0))
-      object.findings.push_back(
-          "a part lies outside of the universe (" + plain(box_) +
-          ") and is left out of every number and picture: move less, or use a scan with more room");
+    if (object.bound.spacing_mm == glm::dvec3(0.0) || object.is_tool) return;
+    object.findings.push_back(
+        "a part lies outside of the universe (" + plain(box_) +
+        ") and is left out of every number and picture: move less, or use a scan with more room");
+    // A complement or a mask without an end of its own ends with the universe.
+    const voxel::Box& reach = object.witness.lines().box_mm;
+    const bool ends_itself =
+        !object.witness.lines() || (glm::length(reach.low_mm) < 1e12 && glm::length(reach.high_mm) < 1e12);
+    const double whole_mm3 = object.mesh.whole->measures().volume_mm3;
+    const double outside_mm3 =
+        whole_mm3 - (object.mesh.within ? object.mesh.within->measures().volume_mm3 : 0.0);
+    // Less is rounding of where the object touches the universe's border.
+    constexpr double rounding = 1e-9;
+    if (!ends_itself || !(outside_mm3 > rounding * std::abs(whole_mm3))) return;
+    object.caveats.push_back(
+        {voxel::Verdict::Fail,
+         three_figures(outside_mm3) + " mm3 of the object, " +
+             three_figures(100.0 * outside_mm3 / whole_mm3) + " %, lie outside of the universe (" +
+             plain(box_) + ") and are left out of every number: move less, or use a scan with more room",
+         false});
   }
 
   const Plan& plan_;

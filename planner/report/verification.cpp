@@ -258,10 +258,20 @@ std::string not_covered(const Verification& verification) {
   if (verification.answer.contains("not_recomputed"))
     for (const Json& gap : verification.answer.at("not_recomputed"))
       lines.push_back(gap.at("where").get<std::string>() + ": " + gap.at("why").get<std::string>());
+  // From what the certificates carry: who made both answers, and what both took from one place.
+  std::map<std::string, int> shared;
+  if (verification.answer.contains("certificates"))
+    for (const Json& certificate : verification.answer.at("certificates"))
+      for (const char* list : {"shared_makers", "shared_values"})
+        for (const Json& entry : certificate.value(list, Json::array())) ++shared[entry.get<std::string>()];
+  for (const auto& [entry, count] : shared)
+    lines.push_back("both answers of " + plural(count, "certificate") + " share " + entry);
   lines.emplace_back(
-      "what both kernels take from one place: how scans are read, the text of plans and expressions, "
-      "motions' "
-      "matrices, and whether a window is the tissue that it is meant for");
+      "what every certificate takes from one place: how scans are read, which whole samples a window holds, "
+      "plans' "
+      "names and motions' matrices, convert::voxelise, which says what lies inside of a mesh, and whether a "
+      "window is "
+      "the tissue that it is meant for");
   return element("h2", "Not covered") + list(lines);
 }
 

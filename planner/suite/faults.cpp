@@ -22,7 +22,7 @@ std::string table(const std::vector<verify::DetectionPower>& powers) {
   return lines(rows);
 }
 
-SuiteAnswer run_faults(Program& program, const VerifyText&) {
+SuiteAnswer run_faults(Program& program, const VerifyText& text) {
   verify::FaultOptions options;
   options.progress = {program.stop.get_token(), program.progress("faults")};
   SuiteAnswer answer;
@@ -59,10 +59,38 @@ SuiteAnswer run_faults(Program& program, const VerifyText&) {
       missed.push_back(place);
     }
   }
-  answer.more = {
-      {"faults", library}, {"power", power}, {"trials", tried}, {"missed", missed}, {"held", answer.held}};
+  std::vector<verify::Alteration> alterations;
+  {
+    const Stopwatch watch(answer.timings, "alterations");
+    verify::AlterationOptions by_chance;
+    by_chance.seed = text.seed;
+    by_chance.progress = {program.stop.get_token(), program.progress("alterations")};
+    alterations = verify::try_alterations(by_chance);
+  }
+  int over = 0, passed = 0;
+  Json altered = Json::array();
+  for (const verify::Alteration& one : alterations) {
+    over += one.is_over_limit;
+    passed += one.is_missed();
+    altered.push_back({{"kind", one.kind},
+                       {"subject", one.subject},
+                       {"altered_mm3", one.altered_mm3},
+                       {"over_limit", one.is_over_limit},
+                       {"verdict", verify::to_string(one.verdict)}});
+  }
+  answer.held = answer.held && passed == 0;
+  answer.more = {{"alterations", altered},
+                 {"alterations_over_limit", over},
+                 {"alterations_passed", passed},
+                 {"faults", library},
+                 {"power", power},
+                 {"trials", tried},
+                 {"missed", missed},
+                 {"held", answer.held}};
   answer.text =
       table(verify::detection_power(trials)) +
+      "alterations by chance over the detection limit: " + std::to_string(passed) + " of " +
+      std::to_string(over) + " passed\n" +
       (answer.held
            ? "every fault that must be caught is, from 64\u00b3 on, and no clean twin is doubted"
            : "NOT HELD: a fault was missed from 64\u00b3 on, or a clean twin did not pass; see --json") +

@@ -32,6 +32,7 @@ struct VoxelSide {
   std::optional<voxel::Expression> symbol;
   voxel::Measures measures;
   std::string lineage;
+  std::vector<std::string> makers;  ///< the code that made it and what it was made of (verify::Answer)
   std::vector<std::string> findings;
 };
 
@@ -40,7 +41,8 @@ struct MeshSide {
   std::optional<brep::Solid> whole;   ///< as far as it reaches; none if the kernel has no answer
   std::optional<brep::Solid> within;  ///< the part of it within the universe
   std::string lineage;
-  double shift_mm = 0.0;  ///< how far Booleans moved operands
+  std::vector<std::string> makers;  ///< as of VoxelSide
+  double shift_mm = 0.0;            ///< how far Booleans moved operands
   std::vector<std::string> findings;
   nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< what the operation tells beside it
   /// Of some of another object's parts: its name, and the parts that were left out.
@@ -82,6 +84,13 @@ struct CutWall {
   glm::dmat4 moved_from_still{1.0};
 };
 
+/// Why an object's certificate cannot be a PASS, whatever the kernels say of each other.
+struct Caveat {
+  voxel::Verdict verdict = voxel::Verdict::Warn;
+  std::string reason;
+  bool is_inherited = false;  ///< of an object that it was made of
+};
+
 /// What an operation made, in both kernels.
 struct Object {
   Object(std::string name, std::string operation, const voxel::Universe& universe)
@@ -98,6 +107,10 @@ struct Object {
   verify::Witness witness;  ///< of the object as `mesh.whole` has it; empty where no third reading exists
   std::optional<verify::Certificate> certificate;  ///< none for tools, and where there is no mesh
   std::vector<std::string> findings;
+  std::vector<Caveat> caveats;
+  /// What both kernels took from one place on the way that is no answer: values found by a step, filtered
+  /// samples.
+  std::vector<std::string> shared_values;
   bool ends_with_universe = false;  ///< its mesh stays cut at the universe's border when it moves on
   std::optional<Shown> shown;
   /// Of a moved object.

@@ -59,12 +59,6 @@ Evaluation evaluated(Program& program, const Plan& plan, const EvaluateOptions& 
   return evaluation;
 }
 
-/// Whether the volumes differ by more than counts do, and the places say that it is no error.
-bool is_told_alone(const verify::Certificate& certificate) {
-  return certificate.limit && certificate.verdict == verify::Verdict::Pass &&
-         std::abs(certificate.difference_mm3) > certificate.tolerance_mm3;
-}
-
 std::string verdict_text(const Evaluation& evaluation) {
   std::vector<std::pair<std::string, std::string>> rows;
   for (const Object& object : evaluation.objects) {
@@ -72,9 +66,10 @@ std::string verdict_text(const Evaluation& evaluation) {
     if (object.certificate) {
       const verify::Certificate& c = *object.certificate;
       line = verify::verdict_text(c) + "  voxel " + grouped(c.voxel.volume_mm3, 1) + ", mesh " +
-             grouped(c.mesh.volume_mm3, 1) + " mm\u00b3, difference " + grouped(c.difference_mm3, 1) +
-             (is_told_alone(c) ? ", and no place contradicts the scan"
-                               : " of " + grouped(c.tolerance_mm3, 1) + " allowed");
+             grouped(c.mesh.volume_mm3, 1) +
+             (c.third ? ", lines " + grouped(c.third->volume_mm3, 0) : std::string()) + " mm\u00b3; " +
+             (c.limit ? "a part of " + three_figures(c.limit->volume_mm3) + " mm\u00b3 would show"
+                      : grouped(c.tolerance_mm3, 1) + " mm\u00b3 apart are allowed");
       for (const std::string& reason : c.reasons) line += "; " + reason;
     }
     if (!object.is_tool || object.certificate) rows.emplace_back(object.id, line);

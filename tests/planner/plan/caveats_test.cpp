@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// What keeps a certificate from a PASS however well both kernels agree: parts that left the universe, samples
+// that are no numbers, answers that one piece of code made.
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "planner/plan/evaluate.h"
+#include "planner/table/json.h"
+#include "tests/planner/ball_scan.h"
+
+namespace octotomy::planner {
+namespace {
+
+using verify::Verdict;
+
+class Caveats : public testing::Test {
+ protected:
+  Caveats() {
+    voxel::write_scene(tests::ball_scene(20.0), folder_ / "ball.nrrd");
+    plan_ = {{"octotomy_plan", 1},
+             {"name", "ball"},
+             {"scans", {{"ct", {{"path", "ball.nrrd"}}}}},
+             {"steps", SortedJson::array()}};
+    add({{"id", "ball"}, {"do", "window"}, {"scan", "ct"}, {"low", 0}});
+    const SortedJson cap{{-40, 5.3}, {40, 5.3}, {40, 40}, {-40, 40}};
+    add({{"id", "top"},
+         {"do", "mask"},
+         {"regions", {{{"view", "anterior"}, {"polygons_mm", SortedJson::array({cap})}}}}});
+  }
+  void add(const SortedJson& step) { plan_["steps"].push_back(step); }
+  Evaluation evaluated() const { return evaluate(parse_plan(plan_.dump(), folder_.path())); }
+  static std::string reasons(const Object& object) { return SortedJson(object.certificate->reasons).dump(); }
+
+  tests::ScratchFolder folder_;
+  SortedJson plan_;
+};
+
+TEST_F(Caveats, APartThatLeavesTheUniverseFailsAndSaysHowMuchLeft) {
+  for (const auto& [id, by_mm] :
+       {std::pair("a_little", 15.0), std::pair("half", 32.0), std::pair("all", 10000.0)})
+    add({{"id", id}, {"do", "move"}, {"object", "ball"}, {"translate_mm", {0, -by_mm, 0}}});
+  add({{"id", "joined"}, {"do", "combine"}, {"expression", "ball | half"}});
+  add({{"id", "moved_back"}, {"do", "move"}, {"object", "joined"}, {"translate_mm", {0, 5, 0}}});
+  add({{"id", "within"}, {"do", "move"}, {"object", "ball"}, {"translate_mm", {0, -10, 0}}});
+  const Evaluation evaluation = evaluated();
+  for (const char* id : {"a_little", "half", "all", "joined"}) {
+    const Object& object = evaluation.object(id);
+    ASSERT_TRUE(object.certificate) << id;
+    EXPECT_EQ(object.certificate->verdict, Verdict::Fail) << id;
+    EXPECT_NE(reasons(object).find("outside of the universe"), std::string::npos) << reasons(object);
+  }
+  EXPECT_NE(reasons(evaluation.object("all")).find("100 %"), std::string::npos)
+      << reasons(evaluation.object("all"));
+  // Half of the ball lies beyond the plane that it was moved to by its own centre.
+  EXPECT_NE(reasons(evaluation.object("half")).find("50 %"), std::string::npos)
+      << reasons(evaluation.object("half"));
+  EXPECT_NE(evaluation.object("moved_back").certificate->verdict, Verdict::Pass);
+  EXPECT_EQ(evaluation.object("within").certificate->verdict, Verdict::Pass)
+      << reasons(evaluation.object("within"));
+}
+
+TEST_F(Caveats, AnEmptyObjectProvesNothing) {
+  add({{"id", "away"}, {"do", "combine"}, {"expression", "(ball & top) - ball"}});
+  const Object& away = evaluated().object("away");
+  EXPECT_EQ(away.certificate->verdict, Verdict::Warn);
+  EXPECT_FALSE(away.certificate->resolved());
+  EXPECT_NE(reasons(away).find("could have been missed"), std::string::npos) << reasons(away);
+}
+
+TEST_F(Caveats, SamplesThatAreNoNumbersAreCountedAndForbidAPass) {
+  voxel::Scene scene = tests::ball_scene(20.0);
+  voxel::FloatSamples samples;
+  for (const std::int16_t sample : std::get<voxel::Int16Samples>(scene.samples)) samples.push_back(sample);
+  samples[samples.size() / 2 + 32] = std::numeric_limits<float>::quiet_NaN();
+  samples[samples.size() / 2 + 33] = std::numeric_limits<float>::infinity();
+  scene.samples = std::move(samples);
+  voxel::write_scene(scene, folder_ / "ball.nrrd");
+  add({{"id", "cap"}, {"do", "combine"}, {"expression", "ball & top"}});
+  std::string refused;
+  try {
+    const Evaluation evaluation = evaluated();
+    for (const char* id : {"ball", "cap"}) {
+      EXPECT_NE(evaluation.object(id).certificate->verdict, Verdict::Pass) << id;
+      EXPECT_NE(reasons(evaluation.object(id)).find("2 samples"), std::string::npos)
+          << reasons(evaluation.object(id));
+    }
+  } catch (const std::runtime_error& error) {
+    refused = error.what();  // a reader may refuse them at once
+    EXPECT_NE(refused.find("number"), std::string::npos) << refused;
+  }
+}
+
+TEST_F(Caveats, WhatOnlyTheMeshKernelDoesStaysSoThroughBooleansAndMotions) {
+  add({{"id", "grown"}, {"do", "offset"}, {"object", "ball"}, {"by_mm", 2}});
+  add({{"id", "part"}, {"do", "combine"}, {"expression", "grown & top"}});
+  add({{"id", "moved"}, {"do", "move"}, {"object", "part"}, {"translate_mm", {1, 0, 0}}});
+  add({{"id", "rest"}, {"do", "combine"}, {"expression", "ball - moved"}});
+  add({{"id", "clean"}, {"do", "combine"}, {"expression", "ball & top"}});
+  const Evaluation evaluation = evaluated();
+  EXPECT_FALSE(evaluation.object("grown").certificate);
+  for (const char* id : {"part", "moved", "rest"}) {
+    const verify::Certificate& certificate = *evaluation.object(id).certificate;
+    EXPECT_FALSE(certificate.independent()) << id;
+    EXPECT_NE(certificate.verdict, Verdict::Pass) << id;
+    EXPECT_NE(reasons(evaluation.object(id)).find("not independent, as the same code made both: offset"),
+              std::string::npos)
+        << reasons(evaluation.object(id));
+  }
+  const verify::Certificate& clean = *evaluation.object("clean").certificate;
+  EXPECT_TRUE(clean.independent());
+  EXPECT_EQ(clean.verdict, Verdict::Pass) << reasons(evaluation.object("clean"));
+  // From the operands on: the window's and the Boolean's code of each kernel.
+  EXPECT_GE(clean.voxel.makers.size(), 3U);
+  EXPECT_GE(clean.mesh.makers.size(), 3U);
+}
+
+TEST_F(Caveats, AValueThatAStepFindsForBothKernelsIsTold) {
+  add({{"id", "bright"}, {"do", "segment"}, {"scan", "ct"}, {"otsu", 2}});
+  add({{"id", "part"}, {"do", "combine"}, {"expression", "bright & top"}});
+  const Evaluation evaluation = evaluated();
+  ASSERT_EQ(evaluation.object("part").certificate->shared_values.size(), 1U);
+  EXPECT_EQ(evaluation.object("part").certificate->shared_values.front().rfind("segment", 0), 0U);
+  EXPECT_TRUE(evaluation.object("ball").certificate->shared_values.empty());
+}
+
+}  // namespace
+}  // namespace octotomy::planner
