@@ -150,7 +150,8 @@ void derive_volume_tolerance(Certificate& certificate, const Evidence& evidence)
   const glm::dvec3& s = evidence.sample_mm;
   const double most_mm3 = bent_cap * std::min({s.x, s.y, s.z}) *
                           std::min(evidence.mesh.area_mm2, evidence.voxels.area_crofton13_mm2);
-  const double share = bent_mm3 + rough_mm3 > most_mm3 ? most_mm3 / (bent_mm3 + rough_mm3) : 1.0;
+  const double share =
+      evidence.witnessed && bent_mm3 + rough_mm3 > most_mm3 ? most_mm3 / (bent_mm3 + rough_mm3) : 1.0;
   certificate.terms = {
       {"count", "Voxels are counted by their centres, which scatters on curved and oblique boundary.",
        "3 sqrt(sum over k of a(k) / (4 pi^2 |k|^4)), about 3 * 0.26 h^2 sqrt(S)",
@@ -279,7 +280,13 @@ void compare_surfaces(Certificate& certificate, const Evidence& evidence, const 
         distances.mean_mm() <= bounds.mean_mm && distances.largest_mm() <= far_mm))
     area = area_of(evidence, distances.leave_out_thin());
   // Sheets thinner than a voxel lose their area before their volume shows it: never more than a doubt.
+  const bool loses_area = evidence.witnessed && *area.mesh - *area.voxel > *area.tolerance;
+  const double lost_share = 100.0 * (1.0 - *area.voxel / *area.mesh);
   compare(certificate, evidence, std::move(area), Verdict::Warn);
+  if (loses_area)
+    certificate.reasons.push_back(
+        "At this voxel size " + voxel::rounded(lost_share) +
+        " % of the surface are lost: of walls and gaps that are thinner than a voxel.");
   compare(certificate, evidence,
           {.quantity = "hausdorff95",
            .unit = "mm",
@@ -491,7 +498,7 @@ void compare_with_lines(Certificate& certificate, const Evidence& evidence, cons
          evidence.voxels.volume_mm3);
   else
     told(evidence.mesh.volume_mm3 < third.volume_mm3
-             ? "the mesh, which has no surface between neighbouring samples below and above a window, loses "
+             ? "the mesh, whose triangles pass over what lies between two samples, loses "
              : "the mesh has ",
          evidence.mesh.volume_mm3);
 }
@@ -503,6 +510,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   const auto start = std::chrono::steady_clock::now();
   const voxel::Lattice lattice = octree.universe().lattice();
   Evidence evidence;
+  evidence.witnessed = static_cast<bool>(inputs.witness);
   progress.at(0.0);
   evidence.voxels = inputs.voxel_measures ? *inputs.voxel_measures : voxel::measure(octree);
   progress.at(0.1);
@@ -535,7 +543,6 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   certificate.symmetric_difference_mm3 = static_cast<double>(either.voxel_count()) * evidence.voxel_mm3;
   if (evidence.voxels.centroid_mm && evidence.mesh.centroid_mm)
     certificate.centroid_distance_mm = glm::length(*evidence.voxels.centroid_mm - *evidence.mesh.centroid_mm);
-  evidence.witnessed = static_cast<bool>(inputs.witness);
   if (evidence.witnessed) {
     const Places places = judge_places(octree, digitised, solid, inputs.witness, {progress.stop, {}});
     judge_by_witness(certificate, evidence, places);

@@ -437,10 +437,9 @@ class Evaluator {
   }
 
   static std::uint64_t numberless_samples(const voxel::Scene& scene) {
-    const auto* samples = std::get_if<voxel::FloatSamples>(&scene.samples);
-    if (samples == nullptr) return 0;
-    return static_cast<std::uint64_t>(
-        std::count_if(samples->begin(), samples->end(), [](float sample) { return !std::isfinite(sample); }));
+    const auto* all = std::get_if<voxel::FloatSamples>(&scene.samples);
+    const auto is_none = [](float sample) { return !std::isfinite(sample); };
+    return all == nullptr ? 0 : static_cast<std::uint64_t>(std::count_if(all->begin(), all->end(), is_none));
   }
 
   /// The code that made the object in each kernel, from its operands on, and what both took from one place.
@@ -595,8 +594,7 @@ class Evaluator {
     const double whole_mm3 = object.mesh.whole->measures().volume_mm3;
     const double outside_mm3 =
         whole_mm3 - (object.mesh.within ? object.mesh.within->measures().volume_mm3 : 0.0);
-    // Less is rounding of where the object touches the universe's border.
-    constexpr double rounding = 1e-9;
+    constexpr double rounding = 1e-9;  // where the object touches the universe's border
     if (!ends_itself || !(outside_mm3 > rounding * std::abs(whole_mm3))) return;
     object.caveats.push_back(
         {voxel::Verdict::Fail,

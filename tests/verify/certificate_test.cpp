@@ -350,10 +350,12 @@ TEST(Certificates, AreRankedByVerdictThenByWhetherVoxelsResolveThem) {
   EXPECT_FALSE(is_worse(unresolved, pass));
 }
 
-TEST(CertifyBounded, NothingAgreesWithNothingOnly) {
+TEST(CertifyBounded, NothingAgreesWithNothingAloneAndProvesNothing) {
   const Pair something = both_kernels(ball_distance({0, 0, 0}, 8.0), 1.0, 1.0, 12.0);
   const voxel::Octree none = voxel::Octree::empty(something.octree.universe());
-  EXPECT_EQ(certify({none, brep::Solid(), 1.0}).verdict, Verdict::Pass);
+  const Certificate nothing = certify({none, brep::Solid(), 1.0});
+  EXPECT_EQ(nothing.verdict, Verdict::Warn);
+  EXPECT_FALSE(nothing.resolved());
   EXPECT_EQ(certify({none, something.solid, 1.0}).verdict, Verdict::Fail);
   EXPECT_EQ(certify({something.octree, brep::Solid(), 1.0}).verdict, Verdict::Fail);
 }
