@@ -9,17 +9,33 @@
 
 namespace octotomy::verify {
 
+const voxel::Octree& Necks::set_of(const std::vector<glm::ivec3>& group) const {
+  return octree_.contains(group.front()) ? octree_ : digitised_;
+}
+
+Necks::Held& Necks::held_of(const std::vector<glm::ivec3>& group) {
+  return octree_.contains(group.front()) ? by_voxels_ : by_mesh_;
+}
+
+voxel::Octree Necks::connected(const voxel::Octree& part) const {
+  const voxel::Octree common =
+      voxel::combine(octree_.universe(), voxel::Expression(octree_) & voxel::Expression(digitised_));
+  return voxel::components_that_meet(part, common, voxel::Neighbours::Corners);
+}
+
+bool Necks::is_attached(const std::vector<glm::ivec3>& group) {
+  std::optional<voxel::Octree>& held = held_of(group).whole;
+  if (!held) held = connected(set_of(group));
+  return held->contains(group.front());
+}
+
 bool Necks::is_thick(const std::vector<glm::ivec3>& group) {
-  const bool in_voxels = octree_.contains(group.front());
-  std::optional<voxel::Octree>& held = in_voxels ? held_by_voxels_ : held_by_mesh_;
+  std::optional<voxel::Octree>& held = held_of(group).eroded;
   if (!held) {
-    const voxel::Octree common =
-        voxel::combine(octree_.universe(), voxel::Expression(octree_) & voxel::Expression(digitised_));
     const glm::dvec3 voxel_mm = octree_.universe().lattice().spacing_mm();
     constexpr double past_one_voxel = 1.01;
     const double radius_mm = past_one_voxel * std::max({voxel_mm.x, voxel_mm.y, voxel_mm.z});
-    held = voxel::components_that_meet(voxel::erode(in_voxels ? octree_ : digitised_, radius_mm), common,
-                                       voxel::Neighbours::Corners);
+    held = connected(voxel::erode(set_of(group), radius_mm));
   }
   return std::any_of(group.begin(), group.end(), [&](const glm::ivec3& at) { return held->contains(at); });
 }

@@ -5,9 +5,8 @@
 // 2 Triangles. A triangle's centroid must lie where the witness has a surface, each vertex where a surface
 //   has a vertex of its own or two surfaces cross.
 // 3 Inside. What both kernels lack, or have too much of, has no boundary that step 1 would compare. So every
-// eighth
-//   voxel wherever the object may be is held against the witness: those with x + 2y + 4z a multiple of 8, one
-//   in each block of two voxels a side.
+//   eighth voxel wherever the object may be is held against the witness: those with x + 2y + 4z a multiple of
+//   8, one in each block of two voxels a side.
 // 4 Groups. Voxels that fail, joined by faces, edges and corners; the largest is the worst place.
 // 5 Limit. Errors are made at random places of this object and judged as above: groups of voxels next to the
 //   boundary are removed and added, pieces of the mesh are lost, the whole is shifted along both directions
@@ -20,6 +19,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -279,6 +279,22 @@ bool hangs_on_no_face(const glm::ivec3& voxel, const voxel::Octree& octree, cons
   return true;
 }
 
+/// The neck that holds a group of voxels on which one kernel alone has a part; none where they are no such
+/// part, or more than a thin neck holds it.
+std::optional<WorstPlace> bridge_of(const std::vector<glm::ivec3>& group, const voxel::Octree& octree,
+                                    Necks& necks) {
+  const bool in_voxels = octree.contains(group.front());
+  const bool is_of_one = std::all_of(group.begin(), group.end(),
+                                     [&](const glm::ivec3& at) { return octree.contains(at) == in_voxels; });
+  if (!is_of_one || !necks.is_attached(group) || necks.is_thick(group)) return std::nullopt;
+  const voxel::Lattice lattice = octree.universe().lattice();
+  const double part_mm3 = static_cast<double>(group.size()) * lattice.voxel_mm3();
+  return WorstPlace{lattice.lps_mm(glm::dvec3(necks.neck(group))), std::cbrt(part_mm3),
+                    in_voxels ? "the voxel kernel keeps a part beyond a thin neck"
+                              : "the mesh kernel keeps a part beyond a thin neck",
+                    part_mm3};
+}
+
 /// Joins failed voxels, which are sorted, leaves out groups by chance, and keeps the largest group.
 void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& octree,
                 const voxel::Octree& digitised, const Witness& witness, Places& places) {
@@ -315,13 +331,8 @@ void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& oct
         })) {
       std::vector<glm::ivec3> part;
       for (const std::size_t i : group) part.push_back(failed[i].at);
-      if (!necks.is_thick(part)) {
-        const double part_mm3 = static_cast<double>(part.size()) * lattice.voxel_mm3();
-        places.bridges.push_back({lattice.lps_mm(glm::dvec3(necks.neck(part))), std::cbrt(part_mm3),
-                                  octree.contains(part.front())
-                                      ? "the voxel kernel keeps a part beyond a thin neck"
-                                      : "the mesh kernel keeps a part beyond a thin neck",
-                                  part_mm3});
+      if (const std::optional<WorstPlace> bridge = bridge_of(part, octree, necks)) {
+        places.bridges.push_back(*bridge);
         continue;
       }
     }

@@ -338,6 +338,41 @@ TEST(Places, OfPartsACrumbThatNoFaceHoldsIsChanceAndABiteIsNone) {
   EXPECT_EQ(contradicted(body - bite), 8U);
 }
 
+/// A lump that the mesh has left out, beside a body, and a neck of so many voxels between them.
+TEST(Places, OfPartsALumpBeyondAThinNeckIsABridgeAndBeyondAThickOneOrNoneAnError) {
+  voxel::Universe universe;
+  universe.depth = 5;
+  const brep::Solid surface = brep::solid_of(brep::Prism{
+      {0, 0, -1}, {0, 1, 0}, {1, 0, 0}, {{{8.5, 8.5}, {20.5, 8.5}, {20.5, 20.5}, {8.5, 20.5}}}, -20.5, -8.5});
+  const auto judged = [&](double low_x, int across) {
+    const voxel::Box body{glm::dvec3(8.5), glm::dvec3(20.5)},
+        neck{{low_x, 11.5, 11.5}, {24.5, 11.5 + across, 11.5 + across}},
+        lump{{24.5, 9.5, 9.5}, {30.5, 19.5, 19.5}};
+    const Witness whole = [=](const glm::dvec3& p_mm, double) -> Reading {
+      const auto depth = [&](const voxel::Box& box) {
+        const glm::dvec3 inward = glm::min(p_mm - box.low_mm, box.high_mm - p_mm);
+        return std::min({inward.x, inward.y, inward.z});
+      };
+      if (std::abs(depth(body)) < 0.01) return {on_surface, on_surface, 3};
+      const bool inside = std::max({depth(body), depth(neck), depth(lump)}) > 0.0;
+      return {inside ? certainly_in : certainly_out, inside ? certainly_in : certainly_out};
+    };
+    const voxel::Octree voxels =
+        voxel::combine(universe, Expression(body) | Expression(neck) | Expression(lump));
+    return judge_places(voxels, convert::voxelise(universe, surface.linked()), surface,
+                        witness_of_parts(whole));
+  };
+  const Places thin = judged(20.5, 2), thick = judged(20.5, 5), apart = judged(22.5, 2);
+  EXPECT_EQ(thin.voxel_count, 0U);
+  ASSERT_EQ(thin.bridges.size(), 1U);
+  EXPECT_EQ(thin.bridges.front().volume_mm3, 6.0 * 10.0 * 10.0 + 4.0 * 2.0 * 2.0);
+  EXPECT_LT(glm::distance(thin.bridges.front().at_mm, glm::dvec3(21.0, 12.5, 12.5)), 2.0);
+  for (const Places* error : {&thick, &apart}) {
+    EXPECT_GE(error->voxel_count, 600U);
+    EXPECT_TRUE(error->bridges.empty());
+  }
+}
+
 TEST(Places, OfErrorsOverTheLimitAreAlwaysFound) {
   std::map<std::string, int> over;
   for (const double voxel_mm : {1.0, 2.0})
