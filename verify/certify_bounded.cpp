@@ -551,8 +551,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   judge_volume(certificate, evidence);
   if (evidence.witnessed) compare_counted(certificate, evidence, digitised);
   compare_repeated(certificate, solid.triangles());
-  compare_with_lines(certificate, evidence, inputs.lines ? inputs.lines : inputs.witness.lines(),
-                     voxel::bounds(lattice), progress);
+  compare_with_lines(certificate, evidence, inputs.witness.lines(), voxel::bounds(lattice), progress);
   progress.at(0.45);
   compare_topology(certificate, octree, digitised);
   if (!octree.is_empty() && evidence.mesh.area_mm2 > 0.0) {

@@ -26,11 +26,9 @@ struct BoundInputs {
   std::optional<voxel::Box> scan_box_mm = {};
   /// Every voxel's centre is a sample and the object is one window of them: topology must agree too.
   bool voxels_are_samples = false;
-  /// Judges the places at which the answers differ. Without one, distances and areas do.
+  /// Judges the places at which the answers differ, and counts the object along lines. It ends with the
+  /// universe, as both answers do. Without one, totals and distances decide.
   Witness witness = {};
-  /// The object as it reaches beyond the universe, for a third reading of its amounts. Default: the
-  /// witness's.
-  LineReading lines = {};
 };
 
 /// Compares an octree with a solid of separate lineage (tier Bounded). The source derives the terms. A solid

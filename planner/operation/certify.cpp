@@ -24,7 +24,6 @@ void certify(Object& made, const std::string& title, const voxel::Progress& prog
   inputs.voxels_are_samples = made.bound.voxels_are_samples;
   // What lies outside of the universe has been cut away from both answers.
   const voxel::Box world = voxel::bounds(made.voxel.octree.universe().lattice());
-  inputs.lines = made.witness.lines();
   inputs.witness = verify::both(made.witness, verify::witness_of_box(world));
   if (made.bound.shift_mm > 0.0) inputs.witness = verify::loosened(inputs.witness, made.bound.shift_mm);
   made.certificate = verify::certify_bounded(made.voxel.octree, *made.mesh.within, inputs, progress);
