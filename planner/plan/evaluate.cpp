@@ -22,8 +22,10 @@
 #include "planner/operation/certify.h"
 #include "planner/operation/trace.h"
 #include "planner/plan/beside.h"
+#include "planner/plan/caveats.h"
 #include "planner/plan/dependence.h"
 #include "planner/plan/in_step.h"
+#include "planner/plan/makers.h"
 #include "planner/plan/sha256.h"
 #include "planner/table/number_format.h"
 #include "planner/table/same_patient.h"
@@ -326,6 +328,7 @@ class Evaluator {
     record.details = std::move(made.details);
     for (const std::string& finding : made.findings)
       record.audit.push_back({operation.name, voxel::Verdict::Warn, finding});
+    keep_unmeasured(step.action, result_.scans, record);
     result_.scans.push_back(std::move(record));
     if (!uses_left_.contains(step.id) && !options_.keep_scans) return;
     load(step.id, std::move(made.scene));
@@ -368,14 +371,9 @@ class Evaluator {
     object.bound.shift_mm += object.mesh.shift_mm;
     take_within(object);
     object.voxel.measures = voxel::measure(object.voxel.octree);
-    const std::vector<std::string> interpolated = interpolated_parts(step, object);
-    object.is_interpolated = !interpolated.empty();
-    object.findings.insert(object.findings.end(), interpolated.begin(), interpolated.end());
-    // The kernels cannot disagree over samples that both take from the same interpolation.
-    for (const std::string& part : interpolated)
-      object.caveats.push_back({voxel::Verdict::Warn, part, false});
-    add_caveats(step, object);
-    add_makers(step, object, !told.empty());
+    const MadeOf made_of{step.action, result_.objects, scan_, result_.scans};
+    add_caveats(made_of, object);
+    add_makers(made_of, !told.empty(), object);
     if (options_.ahead) work_ahead(object);
     if (object.mesh.within && options_.certify && options_.meshes && !object.is_tool && operation.voxel) {
       if (certifies_beside()) {
@@ -412,64 +410,6 @@ class Evaluator {
     certify(object, object.id + " = " + object.definition, {stop, {}});
   }
 
-  /// What an object's operands and its scans' samples leave in doubt.
-  void add_caveats(const Step& step, Object& object) {
-    for (const std::string& scan : scans_used(step.action)) {
-      const std::uint64_t count = numberless_samples(scan_(scan).scene());
-      if (count == 0) continue;
-      object.caveats.push_back(
-          {voxel::Verdict::Warn,
-           std::to_string(count) + " samples of '" + scan +
-               "' are no finite numbers: what lies there is in no window, and both kernels "
-               "leave it out; fill them by a step that makes a scan",
-           false});
-      object.findings.push_back(object.caveats.back().reason);
-    }
-    for (const std::string& name : objects_used(step.action))
-      for (const Caveat& caveat : result_.objects.at(name).caveats) {
-        const std::string reason =
-            caveat.is_inherited ? caveat.reason : "made of '" + name + "': " + caveat.reason;
-        const bool is_known = std::any_of(object.caveats.begin(), object.caveats.end(),
-                                          [&](const Caveat& known) { return known.reason == reason; });
-        if (!is_known && !(object.is_interpolated && result_.objects.at(name).is_interpolated))
-          object.caveats.push_back({voxel::Verdict::Warn, reason, true});
-      }
-  }
-
-  static std::uint64_t numberless_samples(const voxel::Scene& scene) {
-    const auto* all = std::get_if<voxel::FloatSamples>(&scene.samples);
-    const auto is_none = [](float sample) { return !std::isfinite(sample); };
-    return all == nullptr ? 0 : static_cast<std::uint64_t>(std::count_if(all->begin(), all->end(), is_none));
-  }
-
-  /// The code that made the object in each kernel, from its operands on, and what both took from one place.
-  void add_makers(const Step& step, Object& object, bool found_values) {
-    const Operation& operation = step.action.operation();
-    const auto add = [](std::vector<std::string>& to, const std::vector<std::string>& from) {
-      to.insert(to.end(), from.begin(), from.end());
-      std::sort(to.begin(), to.end());
-      to.erase(std::unique(to.begin(), to.end()), to.end());
-    };
-    for (const std::string& name : objects_used(step.action)) {
-      const Object& operand = result_.objects.at(name);
-      add(object.voxel.makers, operand.voxel.makers);
-      add(object.mesh.makers, operand.mesh.makers);
-      add(object.shared_values, operand.shared_values);
-    }
-    add(object.voxel.makers, {operation.name + ": " + object.voxel.lineage});
-    if (object.mesh.whole) add(object.mesh.makers, {operation.name + ": " + object.mesh.lineage});
-    // The voxels of what the mesh kernel alone does are its mesh's.
-    if (!operation.voxel) add(object.voxel.makers, object.mesh.makers);
-    if (found_values)
-      add(object.shared_values, {operation.name + ": values that the step finds once for both kernels"});
-    if (operation.is_of_head && result_.objects.lps_from_head != glm::dmat3(1.0))
-      add(object.shared_values, {operation.name + ": how the head is held"});
-    for (const std::string& scan : scans_used(step.action))
-      for (const ScanRecord& record : result_.scans)
-        if (record.name == scan && !record.made_by.empty())
-          add(object.shared_values, {"the samples of '" + scan + "', made by " + record.made_by});
-  }
-
   /// Begins the work on the files that this object was the last to wait for.
   void work_ahead(const Object& object) {
     const auto is_made = [&](const std::string& id) {
@@ -493,35 +433,6 @@ class Evaluator {
     const auto begun =
         std::make_shared<Ahead>(std::move(actions), result_.universe, std::move(objects), options_.stop);
     for (const std::string& step : steps) result_.ahead[step] = begun;
-  }
-
-  /// The parts of an object from a scan that no image measured; of an object made of such an object, that it
-  /// is.
-  std::vector<std::string> interpolated_parts(const Step& step, const Object& object) {
-    if (!object.voxel.measures.extents) return {};
-    const voxel::Box& box = *object.voxel.measures.extents;
-    const glm::dvec3 middle_mm = 0.5 * (box.low_mm + box.high_mm);
-    std::vector<std::string> told;
-    for (const std::string& name : scans_used(step.action)) {
-      double length_mm = 0.0;
-      std::size_t count = 0;
-      for (const voxel::Hole& hole : scan_(name).scene().holes) {
-        const double reach_mm = glm::dot(0.5 * (box.high_mm - box.low_mm), glm::abs(hole.normal));
-        const double height_mm = glm::dot(middle_mm, hole.normal);
-        if (height_mm - reach_mm >= hole.high_mm || height_mm + reach_mm <= hole.low_mm) continue;
-        ++count;
-        length_mm = std::max(length_mm, hole.length_mm());
-      }
-      if (count > 0)
-        told.push_back("interpolated over " + std::to_string(count) + (count == 1 ? " gap" : " gaps") +
-                       " between the images of '" + name + "', up to " +
-                       plain(std::round(10.0 * length_mm) / 10.0) +
-                       " mm: both kernels read the same interpolated samples there");
-    }
-    for (const std::string& name : objects_used(step.action))
-      if (told.empty() && result_.objects.at(name).is_interpolated && !object.is_tool)
-        told.push_back("made of '" + name + "', a part of which is interpolated between images");
-    return told;
   }
 
   /// The voxels of an answer that only the mesh kernel has.
@@ -583,25 +494,7 @@ class Evaluator {
       object.findings.push_back(std::string("the mesh kernel cannot cut it at the universe's border: ") +
                                 error.what());
     }
-    if (object.bound.spacing_mm == glm::dvec3(0.0) || object.is_tool) return;
-    object.findings.push_back(
-        "a part lies outside of the universe (" + plain(box_) +
-        ") and is left out of every number and picture: move less, or use a scan with more room");
-    // A complement or a mask without an end of its own ends with the universe.
-    const voxel::Box& reach = object.witness.lines().box_mm;
-    const bool ends_itself =
-        !object.witness.lines() || (glm::length(reach.low_mm) < 1e12 && glm::length(reach.high_mm) < 1e12);
-    const double whole_mm3 = object.mesh.whole->measures().volume_mm3;
-    const double outside_mm3 =
-        whole_mm3 - (object.mesh.within ? object.mesh.within->measures().volume_mm3 : 0.0);
-    constexpr double rounding = 1e-9;  // where the object touches the universe's border
-    if (!ends_itself || !(outside_mm3 > rounding * std::abs(whole_mm3))) return;
-    object.caveats.push_back(
-        {voxel::Verdict::Fail,
-         three_figures(outside_mm3) + " mm3 of the object, " +
-             three_figures(100.0 * outside_mm3 / whole_mm3) + " %, lie outside of the universe (" +
-             plain(box_) + ") and are left out of every number: move less, or use a scan with more room",
-         false});
+    add_part_outside(box_, object);
   }
 
   const Plan& plan_;

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/plan/caveats.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "planner/table/number_format.h"
+
+namespace octotomy::planner {
+namespace {
+
+/// The parts of an object from a scan that no image measured; of an object made of such an object, that it
+/// is.
+std::vector<std::string> interpolated_parts(const MadeOf& from, const Object& object) {
+  if (!object.voxel.measures.extents) return {};
+  const voxel::Box& box = *object.voxel.measures.extents;
+  const glm::dvec3 middle_mm = 0.5 * (box.low_mm + box.high_mm);
+  std::vector<std::string> parts;
+  for (const std::string& name : scans_used(from.action)) {
+    double length_mm = 0.0;
+    std::size_t count = 0;
+    for (const voxel::Hole& hole : from.scan(name).scene().holes) {
+      const double reach_mm = glm::dot(0.5 * (box.high_mm - box.low_mm), glm::abs(hole.normal));
+      const double height_mm = glm::dot(middle_mm, hole.normal);
+      if (height_mm - reach_mm >= hole.high_mm || height_mm + reach_mm <= hole.low_mm) continue;
+      ++count;
+      length_mm = std::max(length_mm, hole.length_mm());
+    }
+    if (count > 0)
+      parts.push_back("interpolated over " + std::to_string(count) + (count == 1 ? " gap" : " gaps") +
+                      " between the images of '" + name + "', up to " +
+                      plain(std::round(10.0 * length_mm) / 10.0) +
+                      " mm: both kernels read the same interpolated samples there");
+  }
+  for (const std::string& name : objects_used(from.action))
+    if (parts.empty() && from.objects.at(name).is_interpolated && !object.is_tool)
+      parts.push_back("made of '" + name + "', a part of which is interpolated between images");
+  return parts;
+}
+
+/// Samples of a scan that were no finite numbers. A reader has put the scan's lowest value in their places
+/// and stated their number at the beginning of its finding.
+struct Unmeasured {
+  std::uint64_t count = 0;
+  bool is_replaced = false;
+};
+
+const voxel::Finding* unmeasured_finding(const std::vector<voxel::Finding>& audit) {
+  const auto found = std::find_if(audit.begin(), audit.end(), [](const voxel::Finding& finding) {
+    return finding.check == "finite" && finding.verdict != voxel::Verdict::Pass;
+  });
+  return found == audit.end() ? nullptr : &*found;
+}
+
+Unmeasured unmeasured_samples(const voxel::Scene& scene, const std::vector<voxel::Finding>& audit) {
+  if (const voxel::Finding* finding = unmeasured_finding(audit)) return {std::stoull(finding->detail), true};
+  const auto* all = std::get_if<voxel::FloatSamples>(&scene.samples);
+  if (all == nullptr) return {};
+  const auto count =
+      std::count_if(all->begin(), all->end(), [](float sample) { return !std::isfinite(sample); });
+  return {static_cast<std::uint64_t>(count), false};
+}
+
+/// The number of unmeasured samples in rows along an axis that begin and end beside samples of a window. Rows
+/// of more samples than are unmeasured are air.
+std::uint64_t enclosed_samples(const voxel::Scene& scene, const Unmeasured& unmeasured, const Shown& window) {
+  const glm::ivec3 dims = scene.lattice.dims;
+  const std::array<std::size_t, 3> strides{
+      1, static_cast<std::size_t>(dims.x),
+      static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y)};
+  const double lowest = voxel::range(scene).low;
+  std::vector<bool> enclosed(scene.lattice.sample_count(), false);
+  std::uint64_t count = 0;
+  std::visit(
+      [&](const auto& samples) {
+        const auto follow_row = [&](std::size_t first, std::size_t stride, int length) {
+          bool began_inside = false;
+          std::size_t run = 0;
+          for (int i = 0; i < length; ++i) {
+            const auto at = first + static_cast<std::size_t>(i) * stride;
+            const auto value = static_cast<double>(samples[at]);
+            if (unmeasured.is_replaced ? value == lowest : !std::isfinite(value)) {
+              ++run;
+              continue;
+            }
+            const bool is_inside = value >= window.threshold && value <= window.high;
+            if (began_inside && is_inside && run <= unmeasured.count)
+              for (std::size_t k = 1; k <= run; ++k)
+                if (!enclosed[at - k * stride]) {
+                  enclosed[at - k * stride] = true;
+                  ++count;
+                }
+            began_inside = is_inside;
+            run = 0;
+          }
+        };
+        for (int axis = 0; axis < 3; ++axis) {
+          const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+          for (int j = 0; j < dims[v]; ++j)
+            for (int i = 0; i < dims[u]; ++i)
+              follow_row(static_cast<std::size_t>(i) * strides[static_cast<std::size_t>(u)] +
+                             static_cast<std::size_t>(j) * strides[static_cast<std::size_t>(v)],
+                         strides[static_cast<std::size_t>(axis)], dims[axis]);
+        }
+      },
+      scene.samples);
+  return count;
+}
+
+void add_unmeasured(const MadeOf& from, Object& made) {
+  for (const std::string& name : scans_used(from.action)) {
+    const auto record = std::find_if(from.records.begin(), from.records.end(),
+                                     [&](const ScanRecord& scan) { return scan.name == name; });
+    const voxel::Scene& scene = from.scan(name).scene();
+    const Unmeasured unmeasured =
+        unmeasured_samples(scene, record == from.records.end() ? scene.audit : record->audit);
+    if (unmeasured.count == 0) continue;
+    std::uint64_t enclosed = 0;
+    for (const Shown& window : made.bound.windows)
+      if (window.scan == name) enclosed = std::max(enclosed, enclosed_samples(scene, unmeasured, window));
+    std::string reason = std::to_string(unmeasured.count) + " samples of '" + name +
+                         "' are no finite numbers, and both kernels leave out what lies there";
+    if (enclosed > 0)
+      reason += ": " + std::to_string(enclosed) + " of them lie between samples of this object, where " +
+                three_figures(static_cast<double>(enclosed) * scene.lattice.voxel_mm3()) +
+                " mm3 of it are missing";
+    reason += "; measure them again, or leave their slices out";
+    made.findings.push_back(reason);
+    made.caveats.push_back(
+        {enclosed > 0 ? voxel::Verdict::Fail : voxel::Verdict::Warn, std::move(reason), false});
+  }
+}
+
+void add_inherited(const MadeOf& from, Object& made) {
+  for (const std::string& name : objects_used(from.action)) {
+    const Object& operand = from.objects.at(name);
+    for (const Caveat& caveat : operand.caveats) {
+      const std::string reason =
+          caveat.is_inherited ? caveat.reason : "made of '" + name + "': " + caveat.reason;
+      const bool is_known = std::any_of(made.caveats.begin(), made.caveats.end(),
+                                        [&](const Caveat& known) { return known.reason == reason; });
+      if (!is_known && !(made.is_interpolated && operand.is_interpolated))
+        made.caveats.push_back({voxel::Verdict::Warn, reason, true});
+    }
+  }
+}
+
+/// Whether an object ends by itself: a complement or a mask without an end of its own ends with the universe.
+bool ends_by_itself(const Object& object) {
+  constexpr double endless_mm = 1e12;
+  const voxel::Box& reach = object.witness.lines().box_mm;
+  return !object.witness.lines() ||
+         (glm::length(reach.low_mm) < endless_mm && glm::length(reach.high_mm) < endless_mm);
+}
+
+}  // namespace
+
+void add_caveats(const MadeOf& from, Object& made) {
+  const std::vector<std::string> interpolated = interpolated_parts(from, made);
+  made.is_interpolated = !interpolated.empty();
+  made.findings.insert(made.findings.end(), interpolated.begin(), interpolated.end());
+  // The kernels cannot disagree over samples that both take from the same interpolation.
+  for (const std::string& part : interpolated) made.caveats.push_back({voxel::Verdict::Warn, part, false});
+  add_unmeasured(from, made);
+  add_inherited(from, made);
+}
+
+void keep_unmeasured(const Action& action, const std::vector<ScanRecord>& records, ScanRecord& made) {
+  for (const std::string& name : scans_used(action))
+    for (const ScanRecord& record : records) {
+      const voxel::Finding* finding = record.name == name ? unmeasured_finding(record.audit) : nullptr;
+      if (finding != nullptr && unmeasured_finding(made.audit) == nullptr) made.audit.push_back(*finding);
+    }
+}
+
+void add_part_outside(const voxel::Box& universe_mm, Object& made) {
+  if (made.bound.spacing_mm == glm::dvec3(0.0) || made.is_tool) return;
+  made.findings.push_back(
+      "a part lies outside of the universe (" + plain(universe_mm) +
+      ") and is left out of every number and picture: move less, or use a scan with more room");
+  const double whole_mm3 = made.mesh.whole->measures().volume_mm3;
+  const double outside_mm3 = whole_mm3 - (made.mesh.within ? made.mesh.within->measures().volume_mm3 : 0.0);
+  constexpr double rounding = 1e-9;  // where the object touches the universe's border
+  if (!ends_by_itself(made) || !(outside_mm3 > rounding * std::abs(whole_mm3))) return;
+  made.caveats.push_back({voxel::Verdict::Fail,
+                          three_figures(outside_mm3) + " mm3 of the object, " +
+                              three_figures(100.0 * outside_mm3 / whole_mm3) +
+                              " %, lie outside of the universe (" + plain(universe_mm) +
+                              ") and are left out of every number: move less, or use a scan with more room",
+                          false});
+}
+
+}  // namespace octotomy::planner
