@@ -31,6 +31,18 @@ inline void expect_certified(const planner::Object& object, double truth_mm3, do
       << object.id << testing::PrintToString(object.certificate->reasons);
 }
 
+/// Both kernels have the volume within `share` of the truth, and the certificate says that one code made both
+/// answers: their agreement is no PASS.
+inline void expect_not_independent(const planner::Object& object, double truth_mm3, double share) {
+  EXPECT_NEAR(object.voxel.measures.volume_mm3 / truth_mm3, 1.0, share) << object.id;
+  ASSERT_TRUE(object.mesh.within) << object.id << testing::PrintToString(object.findings);
+  EXPECT_NEAR(object.mesh.within->measures().volume_mm3 / truth_mm3, 1.0, share) << object.id;
+  ASSERT_TRUE(object.certificate) << object.id;
+  EXPECT_EQ(verify::to_string(object.certificate->verdict), "WARN") << object.id;
+  const std::string reasons = testing::PrintToString(object.certificate->reasons);
+  EXPECT_NE(reasons.find("not independent"), std::string::npos) << object.id << reasons;
+}
+
 /// The mesh kernel has the volume within `share` of the truth, its voxels too, and there is no certificate.
 inline void expect_of_mesh(const planner::Object& object, double truth_mm3, double share) {
   ASSERT_TRUE(object.mesh.within) << object.id << testing::PrintToString(object.findings);
