@@ -41,7 +41,8 @@ struct BoundaryModel {
   VolumeSpread planes_without_sign;
   /// The same of curved or rough boundary nearly along the lattice, as blur and noise leave a plane.
   VolumeShift nearly_planes;
-  double rims_mm2 = 0.0;  ///< length of such planes' rims times their displacement: area gained beside them
+  /// Area gained or lost past the rims of both kinds of planes: the rims' length times the displacement.
+  double rims_mm2 = 0.0;
   /// Displacement of unknown sign: planes through voxel centres, and rims of planes, which an isosurface
   /// chamfers over the width of a sample so that they are not found flat.
   VolumeSpread unsure;
