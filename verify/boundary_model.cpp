@@ -39,6 +39,15 @@
 //          Cohen-Steiner and Morvan, 2003). Marching cubes' triangles alternate about the surface: with its
 //          sign the sum levels that out; without, it is taken cell by cell of three samples and by the
 //          direction of the normal, so that the two sides of a thin plate do not cancel.
+// sharp    A line of voxels' centres, h apart, misses a chord of the length l < h with the chance 1 - l / h,
+// and
+//          with it two crossings. Across a wedge whose faces turn by t at an edge, chords a distance x from
+//          the edge have the length x / f, f = sin a sin(t - a) / sin t for a line at the angle a to one
+//          face: the loss is h f / 2 crossings twice along each unit of the edge. Over all directions, with
+//          the 13 directions' mean distance of 1.39 h, the area loses 2 / (3 pi) 1.39 h (1 - t cot t) = 0.295
+//          h (1 - t cot t) along each unit. Up to 75 degrees that is less than 0.3 of the mean curvature's
+//          0.5 t. The probability of chords: Santalo, Integral Geometry and Geometric Probability, 1976,
+//          chapter 4.
 // Long, as the terms of one model share its points and what moved.
 #include "verify/boundary_model.h"
 
@@ -539,9 +548,18 @@ class Modeller {
     }
   };
 
+  /// Of each unit of an edge whose faces turn by an angle, see `sharp` above. Wedges of less than 15 degrees
+  /// end before their loss is larger.
+  static double sharp_loss(double angle) {
+    constexpr double bluntest = 75.0 / 180.0 * pi, sharpest = 165.0 / 180.0 * pi;
+    const double turn = std::min(std::abs(angle), sharpest);
+    if (turn < bluntest) return 0.0;
+    return std::max(0.0, 0.295 * (1.0 - turn / std::tan(turn)) - 0.3 * 0.5 * turn);
+  }
+
   /// An edge with its angle, and what it adds to its cell if it has any.
   struct BentEdge {
-    double angle = 0.0;
+    double angle = 0.0, sharp_mm = 0.0;
     bool is_inner = false, bends = false;
     Bend bend;
   };
@@ -562,6 +580,7 @@ class Modeller {
     const glm::dvec3 spacing_mm = frame_.sample_spacing_mm * across / length;
     const double mm = 0.5 * glm::length(to - from) * made.angle;
     made.bends = true;
+    made.sharp_mm = glm::length(to - from) * sharp_loss(made.angle);
     made.bend = {cell_of(middle, normal), mm, mm * glm::dot(spacing_mm, spacing_mm),
                  middle - frame_.about_mm};
     return made;
@@ -576,6 +595,7 @@ class Modeller {
           if (edge.is_inner) add_displaced(static_cast<std::uint32_t>(side), edge.angle);
           if (!edge.bends) return;
           model_.bent.add(edge.bend.mm3, edge.bend.arm_mm);
+          model_.sharp_mm += edge.sharp_mm;
           cells.at(edge.bend.cell).add(edge.bend);
         });
     cells.each([&](const Bend& cell) {

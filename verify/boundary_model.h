@@ -56,6 +56,9 @@ struct BoundaryModel {
   VolumeShift bent;
   VolumeSpread bent_without_sign;
   double curvature_mm = 0.0;  ///< the integral of absolute mean curvature, by the same cells
+  /// What area lattice lines lose at sharp edges beyond 0.3 of that curvature, for each millimetre of a
+  /// voxel.
+  double sharp_mm = 0.0;
   /// The Crofton formula with 13 directions on these triangles, in the limit of fine voxels.
   double crofton13_mm2 = 0.0;
 };

@@ -33,7 +33,8 @@
 // Centroid and inertia: the first and second moment of each error.
 // Area: the voxels' Crofton estimate against the same formula on the mesh's triangles, so that both lose
 // alike on flats. 3 % of S for ripple (marching cubes adds up to 2.6 % to the formula's answer), 0.3 h M for
-// displaced edges, M the mean curvature integral, and the strips that displaced planes add beside their rims.
+// displaced edges, M the mean curvature integral, what voxels lose at sharp edges beyond that, and the strips
+// that displaced planes add beside their rims (boundary_model.cpp derives both).
 // Distances: as surface_distances.h defines them. A right face lies anywhere within half a voxel of the
 // surface along its axis: at most half a voxel's diagonal, a quarter of an edge on average.
 
@@ -212,15 +213,17 @@ glm::dmat3 inertia_about(const brep::Triangles& triangles, const glm::dvec3& abo
 
 Comparison area_of(const Evidence& evidence, double thin_mm2) {
   const BoundaryModel& model = evidence.model;
-  return {"area",
-          "mm2",
-          evidence.voxels.area_crofton13_mm2,
-          model.crofton13_mm2,
-          std::abs(evidence.voxels.area_crofton13_mm2 - model.crofton13_mm2),
-          ripple * model.area_mm2 + edge_shift * longest(evidence.voxel_mm) * model.curvature_mm +
-              model.rims_mm2 + thin_mm2,
-          "0.03 S for ripple, 0.3 h M for edges, rims of flat parts, parts thinner than a voxel; both areas "
-          "by the Crofton formula of 13 directions"};
+  return {
+      "area",
+      "mm2",
+      evidence.voxels.area_crofton13_mm2,
+      model.crofton13_mm2,
+      std::abs(evidence.voxels.area_crofton13_mm2 - model.crofton13_mm2),
+      ripple * model.area_mm2 +
+          longest(evidence.voxel_mm) * (edge_shift * model.curvature_mm + model.sharp_mm) + model.rims_mm2 +
+          thin_mm2,
+      "0.03 S for ripple, 0.3 h M for edges, more for sharp ones, rims of flat parts, parts thinner than a "
+      "voxel; both areas by the Crofton formula of 13 directions"};
 }
 
 void compare_inertia(Certificate& certificate, const Evidence& evidence, const brep::Solid& solid) {
@@ -264,29 +267,33 @@ DistanceBounds distance_bounds(const Evidence& evidence) {
               layers_mm3 / model.area_mm2};
 }
 
-/// Compares area and distances: with a witness by a sample of the surfaces' points. Looks for parts thinner
-/// than a voxel only if these leave a doubt.
+/// Compares area and distances: of a resolved object with a witness by a sample of the surfaces' points.
+/// Looks for parts thinner than a voxel only if these leave a doubt, and only without a witness or in an
+/// object that is not resolved, whose certificate states the loss.
 void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
                       const brep::Solid& solid) {
-  SurfaceDistances distances(octree, solid, evidence.witnessed);
+  const bool is_strict = evidence.witnessed && certificate.resolved();
+  SurfaceDistances distances(octree, solid, is_strict);
   certificate.hausdorff_mm = distances.largest_mm();
   certificate.hausdorff95_mm = distances.percentile95_mm();
   if (!certificate.worst) certificate.worst = distances.worst();
   const DistanceBounds bounds = distance_bounds(evidence);
   const double far_mm = lost * 0.5 * (glm::length(evidence.voxel_mm) + glm::length(evidence.sample_mm));
   Comparison area = area_of(evidence, 0.0);
-  if (!evidence.witnessed &&
+  const bool loses_area = evidence.witnessed && *area.mesh - *area.voxel > *area.tolerance;
+  const std::string lost_share = voxel::rounded(100.0 * (1.0 - *area.voxel / *area.mesh));
+  if (!is_strict &&
       !(area.difference <= *area.tolerance && distances.percentile95_mm() <= bounds.percentile95_mm &&
         distances.mean_mm() <= bounds.mean_mm && distances.largest_mm() <= far_mm))
     area = area_of(evidence, distances.leave_out_thin());
   // Sheets thinner than a voxel lose their area before their volume shows it: never more than a doubt.
-  const bool loses_area = evidence.witnessed && *area.mesh - *area.voxel > *area.tolerance;
-  const double lost_share = 100.0 * (1.0 - *area.voxel / *area.mesh);
   compare(certificate, evidence, std::move(area), Verdict::Warn);
-  if (loses_area)
-    certificate.reasons.push_back(
-        "At this voxel size " + voxel::rounded(lost_share) +
-        " % of the surface are lost: of walls and gaps that are thinner than a voxel.");
+  if (loses_area && is_strict)
+    certificate.reasons.push_back("At this voxel size " + lost_share +
+                                  " % of the surface is lost: of walls and gaps that are thinner than a "
+                                  "voxel.");
+  if (loses_area && certificate.unresolved)
+    certificate.unresolved->reason += ", and " + lost_share + " % of its surface is lost";
   compare(certificate, evidence,
           {.quantity = "hausdorff95",
            .unit = "mm",
@@ -554,6 +561,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   compare_with_lines(certificate, evidence, inputs.witness.lines(), voxel::bounds(lattice), progress);
   progress.at(0.45);
   compare_topology(certificate, octree, digitised);
+  judge_extent(certificate, evidence);
   if (!octree.is_empty() && evidence.mesh.area_mm2 > 0.0) {
     progress.at(0.5);
     compare_surfaces(certificate, evidence, octree, solid);
@@ -561,7 +569,6 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
     compare_inertia(certificate, evidence, solid);
     if (inputs.voxels_are_samples) compare_same_topology(certificate, octree, solid);
   }
-  judge_extent(certificate, evidence);
   judge_evidence(certificate);
   // A block of two voxels a side is the smallest that a search for what both lack is sure to meet.
   judge_emptiness(certificate, 8.0 * evidence.voxel_mm3);
