@@ -15,6 +15,7 @@
 #include "convert/voxel/voxelise.h"
 #include "verify/implicit_solid.h"
 #include "verify/solid_phantom.h"
+#include "voxel/measure/measure.h"
 
 namespace octotomy::verify {
 namespace {
@@ -72,6 +73,45 @@ TEST(BoundaryModel, ABallsCurvatureIntegralIsFourPiRadiiByEachSpacingSquared) {
   // A third of a sphere's curvature lies along each axis.
   const double coarse = boundary_model(mesh, {unit_lattice(), {1, 1, 2}, {}}).bent.mm3;
   EXPECT_NEAR(coarse / one, 2.0, 0.05);
+}
+
+/// What a turn t of the faces loses along a unit of edge, see boundary_model.cpp.
+double lost_along(double turn_deg) {
+  const double t = turn_deg * std::numbers::pi / 180.0;
+  return 0.295 * (1.0 - t / std::tan(t));
+}
+
+TEST(BoundaryModel, SharpEdgesLoseTheAreaOfTheChordsThatLinesOfCentresMiss) {
+  for (const double apex_deg : {90.0, 40.0, 25.0}) {
+    // A prism of an isosceles triangle.
+    constexpr double side_mm = 24.0, length_mm = 20.0;
+    const double half = 0.5 * apex_deg * std::numbers::pi / 180.0;
+    const double across_mm = 2.0 * side_mm * std::sin(half), high_mm = side_mm * std::cos(half);
+    brep::Prism prism;
+    prism.polygons_mm = {
+        {{-0.4 * high_mm, -0.5 * across_mm}, {0.6 * high_mm, 0.0}, {-0.4 * high_mm, 0.5 * across_mm}}};
+    prism.from_mm = -0.5 * length_mm;
+    prism.to_mm = 0.5 * length_mm;
+    const brep::Solid still = brep::solid_of(prism);
+    const double base_deg = 0.5 * (180.0 - apex_deg);
+    const double expected = length_mm * (lost_along(180.0 - apex_deg) + 2.0 * lost_along(180.0 - base_deg)) +
+                            2.0 * (2.0 * side_mm + across_mm) * lost_along(89.999);
+    const voxel::Universe universe{6, unit_lattice().lps_from_voxel};
+    double lost_mm2 = 0.0;
+    constexpr int poses = 60;
+    for (int i = 0; i < poses; ++i) {
+      const glm::dvec3 angles =
+          360.0 * glm::fract(glm::dvec3(i + 1) * glm::dvec3(0.8191725134, 0.6710436067, 0.5497004779));
+      const brep::Solid mesh = brep::moved(still, glm::dmat4(turned(angles)));
+      const BoundaryModel model = boundary_model(mesh, {unit_lattice(), glm::dvec3(1.0), {}});
+      lost_mm2 +=
+          model.crofton13_mm2 - voxel::measure(convert::voxelise(universe, mesh.linked())).area_crofton13_mm2;
+    }
+    EXPECT_NEAR(lost_mm2 / poses, expected, 0.05 * expected) << apex_deg;
+    // What a certificate allows beside 0.3 of the mean curvature is the rest of it.
+    const BoundaryModel model = boundary_model(still, {unit_lattice(), glm::dvec3(1.0), {}});
+    EXPECT_GE(0.3 * model.curvature_mm + model.sharp_mm, 0.95 * expected) << apex_deg;
+  }
 }
 
 TEST(BoundaryModel, APlanesDisplacementIsExactAndASlopesIsNone) {

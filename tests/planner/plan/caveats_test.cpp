@@ -66,7 +66,7 @@ TEST_F(Caveats, APartThatLeavesTheUniverseFailsAndSaysHowMuchLeft) {
   EXPECT_NE(reasons(evaluation.object("all")).find("100 %"), std::string::npos)
       << reasons(evaluation.object("all"));
   // Half of the ball lies beyond the plane that it was moved to by its own centre.
-  EXPECT_NE(reasons(evaluation.object("half")).find("50 %"), std::string::npos)
+  EXPECT_NE(reasons(evaluation.object("half")).find("50.0 %"), std::string::npos)
       << reasons(evaluation.object("half"));
   EXPECT_NE(evaluation.object("moved_back").certificate->verdict, Verdict::Pass);
   EXPECT_EQ(evaluation.object("within").certificate->verdict, Verdict::Pass)
@@ -102,7 +102,7 @@ TEST_F(Caveats, SamplesThatAreNoNumbersAmongAnObjectsOwnAreAHoleInIt) {
   add({{"id", "cap"}, {"do", "combine"}, {"expression", "ball & top"}});
   const Evaluation evaluation = evaluated();
   EXPECT_EQ(evaluation.object("ball").certificate->verdict, Verdict::Fail);
-  EXPECT_NE(reasons(evaluation.object("ball")).find("72 mm3 of it are missing"), std::string::npos)
+  EXPECT_NE(reasons(evaluation.object("ball")).find("72.0 mm3 of it are missing"), std::string::npos)
       << reasons(evaluation.object("ball"));
   EXPECT_NE(evaluation.object("cap").certificate->verdict, Verdict::Pass);
 }
