@@ -212,8 +212,9 @@ std::vector<VoxelBlock> blocks_of(const voxel::Octree& octree, const LineReading
   return blocks;
 }
 
-/// Sampled voxels on which both kernels agree and that the witness contradicts, but for `compared` ones,
-/// which are sorted. Empty where the object has no reading along lines, which says where to look.
+/// Sampled voxels on which both kernels agree and that the witness's word of the mesh contradicts, but for
+/// `compared` ones, which are sorted. Empty where the object has no reading along lines, which says where to
+/// look.
 std::vector<FailedVoxel> failed_inside(const voxel::Octree& octree, const voxel::Octree& digitised,
                                        const std::vector<glm::ivec3>& compared, const Witness& witness,
                                        const voxel::Progress& progress) {
@@ -234,10 +235,11 @@ std::vector<FailedVoxel> failed_inside(const voxel::Octree& octree, const voxel:
           const glm::ivec3 at(x, y, z);
           const bool inside = octree.contains(at);
           if ((!may_meet && !inside) || digitised.contains(at) != inside) continue;
-          const Fault fault = fault_of(witness(lattice.lps_mm(glm::dvec3(at)), 0.0), inside, inside);
-          if (fault == Fault::None || std::binary_search(compared.begin(), compared.end(), at, before))
+          // Its interpolation of the scan is enough: the voxels' own differs at surfaces alone.
+          if (witness.of_mesh(lattice.lps_mm(glm::dvec3(at))).mesh.allows(inside) ||
+              std::binary_search(compared.begin(), compared.end(), at, before))
             continue;
-          found[i].push_back({at, fault});
+          found[i].push_back({at, inside ? Fault::MeshHas : Fault::MeshLacks});
         }
   });
   std::vector<FailedVoxel> failed;
@@ -468,6 +470,10 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
     const Fault fault = fault_of(witness(centre, 0.0), in_voxels, false);
     return fault != Fault::None && !(fault == Fault::Apart && is_small) && brep::is_inside(centre, own);
   };
+  const auto is_lost_in_both = [&](const glm::ivec3& at) {
+    const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(at));
+    return !witness.of_mesh(centre).mesh.allows(false) && brep::is_inside(centre, own);
+  };
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
   for (const glm::dvec3& p : own.points_mm) {
     low = glm::min(low, lattice.voxel(p));
@@ -483,7 +489,7 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
       const glm::dvec3 beneath = (p + q + r) / 3.0 - voxels / length * across * voxel_mm;
       const glm::ivec3 voxel(glm::round(lattice.voxel(beneath)));
       if (!seen_alone && is_compared(octree, voxel)) seen_alone = is_lost(voxel, octree.contains(voxel));
-      if (!seen_in_both) seen_in_both = is_lost(sampled_in_block(voxel), false);
+      if (!seen_in_both) seen_in_both = is_lost_in_both(sampled_in_block(voxel));
       if (seen_alone && seen_in_both) return true;
     }
   // A small piece has few sampled voxels: each is tried.
@@ -493,7 +499,7 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
   for (int z = static_cast<int>(std::floor(low.z)); z <= high.z; ++z)
     for (int y = static_cast<int>(std::floor(low.y)); y <= high.y; ++y)
       for (int x = static_cast<int>(std::floor(low.x)); x <= high.x; ++x)
-        if (is_sampled({x, y, z}) && is_lost({x, y, z}, false)) return true;
+        if (is_sampled({x, y, z}) && is_lost_in_both({x, y, z})) return true;
   return false;
 }
 
