@@ -284,6 +284,10 @@ LineReading window_reading(std::shared_ptr<const voxel::Scene> scan, double low,
           [window](const voxel::Box& part) { return window->may_meet(part); }, box, 100.0};
 }
 
+/// Two hundred windows. An expression of more, or one that a plan's steps double over and over, has no
+/// reading: a line would take seconds, and its operands call each other as deep as they are many.
+constexpr double most_cost = 2e4;
+
 /// Operands that are not cheap to read are asked last, and only where the answer still depends on them.
 LineReading intersection(LineReading a, LineReading b) {
   if (!a || !b) return {};
@@ -291,17 +295,23 @@ LineReading intersection(LineReading a, LineReading b) {
   const voxel::Box box{glm::max(a.box_mm.low_mm, b.box_mm.low_mm),
                        glm::min(a.box_mm.high_mm, b.box_mm.high_mm)};
   const double cost = a.cost + b.cost;
-  return {[a = a.inside, b = b.inside](const Line& line, const Spans& within) {
+  if (cost > most_cost) return {};
+  return {[a = std::move(a.inside), b = std::move(b.inside)](const Line& line, const Spans& within) {
             const Spans of_a = a(line, within);
             return of_a.empty() ? of_a : b(line, of_a);
           },
-          [a = a.may_meet, b = b.may_meet](const voxel::Box& part) { return a(part) && b(part); }, box, cost};
+          [a = std::move(a.may_meet), b = std::move(b.may_meet)](const voxel::Box& part) {
+            return a(part) && b(part);
+          },
+          box, cost};
 }
 
 LineReading complement(LineReading a) {
-  if (!a) return {};
-  return {[a = a.inside](const Line& line, const Spans& within) { return less(within, a(line, within)); },
-          [](const voxel::Box&) { return true; }, everywhere, a.cost};
+  if (!a || a.cost > most_cost) return {};
+  return {[a = std::move(a.inside)](const Line& line, const Spans& within) {
+            return less(within, a(line, within));
+          },
+          [](const voxel::Box&) { return true; }, everywhere, a.cost + 10.0};
 }
 
 /// Names and operators of an expression in postfix order.
@@ -438,11 +448,15 @@ LineReading lines_in_either(LineReading a, LineReading b) {
   const voxel::Box box{glm::min(a.box_mm.low_mm, b.box_mm.low_mm),
                        glm::max(a.box_mm.high_mm, b.box_mm.high_mm)};
   const double cost = a.cost + b.cost;
-  return {[a = a.inside, b = b.inside](const Line& line, const Spans& within) {
+  if (cost > most_cost) return {};
+  return {[a = std::move(a.inside), b = std::move(b.inside)](const Line& line, const Spans& within) {
             const Spans of_a = a(line, within);
             return joined(of_a, b(line, less(within, of_a)));
           },
-          [a = a.may_meet, b = b.may_meet](const voxel::Box& part) { return a(part) || b(part); }, box, cost};
+          [a = std::move(a.may_meet), b = std::move(b.may_meet)](const voxel::Box& part) {
+            return a(part) || b(part);
+          },
+          box, cost};
 }
 
 LineReading lines_without(LineReading a, LineReading b) {
@@ -456,7 +470,7 @@ LineReading lines_without(LineReading a, LineReading b) {
 }
 
 LineReading lines_moved(LineReading still, const glm::dmat4& moved_from_still) {
-  if (!still) return {};
+  if (!still || still.cost > most_cost) return {};
   const glm::dmat4 back = glm::inverse(moved_from_still);
   return {
       [inside = still.inside, back](const Line& line, const Spans& within) {
@@ -469,7 +483,7 @@ LineReading lines_moved(LineReading still, const glm::dmat4& moved_from_still) {
         return made;
       },
       [may_meet = still.may_meet, back](const voxel::Box& part) { return may_meet(moved_box(part, back)); },
-      moved_box(still.box_mm, moved_from_still), still.cost};
+      moved_box(still.box_mm, moved_from_still), still.cost + 10.0};
 }
 
 LineReading lines_in_expression(std::string_view text,
@@ -486,6 +500,7 @@ LineReading lines_in_expression(std::string_view text,
     stack.pop_back();
     if (symbol == '~') {
       stack.push_back(complement(std::move(b)));
+      if (!stack.back()) return {};
       continue;
     }
     LineReading& a = stack.back();
@@ -496,6 +511,7 @@ LineReading lines_in_expression(std::string_view text,
       LineReading only_a = lines_without(a, b);
       a = lines_in_either(std::move(only_a), lines_without(std::move(b), a));
     }
+    if (!a) return {};
   }
   return stack.back();
 }

@@ -54,7 +54,8 @@ struct HalfSpace {
 };
 LineReading lines_in_half_spaces(std::vector<HalfSpace> sides);
 
-/// Of operands without a reading the answer has none.
+/// Of operands without a reading the answer has none, nor where reading a line would cost more than two
+/// hundred windows.
 LineReading lines_in_both(LineReading a, LineReading b);
 LineReading lines_in_either(LineReading a, LineReading b);
 LineReading lines_without(LineReading a, LineReading b);

@@ -116,6 +116,23 @@ TEST(LineReading, ReadsExpressionsAsPointsDo) {
   }
 }
 
+TEST(LineReading, OfTooManyOperandsThereIsNone) {
+  const auto scan = ball(3.0, glm::dvec3(1.0));
+  const auto lookup = [&](const std::string&) { return lines_in_window(scan, 0.0, endless); };
+  const auto of = [&](int count) {
+    std::string text = "a";
+    for (int i = 1; i < count; ++i) text += " | a";
+    return static_cast<bool>(lines_in_expression(text, lookup));
+  };
+  EXPECT_TRUE(of(100));
+  EXPECT_FALSE(of(50000));
+  // Steps that double what they are made of.
+  LineReading twice = lookup("a");
+  for (int step = 0; step < 60; ++step) twice = lines_in_either(twice, twice);
+  EXPECT_FALSE(twice);
+  EXPECT_FALSE(lines_in_expression(std::string(100000, '~') + "a", lookup));
+}
+
 TEST(LineReading, RefusesTextThatIsNoExpression) {
   for (const char* text : {"", "a b", "a &", "& a", "(a", "a)", "a + a", "a ~ a"})
     EXPECT_THROW(lines_in_expression(text, [](const std::string&) { return lines_in_box({}); }),
