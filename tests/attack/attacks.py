@@ -350,7 +350,8 @@ def long_and_deep_expressions_neither_crash_nor_hang(subject):
                  {"id": "c", "do": "combine", "expression": expression}]
         subject.write("long.json", json.dumps(dict(PLAN, steps=steps)))
         ended = subject.run("run", "long.json", "-o", "long", most_s=400)
-        if ended.status not in (0, 2):
+        # Voxels of 4 mm do not resolve teeth, which the certificate says: status 1.
+        if ended.status not in (0, 1, 2):
             found.append(f"{name} in a plan: {ended}")
         subject.write("deep.json", "[" * 100000)
         if expression.count("(") <= 1 and name != "operands":
