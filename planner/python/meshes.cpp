@@ -153,11 +153,6 @@ void add_meshes(py::module_& module) {
       "read_mesh",
       [](const std::filesystem::path& path, const std::optional<std::string>& frame,
          const std::optional<std::string>& unit) {
-        if (frame && !brep::frame_named(*frame))
-          throw std::invalid_argument(
-              "'" + *frame + "' is no frame: give three letters for where x, y and z point, LPS or RAS");
-        if (unit && !brep::length_unit(*unit))
-          throw std::invalid_argument("'" + *unit + "' is no unit: give um, mm, cm, m, inch or foot");
         brep::MeshFile file = without_lock([&](const std::stop_token&) {
           return brep::read_mesh(path, {frame, unit});
         });

@@ -198,10 +198,7 @@ Json mesh_audit(Desk& desk, const Json& said, const Watched&) {
     if (!said.contains(name) || said[name].is_null()) return std::nullopt;
     return said[name].get<std::string>();
   };
-  const brep::MeshReadOptions options{word("frame"), word("unit")};
-  if (options.frame && !brep::frame_named(*options.frame)) refuse("frame: '" + *options.frame + "' is none");
-  if (options.unit && !brep::length_unit(*options.unit)) refuse("unit: '" + *options.unit + "' is none");
-  brep::MeshFile file = brep::read_mesh(path, options);
+  brep::MeshFile file = brep::read_mesh(path, {word("frame"), word("unit")});
   const Json scans = desk.state().at("scans");
   if (!scans.empty()) {
     const auto bounds = scans.front().at("bounds_mm").get<std::array<std::array<double, 3>, 2>>();

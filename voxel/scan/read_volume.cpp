@@ -14,6 +14,7 @@
 #include "voxel/scan/label_overlaps.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
+#include "voxel/space/printed.h"
 #include "voxel/volume/sample_files.h"
 
 namespace octotomy::voxel {
@@ -217,13 +218,16 @@ void take_padding_below_all(std::optional<double> stated, Scene& scene) {
         return static_cast<double>(*std::min_element(samples.begin(), samples.end()));
       },
       scene.samples);
-  if (least == *stated)
+  if (least == *stated) {
     scene.padding = stated;
-  else if (least < *stated)
+    scene.audit.push_back({"padding", Verdict::Pass,
+                           print("samples of %.9g are padding: the scanner measured nothing there", least)});
+  } else if (least < *stated) {
     scene.audit.push_back(
         {"padding", Verdict::Warn,
          "samples below the padding that the file states show that it is none: every sample is "
          "taken as measured"});
+  }
 }
 
 }  // namespace

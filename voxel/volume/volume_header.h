@@ -82,8 +82,8 @@ inline constexpr std::int32_t nifti_text_extension = 6;
 /// few megabytes.
 VolumeHeader read_volume_header(const std::filesystem::path& path, VolumeFormat format);
 
-/// Takes the text of Scene::padding, with a line of the audit. A text that is no number is passed over with a
-/// WARN; nothing is done for none.
+/// Takes the text of Scene::padding. A text that is no number is passed over with a WARN; nothing is done for
+/// none.
 void take_padding(const std::optional<std::string>& text, VolumeHeader& header);
 
 /// The audit's line on slope and intercept. `says` names them as the format does.
