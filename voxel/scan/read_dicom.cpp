@@ -26,6 +26,7 @@
 #include "voxel/scan/dicom_series.h"
 #include "voxel/scan/neighbour_audit.h"
 #include "voxel/scan/slice_plan.h"
+#include "voxel/scan/unstated_padding.h"
 #include "voxel/scan/upright.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
@@ -351,12 +352,17 @@ class SeriesReader {
     return 2 * lonely > padded;
   }
 
+  void take_other_padding(const Stack& stack, std::string without) {
+    if (stack.first().modality == "CT") take_unstated_padding(scene_);
+    if (!scene_.padding) find("padding", Verdict::Pass, std::move(without));
+  }
+
   /// Pixels beyond the scanner's field of view hold a padding value, which is no measurement. They become one
   /// value below all measured ones: the header's own where it is, else the mark that they were decoded to.
   template <typename Samples>
   void take_padding(const Stack& stack, Samples& samples) {
     using Sample = typename Samples::value_type;
-    if (!scene_.padding) return find("padding", Verdict::Pass, "the header names no padding value");
+    if (!scene_.padding) return take_other_padding(stack, "the header names no padding value");
     const std::optional<Range> values = padding_values(stack);
     const std::string named = !values ? std::string("by a table")
                               : values->low == values->high
@@ -366,7 +372,7 @@ class SeriesReader {
     const auto count = std::count(samples.begin(), samples.end(), mark);
     if (count == 0) {
       scene_.padding.reset();
-      return find("padding", Verdict::Pass, "no sample has the padding " + named);
+      return take_other_padding(stack, "no sample has the padding " + named);
     }
     const Range measured = range_of_slices();
     const double least_step = std::abs(stack.first().slope.value_or(1.0));

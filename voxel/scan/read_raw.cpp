@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "voxel/scan/air_level.h"
+#include "voxel/scan/unstated_padding.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
 #include "voxel/volume/stated_geometry.h"
@@ -78,6 +79,7 @@ void take_bytes(std::span<const char> bytes, const StoredSamples& stored, Scene&
   const AirLevel air = air_level_of_unnamed(scene);
   scene.meaning = air.meaning;
   scene.audit.push_back(air.finding);
+  if (scene.meaning == Meaning::Hounsfield) take_unstated_padding(scene);
 }
 
 }  // namespace octotomy::voxel

@@ -12,6 +12,7 @@
 #include "voxel/scan/audit.h"
 #include "voxel/scan/label_names.h"
 #include "voxel/scan/label_overlaps.h"
+#include "voxel/scan/unstated_padding.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
 #include "voxel/space/printed.h"
@@ -254,6 +255,7 @@ Scene read_volume(const fs::path& path, VolumeFormat format, const ReadOptions& 
   const SmallNumbers small = read_samples(path, header.samples, options, scene);
   take_padding_below_all(header.padding, scene);
   if (!take_segments(segments, scene)) take_meaning(header, small, scene);
+  if (!scene.padding && scene.meaning == Meaning::Hounsfield) take_unstated_padding(scene);
   return scene;
 }
 
