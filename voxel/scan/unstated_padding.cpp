@@ -12,7 +12,7 @@ namespace {
 /// Air is -1000; noise of 30 to 50 HU leaves hardly a sample below this.
 constexpr double below_air = -1100.0;
 constexpr double gap = 100.0;
-constexpr std::size_t samples_for_one_padded = 10000, padded_for_one_in_gap = 100;
+constexpr std::size_t least_padded = 64, samples_for_one_padded = 10000, padded_for_one_in_gap = 100;
 
 }  // namespace
 
@@ -30,8 +30,8 @@ void take_unstated_padding(Scene& scene) {
           in_gap += above > 0.0 && above < gap;
           measured += above >= gap;
         }
-        if (padded < samples.size() / samples_for_one_padded || in_gap * padded_for_one_in_gap > padded ||
-            measured == 0)
+        if (padded < std::max(least_padded, samples.size() / samples_for_one_padded) ||
+            in_gap * padded_for_one_in_gap > padded || measured == 0)
           return;
         scene.padding = value;
         scene.audit.push_back(
