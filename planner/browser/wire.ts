@@ -3,8 +3,8 @@
 // a loss.
 import {FrameHeader, Json} from "./protocol";
 
-/// What the server refused, with its code: input, geometry, cancelled, resource; or lost, where the line
-/// broke.
+/// What the server refused, with its code: input, geometry, cancelled, resource, internal; or lost, where
+/// the line broke.
 export class Refusal extends Error {
   constructor(message: string, readonly code: string) {
     super(message);

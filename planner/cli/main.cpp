@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // The program: reads the command line, runs the chosen verb and turns what it throws into an exit status:
-// 2 for what the user can mend, 3 for time, memory and disk.
+// 2 for what the user can mend, 3 for time, memory and disk, 70 for a mistake in the program.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
@@ -25,9 +25,9 @@
 #include <thread>
 #include <unistd.h>
 
-#include "brep/mesh/error.h"
 #include "planner/cli/verbs.h"
 #include "planner/suite/suite.h"
+#include "planner/table/fault.h"
 #include "planner/verb/manual.h"
 #include "planner/verb/progress_line.h"
 #include "planner/verb/verb.h"
@@ -40,6 +40,7 @@ namespace {
 
 using octotomy::planner::cli::Program;
 namespace cli = octotomy::planner::cli;
+using octotomy::planner::Fault;
 
 std::atomic<int> interrupts{0};
 std::atomic<bool> is_processor_time_over{false};
@@ -86,6 +87,27 @@ constexpr const char* out_of_memory =
   if (ending.test_and_set()) ::pause();
   octotomy::voxel::lift_memory_limit();
   end_now(why);
+}
+
+/// An error that no code handles, on whatever thread. Want of memory or of threads ends there, too.
+[[noreturn]] void end_of_no_handler() {
+  std::string what = "an error without a handler";
+  try {
+    if (std::current_exception() == nullptr) throw std::bad_alloc();  // no thread could be joined or started
+    throw;
+  } catch (const std::exception& error) {
+    const Fault fault = octotomy::planner::fault_of(error);
+    if (fault == Fault::Resource || dynamic_cast<const std::system_error*>(&error) != nullptr)
+      end_for_want(
+          "out of memory or of threads: nothing was written; use larger voxels, fewer --threads, or raise "
+          "--memory");
+    what = error.what();
+  } catch (...) {
+  }
+  octotomy::voxel::remove_unfinished();
+  cli::end_progress();
+  cli::warn(octotomy::planner::message_of(octotomy::planner::InternalError(what)));
+  std::_Exit(EX_SOFTWARE);
 }
 
 /// Asks the verb to stop when its time is over or the user interrupts, and ends the process where the verb
@@ -136,10 +158,10 @@ int refuse(const std::string& text, int status) {
   return status;
 }
 
-/// The exit status of a kernel's error code: both kernels name theirs alike.
-template <typename Code>
-int status_of(Code code) {
-  return code == Code::Cancelled || code == Code::Resource ? cli::out_of_resources : cli::bad_input;
+/// The exit status of an error.
+int status_of(Fault fault) {
+  if (fault == Fault::Internal) return EX_SOFTWARE;
+  return fault == Fault::Cancelled || fault == Fault::Resource ? cli::out_of_resources : cli::bad_input;
 }
 
 int run_chosen(Program& program) {
@@ -156,20 +178,10 @@ int run_chosen(Program& program) {
     const Watch watch(program);
     const cli::FindingsOfRun findings;
     return program.chosen();
-  } catch (const CLI::ParseError& error) {
-    return refuse(error.what(), cli::bad_input);
-  } catch (const octotomy::voxel::Error& error) {
-    return refuse(error.what(), status_of(error.code()));
-  } catch (const octotomy::brep::Error& error) {
-    return refuse(error.what(), status_of(error.code()));
   } catch (const std::bad_alloc&) {
     return refuse(out_of_memory, cli::out_of_resources);
-  } catch (const std::system_error& error) {
-    const int number = error.code().value();
-    return refuse(error.what() + octotomy::voxel::way_out_of(number),
-                  status_of(octotomy::voxel::code_of_errno(number)));
   } catch (const std::exception& error) {
-    return refuse(error.what(), cli::bad_input);
+    return refuse(octotomy::planner::message_of(error), status_of(octotomy::planner::fault_of(error)));
   }
 }
 
@@ -187,7 +199,9 @@ int say_help(const CLI::App& app, const CLI::ParseError& error) {
   std::cout.flush();
   if (std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return cli::done;
   return refuse("standard output: " + std::generic_category().message(errno),
-                status_of(octotomy::voxel::code_of_errno(errno)));
+                octotomy::voxel::code_of_errno(errno) == octotomy::voxel::ErrorCode::Resource
+                    ? cli::out_of_resources
+                    : cli::bad_input);
 }
 
 int parse_and_run(int count, char** arguments) {
@@ -202,8 +216,7 @@ int parse_and_run(int count, char** arguments) {
       "  octotomy phantom head -o head.nrrd\n"
       "  octotomy run planner/le_fort_i.plan.json --scan ct=head.nrrd -o report\n"
       "Exit status: 0 done, 1 the kernels disagree or verify lacks evidence, 2 wrong usage or bad input, 3 "
-      "out of time, memory or "
-      "disk.");
+      "out of time, memory or disk, 70 a mistake in the program.");
   cli::add_manual(app);
   Program program(app, {arguments + std::min(1, count), arguments + count});
   cli::add_look(program);
@@ -239,11 +252,7 @@ int parse_and_run(int count, char** arguments) {
 
 int main(int count, char** arguments) {
   heed_signals();
-  std::set_terminate([] {
-    end_for_want(
-        "out of memory or of threads: nothing was written; use larger voxels, fewer --threads, or raise "
-        "--memory");
-  });
+  std::set_terminate(end_of_no_handler);
   try {
     return parse_and_run(count, arguments);
   } catch (const std::bad_alloc&) {
@@ -251,8 +260,7 @@ int main(int count, char** arguments) {
     std::fputs("octotomy: out of memory\n", stderr);
     return cli::out_of_resources;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "octotomy: a mistake in the program, not in its use: %s; please report it\n",
-                 error.what());
+    std::fprintf(stderr, "octotomy: %s\n", octotomy::planner::message_of(error).c_str());
     return EX_SOFTWARE;
   }
 }

@@ -18,6 +18,7 @@
 #include "planner/plan/sha256.h"
 #include "planner/report/report.h"
 #include "planner/report/result_folder.h"
+#include "planner/table/fault.h"
 #include "planner/table/json.h"
 #include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
@@ -164,18 +165,12 @@ std::string reason_of(const Work& work) {
   try {
     work();
     return {};
-  } catch (const voxel::Error& error) {
-    if (error.code() == voxel::ErrorCode::Cancelled || error.code() == voxel::ErrorCode::Resource) throw;
-    return error.what();
-  } catch (const brep::Error& error) {
-    if (error.code() == brep::ErrorCode::Cancelled || error.code() == brep::ErrorCode::Resource) throw;
-    return error.what();
   } catch (const std::system_error&) {
     throw;
-  } catch (const std::bad_alloc&) {
-    throw;
   } catch (const std::exception& error) {
-    return error.what();
+    const Fault fault = fault_of(error);
+    if (fault == Fault::Cancelled || fault == Fault::Resource) throw;
+    return message_of(error);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "convert/surface/fill_cavities.h"
 #include "convert/tet/octree_tetrahedra.h"
 #include "convert/tet/tetrahedralise.h"
+#include "planner/table/fault.h"
 #include "planner/table/number_format.h"
 #include "voxel/filter/components.h"
 
@@ -78,9 +79,8 @@ brep::Mesh simplified(const brep::Mesh& mesh, double error_mm, Filling& filling)
                                grouped(static_cast<double>(simple.n_faces()), 0) + " triangles, within " +
                                grouped(error_mm, 2) + " mm of the exact piece");
     return simple;
-  } catch (const std::runtime_error& error) {
-    filling.findings.push_back(std::string("the surface was not simplified: ") + error.what());
-  } catch (const std::invalid_argument& error) {
+  } catch (const std::exception& error) {
+    if (!is_no_answer(error)) throw;
     filling.findings.push_back(std::string("the surface was not simplified: ") + error.what());
   }
   return mesh;
@@ -128,11 +128,10 @@ std::variant<Filling, std::string> tried(const Object& object, const FillingOpti
   if (object.mesh.within->empty()) return "its mesh is empty";
   try {
     return by_meshers(object, options);
-  } catch (const voxel::Stopped&) {
-    throw voxel::Stopped("stopped while " + object.id + " was filled");
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  } catch (const std::logic_error& error) {
+  } catch (const std::exception& error) {
+    if (fault_of(error) == Fault::Cancelled)
+      throw voxel::Stopped("stopped while " + object.id + " was filled");
+    if (!is_no_answer(error)) throw;
     return error.what();
   }
 }

@@ -10,6 +10,7 @@
 #include "convert/tet/tetrahedralise.h"
 #include "planner/deck/attach.h"
 #include "planner/deck/refinement.h"
+#include "planner/table/fault.h"
 #include "planner/table/number_format.h"
 #include "voxel/solid/combine.h"
 
@@ -89,10 +90,8 @@ void fill(const Objects& objects, const Regions& regions, const Deck& step, cons
     options.finer = refinements(objects, step);
     deck.tetrahedra = convert::smooth_tetrahedra_of(regions.octrees, options);
     why = convert::fault_in_shape(deck.tetrahedra).value_or("");
-  } catch (const voxel::Stopped&) {
-    throw;
   } catch (const std::exception& error) {
-    if (!step.fallback) throw std::runtime_error(error.what());
+    if (!step.fallback || !is_no_answer(error)) throw;
     why = error.what();
   }
   if (!why.empty() && step.fallback) {

@@ -12,6 +12,7 @@
 #include "planner/deck/refinement.h"
 #include "planner/deck/region_deck.h"
 #include "planner/file/output_path.h"
+#include "planner/table/fault.h"
 #include "planner/table/nearest_name.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
@@ -162,9 +163,8 @@ Tried fill(const Object& object, const Deck& deck, const AnswerBench& bench) {
   try {
     options.finer = refinements(bench.objects, deck);
     filling = filling_of(object, options);
-  } catch (const voxel::Stopped&) {
-    throw;
-  } catch (const std::runtime_error& error) {
+  } catch (const std::exception& error) {
+    if (!is_no_answer(error)) throw;
     return error.what();
   }
   if (const auto* why = std::get_if<std::string>(&filling)) return *why;
@@ -221,8 +221,8 @@ void write_regions(const Object& object, const Deck& deck, const AnswerBench& be
   try {
     const Stopwatch watch(bench.timings, "tetrahedralise");
     regions = region_deck(bench.objects, object, deck, progress);
-  } catch (const std::runtime_error& error) {
-    if (progress.stop.stop_requested()) throw;
+  } catch (const std::exception& error) {
+    if (!is_no_answer(error)) throw;
     return made.findings.push_back(std::string("not written: ") + error.what());
   }
   made.findings = regions.findings;

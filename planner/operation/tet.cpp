@@ -23,6 +23,7 @@
 #include "planner/file/mesh_in.h"
 #include "planner/file/octree_in.h"
 #include "planner/measure/result_json.h"
+#include "planner/table/fault.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 
@@ -140,13 +141,13 @@ void fill(const Tet& asked, Filled& filled, const std::function<convert::Tetrahe
       filled.findings.push_back(*unfit + (is_octree(asked.file.name)
                                               ? ": take another --size, or --fallback"
                                               : ": mend or simplify the surface, or take --fallback"));
-  } catch (const voxel::Stopped&) {
-    throw voxel::Stopped("stopped before " + asked.out.string() + " was written");
-  } catch (const voxel::Error& error) {
-    if (!asked.fallback) throw voxel::Error(error.code(), std::string(error.what()) + "; or take --fallback");
-    filled.fallback = error.what();
-  } catch (const std::runtime_error& error) {
-    if (!asked.fallback) throw std::runtime_error(std::string(error.what()) + "; or take --fallback");
+  } catch (const std::exception& error) {
+    if (fault_of(error) == Fault::Cancelled)
+      throw voxel::Stopped("stopped before " + asked.out.string() + " was written");
+    if (!is_no_answer(error)) throw;
+    if (!asked.fallback)
+      throw voxel::Error(static_cast<voxel::ErrorCode>(fault_of(error)),
+                         std::string(error.what()) + "; or take --fallback");
     filled.fallback = error.what();
   }
 }

@@ -27,6 +27,7 @@
 #include "planner/plan/in_step.h"
 #include "planner/plan/makers.h"
 #include "planner/plan/sha256.h"
+#include "planner/table/fault.h"
 #include "planner/table/number_format.h"
 #include "planner/table/same_patient.h"
 #include "verify/witness.h"
@@ -61,14 +62,6 @@ ScanRecord record_of(const std::string& name, const std::filesystem::path& path,
   record.holes = scene.holes;
   record.identity = scene.identity;
   return record;
-}
-
-/// Whether either kernel says that it was stopped.
-bool was_stopped(const std::exception& error) {
-  const auto* of_voxels = dynamic_cast<const voxel::Error*>(&error);
-  const auto* of_meshes = dynamic_cast<const brep::Error*>(&error);
-  return (of_voxels != nullptr && of_voxels->code() == voxel::ErrorCode::Cancelled) ||
-         (of_meshes != nullptr && of_meshes->code() == brep::ErrorCode::Cancelled);
 }
 
 /// One evaluation in progress.
@@ -468,7 +461,7 @@ class Evaluator {
                      object.mesh);
       object.findings.insert(object.findings.end(), object.mesh.findings.begin(), object.mesh.findings.end());
     } catch (const std::runtime_error& error) {
-      if (was_stopped(error)) throw Stopped(error.what());
+      if (fault_of(error) == Fault::Cancelled) throw;
       object.findings.push_back(std::string("the mesh kernel has no answer: ") + error.what());
     }
   }
@@ -489,7 +482,7 @@ class Evaluator {
       object.mesh.within = std::move(cut.solid);
       object.bound.shift_mm += cut.shift_mm;
     } catch (const std::runtime_error& error) {
-      if (was_stopped(error)) throw Stopped(error.what());
+      if (fault_of(error) == Fault::Cancelled) throw;
       object.mesh.within.reset();
       object.findings.push_back(std::string("the mesh kernel cannot cut it at the universe's border: ") +
                                 error.what());

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Exceptions by the codes of the kernels' errors.
+// Exceptions by the kinds of errors.
 #include <array>
 #include <string>
 
-#include "brep/mesh/error.h"
 #include "planner/python/arrays.h"
 #include "planner/python/module.h"
-#include "voxel/space/error.h"
+#include "planner/table/fault.h"
 
 namespace octotomy::planner::python {
 namespace {
 
-/// By the codes' order: Input, Geometry, Cancelled, Resource. Never freed: they live as long as Python does.
-std::array<PyObject*, 4> of_code{};
+/// In the order of Fault. Never freed: they live as long as Python does.
+std::array<PyObject*, 5> of_fault{};
 
 PyObject* new_error(py::module_& module, const char* name, const char* says, const py::object& bases) {
   const std::string full = "octotomy." + std::string(name);
@@ -22,24 +21,18 @@ PyObject* new_error(py::module_& module, const char* name, const char* says, con
   return error;
 }
 
-template <typename Code>
-void raise(Code code, const char* message) {
-  PyErr_SetObject(of_code.at(static_cast<std::size_t>(code)), text_of(message).ptr());
-}
-
 void translate(std::exception_ptr thrown) {
   try {
     std::rethrow_exception(std::move(thrown));
   } catch (const py::builtin_exception&) {
     throw;
-  } catch (const voxel::Error& error) {
-    raise(error.code(), error.what());
-  } catch (const brep::Error& error) {
-    raise(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::invalid_argument& error) {
     PyErr_SetObject(PyExc_ValueError, text_of(error.what()).ptr());
-  } catch (const std::runtime_error& error) {  // the planner's refusals
-    raise(voxel::ErrorCode::Input, error.what());
+  } catch (const std::exception& error) {
+    PyErr_SetObject(of_fault.at(static_cast<std::size_t>(fault_of(error))),
+                    text_of(message_of(error).c_str()).ptr());
   }
 }
 
@@ -50,12 +43,13 @@ void add_errors(py::module_& module) {
   const py::object base = py::reinterpret_borrow<py::object>(
       new_error(module, "Error", "What a kernel or the planner refuses, with place, cause and remedy.",
                 py::reinterpret_borrow<py::object>(runtime)));
-  of_code = {
+  of_fault = {
       new_error(module, "InputError", "Data or text from outside is wrong.", py::make_tuple(base, value)),
       new_error(module, "GeometryError", "The data are sound, but the operation has no answer on them.",
                 base),
       new_error(module, "CancelledError", "The work was stopped.", base),
-      new_error(module, "ResourceError", "Memory, disk, time or a child process gave out.", base)};
+      new_error(module, "ResourceError", "Memory, disk, time or a child process gave out.", base),
+      new_error(module, "InternalError", "A mistake in the program: please report it.", base)};
   py::register_exception_translator(translate);
 }
 

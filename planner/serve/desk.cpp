@@ -10,6 +10,7 @@
 #include "planner/plan/dependence.h"
 #include "planner/serve/new_plan.h"
 #include "planner/serve/told_measurement.h"
+#include "planner/table/fault.h"
 #include "planner/table/number_format.h"
 #include "planner/table/plan_universe.h"
 #include "voxel/space/error.h"
@@ -195,15 +196,14 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
       if (left.empty()) plan.steps.clear();
       made.evaluation = std::make_shared<const Evaluation>(evaluate(plan, left, certify, watching));
       break;
-    } catch (const Stopped&) {
-      throw;
     } catch (const std::exception& error) {
+      if (fault_of(error) == Fault::Cancelled) throw;
       // Progress tells the step that is done as its verb and id.
       const std::string id = doing.substr(doing.find(' ') + 1);
       const auto& all = made.plan->steps;
       const bool is_step =
           std::any_of(all.begin(), all.end(), [&](const Step& step) { return step.id == id; });
-      if (!is_step || !made.errors.emplace(id, error.what()).second) throw;
+      if (!is_step || !made.errors.emplace(id, message_of(error)).second) throw;
     }
   }
   if (certify) keep_certified(*made.plan, *made.evaluation);

@@ -3,10 +3,9 @@
 
 #include <new>
 #include <stdexcept>
-#include <system_error>
 #include <zlib.h>
 
-#include "brep/mesh/error.h"
+#include "planner/table/fault.h"
 #include "planner/table/json_file.h"
 #include "voxel/space/error.h"
 
@@ -15,22 +14,6 @@ namespace {
 
 [[noreturn]] void refuse_request(const std::string& why) {
   throw voxel::Error(voxel::ErrorCode::Input, "the request " + why);
-}
-
-template <typename Code>
-std::string name_of(Code code) {
-  if (code == Code::Geometry) return "geometry";
-  if (code == Code::Cancelled) return "cancelled";
-  return code == Code::Resource ? "resource" : "input";
-}
-
-std::string code_of(const std::exception& error) {
-  if (const auto* of_voxels = dynamic_cast<const voxel::Error*>(&error)) return name_of(of_voxels->code());
-  if (const auto* of_meshes = dynamic_cast<const brep::Error*>(&error)) return name_of(of_meshes->code());
-  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "resource";
-  if (const auto* of_system = dynamic_cast<const std::system_error*>(&error))
-    return name_of(voxel::code_of_errno(of_system->code().value()));
-  return "input";
 }
 
 Message text_of(const Json& json) {
@@ -57,13 +40,15 @@ Message answer_to(std::int64_t id, const Json& ok) {
 }
 
 Message refusal_to(std::int64_t id, const std::exception& error, const LineOf& line_of) {
-  std::string said = error.what();
-  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr)
-    said = "out of memory: use larger voxels or a smaller scan";
-  // The library begins with its own name and a number.
-  if (dynamic_cast<const Json::exception*>(&error) != nullptr)
+  std::string said = message_of(error);
+  Fault fault = fault_of(error);
+  // A word read the request, and found it wrong. The library begins with its own name and a number.
+  if (dynamic_cast<const Json::exception*>(&error) != nullptr) {
+    said = error.what();
     said = "the request lacks a value or has one of another type: " + said.substr(said.find(']') + 1);
-  return text_of({{"id", id}, {"error", {{"message", line_of(said)}, {"code", code_of(error)}}}});
+    fault = Fault::Input;
+  }
+  return text_of({{"id", id}, {"error", {{"message", line_of(said)}, {"code", to_string(fault)}}}});
 }
 
 Message event(const std::string& name, const Json& said) {

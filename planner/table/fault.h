@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+// Errors as people meet them, whichever kernel, library or room they come from.
+namespace octotomy::planner {
+
+enum class Fault {
+  Input,      ///< data, text or a value from outside is wrong
+  Geometry,   ///< the data are sound, but the operation has no answer on them
+  Cancelled,  ///< the work was stopped
+  Resource,   ///< memory, disk, time or a child process gave out
+  Internal,   ///< a mistake in the program, which no user can mend
+};
+
+/// A mistake in the program. Its text names the place.
+struct InternalError : std::logic_error {
+  using std::logic_error::logic_error;
+};
+
+/// The kernels' errors by their codes, failed system calls by their numbers, and std::bad_alloc as Resource.
+/// std::runtime_error is a refusal of the planner, std::invalid_argument one of a kernel: both are Input, as
+/// is std::length_error. Everything else is Internal: std::logic_error, as of map::at(), std::bad_cast, JSON
+/// that the program itself misread.
+Fault fault_of(const std::exception& error);
+
+/// "input", "geometry", "cancelled", "resource" or "internal".
+std::string to_string(Fault fault);
+
+/// The error's text for people; of an Internal one it says so and asks to report it.
+std::string message_of(const std::exception& error);
+
+/// Whether the work has no answer for a reason that lies in the data or in a limit on the work, so that
+/// another way may be tried or the reason stated: it was not stopped, memory is left, and it is no mistake.
+bool is_no_answer(const std::exception& error);
+
+/// Throws an error of the same kind whose text begins with `where`. Stops and std::bad_alloc are thrown as
+/// they are. Precondition: called in the handler of `error`.
+[[noreturn]] void rethrow_at(const std::string& where, const std::exception& error);
+
+}  // namespace octotomy::planner
