@@ -134,6 +134,7 @@ std::vector<brep::Landmark> fcsv_landmarks(const std::string& text) {
   std::vector<std::string> columns{"id", "x",  "y",   "z",   "ow",   "ox",
                                    "oy", "oz", "vis", "sel", "lock", "label"};
   glm::dvec3 lps_mm(-1.0, -1.0, 1.0);
+  bool is_stated = false;
   std::vector<brep::Landmark> landmarks;
   std::istringstream in(text);
   std::size_t number = 0;
@@ -141,7 +142,13 @@ std::vector<brep::Landmark> fcsv_landmarks(const std::string& text) {
     line = voxel::trimmed(line);
     if (line.empty()) continue;
     if (const auto fact = fcsv_fact(line)) {
-      if (fact->first == "coordinatesystem") lps_mm = lps_of_system(fact->second);
+      if (fact->first == "coordinatesystem") {
+        const glm::dvec3 stated_mm = lps_of_system(fact->second);
+        if (is_stated && stated_mm != lps_mm)
+          throw std::runtime_error("states two coordinate systems, LPS and RAS: keep the right one");
+        lps_mm = stated_mm;
+        is_stated = true;
+      }
       if (fact->first == "columns") columns = parse_csv(voxel::lower_case(fact->second)).at(0);
     }
     if (line.starts_with("#")) continue;

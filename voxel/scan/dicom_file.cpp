@@ -133,6 +133,7 @@ DicomFile::Head DicomFile::take_head() {
     require(12, head.tag);
     head.length = u32(at_ + 8);
     head.is_unknown = vr == "UN";
+    head.is_words = vr == "OW";
     at_ += 12;
   } else {
     head.length = u16(at_ + 6);
@@ -214,6 +215,7 @@ void DicomFile::walk() {
     }
     if (is_pixels && head.length <= file_bytes_ - at_) {
       raw_pixels_ = DicomExtent{at_, head.length};
+      has_words_of_pixels_ = head.is_words;
       return;
     }
     require(head.length, head.tag);

@@ -72,6 +72,8 @@ class DicomFile {
   const std::string& transfer_syntax() const { return transfer_syntax_; }
   /// Uncompressed pixel data; none if the file has none or compressed ones.
   std::optional<DicomExtent> raw_pixels() const { return raw_pixels_; }
+  /// Whether uncompressed pixels are stated as words of two bytes, VR OW.
+  bool has_words_of_pixels() const { return has_words_of_pixels_; }
   /// Fragments of compressed pixels without the offset table; none if the pixels are raw.
   const std::optional<std::vector<DicomExtent>>& fragments() const { return fragments_; }
   /// The offset table, basic or extended: where each frame begins, counted from the first fragment's item;
@@ -85,6 +87,7 @@ class DicomFile {
     DicomTag tag = 0;
     std::uint32_t length = 0;
     bool is_unknown = false;
+    bool is_words = false;
     bool is_open() const { return length == 0xffffffffu; }
   };
 
@@ -113,6 +116,7 @@ class DicomFile {
   std::map<DicomTag, std::string_view> values_;
   std::set<DicomTag> implicit_inside_;  ///< sequences of unknown representation
   std::optional<DicomExtent> raw_pixels_;
+  bool has_words_of_pixels_ = false;
   std::optional<std::vector<DicomExtent>> fragments_;
   std::vector<std::uint64_t> frame_offsets_;
 };

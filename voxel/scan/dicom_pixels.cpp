@@ -79,12 +79,16 @@ std::string joined(std::vector<std::string> parts) {
   return std::move(parts.front());
 }
 
+/// Exchanges the bytes of each word of two.
+void swap_bytes(std::string& words) {
+  for (std::size_t i = 0; i + 1 < words.size(); i += 2) std::swap(words[i], words[i + 1]);
+}
+
 /// Pixels of 12 bits, two in three bytes, as words of 16 bits. The first pixel has the lower bits (DICOM
 /// PS3.5, 8.1.1); big-endian files store 16-bit words, whose bytes are exchanged.
 std::string unpacked(std::string packed, std::size_t count, bool big_endian) {
   if (packed.size() % 2 != 0) packed += '\0';
-  if (big_endian)
-    for (std::size_t i = 0; i < packed.size(); i += 2) std::swap(packed[i], packed[i + 1]);
+  if (big_endian) swap_bytes(packed);
   packed.append(2, '\0');
   std::string words(2 * count, '\0');
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(packed[i]); };
@@ -257,6 +261,7 @@ DecodedSlice read_samples(const DicomSlice& slice, std::span<Sample> samples,
     if (stored.size() < frame_bytes(slice)) refuse(slice.path, "the pixels decompress to too few bytes");
     if (slice.pixels.allocated == 12)
       stored = unpacked(std::move(stored), samples.size(), slice.pixels.is_big_endian);
+    if (slice.pixels.are_bytes_swapped) swap_bytes(stored);
     return rescale(stored, slice, samples, padding_mark);
   } catch (const Error&) {
     throw;

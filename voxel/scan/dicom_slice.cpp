@@ -122,6 +122,7 @@ DicomPixels pixels_of(const DicomFile& file) {
   // Fragments in a syntax without compression are raw pixels in pieces.
   pixels.is_compressed = file.fragments().has_value() && !is_raw_syntax(pixels.transfer_syntax);
   pixels.is_big_endian = file.big_endian() && !pixels.is_compressed;
+  pixels.are_bytes_swapped = pixels.is_big_endian && pixels.allocated == 8 && file.has_words_of_pixels();
   return pixels;
 }
 
@@ -337,10 +338,13 @@ std::optional<NoSlice> take_pixels(const DicomFile& file, std::vector<DicomSlice
                                     slices.front().pixels.transfer_syntax + " says, but not in fragments"),
                      NoSlice::Kind::Damaged};
     note_excess(held, needed, slices);
-    if (frames > 1 && slices.front().pixels.allocated == 12 &&
-        slices.front().size_px.x * slices.front().size_px.y % 2 != 0)
-      return NoSlice{"packed frames that begin within a byte", NoSlice::Kind::Unusable};
-    for (std::size_t i = 0; i < frames; ++i) slices[i].pixels.parts = cut_out(pieces, i * needed, needed);
+    const bool is_odd = slices.front().size_px.x * slices.front().size_px.y % 2 != 0;
+    const bool swaps = slices.front().pixels.are_bytes_swapped;
+    if (frames > 1 && is_odd && (slices.front().pixels.allocated == 12 || swaps))
+      return NoSlice{"packed frames that begin within a byte or a word", NoSlice::Kind::Unusable};
+    // The last word holds the last pixel of an odd number behind a byte of padding.
+    const std::size_t taken = std::min(held, needed + (swaps && is_odd ? 1 : 0));
+    for (std::size_t i = 0; i < frames; ++i) slices[i].pixels.parts = cut_out(pieces, i * needed, taken);
     return std::nullopt;
   }
   const std::size_t images = std::max(images_begun(file), frames);
@@ -480,6 +484,12 @@ std::optional<NoSlice> take_frame(const DicomFile& file, const Attributes& attri
   slice.rescale_type = attributes.text(0x00281054);
   slice.intercept = attributes.decimal(0x00281052);
   slice.slope = attributes.decimal(0x00281053);
+  // A dose states its scaling by an attribute of its own, and its unit as GY or RELATIVE.
+  if (const auto scaling = file.decimal(0x3004000e); scaling && !slice.slope && !slice.intercept) {
+    slice.slope = scaling;
+    slice.intercept = 0.0;
+    slice.rescale_type = file.text(0x30040002);
+  }
   if (!is_rescale_finite(slice))
     return NoSlice{"values that RescaleSlope takes beyond single precision", NoSlice::Kind::Unusable};
   for (std::size_t i = 0; i < dicom_traits.size(); ++i)

@@ -25,6 +25,7 @@ struct DicomPixels {
   bool is_compressed = false;
   bool is_deflated = false;  ///< parts are then offsets in the inflated file
   bool is_big_endian = false;
+  bool are_bytes_swapped = false;  ///< big-endian words, each of two pixels of one byte
   unsigned allocated = 16;
   unsigned stored = 16;
   unsigned high = 15;

@@ -125,6 +125,29 @@ bool is_grey(const std::vector<char>& pixels, std::size_t channels, std::size_t 
   return true;
 }
 
+/// Turns the pixels from the order in which they are stored to rows from the top, each from the left.
+void turn_upright(StoredImage& image) {
+  const int code = image.orientation;
+  if (code < 2 || code > 8) return;
+  const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
+  const std::size_t bytes = image.bytes.size() / (width * height);
+  // TIFF 6.0, page 36: from 5 on rows and columns are exchanged.
+  const bool is_turned = code >= 5, from_right = code == 2 || code == 3 || code == 7 || code == 8,
+             from_below = code == 3 || code == 4 || code == 6 || code == 7;
+  std::vector<char> upright(image.bytes.size());
+  const std::size_t columns = is_turned ? height : width, rows = is_turned ? width : height;
+  for (std::size_t y = 0; y < rows; ++y)
+    for (std::size_t x = 0; x < columns; ++x) {
+      std::size_t i = is_turned ? y : x, j = is_turned ? x : y;
+      if (from_right) i = width - 1 - i;
+      if (from_below) j = height - 1 - j;
+      std::copy_n(&image.bytes[(j * width + i) * bytes], bytes, &upright[(y * columns + x) * bytes]);
+    }
+  image.bytes = std::move(upright);
+  image.width = static_cast<int>(columns);
+  image.height = static_cast<int>(rows);
+}
+
 /// Reads the current page. Returns the reason if it cannot be a slice, else an empty text.
 std::string read_page(OIIO::ImageInput& in, int page, std::uint32_t largest_sample, std::size_t most_bytes,
                       StoredImage& image) {
@@ -156,6 +179,8 @@ std::string read_page(OIIO::ImageInput& in, int page, std::uint32_t largest_samp
   if (channels >= 3 && !is_grey(pixels, channels, type.size(), most_apart))
     return "a colour image; a scan is grey";
   image.bytes = reading.take(pixels, channels, largest_sample > 0 ? largest_sample : largest_sample_of(spec));
+  image.orientation = spec.get_int_attribute("Orientation", 1);
+  turn_upright(image);
   return {};
 }
 

@@ -18,7 +18,9 @@ struct StoredImage {
   int width = 0;
   int height = 0;
   Type type = Type::UInt8;
-  std::vector<char> bytes;  ///< in this machine's order
+  std::vector<char> bytes;  ///< in this machine's order, upright
+  /// As the file states where its rows begin and how they run (TIFF's and EXIF's 1 to 8); 1: as stored.
+  int orientation = 1;
 };
 }  // namespace octotomy::voxel
 

@@ -219,7 +219,10 @@ class SeriesReader {
            half);
     else
       find("rescale", Verdict::Pass,
-           print("slope %g, intercept %g applied", first.slope.value_or(1.0), first.intercept.value_or(0.0)));
+           print("slope %g, intercept %g applied", first.slope.value_or(1.0), first.intercept.value_or(0.0)) +
+               (is_ct || first.rescale_type.empty()
+                    ? ""
+                    : "; their unit is declared '" + first.rescale_type + "'"));
   }
 
   /// Takes the marks off blank slices at the stack's ends that hold the least sample of the slice beside

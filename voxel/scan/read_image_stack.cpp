@@ -5,6 +5,8 @@
 #include <array>
 #include <bit>
 #include <cctype>
+#include <optional>
+#include <set>
 
 #include "voxel/scan/image_file.h"
 #include "voxel/scan/read_raw.h"
@@ -88,6 +90,38 @@ SampleType sample_type_of(const StoredImage& image) {
   return SampleType::Float;
 }
 
+/// The last number in a file's name; none where it has no digit or more than a slice's number takes.
+std::optional<long> number_in(const fs::path& file) {
+  const std::string name = file.stem().string();
+  const auto last = std::find_if(name.rbegin(), name.rend(), is_digit);
+  const auto before = std::find_if_not(last, name.rend(), is_digit);
+  const std::string digits(before.base(), last.base());
+  if (digits.empty() || digits.size() > 9) return std::nullopt;
+  return std::stol(digits);
+}
+
+/// A sentence on files that seem to be missing: the numbers in most names are the least step apart, and some
+/// are further. Empty where none seems to be missing.
+std::string skipped(const std::vector<fs::path>& files) {
+  std::vector<long> steps;
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    const std::optional<long> below = number_in(files[i - 1]), here = number_in(files[i]);
+    if (!below || !here || *here <= *below) return {};
+    steps.push_back(*here - *below);
+  }
+  if (steps.empty()) return {};
+  const long least = *std::min_element(steps.begin(), steps.end());
+  const auto wider = std::find_if(steps.begin(), steps.end(), [&](long step) { return step > least; });
+  const auto usual = static_cast<std::size_t>(std::count(steps.begin(), steps.end(), least));
+  if (wider == steps.end() || 2 * usual <= steps.size()) return {};
+  long missing = 0;
+  for (const long step : steps) missing += step / least - 1;
+  const auto at = static_cast<std::size_t>(wider - steps.begin());
+  return std::to_string(missing) + " numbers are skipped, first between " + files[at].filename().string() +
+         " and " + files[at + 1].filename().string() +
+         ": if slices are missing there, those above them lie too low";
+}
+
 }  // namespace
 
 std::vector<fs::path> image_files(const fs::path& path) {
@@ -108,6 +142,7 @@ Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
   std::vector<char> bytes;
   glm::ivec3 dims(0);
   SampleType type = SampleType::UInt8;
+  std::set<int> orientations;
   for (std::size_t i = 0; i < files.size(); ++i) {
     options.progress.at(static_cast<double>(i) / static_cast<double>(files.size()));
     for (const StoredImage& image : read_images(files[i])) {
@@ -119,6 +154,7 @@ Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
         refuse(files[i], "differs in size or type of pixels from the images before it, which are " +
                              std::to_string(dims.x) + " x " + std::to_string(dims.y) +
                              ": put each stack into a folder of its own");
+      orientations.insert(image.orientation);
       bytes.insert(bytes.end(), image.bytes.begin(), image.bytes.end());
       ++dims.z;
     }
@@ -130,6 +166,16 @@ Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
                          std::to_string(dims.z) + " slices of " + std::to_string(files.size()) +
                              " files in the order of the numbers in their names, from " +
                              files.front().filename().string() + " to " + files.back().filename().string()});
+  if (const std::string missing = skipped(files); !missing.empty())
+    scene.audit.push_back({"missing_slices", Verdict::Warn, missing});
+  if (orientations != std::set{1})
+    scene.audit.push_back({"picture_orientation", orientations.size() == 1 ? Verdict::Pass : Verdict::Warn,
+                           orientations.size() == 1
+                               ? "the pictures state the orientation " +
+                                     std::to_string(*orientations.begin()) +
+                                     ": they were turned upright by it"
+                               : "the pictures state different orientations: each was turned upright by its "
+                                 "own; check that all slices lie alike"});
   StoredSamples stored{type, std::endian::native == std::endian::big};
   take_bytes(bytes, stored, scene);
   return scene;

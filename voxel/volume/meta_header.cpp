@@ -116,6 +116,7 @@ class MetaReader {
           {"geometry", Verdict::Warn,
            "an axis in TransformMatrix is not of length 1: its length was multiplied with the "
            "spacing"});
+    warn_of_minus_signs("ElementSpacing", spacing, header_);
     take_origin(used);
     check_anatomy(matrix.empty());
     if (axes_ == 2) add_third_axis(header_);

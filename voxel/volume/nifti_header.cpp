@@ -245,10 +245,11 @@ class NiftiReader {
     return ras;
   }
 
-  /// The sform, whose third column a single slice may leave out. False where its columns span no volume.
+  /// The sform, whose third column a single slice may leave out. False where its numbers are no lengths or
+  /// its columns span no volume.
   bool is_sound_sform(std::size_t axes) {
     const glm::dmat4& s = fields_.sform;
-    require(are_lengths({s[0], s[1], s[2], s[3]}), "affine");
+    if (!are_lengths({s[0], s[1], s[2], s[3]})) return false;
     third_is_missing_ = axes < 3 && glm::dvec3(s[2]) == glm::dvec3(0.0);
     const glm::dvec3 third =
         third_is_missing_ ? glm::cross(glm::dvec3(s[0]), glm::dvec3(s[1])) : glm::dvec3(s[2]);
@@ -262,8 +263,9 @@ class NiftiReader {
     if (fields_.sform_code > 0 && !has_sform) {
       if (fields_.qform_code <= 0)
         refuse(path_, "its NIfTI header is damaged: its sform spans no volume, and it has no qform");
-      header_.audit.push_back(
-          {"forms", Verdict::Warn, "the header's sform spans no volume: its qform was taken"});
+      header_.audit.push_back({"forms", Verdict::Warn,
+                               "the header's sform spans no volume or has numbers that are none: its "
+                               "qform was taken"});
     }
     if (has_sform) {
       geometry.frame = ras;
@@ -273,6 +275,8 @@ class NiftiReader {
         add_third_axis(header_);
       else if (fields_.qform_code > 0)
         compare_forms(axes);
+      else
+        compare_spacing(axes);
     } else if (fields_.qform_code > 0) {
       geometry.frame = ras;
       geometry.frame_says = "NIfTI's qform, " + name_of_code(fields_.qform_code);
@@ -291,6 +295,23 @@ class NiftiReader {
     if (axes < 3 && !third_is_missing_)
       header_.audit.push_back(
           {"slice_spacing", Verdict::Pass, "a single slice, whose thickness the header states"});
+  }
+
+  /// A warning where pixdim, which the sform does not use, contradicts the sform by more than a hundredth.
+  void compare_spacing(std::size_t axes) {
+    bool agrees = true;
+    glm::dvec3 spacing(0.0);
+    for (int axis = 0; axis < static_cast<int>(std::min<std::size_t>(axes, 3)); ++axis) {
+      spacing[axis] = glm::length(glm::dvec3(fields_.sform[axis]));
+      const double stated = std::abs(fields_.pixdim[static_cast<std::size_t>(axis) + 1]);
+      agrees = agrees && std::abs(stated - spacing[axis]) <= 0.01 * spacing[axis];
+    }
+    if (!agrees)
+      header_.audit.push_back(
+          {"spacing", Verdict::Warn,
+           print("the header's pixdim %g %g %g and its sform, whose columns are %g %g %g "
+                 "long, disagree: the sform was taken",
+                 fields_.pixdim[1], fields_.pixdim[2], fields_.pixdim[3], spacing.x, spacing.y, spacing.z)});
   }
 
   /// A warning where sform and qform put a corner further apart than rounding of their numbers can.

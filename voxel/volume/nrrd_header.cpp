@@ -285,6 +285,7 @@ class NrrdReader {
       guesses_center = guesses_center || (!is_node && center != "cell");
       geometry.file_from_voxel[3][static_cast<int>(i)] = lows[axis] + (is_node ? 0.0 : 0.5 * spacing);
     }
+    warn_of_minus_signs("spacings", spacings, header_);
     if (guesses_spacing)
       header_.audit.push_back(
           {"spacing", Verdict::Warn,

@@ -138,6 +138,13 @@ void add_third_axis(VolumeHeader& header) {
                           "a single slice of a file that does not state its thickness: 1 mm is assumed"});
 }
 
+void warn_of_minus_signs(const char* name, const std::vector<double>& spacings, VolumeHeader& header) {
+  if (std::none_of(spacings.begin(), spacings.end(), [](double spacing) { return spacing < 0.0; })) return;
+  header.audit.push_back({"spacing", Verdict::Warn,
+                          std::string(name) + " has a minus sign, which a spacing cannot have: that axis is "
+                                              "assumed to run backwards; check left and right"});
+}
+
 VolumeHeader read_volume_header(const fs::path& path, VolumeFormat format) {
   VolumeHeader header = format == VolumeFormat::Nifti  ? read_nifti_header(path)
                         : format == VolumeFormat::Nrrd ? read_nrrd_header(path)

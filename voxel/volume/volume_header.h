@@ -91,6 +91,10 @@ Finding rescale_finding(const StoredSamples& stored, const std::string& says);
 /// Gives a file of two axes its third one: across the first two, 1 mm long, which the audit warns of.
 void add_third_axis(VolumeHeader& header);
 
+/// Adds a line to the audit where a spacing of the field `name` has a minus sign, which formats do not
+/// foresee.
+void warn_of_minus_signs(const char* name, const std::vector<double>& spacings, VolumeHeader& header);
+
 /// As read_volume_header(), of one format.
 VolumeHeader read_nifti_header(const std::filesystem::path& path);
 VolumeHeader read_nrrd_header(const std::filesystem::path& path);

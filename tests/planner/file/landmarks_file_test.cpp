@@ -99,6 +99,8 @@ TEST_F(LandmarksFile, SlicersLinesOfCommasAreTurnedToLps) {
   for (const char* lps : {"# CoordinateSystem = LPS\n", "# CoordinateSystem = 1\n"})
     EXPECT_EQ(marks(lps)[0].p_mm, glm::dvec3(10.5, -20, 30)) << lps;
   EXPECT_THROW(marks("# CoordinateSystem = 2\n"), std::runtime_error) << "indices need their scan";
+  EXPECT_THROW(marks("# CoordinateSystem = LPS\n# CoordinateSystem = RAS\n"), std::runtime_error);
+  EXPECT_EQ(marks("# CoordinateSystem = LPS\n# CoordinateSystem = 1\n").size(), 2u);
   std::ofstream(folder_ / "old.fcsv") << "# name = F\n# columns = label,x,y,z,sel,vis\nA,1,2,3,1,1\n";
   EXPECT_EQ(read_landmarks(folder_ / "old.fcsv").at(0).p_mm, glm::dvec3(-1, -2, 3));
   std::ofstream(folder_ / "bad.fcsv") << "1,x,2,3,0,0,0,1,1,1,0,A,,\n";

@@ -96,6 +96,69 @@ TEST(ReadImageStack, TakesThePagesOfOneTiffWithTheirSigns) {
   expect_ramp(read_scene(path, spaced()), 0);
 }
 
+/// Writes the page of slice 0 with its rows stored as a TIFF of that orientation has them.
+void write_turned(const fs::path& path, int orientation) {
+  const bool is_turned = orientation >= 5;
+  const int columns = is_turned ? dims.y : dims.x, rows = is_turned ? dims.x : dims.y;
+  std::vector<std::uint16_t> samples;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      // TIFF 6.0: where row 0 lies, and where column 0.
+      const glm::ivec2 place = orientation == 1   ? glm::ivec2(i, j)
+                               : orientation == 2 ? glm::ivec2(dims.x - 1 - i, j)
+                               : orientation == 3 ? glm::ivec2(dims.x - 1 - i, dims.y - 1 - j)
+                               : orientation == 4 ? glm::ivec2(i, dims.y - 1 - j)
+                               : orientation == 5 ? glm::ivec2(j, i)
+                               : orientation == 6 ? glm::ivec2(dims.x - 1 - j, i)
+                               : orientation == 7 ? glm::ivec2(dims.x - 1 - j, dims.y - 1 - i)
+                                                  : glm::ivec2(j, dims.y - 1 - i);
+      samples.push_back(static_cast<std::uint16_t>(ramp(place.x, place.y, 0) + 700));
+    }
+  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(path.string());
+  OIIO::ImageSpec spec(columns, rows, 1, OIIO::TypeDesc::UINT16);
+  spec.attribute("Orientation", orientation);
+  ASSERT_TRUE(out->open(path.string(), spec));
+  ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT16, samples.data()) && out->close());
+}
+
+TEST(ReadImageStack, TurnsPicturesUprightByTheOrientationThatTheyState) {
+  for (int orientation = 1; orientation <= 8; ++orientation) {
+    SCOPED_TRACE(orientation);
+    const ScratchFolder folder;
+    for (const char* name : {"a1.tif", "a2.tif"}) write_turned(folder / name, orientation);
+    const Scene scene = read_scene(folder.path(), spaced());
+    ASSERT_EQ(scene.lattice.dims, glm::ivec3(dims.x, dims.y, 2));
+    const auto& samples = std::get<Int16Samples>(scene.samples);
+    for (int y = 0, i = 0; y < dims.y; ++y)
+      for (int x = 0; x < dims.x; ++x, ++i)
+        ASSERT_EQ(samples[static_cast<std::size_t>(i)], ramp(x, y, 0) + 700) << x << " " << y;
+    EXPECT_EQ(tests::finding(scene, "picture_orientation") == nullptr, orientation == 1);
+  }
+  const ScratchFolder folder;
+  write_turned(folder / "a1.tif", 1);
+  write_turned(folder / "a2.tif", 3);
+  EXPECT_EQ(verdict(read_scene(folder.path(), spaced()), "picture_orientation"), Verdict::Warn);
+}
+
+TEST(ReadImageStack, WarnsOfNumbersThatTheNamesSkip) {
+  const auto missing = [](const std::vector<int>& numbers) {
+    const ScratchFolder folder;
+    for (const int number : numbers)
+      write_page<std::uint16_t>(folder / ("s" + std::to_string(number) + ".png"), OIIO::TypeDesc::UINT16, 0,
+                                700);
+    const Scene scene = read_scene(folder.path(), spaced());
+    const Finding* line = tests::finding(scene, "missing_slices");
+    return line == nullptr ? std::string() : line->detail;
+  };
+  EXPECT_EQ(missing({1, 2, 3, 4, 5}), "");
+  EXPECT_EQ(missing({10, 20, 30, 40}), "") << "every tenth number";
+  EXPECT_EQ(missing({1, 7, 30}), "") << "no step is usual";
+  const std::string one = missing({1, 2, 4, 5, 6});
+  EXPECT_NE(one.find("1 numbers"), std::string::npos) << one;
+  EXPECT_NE(one.find("s2.png"), std::string::npos) << one;
+  EXPECT_NE(missing({1, 5, 6, 7, 8, 10}).find("4 numbers"), std::string::npos);
+}
+
 TEST(ReadImageStack, RefusesColourAndMixedSizes) {
   const ScratchFolder folder;
   write_page<std::uint16_t>(folder / "a1.png", OIIO::TypeDesc::UINT16, 0, 700);

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// What DICOM states about its pixels' values besides RescaleSlope and RescaleIntercept.
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "tests/voxel/linear_scene.h"
+#include "tests/voxel/scan/dicom_bytes.h"
+#include "tests/voxel/scan/spoiled_series.h"
+#include "tests/voxel/scratch_folder.h"
+#include "voxel/scan/read_scene.h"
+
+namespace octotomy::voxel {
+namespace {
+
+using tests::ScratchFolder;
+using tests::SpoiledImage;
+
+Scene read(const std::vector<SpoiledImage>& images) {
+  const ScratchFolder folder;
+  for (const SpoiledImage& image : images)
+    std::ofstream(folder / image.name, std::ios::binary) << image.bytes();
+  return read_scene(folder.path());
+}
+
+double sample(const Scene& scene, std::size_t i) {
+  return std::visit([&](const auto& samples) { return static_cast<double>(samples[i]); }, scene.samples);
+}
+
+/// Pixels of one byte each, 7 x 5 or 6 x 5 of them, in words whose low byte is the first pixel.
+TEST(DicomValues, BytesInWordsOfEitherOrderAreTheSamePixels) {
+  for (const bool is_big_endian : {false, true})
+    for (const char* vr : {"OW", "OB"})
+      for (const int columns : {6, 7}) {
+        SCOPED_TRACE(std::string(vr) + (is_big_endian ? " big" : " little") + std::to_string(columns));
+        std::vector<SpoiledImage> images = tests::sound_series();
+        for (SpoiledImage& image : images) {
+          image.big_endian = is_big_endian;
+          image.syntax = is_big_endian ? "1.2.840.10008.1.2.2" : "1.2.840.10008.1.2.1";
+          std::string pixels;
+          for (int i = 0; i < 5 * columns; ++i) pixels += static_cast<char>(3 * i);
+          if (pixels.size() % 2 != 0) pixels += '\0';
+          image.text(0x7fe00010, vr, pixels);
+          image.number(0x00280010, 5);
+          image.number(0x00280011, static_cast<std::uint16_t>(columns));
+          image.number(0x00280100, 8);
+          image.number(0x00280101, 8);
+          image.number(0x00280102, 7);
+          image.number(0x00280103, 0);
+        }
+        const Scene scene = read(images);
+        ASSERT_EQ(scene.lattice.dims, glm::ivec3(columns, 5, 12));
+        const double first = sample(scene, 0);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(5 * columns); ++i)
+          ASSERT_EQ(sample(scene, i) - first, 3.0 * static_cast<double>(i)) << i;
+      }
+}
+
+TEST(DicomValues, ADoseIsScaledByItsOwnFactorAndNamesItsUnit) {
+  std::vector<SpoiledImage> images = tests::sound_series();
+  for (SpoiledImage& image : images) {
+    image.text(0x00080060, "CS", "RTDOSE");
+    image.elements.erase(0x00281052);
+    image.elements.erase(0x00281053);
+    image.elements.erase(0x00281054);
+  }
+  const Scene stored = read(images);
+  for (SpoiledImage& image : images) {
+    image.text(0x30040002, "CS", "GY");
+    image.text(0x3004000e, "DS", "0.25");
+  }
+  const Scene dose = read(images);
+  for (std::size_t i = 0; i < dose.lattice.sample_count(); i += 7)
+    ASSERT_EQ(sample(dose, i), 0.25 * sample(stored, i));
+  EXPECT_NE(tests::finding(dose, "rescale")->detail.find("GY"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace octotomy::voxel
