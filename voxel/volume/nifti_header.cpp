@@ -245,11 +245,15 @@ class NiftiReader {
     return ras;
   }
 
-  /// The sform, whose third column a single slice may leave out. False where its numbers are no lengths or
-  /// its columns span no volume.
+  /// The sform, whose third column a single slice may leave out. False where a number is none or its columns
+  /// span no volume.
   bool is_sound_sform(std::size_t axes) {
     const glm::dmat4& s = fields_.sform;
-    if (!are_lengths({s[0], s[1], s[2], s[3]})) return false;
+    const auto is_finite = [](const glm::dvec4& column) {
+      return std::isfinite(column.x) && std::isfinite(column.y) && std::isfinite(column.z);
+    };
+    if (!is_finite(s[0]) || !is_finite(s[1]) || !is_finite(s[2]) || !is_finite(s[3])) return false;
+    require(are_lengths({s[0], s[1], s[2], s[3]}), "affine");
     third_is_missing_ = axes < 3 && glm::dvec3(s[2]) == glm::dvec3(0.0);
     const glm::dvec3 third =
         third_is_missing_ ? glm::cross(glm::dvec3(s[0]), glm::dvec3(s[1])) : glm::dvec3(s[2]);
