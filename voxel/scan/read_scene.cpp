@@ -19,13 +19,37 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// DICOM states its frame and its unit.
+/// DICOM states its frame, its unit and its spacing.
 void need_no_override(const fs::path& path, const ReadOptions& options) {
   if (options.frame || options.unit)
     throw std::invalid_argument(
         path.string() +
         ": DICOM states its patient frame (LPS) and its unit of length (mm): leave --frame "
         "and --unit out");
+  if (options.spacing_mm)
+    throw std::invalid_argument(path.string() + ": DICOM states its spacing: leave --spacing out");
+}
+
+/// A single file or stack has no series to choose from.
+void need_no_series(const fs::path& path, const ReadOptions& options) {
+  if (!options.series.empty() || options.join || !options.slices.empty())
+    throw std::invalid_argument(
+        path.string() +
+        ": is no DICOM series: leave --series, --join and --slices out, or give the folder of the series");
+}
+
+Scene read_volume_file(const fs::path& path, VolumeFormat format, const ReadOptions& options) {
+  need_no_series(path, options);
+  if (options.spacing_mm)
+    throw std::invalid_argument(path.string() +
+                                ": its header states the spacing: leave --spacing out, or correct the "
+                                "header; --unit names another unit of length");
+  return read_volume(path, format, options);
+}
+
+Scene read_stack(const fs::path& path, const ReadOptions& options) {
+  need_no_series(path, options);
+  return read_image_stack(path, options);
 }
 
 Scene read_any(const fs::path& path, const ReadOptions& options) {
@@ -33,14 +57,19 @@ Scene read_any(const fs::path& path, const ReadOptions& options) {
   const fs::file_status status = fs::status(path, error);
   const bool is_folder = fs::is_directory(status);
   if (!is_folder) need_regular_file(path);
-  if (options.raw) return read_raw(path, options);
+  if (options.raw) {
+    need_no_series(path, options);
+    return read_raw(path, options);
+  }
   if (!is_folder) {
-    if (!image_files(path).empty()) return read_image_stack(path, options);
+    if (!image_files(path).empty()) return read_stack(path, options);
     if (!fs::exists(status)) refuse(path, "no such file or folder");
     if (const std::optional<VolumeFormat> format = readable_volume_format(path))
-      return read_volume(path, *format, options);
+      return read_volume_file(path, *format, options);
     need_no_override(path, options);
-    return is_dicom_seg(path) ? read_dicom_seg(path) : read_dicom(path, options);
+    if (!is_dicom_seg(path)) return read_dicom(path, options);
+    need_no_series(path, options);
+    return read_dicom_seg(path);
   }
   // A folder of images may hold DICOM as well. DICOM comes first because it holds positions.
   if (image_files(path).empty()) {
@@ -53,7 +82,7 @@ Scene read_any(const fs::path& path, const ReadOptions& options) {
     return scene;
   } catch (const Error& refusal) {
     if (refusal.code() != ErrorCode::Input) throw;
-    return read_image_stack(path, options);
+    return read_stack(path, options);
   }
 }
 
