@@ -429,7 +429,22 @@ class SeriesAssembler {
              " slices, as --slices " + to_string(options_.slices) + " asks");
   }
 
+  /// Places slices whose positions are all the same by SliceLocation, along the normal.
+  void place_by_location(std::vector<DicomSlice>& members) {
+    std::set<double> locations_mm;
+    for (const DicomSlice& slice : members) {
+      if (slice.first_mm != members.front().first_mm || !slice.location_mm) return;
+      locations_mm.insert(*slice.location_mm);
+    }
+    if (members.size() < 2 || locations_mm.size() < members.size()) return;
+    for (DicomSlice& slice : members) {
+      slice.first_mm += *slice.location_mm * glm::normalize(glm::cross(slice.along_row, slice.along_column));
+      slice.assumed_place = "SliceLocation along the normal, since every ImagePositionPatient is the same";
+    }
+  }
+
   DicomStack orient(std::vector<DicomSlice> members) {
+    place_by_location(members);
     keep_commonest("size", members, same_grid, [](const DicomSlice& slice) {
       return print("%d x %d pixels of %.6g x %.6g mm", slice.size_px.x, slice.size_px.y, slice.spacing_mm.x,
                    slice.spacing_mm.y);

@@ -433,6 +433,12 @@ int stated_short(const DicomFile& file, DicomTag tag) {
   return file.unsigned_short(tag).value_or(0);
 }
 
+/// CT Image, Enhanced CT Image and Legacy Converted Enhanced CT Image (DICOM PS3.4, B.5).
+bool is_ct_class(const std::string& class_uid) {
+  return class_uid == "1.2.840.10008.5.1.4.1.1.2" || class_uid == "1.2.840.10008.5.1.4.1.1.2.1" ||
+         class_uid == "1.2.840.10008.5.1.4.1.1.2.2";
+}
+
 /// The part of the header that all frames of a file share.
 std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::filesystem::path& path) {
   if (file.text(0x00020002) == "1.2.840.10008.1.3.10")
@@ -448,6 +454,9 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
   const std::string photometric = file.readable_text(0x00280004);
   if (!photometric.empty() && !photometric.starts_with("MONOCHROME"))
     return NoSlice{"pixels in " + photometric + ", which are no measurements", unusable};
+  if (file.text(0x00080008).find("MOSAIC") != std::string::npos)
+    return NoSlice{"a mosaic, which shows many slices in one picture; export them as single slices",
+                   unusable};
   slice.pixels = pixels_of(file);
   if (!is_sound(slice.pixels))
     return NoSlice{"pixels of " + std::to_string(slice.pixels.allocated) + " bits", unusable};
@@ -458,6 +467,10 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
   slice.series_uid = file.text(0x0020000e);
   slice.series_description = file.readable_text(0x0008103e);
   slice.modality = file.readable_text(0x00080060);
+  if (is_ct_class(slice.class_uid) && slice.modality != "CT") {
+    slice.assumed_modality = slice.modality.empty() ? "absent" : "'" + slice.modality + "'";
+    slice.modality = "CT";
+  }
   slice.identity = identity_of(file);
   const auto number = [&](DicomTag tag) {
     const double value = file.decimal(tag).value_or(0.0);
@@ -481,6 +494,7 @@ std::optional<NoSlice> take_frame(const DicomFile& file, const Attributes& attri
                                   std::size_t frame_count, DicomSlice& slice) {
   if (auto flaw = take_geometry(attributes, frame_count, slice)) return flaw;
   slice.decimal_commas = decimal_commas_of(attributes);
+  slice.location_mm = attributes.decimal(0x00201041);
   slice.rescale_type = attributes.text(0x00281054);
   slice.intercept = attributes.decimal(0x00281052);
   slice.slope = attributes.decimal(0x00281053);

@@ -86,6 +86,8 @@ struct DicomSlice {
   std::optional<DicomPadding> padding;
   std::string decimal_commas;          ///< attributes whose numbers have a comma for the point, for people
   std::string real_world;              ///< a Real World Value Mapping, for people
+  std::optional<double> location_mm;   ///< SliceLocation, of no stated origin
+  std::string assumed_modality;        ///< what the header states where the images' class contradicts it
   std::string assumed_place;           ///< how a frame without a position of its own was placed, for people
   std::string excess_pixels;           ///< pixel data beyond what the header counts, for people
   std::optional<double> aspect_ratio;  ///< of PixelAspectRatio: height by width

@@ -58,6 +58,10 @@ class SeriesReader {
       decode_as<float>(stack);
     }
     options_.progress.at(0.8);
+    if (!stack.first().assumed_modality.empty())
+      find("modality_class", Verdict::Warn,
+           "Modality is " + stack.first().assumed_modality +
+               ", but the images are stored as CT images: CT is assumed");
     audit_rescale(stack);
     std::visit([&](auto& samples) { take_padding(stack, samples); }, scene_.samples);
     audit_contents(stack);
@@ -73,9 +77,11 @@ class SeriesReader {
     audit_steps();
     if (scene_.modality == "CT") {
       AirLevel air = air_level_of_ct(scene_);
-      // The header declares the unit as unspecified, and no air contradicts it: not Hounsfield.
-      if (stack.first().rescale_type == "US" && air.meaning == Meaning::Hounsfield &&
-          air.finding.verdict != Verdict::Pass)
+      // The header declares another unit, or an unspecified one that no air contradicts: not Hounsfield.
+      const std::string& unit = stack.first().rescale_type;
+      const bool is_other = !unit.empty() && unit != "HU" && unit != "HU_MOD" && unit != "US";
+      if (is_other ||
+          (unit == "US" && air.meaning == Meaning::Hounsfield && air.finding.verdict != Verdict::Pass))
         air.meaning = Meaning::Raw;
       scene_.meaning = air.meaning;
       scene_.audit.push_back(air.finding);
@@ -199,7 +205,13 @@ class SeriesReader {
       if (kind != commonest->first) differing.insert(differing.end(), names.begin(), names.end());
     const auto half = named_if(
         [&](const DicomSlice& slice) { return slice.slope.has_value() != slice.intercept.has_value(); });
-    if (!differing.empty())
+    const auto without = named_if([](const DicomSlice& slice) { return !slice.slope && !slice.intercept; });
+    if (!without.empty() && without.size() < stack.slices.size())
+      find("rescale", Verdict::Fail,
+           "RescaleSlope and RescaleIntercept are absent in " + slices(without.size()) +
+               ", whose values are not rescaled as those of the others are: " + listed(without),
+           without);
+    else if (!differing.empty())
       find("rescale", Verdict::Warn,
            "slope, intercept or unit change between slices (" + std::to_string(differing.size()) +
                " differ from the others); each slice's own are applied: " + listed(differing),

@@ -3,6 +3,7 @@
 // What DICOM states about its pixels' values besides RescaleSlope and RescaleIntercept.
 #include <fstream>
 #include <gtest/gtest.h>
+#include <map>
 
 #include "tests/voxel/linear_scene.h"
 #include "tests/voxel/scan/dicom_bytes.h"
@@ -31,29 +32,40 @@ double sample(const Scene& scene, std::size_t i) {
 TEST(DicomValues, BytesInWordsOfEitherOrderAreTheSamePixels) {
   for (const bool is_big_endian : {false, true})
     for (const char* vr : {"OW", "OB"})
-      for (const int columns : {6, 7}) {
-        SCOPED_TRACE(std::string(vr) + (is_big_endian ? " big" : " little") + std::to_string(columns));
+      for (const int width : {6, 7}) {
+        SCOPED_TRACE(std::string(vr) + (is_big_endian ? " big" : " little") + std::to_string(width));
         std::vector<SpoiledImage> images = tests::sound_series();
         for (SpoiledImage& image : images) {
           image.big_endian = is_big_endian;
           image.syntax = is_big_endian ? "1.2.840.10008.1.2.2" : "1.2.840.10008.1.2.1";
           std::string pixels;
-          for (int i = 0; i < 5 * columns; ++i) pixels += static_cast<char>(3 * i);
+          for (int i = 0; i < 5 * width; ++i) pixels += static_cast<char>(3 * i);
           if (pixels.size() % 2 != 0) pixels += '\0';
           image.text(0x7fe00010, vr, pixels);
           image.number(0x00280010, 5);
-          image.number(0x00280011, static_cast<std::uint16_t>(columns));
+          image.number(0x00280011, static_cast<std::uint16_t>(width));
           image.number(0x00280100, 8);
           image.number(0x00280101, 8);
           image.number(0x00280102, 7);
           image.number(0x00280103, 0);
         }
         const Scene scene = read(images);
-        ASSERT_EQ(scene.lattice.dims, glm::ivec3(columns, 5, 12));
+        ASSERT_EQ(scene.lattice.dims, glm::ivec3(width, 5, 12));
         const double first = sample(scene, 0);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(5 * columns); ++i)
+        for (std::size_t i = 0; i < static_cast<std::size_t>(5 * width); ++i)
           ASSERT_EQ(sample(scene, i) - first, 3.0 * static_cast<double>(i)) << i;
       }
+}
+
+TEST(DicomValues, ACtOfAnotherUnitIsNotTakenAsHounsfield) {
+  for (const auto& [unit, meaning] : std::map<std::string, Meaning>{{"HU", Meaning::Hounsfield},
+                                                                    {"HU_MOD", Meaning::Hounsfield},
+                                                                    {"Z_EFF", Meaning::Raw},
+                                                                    {"MGML", Meaning::Raw}}) {
+    std::vector<SpoiledImage> images = tests::sound_series();
+    for (SpoiledImage& image : images) image.text(0x00281054, "LO", unit);
+    EXPECT_EQ(read(images).meaning, meaning) << unit;
+  }
 }
 
 TEST(DicomValues, ADoseIsScaledByItsOwnFactorAndNamesItsUnit) {

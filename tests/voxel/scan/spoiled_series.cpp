@@ -289,6 +289,32 @@ std::vector<SpoiledKind> of_values() {
       {"intercept_lost", "air_level", fail, "not Hounsfield", {}, text(0x00281052, "DS", "0")},
       {"intercept_lost_in_one", "rescale", warn, "1 differ", {"a07"}, text(0x00281052, "DS", "0", 7, 7)},
       {"rescale_absent", "rescale", warn, "absent", {}, without({0x00281052, 0x00281053, 0x00281054})},
+      {"rescale_absent_in_one",
+       "rescale",
+       fail,
+       "absent in 1 slice",
+       {"a07"},
+       without({0x00281052, 0x00281053, 0x00281054}, 7, 7)},
+      {"modality_absent_of_a_ct", "modality_class", warn, "absent", {}, without({0x00080060})},
+      {"modality_other_of_a_ct", "modality_class", warn, "'OT'", {}, text(0x00080060, "CS", "OT")},
+      {"unit_of_atomic_numbers", "rescale", warn, "'Z_EFF'", {}, text(0x00281054, "LO", "Z_EFF")},
+      {"mosaic_in_one",
+       "unusable_images",
+       fail,
+       "mosaic",
+       {"a07"},
+       text(0x00080008, "CS", "ORIGINAL\\PRIMARY\\MOSAIC", 7, 7)},
+      {"positions_all_zero",
+       "frame_positions",
+       warn,
+       "SliceLocation",
+       {},
+       [](Images& images) {
+         for (std::size_t i = 0; i < images.size(); ++i) {
+           images[i].text(0x00200032, "DS", "0\\0\\0");
+           images[i].text(0x00201041, "DS", std::to_string(2 * i));
+         }
+       }},
       {"rescale_half_there", "rescale", warn, "absent", {"a07"}, without({0x00281053}, 7, 7)},
       {"unit_not_hounsfield", "rescale", warn, "'US'", {}, text(0x00281054, "LO", "US")},
       {"unit_differs_in_one", "rescale", warn, "unit", {"a02"}, text(0x00281054, "LO", "US", 2, 2)},
@@ -831,7 +857,7 @@ std::string SpoiledImage::bytes() const {
     } else if (implicit) {
       rest += wide(length, 4) + value;
     } else {
-      const bool is_wide = vr == "OW" || vr == "SQ" || vr == "UN";
+      const bool is_wide = vr == "OB" || vr == "OW" || vr == "SQ" || vr == "UN";
       rest += vr + (is_wide ? wide(0, 2) + wide(length, 4) : wide(length, 2)) + value;
     }
   }
