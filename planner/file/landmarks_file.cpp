@@ -14,6 +14,7 @@
 #include <string>
 #include <utility>
 
+#include "planner/file/mesh_in.h"
 #include "planner/table/csv.h"
 #include "planner/table/json.h"
 #include "planner/table/json_file.h"
@@ -92,10 +93,20 @@ double mm_of_units(const SortedJson& units) {
   return mm_of_units(units[0]);
 }
 
+using Audit = std::vector<brep::MeshFinding>;
+
+void assume(const char* check, const std::string& what, Audit& audit) {
+  audit.push_back({check, brep::MeshVerdict::Warn, what});
+}
+
 /// Control points of every list in the file.
-std::vector<brep::Landmark> slicer_landmarks(const SortedJson& markups) {
+std::vector<brep::Landmark> slicer_landmarks(const SortedJson& markups, Audit& audit) {
   std::vector<brep::Landmark> landmarks;
   for (const SortedJson& list : markups) {
+    if (!list.contains("coordinateSystem"))
+      assume("frame", "the file names no coordinateSystem: LPS is assumed", audit);
+    if (!list.contains("coordinateUnits"))
+      assume("unit", "the file names no coordinateUnits: mm is assumed", audit);
     const glm::dvec3 lps_mm = lps_mm_of_markup(list);
     for (const SortedJson& entry : list.value("controlPoints", SortedJson::array())) {
       if (entry.value("positionStatus", "defined") != "defined") continue;
@@ -130,7 +141,7 @@ double fcsv_number(const std::string& cell, const std::string& name) {
 
 /// Slicer's points as lines of commas. Since its version 4 a line is id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,
 /// ..., before label,x,y,z,...; the file says which.
-std::vector<brep::Landmark> fcsv_landmarks(const std::string& text) {
+std::vector<brep::Landmark> fcsv_landmarks(const std::string& text, Audit& audit) {
   std::vector<std::string> columns{"id", "x",  "y",   "z",   "ow",   "ox",
                                    "oy", "oz", "vis", "sel", "lock", "label"};
   glm::dvec3 lps_mm(-1.0, -1.0, 1.0);
@@ -170,6 +181,8 @@ std::vector<brep::Landmark> fcsv_landmarks(const std::string& text) {
     landmarks.push_back(std::move(landmark));
   }
   if (landmarks.empty()) throw std::runtime_error("there is no point");
+  if (!is_stated)
+    assume("frame", "the file names no CoordinateSystem: RAS is assumed, as 3D Slicer had it then", audit);
   return landmarks;
 }
 
@@ -192,20 +205,33 @@ std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path) {
   if (!file) throw std::runtime_error(path.string() + ": cannot be read");
   try {
     const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (voxel::extension_of(path) == ".fcsv") return fcsv_landmarks(text);
+    Audit audit;
+    std::vector<brep::Landmark> landmarks;
+    const auto read = [&] {
+      if (!audit.empty()) keep_landmark_audit(path, audit);
+      return landmarks;
+    };
+    if (voxel::extension_of(path) == ".fcsv") {
+      landmarks = fcsv_landmarks(text, audit);
+      return read();
+    }
     const auto root = parse_json(text);
     const auto is_list = [&](const char* key) {
       return root.is_object() && root.contains(key) && root[key].is_array();
     };
-    std::vector<brep::Landmark> landmarks;
+    for (const char* statement : {"frame", "unit", "units", "coordinateSystem", "coordinateUnits", "space"})
+      if (is_list("landmarks") && root.contains(statement))
+        throw std::runtime_error(std::string("states '") + statement +
+                                 "' beside \"landmarks\", whose \"point_mm\" are LPS millimetres: write them "
+                                 "so and leave it out");
     if (is_list("landmarks"))
       landmarks = own_landmarks(root["landmarks"]);
     else if (is_list("markups"))
-      landmarks = slicer_landmarks(root["markups"]);
+      landmarks = slicer_landmarks(root["markups"], audit);
     else
       throw std::runtime_error(
           R"(there is no list "landmarks" of { "name": ..., "point_mm": [x, y, z] }, nor Slicer's "markups")");
-    return landmarks;
+    return read();
   } catch (const SortedJson::exception& error) {
     throw std::runtime_error(path.string() + ": " + error.what());
   } catch (const std::runtime_error& error) {

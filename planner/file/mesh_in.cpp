@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/file/mesh_in.h"
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -13,7 +14,7 @@ namespace {
 struct MeshReading {
   std::mutex mutex;
   std::vector<std::string> frames, units;
-  std::map<std::filesystem::path, std::vector<brep::MeshFinding>> read;
+  std::map<std::filesystem::path, std::vector<brep::MeshFinding>> read, landmarks;
 };
 MeshReading& mesh_reading() {
   static MeshReading of_process;
@@ -25,16 +26,20 @@ std::string choice_of(const std::string& word) {
   return word.substr(word.rfind('=') + 1);
 }
 
+bool names(const std::string& word, const std::filesystem::path& path) {
+  const std::size_t equals = word.rfind('=');
+  if (equals == std::string::npos) return false;
+  const std::string name = word.substr(0, equals);
+  return name == path.string() || name == path.filename().string();
+}
+
 /// The choice for a file: one that names it, else one that names none.
 std::optional<std::string> chosen(const std::vector<std::string>& words, const std::filesystem::path& path) {
   std::optional<std::string> made;
   for (const std::string& word : words)
     if (word.find('=') == std::string::npos) made = word;
   for (const std::string& word : words)
-    if (const std::size_t equals = word.rfind('='); equals != std::string::npos) {
-      const std::string name = word.substr(0, equals);
-      if (name == path.string() || name == path.filename().string()) made = choice_of(word);
-    }
+    if (names(word, path)) made = choice_of(word);
   return made;
 }
 
@@ -55,6 +60,7 @@ void choose_mesh_reading(const std::vector<std::string>& frames, const std::vect
   now.frames = frames;
   now.units = units;
   now.read.clear();
+  now.landmarks.clear();
 }
 
 brep::Triangles read_mesh_in(const std::filesystem::path& path, const brep::MeshReadOptions& options) {
@@ -80,6 +86,33 @@ std::vector<MeshRecord> meshes_read() {
   const std::lock_guard lock(now.mutex);
   std::vector<MeshRecord> made;
   for (const auto& [path, audit] : now.read) made.push_back({path, audit});
+  return made;
+}
+
+std::vector<std::string> unused_choices() {
+  MeshReading& now = mesh_reading();
+  const std::lock_guard lock(now.mutex);
+  std::vector<std::string> unused;
+  for (const auto& [option, words] : {std::pair{"--frame ", &now.frames}, std::pair{"--unit ", &now.units}})
+    for (const std::string& word : *words)
+      if (word.find('=') != std::string::npos &&
+          std::none_of(now.read.begin(), now.read.end(),
+                       [&](const auto& read) { return names(word, read.first); }))
+        unused.push_back(option + word);
+  return unused;
+}
+
+void keep_landmark_audit(const std::filesystem::path& path, std::vector<brep::MeshFinding> audit) {
+  MeshReading& now = mesh_reading();
+  const std::lock_guard lock(now.mutex);
+  now.landmarks[path] = std::move(audit);
+}
+
+std::vector<MeshRecord> landmark_files_read() {
+  MeshReading& now = mesh_reading();
+  const std::lock_guard lock(now.mutex);
+  std::vector<MeshRecord> made;
+  for (const auto& [path, audit] : now.landmarks) made.push_back({path, audit});
   return made;
 }
 

@@ -18,7 +18,7 @@ struct MeshRecord {
 };
 
 /// Chooses frames and units for the meshes of this process, each as "RAS" or for one file as "box.stl=RAS",
-/// and forgets those read so far. Throws std::runtime_error where one is no frame or no unit.
+/// and forgets the files read so far. Throws std::runtime_error where one is no frame or no unit.
 void choose_mesh_reading(const std::vector<std::string>& frames, const std::vector<std::string>& units);
 
 /// Reads a mesh as chosen and keeps its audit for meshes_read(); any thread may call. Throws as
@@ -29,6 +29,14 @@ brep::Triangles read_mesh_in(const std::filesystem::path& path, const brep::Mesh
 
 /// The meshes read since the last choice, each path once, by path.
 std::vector<MeshRecord> meshes_read();
+
+/// Choices that name a file, as "box.stl=RAS", of which none was read.
+std::vector<std::string> unused_choices();
+
+/// Keeps what was assumed of a file of landmarks for landmark_files_read(); any thread may call.
+void keep_landmark_audit(const std::filesystem::path& path, std::vector<brep::MeshFinding> audit);
+/// The files of landmarks read since the last choice that left something to be assumed, by path.
+std::vector<MeshRecord> landmark_files_read();
 
 /// The audit as a list of check, verdict and detail.
 Json to_json(const std::vector<brep::MeshFinding>& audit);

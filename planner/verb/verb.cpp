@@ -117,9 +117,12 @@ void Program::say(const Json& answer, const std::string& text) const {
       if (finding.verdict != voxel::Verdict::Pass)
         warn(scan.path.string() + ": " + to_string(finding.verdict) + ", " + finding.check + ": " +
              finding.detail);
-  const std::vector<MeshRecord> meshes = meshes_read();
-  for (const MeshRecord& mesh : meshes)
-    for (const std::string& line : warnings_of(mesh.audit)) warn(mesh.path.string() + ": WARN, " + line);
+  const std::vector<MeshRecord> meshes = meshes_read(), landmarks = landmark_files_read();
+  for (const std::vector<MeshRecord>* files : {&meshes, &landmarks})
+    for (const MeshRecord& file : *files)
+      for (const std::string& line : warnings_of(file.audit)) warn(file.path.string() + ": WARN, " + line);
+  for (const std::string& choice : unused_choices())
+    warn(choice + ": no mesh of that name was read, so that the choice changes nothing");
   for (const std::string& name : *tissues_) {
     const voxel::Tissue tissue = *voxel::tissue(name);
     warn(voxel::described(tissue) + ": " + std::string(tissue.source));
@@ -141,6 +144,8 @@ void Program::say(const Json& answer, const std::string& text) const {
   if (!meshes.empty() && !whole.contains("audit") && !whole.contains("meshes"))
     for (const MeshRecord& mesh : meshes)
       whole["meshes"].push_back({{"path", mesh.path.generic_string()}, {"audit", to_json(mesh.audit)}});
+  for (const MeshRecord& file : landmarks)
+    whole["landmark_files"].push_back({{"path", file.path.generic_string()}, {"audit", to_json(file.audit)}});
   if (!scans_->empty() && !whole.contains("audit") && !whole.contains("scans")) {
     whole["scans"] = Json::array();
     for (const ScanRecord& scan : *scans_) {
