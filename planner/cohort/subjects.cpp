@@ -51,6 +51,25 @@ bool is_drawn(const std::string& stem) {
          end == "labels" || end == "roi";
 }
 
+/// BIDS's suffixes of pictures that are no CT, after the last underscore of a name.
+bool is_of_magnetic_resonance(const std::string& stem) {
+  static const std::set<std::string> suffixes{
+      "T1w",        "T2w",      "T2star", "FLAIR",  "PDw",     "PDT2",  "bold",  "cbv",
+      "sbref",      "dwi",      "asl",    "m0scan", "epi",     "T1rho", "angio", "phasediff",
+      "magnitude1", "fieldmap", "UNIT1",  "MEGRE",  "MP2RAGE", "pet"};
+  return suffixes.contains(stem.substr(stem.rfind('_') + 1));
+}
+
+/// The first file that names another subject than its folder's; none where all are of one.
+std::optional<fs::path> file_of_another(const std::string& label, const std::vector<fs::path>& files) {
+  const std::string own = "sub-" + label.substr(0, label.find("_ses-"));
+  for (const fs::path& file : files) {
+    const std::string name = file.filename().string();
+    if (name.starts_with("sub-") && name.substr(0, name.find_first_of("_.")) != own) return file;
+  }
+  return std::nullopt;
+}
+
 /// The files below a subject's folder; those of sessions, which stand for themselves, only where the folder
 /// is one.
 std::vector<fs::path> files_below(const fs::path& folder) {
@@ -73,13 +92,20 @@ Subject subject_of_folder(const std::string& label, const fs::path& folder, cons
   std::vector<fs::path> files;
   for (const fs::path& file : files_below(folder))
     if (!stem_of_scan(file.filename().string()).empty()) files.push_back(file);
+  if (const std::optional<fs::path> other = file_of_another(label, files)) {
+    subject.trouble = folder.string() + ": holds " + other->filename().string() +
+                      ", whose name is another subject's: move it or rename it";
+    return subject;
+  }
   for (const auto& [name, unused] : plan.scans) {
     std::vector<fs::path> fitting;
     for (const fs::path& file : files)
       if (stem_of_scan(file.filename().string()).ends_with("_" + name)) fitting.push_back(file);
     if (fitting.empty() && plan.scans.size() == 1)
-      std::copy_if(files.begin(), files.end(), std::back_inserter(fitting),
-                   [](const fs::path& file) { return !is_drawn(stem_of_scan(file.filename().string())); });
+      std::copy_if(files.begin(), files.end(), std::back_inserter(fitting), [](const fs::path& file) {
+        const std::string stem = stem_of_scan(file.filename().string());
+        return !is_drawn(stem) && !is_of_magnetic_resonance(stem);
+      });
     if (fitting.size() == 1) {
       subject.scans[name] = fitting.front();
       continue;

@@ -85,6 +85,25 @@ TEST_F(BidsSubjects, ALabelMapBesideTheOnlyScanIsNoSecondScan) {
             "sub-01_dseg.nii.gz");
 }
 
+TEST_F(BidsSubjects, APictureOfMagneticResonanceIsNoCtOfThePlan) {
+  for (const char* name : {"anat/sub-01_T1w.nii.gz", "func/sub-01_task-rest_bold.nii.gz"}) {
+    put(std::string("sub-01/") + name);
+    const Subject subject = find_subjects(folder_.path(), plan_of({"ct"})).at(0);
+    EXPECT_NE(subject.trouble.find("no scan"), std::string::npos) << name << subject.trouble;
+    std::filesystem::remove(folder_ / "sub-01" / name);
+  }
+  put("sub-01/anat/sub-01_T1w.nii.gz");
+  EXPECT_EQ(find_subjects(folder_.path(), plan_of({"T1w"})).at(0).trouble, "") << "the plan names it";
+}
+
+TEST_F(BidsSubjects, AFileOfAnotherSubjectIsTold) {
+  put("sub-01/ct/sub-02_ct.nii.gz");
+  put("sub-03/ses-1/ct/sub-03_ses-1_ct.nii.gz");
+  const std::vector<Subject> found = find_subjects(folder_.path(), plan_of({"ct"}));
+  EXPECT_NE(found.at(0).trouble.find("sub-02_ct.nii.gz"), std::string::npos) << found.at(0).trouble;
+  EXPECT_EQ(found.at(1).trouble, "");
+}
+
 TEST_F(BidsSubjects, ATableOfTabsNamesScansOrTheFoldersBesideIt) {
   put("sub-01/ct/sub-01_ct.nii.gz");
   put("sub-02/ct/sub-02_ct.nii.gz");
