@@ -117,7 +117,7 @@ FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked,
     triangles = read_mesh_in(file);
   }
   auto watch = std::make_unique<Stopwatch>(timings, "measure");
-  const brep::Health health = brep::health(triangles, {false});
+  const brep::Health health = brep::health(triangles);
   if (!health.closed || !health.manifold || !health.oriented) {
     if (asked.asks_surface() || !asked.out.empty())
       throw std::runtime_error(
@@ -137,6 +137,10 @@ FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked,
   json["components"] = health.components;
   json["euler"] = health.euler;
   json["findings"] = {"volume_partial_mm3: a mesh has no voxels to fill partly"};
+  if (health.self_intersections > 0)
+    json["findings"].push_back("WARN volume_mm3: " + std::to_string(health.self_intersections) +
+                               " pairs of triangles cross each other, so that parts which overlap count "
+                               "twice: octotomy repair --solid makes one surface of them");
   return said(std::move(json));
 }
 
@@ -354,6 +358,9 @@ FileAnswer measure_file(const Measure& asked, const FileBench& bench) {
     throw std::runtime_error(file.string() +
                              ": sections, ways, angles, walls and curvature are asked of a mesh: octotomy "
                              "mesh makes one");
+  if (is_mesh(file) && (asked.window || asked.voxel_mm))
+    throw std::runtime_error(file.string() + ": a mesh has no samples and no voxels: leave " +
+                             (asked.window ? "--window" : "--voxel") + " out");
   if (is_octree(file)) return measure_octree(file, asked, bench);
   return is_mesh(file) ? measure_mesh(file, asked, bench) : measure_scan(file, asked, bench);
 }

@@ -384,6 +384,32 @@ TEST_F(MeshVerbs, VoxelsHalfFilledNowhereSayWhatTheirSharesHold) {
   EXPECT_NEAR(kept["volume_counted_half_width_mm3"].get<double>(), 80.0, 0.1);
 }
 
+TEST_F(MeshVerbs, OptionsThatAMeshHasNoUseForAreRefusedOrTold) {
+  write("one.off", cube_off(0, 8));
+  expect_refused(run("measure " + at("one.off") + " --window 300:"), "--window");
+  expect_refused(run("measure " + at("one.off") + " --voxel 1"), "--voxel");
+  EXPECT_NE(run("measure " + at("one.off") + " --frame other.off=RAS").errors.find("other.off=RAS"),
+            std::string::npos);
+  EXPECT_EQ(run("measure " + at("one.off") + " --frame one.off=RAS").errors.find("one.off=RAS"),
+            std::string::npos);
+}
+
+TEST_F(MeshVerbs, ShellsThatOverlapAreToldWhereTheirVolumeCountsTwice) {
+  using brep::shapes::box;
+  using brep::shapes::together;
+  const auto findings = [&](const brep::Triangles& triangles) {
+    brep::write_mesh(triangles, folder_ / "shells.off");
+    const CommandAnswer answer = run("measure " + at("shells.off") + " --json");
+    EXPECT_EQ(answer.status, 0) << answer.errors;
+    return SortedJson::parse(answer.out)["findings"].dump();
+  };
+  const brep::Triangles one = box({0, 0, 0}, {8, 8, 8});
+  for (const brep::Triangles& other : {box({6, 6, 6}, {14, 14, 14}), one})
+    EXPECT_NE(findings(together(one, other)).find("WARN volume_mm3"), std::string::npos);
+  for (const brep::Triangles& sound : {one, together(one, box({9, 0, 0}, {17, 8, 8}))})
+    EXPECT_EQ(findings(sound).find("WARN"), std::string::npos);
+}
+
 TEST_F(MeshVerbs, SeveralMeshesBecomeALabelMapAndTellWhereTheyOverlap) {
   write("a.off", cube_off(0, 8));
   write("b.off", cube_off(6, 14));
