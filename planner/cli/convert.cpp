@@ -158,6 +158,8 @@ int convert(const Program& program, const ConvertText& text) {
     if (folder) {
       voxel::DicomOptions options;
       options.series_description = "Octotomy, derived";
+      if (scene.modality.empty())
+        findings.push_back(text.in.string() + " does not state its modality: written as CT");
       options.source = source_of(program, text, is_dicom(scene), scene.identity, findings);
       voxel::write_dicom_series(scene, text.out, options);
     } else {
