@@ -129,28 +129,30 @@ IntervalCoverage coverage_of(std::vector<Error> errors) {
   return found;
 }
 
-/// The intervals of a solid drawn by chance, as its scan shows them.
-Errors drawn_errors_of(std::uint64_t seed, std::size_t number) {
+SizeIntervals sizes_of(const voxel::Scene& scan, double low) {
+  const std::optional<TwoPhase> phases = two_phase(scan, low);
+  if (phases && !phases->evidence.is_ambiguous) return {phases->volume_mm3, phases->area_mm2, {}};
+  const brep::Solid surface = brep::trusted_solid(
+      convert::isosurface(scan, low, std::numeric_limits<double>::infinity()), brep::Proof::Construction);
+  SampledFrom from;
+  from.sample_edges = glm::dmat3(scan.lattice.lps_from_voxel);
+  from.sample_at_mm = glm::dvec3(scan.lattice.lps_from_voxel[3]);
+  from.blur_samples2 = blur_of(surface, from.sample_edges, sampler_of(scan));
+  SizeIntervals found =
+      surface.empty() ? nothing_found(scan.lattice.spacing_mm()) : size_intervals(surface, from);
+  if (phases) widen_to(phases->volume_mm3, found.volume_mm3);
+  if (phases) widen_to(phases->area_mm2, found.area_mm2);
+  return found;
+}
+
+/// The errors of a solid drawn by chance.
+Errors drawn_errors_of(std::uint64_t seed, std::size_t number, const MeasureSizes& measure) {
   Errors errors;
   errors.group = number % drawn_groups().size();
   Chance chance((seed << 32) + number);
   const DrawnSolid solid = drawn_solid(drawn_groups()[errors.group].name, chance);
   const DrawnScan how = drawn_scan(chance);
-  const voxel::Scene scan = scan_of(solid, how, chance);
-  SizeIntervals found = nothing_found(how.spacing_mm);
-  if (const std::optional<TwoPhase> phases = two_phase(scan, how.half())) {
-    found.volume_mm3 = phases->volume_mm3;
-    found.area_mm2 = phases->area_mm2;
-  } else {
-    const brep::Solid surface =
-        brep::trusted_solid(convert::isosurface(scan, how.half(), std::numeric_limits<double>::infinity()),
-                            brep::Proof::Construction);
-    SampledFrom from;
-    from.sample_edges = glm::dmat3(scan.lattice.lps_from_voxel);
-    from.sample_at_mm = glm::dvec3(scan.lattice.lps_from_voxel[3]);
-    from.blur_samples2 = blur_of(surface, from.sample_edges, sampler_of(scan));
-    if (!surface.empty()) found = size_intervals(surface, from);
-  }
+  const SizeIntervals found = measure(scan_of(solid, how, chance), how.half());
   errors.volume = error_of(found.volume_mm3, solid.volume_mm3);
   errors.area = error_of(found.area_mm2, solid.area_mm2);
   return errors;
@@ -158,13 +160,25 @@ Errors drawn_errors_of(std::uint64_t seed, std::size_t number) {
 
 }  // namespace
 
+bool is_likely(const IntervalCoverage& row, double least) {
+  const double missed = (1.0 - row.held) * row.cases, expected = (1.0 - least) * row.cases;
+  // The chance of at least so many misses, by the binomial distribution from none upwards.
+  double probability = std::pow(least, row.cases), fewer = 0.0;
+  for (int i = 0; i < std::lround(missed); ++i) {
+    fewer += probability;
+    probability *= static_cast<double>(row.cases - i) / (i + 1) * (1.0 - least) / least;
+  }
+  return missed <= expected || 1.0 - fewer > 0.01;
+}
+
 std::vector<IntervalCoverage> drawn_suite(const IntervalSuiteOptions& options) {
   if (options.solids < 1) throw std::invalid_argument("a suite of intervals takes at least one solid");
   std::vector<Errors> all(static_cast<std::size_t>(options.solids));
+  const MeasureSizes measure = options.measure ? options.measure : sizes_of;
   voxel::SharedProgress done(options.progress, all.size());
   tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
     done.one_more();
-    all[i] = drawn_errors_of(options.seed, i);
+    all[i] = drawn_errors_of(options.seed, i, measure);
   });
   std::vector<IntervalCoverage> table;
   const auto add = [&](bool of_volume, bool is_held_back, const std::string& group) {

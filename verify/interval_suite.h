@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "verify/size_interval.h"
 #include "voxel/space/progress.h"
+#include "voxel/space/scene.h"
 
 // Do the intervals hold the truth as often as they claim, and are they no wider than that takes?
 namespace octotomy::verify {
@@ -23,10 +25,14 @@ struct IntervalCoverage {
   double median_width_percent = 0.0;                   ///< of the half-width, by the truth
 };
 
+/// Measures what a scan has from `low` on.
+using MeasureSizes = std::function<SizeIntervals(const voxel::Scene& scan, double low)>;
+
 struct IntervalSuiteOptions {
   int solids = 400;  ///< shared out over all groups, spacings and samplings
   std::uint64_t seed = 1;
   voxel::Progress progress = {};
+  MeasureSizes measure = {};  ///< of drawn_suite(): what is tried. None: the surface and the sum of samples
 };
 
 /// Solids of measured_groups() in random poses at spacings 1:1:1 to 5:1:1, as shares, as a blurred scan with
@@ -42,6 +48,8 @@ std::vector<IntervalCoverage> interval_suite(const IntervalSuiteOptions& options
 std::vector<IntervalCoverage> drawn_suite(const IntervalSuiteOptions& options = {});
 
 /// What is asked of them.
-inline constexpr double least_held = 0.985, least_p99_share = 1.0 / 3.0;
+inline constexpr double least_held = 0.985, least_held_of_a_class = 0.95, least_p99_share = 1.0 / 3.0;
+/// Whether a row misses no more often than intervals that hold with probability `least` do in 99 of 100 runs.
+bool is_likely(const IntervalCoverage& row, double least);
 
 }  // namespace octotomy::verify

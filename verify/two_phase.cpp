@@ -258,7 +258,8 @@ class Reading {
     found.background = background_;
     found.contrast = contrast_;
     found.least_seen = least_seen_ / contrast_;
-    return found.highest < 1.25 && (found.has_core || !has_lower_plateau(at_blur[2], found.highest));
+    found.is_ambiguous = !found.has_core && has_lower_plateau(at_blur[2], found.highest);
+    return found.highest < 1.25;
   }
 
  private:
@@ -454,24 +455,41 @@ Interval volume_of(const PhaseEvidence& found, double sample_mm3) {
            {"unseen", "0.3 V least seen / highest", unseen}}};
 }
 
+/// Logarithms of an area's bounds.
+struct LogRange {
+  double low = 0.0, high = 0.0;
+};
+
+/// The half level's area at two added blurs, continued to none by the variance or by the deviation; none
+/// where the two do not follow from one another.
+std::optional<LogRange> by_edges(const PhaseEvidence& found, const Fitted& fit) {
+  const auto& level = found.level_mm2;
+  if (!(level[2] > 0.0) || level[1] <= level[2] * 0.99 || level[1] >= 1.42 * level[2]) return std::nullopt;
+  const double near = std::hypot(fit.deviation, added_blur[1]),
+               far = std::hypot(fit.deviation, added_blur[2]);
+  const double step = std::max(std::log(level[1] / level[2]), 0.0);
+  const double least = near * near / (far * far - near * near) * step, most = near / (far - near) * step;
+  const double apart = std::min(most - least, 0.6), middle = std::log(level[1]) + least + 0.3 * apart;
+  return LogRange{middle - apart - 0.02, middle + apart + 0.02};
+}
+
 Interval area_of(const PhaseEvidence& found, const glm::dvec3& spacing_mm) {
   const double sample_mm3 = spacing_mm.x * spacing_mm.y * spacing_mm.z;
   const Fitted fit = fitted(found);
-  const auto& level = found.level_mm2;
-  if (level[2] > 0.0 && level[1] > level[2] * 0.99 && level[1] < 1.42 * level[2]) {
-    const double near = std::hypot(fit.deviation, added_blur[1]),
-                 far = std::hypot(fit.deviation, added_blur[2]);
-    const double step = std::max(std::log(level[1] / level[2]), 0.0);
-    const double least = near * near / (far * far - near * near) * step, most = near / (far - near) * step;
-    const double apart = std::min(most - least, 0.6);
+  const std::optional<LogRange> edges = by_edges(found, fit);
+  // A half level that loses over half of its area to the next blur is about to vanish and follows no power of
+  // the blur.
+  if (edges && found.level_mm2[3] >= 0.5 * found.level_mm2[2])
     return from_logs(
-        std::log(level[1]) + least + 0.3 * apart, 0.85 * apart + 0.015, "edges",
+        0.5 * (edges->low + edges->high), 0.5 * (edges->high - edges->low), "edges",
         "the half level's area at two blurs, continued to none by the variance or the deviation");
-  }
-  const double sample_mm = std::cbrt(sample_mm3);
-  return from_logs(std::log(found.sum * sample_mm3 / sample_mm) + fit.log_ratio + 0.15,
-                   0.6 + fit.spread + 0.06 / std::max(found.highest, 0.03), "shape",
-                   "sheets, rods and balls that leave these sums of squares");
+  const double middle = std::log(found.sum * sample_mm3 / std::cbrt(sample_mm3)) + fit.log_ratio + 0.15;
+  const double half = 0.65 + fit.spread + 0.06 / std::max(found.highest, 0.03);
+  LogRange range{middle - half, middle + half};
+  if (edges) range = {std::min(range.low, edges->low), std::max(range.high, edges->high)};
+  return from_logs(
+      0.5 * (range.low + range.high), 0.5 * (range.high - range.low), "shape",
+      "sheets, rods and balls that leave these sums of squares, and the half level while it lasts");
 }
 
 }  // namespace
@@ -484,6 +502,16 @@ std::optional<TwoPhase> two_phase(const voxel::Scene& scan, double low, const vo
   found.volume_mm3 = volume_of(found.evidence, spacing_mm.x * spacing_mm.y * spacing_mm.z);
   found.area_mm2 = area_of(found.evidence, spacing_mm);
   return found;
+}
+
+void widen_to(const Interval& ambiguous, Interval& by_surface) {
+  const double far = std::max(ambiguous.value + ambiguous.half_width - by_surface.value,
+                              by_surface.value - ambiguous.value + ambiguous.half_width);
+  if (far <= by_surface.half_width) return;
+  by_surface.sources.push_back({"faint",
+                                "what samples below the bound add up to: thin walls or a lower density",
+                                far - by_surface.half_width, true});
+  by_surface.half_width = far;
 }
 
 }  // namespace octotomy::verify

@@ -19,6 +19,9 @@ struct PhaseEvidence {
   double background = 0.0, contrast = 0.0;  ///< in sample units; the solid has their sum
   double noise = 0.0;                       ///< deviation, in sample units
   double correlation = 1.0;  ///< of the noise: by how much a sum's deviation exceeds white noise's
+  /// Thin walls that blur lowers and a thick solid of a lower density both explain the samples: the numbers
+  /// are what could be there, not what is.
+  bool is_ambiguous = false;
   bool has_core = false;  ///< the contrast was measured; else the window's bound is taken for the half level
   double least_seen = 0.0;            ///< share of the contrast that is told from noise
   double highest = 0.0;               ///< the highest share, after a blur of one sample
@@ -37,10 +40,13 @@ struct TwoPhase {
 
 /// The solid whose half level is `low`. None where the scan is not of two densities: samples below `low`
 /// differ by more than noise away from the solid, those deep in it are not as far above `low` as the
-/// background is below, a thick solid stays far below `low`, nothing rises above noise, the solid meets the
+/// background is below, nothing rises above noise, the solid meets the
 /// scan's border, or parts of the scan were not measured (Scene::padding). Throws voxel::Stopped. Parallel;
 /// same bits on any thread count. Memory: four bytes a sample, five times. Cost: three blurs of the scan; a
 /// scan of many densities is left after one look at its samples.
 std::optional<TwoPhase> two_phase(const voxel::Scene& scan, double low, const voxel::Progress& progress = {});
+
+/// Widens a surface's interval to hold the whole of an ambiguous one, by a source "faint".
+void widen_to(const Interval& ambiguous, Interval& by_surface);
 
 }  // namespace octotomy::verify

@@ -77,6 +77,7 @@ void add_intervals(const std::vector<verify::IntervalCoverage>& table,
 }
 
 /// The same of solids drawn by chance, by class; classes held back from calibration apart from the others.
+/// Every row must hold.
 void add_drawn(const std::vector<verify::IntervalCoverage>& table,
                std::vector<std::pair<std::string, std::string>>& rows, SuiteAnswer& answer) {
   Json json = Json::array();
@@ -92,10 +93,20 @@ void add_drawn(const std::vector<verify::IntervalCoverage>& table,
                     {"width_over_p99_error", width},
                     {"bias_percent", row.bias_percent},
                     {"p99_error_percent", row.p99_error_percent}});
-    rows.emplace_back(
-        row.quantity + " of drawn solids, " + (all ? "all classes" : row.group) + ", " + row.sampling,
-        three_figures(100.0 * row.held) + " % held, median half-width " +
-            three_figures(row.median_width_percent) + " %, " + std::to_string(row.cases) + " solids");
+    const std::string found = three_figures(100.0 * row.held) + " % held, median half-width " +
+                              three_figures(row.median_width_percent) + " %, width " + three_figures(width) +
+                              " times the 99th percentile, " + std::to_string(row.cases) + " solids";
+    const double least = all ? verify::least_held : verify::least_held_of_a_class;
+    const bool held = verify::is_likely(row, least);
+    answer.held = answer.held && held;
+    const std::string subject =
+        row.quantity + " of drawn solids, " + (all ? "all classes" : row.group) + ", " + row.sampling;
+    if (all || !held)
+      rows.emplace_back(held ? "holds" : "DOES NOT HOLD", "interval of the " + subject + ", at least " +
+                                                              three_figures(100.0 * least) +
+                                                              " % as far as this many solids show: " + found);
+    else
+      rows.emplace_back(subject, found);
   }
   answer.more["drawn_intervals"] = std::move(json);
 }
@@ -135,7 +146,7 @@ SuiteAnswer run_phantoms(Program& program, const VerifyText& text) {
     intervals =
         verify::interval_suite({text.solids, 1, {program.stop.get_token(), program.progress("intervals")}});
     drawn = verify::drawn_suite(
-        {std::max(text.solids / 4, 27), 1, {program.stop.get_token(), program.progress("drawn solids")}});
+        {std::max(text.solids / 4, 27), 1, {program.stop.get_token(), program.progress("drawn solids")}, {}});
   }
   rows.emplace_back("verdicts", text_of(answer.counts));
   answer.worst = std::move(suite.worst);
