@@ -5,73 +5,12 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include "planner/table/number_format.h"
 #include "voxel/measure/crofton.h"
 
 namespace octotomy::planner {
 namespace {
-
-/// The number of samples in a window.
-std::size_t count_in(const voxel::Scene& scan, double low, double high) {
-  low = voxel::above_padding(scan, low);
-  return std::visit(
-      [&](const auto& samples) {
-        return tbb::parallel_reduce(
-            tbb::blocked_range<std::size_t>(0, samples.size()), std::size_t{0},
-            [&](const auto& range, std::size_t count) {
-              for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                const auto sample = static_cast<double>(samples[i]);
-                count += sample >= low && sample <= high ? 1 : 0;
-              }
-              return count;
-            },
-            std::plus<>());
-      },
-      scan.samples);
-}
-
-/// The area between samples in a window and neighbours out of it, which overstate a boundary of all
-/// directions by 3/2.
-double faces_of(const voxel::Scene& scan, double low, double high) {
-  low = voxel::above_padding(scan, low);
-  const glm::ivec3 dims = scan.lattice.dims;
-  const glm::dvec3 spacing_mm = scan.lattice.spacing_mm();
-  const double cell_mm3 = spacing_mm.x * spacing_mm.y * spacing_mm.z;
-  const auto row = static_cast<std::size_t>(dims.x), plane = row * static_cast<std::size_t>(dims.y);
-  std::vector<glm::dvec3> faces(static_cast<std::size_t>(dims.z), glm::dvec3(0.0));
-  std::visit(
-      [&](const auto& samples) {
-        const auto is_in = [&](std::size_t i) {
-          const auto sample = static_cast<double>(samples[i]);
-          return sample >= low && sample <= high;
-        };
-        tbb::parallel_for(0, dims.z, [&](int z) {
-          glm::dvec3 sum(0.0);
-          for (int y = 0; y < dims.y; ++y)
-            for (int x = 0; x < dims.x; ++x) {
-              const std::size_t i = static_cast<std::size_t>(x) + row * static_cast<std::size_t>(y) +
-                                    plane * static_cast<std::size_t>(z);
-              const bool here = is_in(i);
-              sum.x += x + 1 < dims.x && here != is_in(i + 1) ? 1.0 : 0.0;
-              sum.y += y + 1 < dims.y && here != is_in(i + row) ? 1.0 : 0.0;
-              sum.z += z + 1 < dims.z && here != is_in(i + plane) ? 1.0 : 0.0;
-            }
-          faces[static_cast<std::size_t>(z)] = sum;
-        });
-      },
-      scan.samples);
-  glm::dvec3 all(0.0);
-  for (const glm::dvec3& sum : faces) all += sum;
-  return glm::dot(all, cell_mm3 / spacing_mm);
-}
-
-double sample_mm3(const voxel::Scene& scan) {
-  return std::abs(glm::determinant(glm::dmat3(scan.lattice.lps_from_voxel)));
-}
 
 /// Interpolates the scan's own samples at a point of the object's frame.
 std::function<double(const glm::dvec3&)> sampler_of(const voxel::Scene& scan,
@@ -206,25 +145,46 @@ std::optional<double> window_shift_mm(const voxel::Scene& scan, double low, doub
     const voxel::Range range = voxel::range(scan);
     units = std::min(most_units, 0.01 * (range.high - range.low));
   }
-  const double area_mm2 = faces_of(scan, low, high) / 1.5;
+  const double area_mm2 = faces_mm2(scan, low, high) / 1.5;
   if (!(area_mm2 > 0.0)) return std::nullopt;
   const auto gained = [&](double by) { return static_cast<double>(count_in(scan, low - by, high)); };
   return 0.5 * (gained(units) - gained(-units)) * sample_mm3(scan) / area_mm2;
 }
 
 verify::SizeIntervals intervals_of_phases(const verify::TwoPhase& phases, verify::SizeIntervals by_surface) {
-  by_surface.volume_mm3 = phases.volume_mm3;
-  by_surface.area_mm2 = phases.area_mm2;
+  if (!phases.evidence.is_ambiguous) {
+    by_surface.volume_mm3 = phases.volume_mm3;
+    by_surface.area_mm2 = phases.area_mm2;
+    return by_surface;
+  }
+  verify::widen_to(phases.volume_mm3, by_surface.volume_mm3);
+  verify::widen_to(phases.area_mm2, by_surface.area_mm2);
   return by_surface;
+}
+
+void add_counting(double doubt_mm3, verify::SizeIntervals& found) {
+  verify::Interval &volume = found.volume_mm3, &area = found.area_mm2;
+  volume.half_width = std::hypot(volume.half_width, doubt_mm3);
+  volume.sources.push_back(
+      {"samples", "2.8 of Gundersen and Jensen's deviation, 3 * 0.26 v sqrt(F)", doubt_mm3});
+  if (!(volume.value > 0.0)) return;
+  // Sections that miss part of an object miss its surface, too.
+  const double missed_mm2 = area.value * doubt_mm3 / volume.value;
+  area.half_width += missed_mm2;
+  area.sources.push_back({"samples", "S of the volume's share in doubt", missed_mm2, true});
 }
 
 verify::SizeIntervals intervals_of_labels(const voxel::Scene& scan, double low, double high,
                                           verify::SizeIntervals by_surface) {
-  const double cell_mm3 = sample_mm3(scan);
-  const double value = static_cast<double>(count_in(scan, low, high)) * cell_mm3;
-  const double faces = by_surface.area_mm2.value / std::cbrt(cell_mm3 * cell_mm3);
-  const double half_width = 3.0 * 0.26 * cell_mm3 * std::sqrt(faces);
-  by_surface.volume_mm3 = {value, half_width, {{"samples", "3 * 0.26 v sqrt(F)", half_width}}};
+  const double counted_mm3 = static_cast<double>(count_in(scan, low, high)) * sample_mm3(scan);
+  const double lost_mm3 = std::abs(counted_mm3 - by_surface.volume_mm3.value);
+  by_surface.volume_mm3 = {counted_mm3, 0.0, {}};
+  add_counting(counting_doubt_mm3(scan, low, high), by_surface);
+  if (!(counted_mm3 > 0.0)) return by_surface;
+  // Triangles that lose part of what samples count lose its surface.
+  const double lost_mm2 = by_surface.area_mm2.value * lost_mm3 / counted_mm3;
+  by_surface.area_mm2.half_width += lost_mm2;
+  by_surface.area_mm2.sources.push_back({"surface", "S of the share that triangles lose", lost_mm2, true});
   return by_surface;
 }
 
@@ -238,6 +198,22 @@ void add_voxels(const glm::dvec3& voxel_mm, double area_mm2, verify::SizeInterva
   };
   add(found.volume_mm3, "0.13 v^(2/3) sqrt(S)", of_volume);
   add(found.area_mm2, "0.13 v^(1/3) sqrt(S)", of_area);
+}
+
+void add_thickness(const Thickness& thickness, double share, verify::SizeIntervals& found) {
+  const auto add = [](verify::Interval& interval, const char* name, const char* formula, double half_width) {
+    if (!(half_width > 0.0)) return;
+    interval.half_width += half_width;
+    interval.sources.push_back({name, formula, half_width, true});
+  };
+  add(found.volume_mm3, "thickness", "|V - V of samples twice as thick|",
+      share * std::abs(thickness.volume_change_mm3));
+  add(found.volume_mm3, "border", "half a sample beyond the scan's border", share * thickness.border_mm3);
+  // What every doubling takes by this share was larger by its inverse; below a quarter nothing is left to
+  // conclude from.
+  const double kept = std::max(1.0 + thickness.area_change_share, 0.25);
+  add(found.area_mm2, "thickness", "|S / S of samples twice as thick - 1| S",
+      std::max(kept, 1.0 / kept) * found.area_mm2.value - found.area_mm2.value);
 }
 
 std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is_of_phases, bool has_core,
@@ -259,11 +235,18 @@ std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is
                        : "no part is thicker than the scan's blur; the sum of the samples is taken, with the "
                          "window's bound as the half level"));
   for (const auto& [name, interval] :
-       {std::pair("volume", &found.volume_mm3), std::pair("area", &found.area_mm2)})
-    if (interval->half_width > interval->value)
-      findings.push_back(std::string("WARN ") + name + ": its interval is wider than its value (" +
-                         three_figures(interval->value) + " \u00b1 " + three_figures(interval->half_width) +
-                         "): the scan does not resolve this object");
+       {std::pair("volume", &found.volume_mm3), std::pair("area", &found.area_mm2)}) {
+    if (interval->half_width <= interval->value || interval->sources.empty()) continue;
+    const verify::DoubtSource& largest =
+        *std::max_element(interval->sources.begin(), interval->sources.end(),
+                          [](const verify::DoubtSource& a, const verify::DoubtSource& b) {
+                            return a.half_width < b.half_width;
+                          });
+    findings.push_back(std::string("WARN ") + name + ": its interval is wider than its value (" +
+                       three_figures(interval->value) + " \u00b1 " + three_figures(interval->half_width) +
+                       "): the scan does not resolve this object; the largest part is '" + largest.name +
+                       "': " + largest.formula);
+  }
   return findings;
 }
 

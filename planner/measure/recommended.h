@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/measure/counted_window.h"
 #include "planner/measure/half_width.h"
 #include "planner/measure/result_json.h"
 #include "verify/size_interval.h"
@@ -41,12 +42,20 @@ struct SurfaceSamples {
 std::optional<double> window_shift_mm(const voxel::Scene& scan, double low, double high);
 
 /// The numbers of a solid of one density, of which the scan shows the whole: those of the sum of its samples.
+/// Where that is ambiguous, the surface's, widened to what could be there.
 verify::SizeIntervals intervals_of_phases(const verify::TwoPhase& phases, verify::SizeIntervals by_surface);
 /// Labels are counted: the number of samples, and what a boundary between them may be off.
 verify::SizeIntervals intervals_of_labels(const voxel::Scene& scan, double low, double high,
                                           verify::SizeIntervals by_surface);
+/// Adds what counting samples may be off, counting_doubt_mm3(); to the area that share of it.
+void add_counting(double doubt_mm3, verify::SizeIntervals& found);
 /// Adds what voxels of the plan or the verb, by which the other kernel checks the numbers, may be off.
 void add_voxels(const glm::dvec3& voxel_mm, double area_mm2, verify::SizeIntervals& found);
+
+/// Adds what samples as thick as the scan's may hide: what a window's size changes by in samples twice as
+/// thick, which is about what it lost by the last halving, and half a sample where the object meets the
+/// scan's border. `share` is the object's of the window's surface. Precondition: 0 <= share <= 1.
+void add_thickness(const Thickness& thickness, double share, verify::SizeIntervals& found);
 
 /// What people must be told of recommended numbers: one that leaves both kernels' answers, with the reason,
 /// and an interval wider than its value. Empty strings in `kernels` have no answer.

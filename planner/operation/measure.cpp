@@ -3,6 +3,8 @@
 // with its half-width and the terms that make it.
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <tuple>
 
 #include "planner/measure/digitised.h"
 #include "planner/measure/gap.h"
@@ -12,6 +14,7 @@
 #include "planner/operation/measure_file.h"
 #include "planner/operation/trace.h"
 #include "planner/table/operation.h"
+#include "voxel/filter/label_map.h"
 
 namespace octotomy::planner {
 namespace {
@@ -60,6 +63,13 @@ bool is_whole_window(const Objects& objects, const Object& object) {
   return object.moved ? is_whole_window(objects, objects.at(object.moved->object)) : object.kind == "window";
 }
 
+/// The window of a label map that an object is all of; none: it is of other samples or made of several.
+const Shown* label_window_of(const AnswerBench& bench, const Object& object) {
+  if (object.bound.windows.empty() || !is_whole_window(bench.objects, object)) return nullptr;
+  const Shown& window = object.bound.windows.front();
+  return window.samples && window.samples->meaning == voxel::Meaning::Label ? &window : nullptr;
+}
+
 /// What the sum of the samples says beyond the surface: of a whole window, its numbers; of a part, doubt by
 /// its share of the window's surface, as nothing says where thin walls are.
 void take_phases(const AnswerBench& bench, const Object& object, Recommended& found) {
@@ -74,7 +84,7 @@ void take_phases(const AnswerBench& bench, const Object& object, Recommended& fo
     if (!phases) continue;
     if (is_whole_window(bench.objects, object)) {
       found.intervals = intervals_of_phases(*phases, std::move(found.intervals));
-      found.is_of_phases = true;
+      found.is_of_phases = !phases->evidence.is_ambiguous;
       found.has_core = phases->evidence.has_core;
       return;
     }
@@ -93,13 +103,63 @@ void take_phases(const AnswerBench& bench, const Object& object, Recommended& fo
   }
 }
 
+/// What thicker samples would change in a window; kept as phases_of() are.
+const std::optional<Thickness>& kept_thickness(const AnswerBench& bench, const Shown& window) {
+  std::shared_ptr<const void>& kept =
+      bench.kept["thickness of " + window.scan + " from " + std::to_string(window.threshold) + " to " +
+                 std::to_string(window.high)];
+  if (!kept) {
+    std::optional<Thickness> found;
+    if (window.samples && window.samples->meaning != voxel::Meaning::Label)
+      found = thickness_of(*window.samples, window.threshold, window.high);
+    kept = std::make_shared<const std::optional<Thickness>>(found);
+  }
+  return *static_cast<const std::optional<Thickness>*>(kept.get());
+}
+
+/// Of the windows that no sum of samples speaks for, by the object's share of their surface.
+void take_thickness(const AnswerBench& bench, const Object& object, Recommended& found) {
+  std::set<std::tuple<std::string, double, double>> known;
+  for (const Shown& window : object.bound.windows) {
+    if (!known.emplace(window.scan, window.threshold, window.high).second) continue;
+    if (const auto& phases = phases_of(bench, window); phases && !phases->evidence.is_ambiguous) continue;
+    const std::optional<Thickness>& thickness = kept_thickness(bench, window);
+    if (!thickness || !(thickness->faces_mm2 > 0.0)) continue;
+    const double share =
+        is_whole_window(bench.objects, object)
+            ? 1.0
+            : std::min(1.0, 1.5 * object.mesh.within->size().area_mm2 / thickness->faces_mm2);
+    add_thickness(*thickness, share, found.intervals);
+  }
+}
+
+/// What counting may be off of an object of voxels alone, by its scan's samples; a motion keeps it. None: it
+/// comes from no scan.
+std::optional<double> counting_doubt_of(const AnswerBench& bench, const Object& object) {
+  if (object.moved) return counting_doubt_of(bench, bench.objects.at(object.moved->object));
+  for (const ScanRecord& scan : bench.scans)
+    if (scan.lattice.spacing_mm() == object.bound.spacing_mm) {
+      const voxel::LabelMap samples =
+          voxel::label_map(scan.lattice, {&object.voxel.octree, 1}, {bench.stop, {}});
+      return counting_doubt_mm3(samples.scene, 1.0, 1.0);
+    }
+  return std::nullopt;
+}
+
+Recommended of_voxels_alone(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
+  Recommended found{
+      intervals_of_count(object.voxel.measures, digitised, bench.universe.lattice(), seen_size_of(object))};
+  if (const std::optional<double> doubt_mm3 = counting_doubt_of(bench, object))
+    add_counting(*doubt_mm3, found.intervals);
+  return found;
+}
+
 /// The recommended volume and area. The mesh's, where there is one: motions keep it and cuts are exact in it,
 /// so that a moved object has its still one's interval, and parts share the doubt of their whole's windows.
 Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
   const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
   if (!object.mesh.within || object.bound.spacing_mm == glm::dvec3(0.0))
-    return {
-        intervals_of_count(object.voxel.measures, digitised, bench.universe.lattice(), seen_size_of(object))};
+    return of_voxels_alone(bench, object, digitised);
   if (object.mesh.within->empty())
     return {verify::nothing_found(glm::max(object.bound.spacing_mm, voxel_mm))};
   std::vector<SurfaceSamples> sources;
@@ -129,7 +189,11 @@ Recommended intervals_of(const AnswerBench& bench, const Object& object, const D
     sources.push_back(std::move(samples));
   }
   Recommended found{intervals_of_surface(*object.mesh.within, sources)};
+  if (const Shown* labels = label_window_of(bench, object))
+    found.intervals =
+        intervals_of_labels(*labels->samples, labels->threshold, labels->high, std::move(found.intervals));
   take_phases(bench, object, found);
+  take_thickness(bench, object, found);
   add_voxels(voxel_mm, object.mesh.within->size().area_mm2, found.intervals);
   return found;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/operation/measure_file.h"
 
+#include <limits>
 #include <tbb/parallel_invoke.h>
 
 #include "brep/io/write_mesh.h"
@@ -18,6 +19,7 @@
 #include "planner/table/number_format.h"
 #include "planner/table/plan_universe.h"
 #include "voxel/filter/components.h"
+#include "voxel/filter/label_map.h"
 #include "voxel/measure/cell_counts.h"
 #include "voxel/measure/flat_parts.h"
 #include "voxel/measure/measure.h"
@@ -281,22 +283,61 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
   return {std::move(scene), std::move(*grey)};
 }
 
+/// What a scan's window shows.
+struct WindowShown {
+  const voxel::Scene& scene;
+  double low = 0.0, high = 0.0;
+  const brep::Solid& isosurface;
+  const std::optional<verify::TwoPhase>& phases;
+  const Digitised& digitised;
+};
+
+verify::SizeIntervals recommended_of(const WindowShown& shown) {
+  const auto& [scene, low, high, isosurface, phases, digitised] = shown;
+  const bool is_labels = scene.meaning == voxel::Meaning::Label;
+  const SurfaceSamples source{.lps_from_scan = scene.lattice.lps_from_voxel,
+                              .samples = std::shared_ptr<const voxel::Scene>(std::shared_ptr<void>(), &scene),
+                              .window_shift_mm = digitised.shift_mm,
+                              .along_lps_mm = digitised.sample_mm,
+                              .low = low,
+                              .high = high};
+  verify::SizeIntervals found = isosurface.empty() ? verify::nothing_found(digitised.sample_mm)
+                                                   : intervals_of_surface(isosurface, {source});
+  if (phases) found = intervals_of_phases(*phases, std::move(found));
+  if (is_labels && !isosurface.empty()) found = intervals_of_labels(scene, low, high, std::move(found));
+  if (!is_labels && (!phases || phases->evidence.is_ambiguous))
+    if (const auto thickness = thickness_of(scene, low, high)) add_thickness(*thickness, 1.0, found);
+  add_voxels(digitised.voxel_mm, isosurface.size().area_mm2, found);
+  return found;
+}
+
 FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
   Timings& timings = bench.timings;
   const auto [scene, grey] = read_to_octree(file, asked, bench);
   const voxel::Window window = window_of(grey, file, asked);
-  const voxel::Octree inside = voxel::combine(grey.universe(), window);
+  // Labels are names: a voxel has that of its nearest sample, and surfaces lie half-way between samples.
+  const bool is_labels = scene.meaning == voxel::Meaning::Label;
+  const double high = asked.window->high_or_infinity();
+  const std::optional<voxel::Scene> labelled =
+      is_labels ? std::optional(indicator_of(scene, window.low, high)) : std::nullopt;
+  const voxel::Octree inside = labelled ? voxel::octree_of_label(grey.universe(), *labelled, 1)
+                                        : voxel::combine(grey.universe(), window);
   voxel::Measures measures;
   Json json = of_voxels(inside, timings, measures);
-  add_partial_volume(window, timings, json);
+  if (labelled) {
+    json["volume_partial_mm3"] = nullptr;
+    json["findings"].push_back("volume_partial_mm3: labels are names, nothing lies between them");
+  } else {
+    add_partial_volume(window, timings, json);
+  }
   Digitised digitised{grey.universe().lattice().spacing_mm(), scene.lattice.spacing_mm()};
   brep::Solid isosurface;
   std::optional<verify::TwoPhase> phases;
-  const double high = asked.window->high_or_infinity();
-  const bool is_labels = scene.meaning == voxel::Meaning::Label;
   {
     const Stopwatch watch(timings, "isosurface");
-    brep::Triangles triangles = convert::isosurface(scene, window.low, high);
+    brep::Triangles triangles =
+        labelled ? convert::isosurface(*labelled, 0.5, std::numeric_limits<double>::infinity())
+                 : convert::isosurface(scene, window.low, high);
     // Both have parts that take one thread alone.
     tbb::parallel_invoke(
         [&] { isosurface = brep::trusted_solid(std::move(triangles), brep::Proof::Construction); },
@@ -307,26 +348,17 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   }
   const Stopwatch watch(timings, "intervals");
   const brep::Size& surface = isosurface.size();
-  digitised.shift_mm = window_shift_mm(scene, window.low, high);
+  if (!is_labels) digitised.shift_mm = window_shift_mm(scene, window.low, high);
   add_half_width(measures, digitised, grey.universe().lattice(),
                  Seen{{"isosurface", surface.volume_mm3, surface.area_mm2},
                       "the isosurface of the samples encloses",
                       "take smaller ones, --voxel"},
                  json);
-  const SurfaceSamples source{.lps_from_scan = scene.lattice.lps_from_voxel,
-                              .samples = std::shared_ptr<const voxel::Scene>(std::shared_ptr<void>(), &scene),
-                              .window_shift_mm = digitised.shift_mm,
-                              .along_lps_mm = digitised.sample_mm,
-                              .low = window.low,
-                              .high = high};
-  verify::SizeIntervals recommended = isosurface.empty() ? verify::nothing_found(digitised.sample_mm)
-                                                         : intervals_of_surface(isosurface, {source});
-  if (phases) recommended = intervals_of_phases(*phases, std::move(recommended));
-  if (is_labels && !isosurface.empty())
-    recommended = intervals_of_labels(scene, window.low, high, std::move(recommended));
-  add_voxels(digitised.voxel_mm, surface.area_mm2, recommended);
+  const bool is_of_phases = phases && !phases->evidence.is_ambiguous;
+  const verify::SizeIntervals recommended =
+      recommended_of({scene, window.low, high, isosurface, phases, digitised});
   for (const std::string& finding :
-       findings_of(recommended, phases.has_value(), phases && phases->evidence.has_core,
+       findings_of(recommended, is_of_phases, is_of_phases && phases->evidence.has_core,
                    {measures.volume_mm3, surface.volume_mm3}))
     json["findings"].push_back(finding);
   const HalfWidth width =
