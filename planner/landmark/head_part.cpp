@@ -14,6 +14,7 @@
 #include "voxel/filter/components.h"
 #include "voxel/solid/combine.h"
 #include "voxel/tree/interpolate.h"
+#include "voxel/tree/slice_build.h"
 
 namespace octotomy::planner {
 namespace {
@@ -156,16 +157,15 @@ class Cells {
     of_.assign(static_cast<std::size_t>(dims_.x) * static_cast<std::size_t>(dims_.y) *
                    static_cast<std::size_t>(dims_.z),
                0);
-    for (std::size_t i = 0; i < of_.size(); ++i) {
-      const glm::ivec3 first = place(i) * step_;
-      for (int v = 0; v < step_.x * step_.y * step_.z; ++v) {
-        const glm::ivec3 voxel =
-            first + glm::ivec3(v % step_.x, v / step_.x % step_.y, v / (step_.x * step_.y));
-        if (!bone_.octree.contains(voxel)) continue;
-        for (std::size_t part = 0; part < parts_.size(); ++part)
-          if (parts_[part].contains(voxel)) of_[i] = static_cast<std::uint8_t>(of_[i] | 1U << part);
-      }
-    }
+    for (std::size_t part = 0; part < parts_.size(); ++part)
+      voxel::for_each_slice(parts_[part], [&](int z, const voxel::SliceBits& slice) {
+        for (int y = 0; y < slice.side; ++y)
+          for (int first = 0, last = -1; last + 1 < slice.side && next_run(slice, y, last + 1, first, last);)
+            for (int x = first / step_.x; x <= last / step_.x; ++x) {
+              std::uint8_t& of = of_[index({x, y / step_.y, z / step_.z})];
+              of = static_cast<std::uint8_t>(of | 1U << part);
+            }
+      });
   }
 
   /// The parts that were met on the way along an axis to each cell, from its low or its high end.
