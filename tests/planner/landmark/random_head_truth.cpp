@@ -44,24 +44,31 @@ class Truth {
   /// The bone within a window that lies farthest along a direction of the head; the middle of what is as far
   /// to a tenth of a millimetre.
   std::optional<glm::dvec3> farthest(const Window& window, const glm::dvec3& along) const {
-    const auto most_within = [&](const glm::dvec3& low, const glm::dvec3& high, double step, double least) {
-      std::optional<glm::dvec3> best;
-      double most = least;
+    const auto crest_within = [&](const glm::dvec3& low, const glm::dvec3& high, double step) {
+      constexpr double as_far = 0.1;
+      double most = -infinite;
+      std::vector<std::pair<double, glm::dvec3>> near;
       for (double x = low.x; x <= high.x; x += step)
         for (double y = low.y; y <= high.y; y += step)
           for (double z = low.z; z <= high.z; z += step) {
             const double far_mm = glm::dot(glm::dvec3(x, y, z), along);
-            if (far_mm <= most || !head_.is_bone({x, y, z})) continue;
-            most = far_mm;
-            best = glm::dvec3(x, y, z);
+            if (far_mm < most - as_far || !head_.is_bone({x, y, z})) continue;
+            most = std::max(most, far_mm);
+            near.emplace_back(far_mm, glm::dvec3(x, y, z));
           }
-      return best;
+      glm::dvec3 sum(0.0);
+      double count = 0.0;
+      for (const auto& [far_mm, p] : near)
+        if (far_mm >= most - as_far) sum += p, count += 1.0;
+      return count > 0.0 ? std::optional(sum / count) : std::nullopt;
     };
     const glm::dvec3 a = head_.head_mm(window.low), b = head_.head_mm(window.high);
-    const auto coarse = most_within(glm::min(a, b), glm::max(a, b), 1.0, -infinite);
+    const glm::dvec3 low = glm::min(a, b), high = glm::max(a, b);
+    const auto coarse = crest_within(low, high, 1.0);
     if (!coarse) return std::nullopt;
-    // A flat end's crest lies within some millimetres across, and within one along.
-    return most_within(*coarse - 3.0, *coarse + 3.0, 0.25, -infinite);
+    // A flat end's crest lies within some millimetres across, and within one along. Beyond the window may be
+    // another bone, as the upper teeth over the lower ones.
+    return crest_within(glm::max(*coarse - 3.0, low), glm::min(*coarse + 3.0, high), 0.25);
   }
 
   /// The foremost bone at a height, `out` beside the middle in canonical millimetres; infinite: none.
@@ -189,11 +196,18 @@ class Truth {
 }  // namespace
 
 void RandomHead::find_truths() {
-  for (const auto& [name, p] : Truth(*this).find()) {
+  const std::map<std::string, glm::dvec3> found = Truth(*this).find();
+  // What a defect cut or moved is no landmark any more.
+  RandomHead whole = *this;
+  whole.defects_.clear();
+  const std::map<std::string, glm::dvec3> before = defects_.empty() ? found : Truth(whole).find();
+  constexpr double moved_mm = 0.3;
+  for (const auto& [name, p] : found) {
+    const auto was = before.find(name);
+    if (was == before.end() || glm::distance(was->second, p) > moved_mm) continue;
     const glm::dvec3 q = canonical_mm(p);
-    // What a defect cut or came near to is no landmark any more.
     const bool is_cut = std::any_of(defects_.begin(), defects_.end(), [&](const Ball& ball) {
-      return glm::distance(q, ball.centre_mm) < ball.radius_mm + 4.0;
+      return glm::distance(q, ball.centre_mm) < ball.radius_mm + 0.5;
     });
     if (!is_cut) truths_mm_[name] = glm::dvec3(lps_from_head_ * glm::dvec4(p, 1.0));
   }
