@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 namespace octotomy::planner {
 namespace {
@@ -14,17 +15,23 @@ constexpr double above_spine = 4.0;        ///< where the piriform rim is taken,
 constexpr double below_rim = 8.0;          ///< where the buttress is taken, under the piriform rim
 constexpr double deepest_buttress = 42.0;  ///< behind the nasal spine; a ramus stands deeper
 constexpr double broken = 4.0;             ///< a surface falls back farther where it ends
-constexpr double most_hole = 9.0;          ///< of thin bone, across which it goes on
+constexpr double most_hole = 9.0;          ///< of thin bone, across which it may go on
+constexpr double small_hole = 1.1;         ///< of a voxel
+constexpr double blurred_step = 3.0;       ///< over which the slope of a step extends
+constexpr double two_ends = 3.0;           ///< between answers for its end, beyond which none is known
 constexpr double orbit_above_nose = 6.0;   ///< a height within the orbits, over the nose's opening
 constexpr double least_orbit = 18.0, most_orbit = 42.0;  ///< from the mid-plane
 constexpr double orbit_height = 32.0;
 constexpr double two_rims = 8.0;  ///< between the answers of two rules for a rim, beyond which neither is one
 constexpr double crest = 6.0;     ///< below a rim's crest nothing stands before it for so long
-constexpr double as_far = 1.0;    ///< within which places are as far out as the outermost
+/// Within which places are as far out as the outermost, by noise, and as far down and back, by pitch.
+constexpr double as_far_out = 0.25, as_far_down = 1.0;
 constexpr double arch_begin = 15.0, arch_end = 78.0;  ///< behind the nasal spine
+constexpr double arch_beyond = 16.0;                  ///< where the arch of a large head may go on
+constexpr double arch_end_dip = 0.6;                  ///< by which the bone behind it lies further in
 constexpr double least_half_face = 45.0, most_half_face = 80.0;
 constexpr double least_angle = 34.0, most_angle = 75.0;  ///< the mandible's, from the mid-plane
-constexpr double angle_begin = 40.0, angle_end = 82.0;   ///< behind the chin
+constexpr double angle_begin = 40.0, angle_end = 88.0;   ///< behind the chin
 constexpr double angle_share = 0.6;  ///< of the way from chin to nasal spine, below which an angle lies
 constexpr double nose_root = 12.0;   ///< over the nose's opening
 constexpr double nose_root_width = 2.0, nose_root_depth = 30.0;  ///< beside the mid-plane; behind the nose
@@ -94,9 +101,21 @@ class Face {
       doubt("piriform", 0.7 * std::abs(step_back - rim));
     }
     const int lower = maps_.front.row(ans->z + above_spine - below_rim + higher_mm_);
-    double out = std::max(rim_at(lower), rim) + 1.0;
-    for (double next = out + step(); next < std::min(out + most_hole, most_half_face); next += step())
-      if (std::abs(front(next, lower) - front(out, lower)) < broken) out = next;
+    // From the rim outwards: until the surface breaks off or a hole follows.
+    const double begin = std::max(rim_at(lower), rim) + 1.0;
+    const auto end_at = [&](double hole_mm, double break_mm) {
+      double out = begin;
+      for (double next = out + step(); next < std::min(out + hole_mm, most_half_face); next += step())
+        if (std::abs(front(next, lower) - front(out, lower)) < break_mm) out = next;
+      return out;
+    };
+    const double out = end_at(most_hole, broken);
+    // What follows behind a hole or a smaller step may be another bone, and blur makes a slope of a step.
+    bool is_clear = out - end_at(small_hole, 0.6 * broken) <= two_ends;
+    for (double at = begin; at < out - two_ends && is_clear; at += step())
+      is_clear = !(front(at + blurred_step, lower) - front(at, lower) > 2.0 * broken);
+    if (!is_clear)
+      return miss("buttress", "the maxilla has no clear outer end: steps or holes lie before it");
     if (out + step() >= most_half_face || !(out > rim + 10.0) ||
         front(out, lower) > ans->y + deepest_buttress)
       return miss("buttress", "the maxilla's outer end is not seen from the front");
@@ -151,37 +170,56 @@ class Face {
     doubt("orbitale", 0.5 * (across.back() - across.front()));
   }
 
-  /// The mean of the places of the map from this side that reach farthest by a measure, within its limits.
-  template <typename Reach>
-  std::optional<glm::dvec3> farthest(const std::string& name, const glm::dvec2& low, const glm::dvec2& high,
-                                     const Reach& reach) {
+  using Reach = std::function<std::optional<double>(const glm::dvec3&)>;
+  struct Window {
+    glm::dvec2 low, high;    ///< back and up
+    double as_far = 0.0;     ///< within which places reach as far
+    double beyond_mm = 0.0;  ///< behind the window, unless the bone was passed there
+  };
+
+  /// Places of the map from this side in a column that reach at least as far as `least`.
+  std::vector<std::pair<double, glm::dvec3>> reaching(int column, const Window& window, const Reach& reach,
+                                                      double least) const {
     const HeadMap& map = from_side();
-    double most = -std::numeric_limits<double>::infinity();
+    std::vector<std::pair<double, glm::dvec3>> found;
+    for (int j = map.row(window.low.y); j <= map.row(window.high.y); ++j) {
+      const glm::dvec3 at(map.at(column, j), map.x_mm(column), map.y_mm(j));
+      if (!std::isfinite(at.x)) continue;
+      const std::optional<double> value = reach(at);
+      if (value && *value >= least) found.emplace_back(*value, at * glm::dvec3(side_.second, 1.0, 1.0));
+    }
+    return found;
+  }
+
+  /// The mean of the places of the map from this side that reach farthest by a measure. Any of these places
+  /// may be the farthest.
+  std::optional<glm::dvec3> farthest(const std::string& name, const Window& window, const Reach& reach) {
+    const HeadMap& map = from_side();
+    double most = -std::numeric_limits<double>::infinity(), end_mm = window.high.x;
+    bool is_passed = false;
     std::vector<std::pair<double, glm::dvec3>> near;
-    for (int j = map.row(low.y); j <= map.row(high.y); ++j)
-      for (int i = map.column(low.x); i <= map.column(high.x); ++i) {
-        const double out = map.at(i, j);
-        if (!std::isfinite(out)) continue;
-        const std::optional<double> value = reach(out, map.x_mm(i), map.y_mm(j));
-        if (!value || *value < most - as_far) continue;
-        most = std::max(most, *value);
-        near.emplace_back(*value, glm::dvec3(side_.second * out, map.x_mm(i), map.y_mm(j)));
+    for (int i = map.column(window.low.x); i <= map.column(window.high.x + window.beyond_mm); ++i) {
+      if (i > map.column(window.high.x) && is_passed) break;
+      end_mm = std::max(end_mm, map.x_mm(i));
+      double here = -std::numeric_limits<double>::infinity();
+      for (const auto& one : reaching(i, window, reach, most - window.as_far)) {
+        near.push_back(one);
+        here = std::max(here, one.first);
       }
-    glm::dvec3 sum(0.0);
-    double count = 0.0;
-    for (const auto& [value, at] : near)
-      if (value >= most - as_far) {
-        sum += at;
-        count += 1.0;
-      }
-    if (count == 0.0) return std::nullopt;
-    const glm::dvec3 mean = sum / count;
+      if (here > most) is_passed = false;
+      most = std::max(most, here);
+      if (reaching(i, window, reach, most - arch_end_dip).empty()) is_passed = true;
+    }
+    std::erase_if(near, [&](const auto& one) { return one.first < most - window.as_far; });
+    if (near.empty()) return std::nullopt;
+    glm::dvec3 mean(0.0);
+    for (const auto& [value, at] : near) mean += at / static_cast<double>(near.size());
     // At the window's end it is no extremum of the bone.
-    if (mean.y > high.x - 1.0 || mean.y < low.x + 1.0 || mean.z > high.y - 1.0) return std::nullopt;
+    if (mean.y > end_mm - 1.0 || mean.y < window.low.x + 1.0 || mean.z > window.high.y - 1.0)
+      return std::nullopt;
     double far_mm = 0.0;
-    for (const auto& [value, at] : near)
-      if (value >= most - as_far) far_mm = std::max(far_mm, glm::distance(at, mean));
-    doubt(name, 0.6 * far_mm);
+    for (const auto& [value, at] : near) far_mm = std::max(far_mm, glm::distance(at, mean));
+    doubt(name, far_mm);
     return mean;
   }
 
@@ -190,9 +228,10 @@ class Face {
     const glm::dvec3* orbitale = found_.find(std::string("orbitale") + side_.first);
     if (ans == nullptr || orbitale == nullptr)
       return miss("zygoma", "it is sought between the nasal spine and the orbit, which were not both found");
-    const auto outermost =
-        farthest("zygoma", {ans->y + arch_begin, ans->z}, {ans->y + arch_end, orbitale->z + 5.0},
-                 [](double out, double, double) { return std::optional(out); });
+    const auto outermost = farthest(
+        "zygoma",
+        {{ans->y + arch_begin, ans->z}, {ans->y + arch_end, orbitale->z + 5.0}, as_far_out, arch_beyond},
+        [](const glm::dvec3& at) { return std::optional(at.x); });
     if (!outermost || std::abs(outermost->x) < least_half_face)
       return miss("zygoma", "no arch is seen from the side");
     place("zygoma", *outermost);
@@ -203,11 +242,13 @@ class Face {
     const glm::dvec3* ans = found_.find("ans");
     if (menton == nullptr || ans == nullptr)
       return miss("gonion", "it is sought between chin and nasal spine, which were not both found");
-    const auto most = farthest("gonion", {menton->y + angle_begin, menton->z - 5.0},
-                               {menton->y + angle_end, menton->z + angle_share * (ans->z - menton->z)},
-                               [](double out, double back, double up) -> std::optional<double> {
-                                 if (out < least_angle || out > most_angle) return std::nullopt;
-                                 return (back - up) / std::sqrt(2.0);
+    const auto most = farthest("gonion",
+                               {{menton->y + angle_begin, menton->z - 5.0},
+                                {menton->y + angle_end, menton->z + angle_share * (ans->z - menton->z)},
+                                as_far_down},
+                               [](const glm::dvec3& at) -> std::optional<double> {
+                                 if (at.x < least_angle || at.x > most_angle) return std::nullopt;
+                                 return (at.y - at.z) / std::sqrt(2.0);
                                });
     if (!most) return miss("gonion", "no angle of a mandible is seen from the side");
     place("gonion", *most);

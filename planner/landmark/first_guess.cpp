@@ -267,9 +267,13 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   }
   guess.mid_plane_within_deg = least_plane_deg + of_scatter * plane_deg;
   add_brain_case(head, frame, first);
-  // Halves that are not alike leave open by about their distance where their middle is.
+  // Halves that are not alike leave open by about their distance where their middle is; and a plane that is
+  // turned about its own point lies off by more the farther away from it.
   for (const auto& [name, place] : first.places)
-    if (name.starts_with("midline_")) first.doubt_mm[name] += guess.mid_plane.rms_mm;
+    if (name.starts_with("midline_"))
+      first.doubt_mm[name] +=
+          std::hypot(guess.mid_plane.rms_mm, glm::distance(frame.lps_mm(place), plane.point_mm) *
+                                                 std::tan(glm::radians(guess.mid_plane_within_deg)));
   std::vector<FoundPlaces> others;
   bool is_one_faceless = false;
   for (const Trial& trial : trials) {

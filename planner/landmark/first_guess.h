@@ -21,7 +21,8 @@ struct LandmarkGuess {
   ///   plane), other heights, a coarser map, a higher threshold, mid-planes of other shares of the surface;
   /// - what the rule itself leaves open (FoundPlaces::doubt_mm): the length over which its extremum is flat,
   ///   half the way to a second rule's answer, the difference of both sides; of midline_... points how
-  ///   far the two halves lie apart, MirrorFit::rms_mm;
+  ///   far the two halves lie apart, MirrorFit::rms_mm, and how far a plane turned by mid_plane_within_deg
+  ///   lies off there;
   /// - of a point of the middle, half of how far it lies beside the mid-plane.
   /// The two factors are chosen, not derived; random heads of closed form test the result. What observers
   /// differ by in a name's meaning is not in it: the operation adds it by name (skull.landmarks.json).

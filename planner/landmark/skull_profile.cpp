@@ -34,6 +34,9 @@ constexpr double flat = 0.4;  ///< within which places of an extremum cannot be 
 /// lower one's from the chin. Without teeth the ridge lies at a third of it, and at six tenths.
 constexpr double most_upper_tooth = 0.85;
 constexpr double least_upper_tooth = 0.38, least_lower_tooth = 0.7;
+/// From here on it is a tooth's, for certain; between, it is one if it stands below the upper incisors as in
+/// a closed bite.
+constexpr double sure_lower_tooth = 0.92, closed_bite = 6.0;
 constexpr double notch = 5.0;  ///< by which a whole chin's lower border rises at most in the middle
 /// About a row, over which both sides are compared; beside the middle; and how far the middle is sought.
 constexpr double like_height = 8.0, like_begin = 3.0, like_end = 24.0, most_aside = 9.0;
@@ -206,9 +209,13 @@ class Reader {
     int first = above + 1;
     while (first < last && back(first) >= back(above) + edge + crown) ++first;
     const bool is_seen = first > above + 1 && found_.find("incisor") != nullptr;
-    if (is_seen && (last - first) * profile_.step_mm < least_lower_tooth * nose_height_)
+    const double over_chin = (last - first) * profile_.step_mm;
+    const bool is_closed = (first - above) * profile_.step_mm <= closed_bite;
+    if (is_seen && over_chin < least_lower_tooth * nose_height_)
       miss("lower_incisor",
            "the bone's edge lies too near to the chin for a tooth's: the lower incisors are missing");
+    else if (is_seen && !is_closed && over_chin < sure_lower_tooth * nose_height_)
+      miss("lower_incisor", "whether the bone's edge below the open bite is a tooth's is not known");
     else if (is_seen)
       place("lower_incisor", first);
     else
