@@ -235,6 +235,7 @@ std::vector<DicomFile> DicomFile::items(DicomTag sequence) const {
   marks.bytes_ = value->second;
   marks.big_endian_ = big_endian_ && !begins_little_endian_item(value->second);
   marks.file_bytes_ = marks.bytes_.size();
+  const auto character_set = values_.find(character_set_tag);
   while (marks.left() >= 8) {
     const Head head = marks.take_head();
     if (head.tag == sequence_end_tag) break;
@@ -243,6 +244,8 @@ std::vector<DicomFile> DicomFile::items(DicomTag sequence) const {
     const std::size_t length = head.is_open() ? marks.left() : head.length;
     found.push_back(DicomFile(marks.bytes_.substr(marks.at_, length), explicit_vr, marks.big_endian_));
     marks.at_ += head.is_open() ? found.back().at_ : length;
+    // An item that states no set of its own has the one around it (PS3.5, 6.1.1).
+    if (character_set != values_.end()) found.back().values_.insert(*character_set);
   }
   return found;
 }

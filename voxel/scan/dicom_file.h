@@ -58,8 +58,8 @@ class DicomFile {
   /// the point that a writer with another language's numbers meant.
   std::optional<std::vector<double>> decimals(DicomTag tag) const;
   std::optional<double> decimal(DicomTag tag) const;
-  /// The items of a sequence, each with attributes of its own; empty if the sequence is absent. The file's
-  /// bytes must outlive them. Throws Error, Input, if an item is damaged.
+  /// The items of a sequence, with their own attributes and the character set around them; empty if the
+  /// sequence is absent. The file's bytes must outlive them. Throws Error, Input, if an item is damaged.
   std::vector<DicomFile> items(DicomTag sequence) const;
 
   /// Whether a decimal string has a comma where the point belongs.

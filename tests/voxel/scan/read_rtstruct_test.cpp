@@ -39,6 +39,26 @@ TEST(ReadRtstruct, NamesNumbersAndPointsAreTheFilesAndLinesAreCountedApart) {
   EXPECT_TRUE(all[2].contours_mm.empty());
 }
 
+TEST(ReadRtstruct, ANameInsideASequenceIsReadInTheFilesCharacterSet) {
+  const ScratchFolder folder;
+  const auto name_in = [&](const std::string& set, const std::string& stored) {
+    std::string bytes = structure_set({{1, stored, {rectangle({0, 0}, {1, 1}, 5)}}});
+    const std::string next("\x08\0\x16\0UI", 6);
+    bytes.insert(bytes.find(next), tests::DicomBytes::element(0x00080005, "CS", set));
+    return read_rtstruct(written(folder, bytes)).structures[0].name;
+  };
+  EXPECT_EQ(name_in("ISO_IR 192", "Sch\u00e4del"), "Sch\u00e4del");
+  EXPECT_EQ(name_in("ISO_IR 100",
+                    "Sch\xe4"
+                    "del"),
+            "Sch\u00e4del");
+  EXPECT_EQ(name_in("ISO_IR 192",
+                    "Sch\xe4"
+                    "del"),
+            "Sch?del")
+      << "no UTF-8";
+}
+
 TEST(ReadRtstruct, AContourOverSixtyFourKilobytesIsReadWhole) {
   const ScratchFolder folder;
   std::vector<glm::dvec3> circle;
