@@ -221,6 +221,89 @@ Slices with_empty(const Slices& planes, double apart_mm, double bridge_mm) {
   return all;
 }
 
+bool overlap(const voxel::SliceMask::Slice& a, const voxel::SliceMask::Slice& b) {
+  const auto box = [](const voxel::SliceMask::Slice& slice) {
+    glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
+    for (const auto& polygon : slice.polygons_mm)
+      for (const glm::dvec2& p : polygon) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+      }
+    return std::pair{low, high};
+  };
+  const auto [low_a, high_a] = box(a);
+  const auto [low_b, high_b] = box(b);
+  return glm::all(glm::lessThan(low_a, high_b)) && glm::all(glm::lessThan(low_b, high_a));
+}
+
+/// Planes of a structure that follow each other: each overlaps the one before, seen along the normal.
+std::vector<Slices> parts_of(const Slices& planes) {
+  std::vector<Slices> parts;
+  for (const voxel::SliceMask::Slice& plane : planes) {
+    const auto before = std::find_if(parts.begin(), parts.end(),
+                                     [&](const Slices& part) { return overlap(part.back(), plane); });
+    if (before == parts.end())
+      parts.push_back({plane});
+    else
+      before->push_back(plane);
+  }
+  return parts;
+}
+
+/// Whether a plane of the other part lies between two of this part that miss no plane between them.
+bool interleave(const Slices& part, const Slices& other) {
+  const double usual_mm = usual_distance_mm(part);
+  for (std::size_t i = 1; i < part.size(); ++i) {
+    const double low_mm = part[i - 1].position_mm, high_mm = part[i].position_mm;
+    if (high_mm - low_mm > misses_plane * usual_mm) continue;
+    for (const voxel::SliceMask::Slice& plane : other)
+      if (plane.position_mm > low_mm && plane.position_mm < high_mm) return true;
+  }
+  return false;
+}
+
+/// Continues parts that are drawn on planes between each other's: each plane of the structure gets what the
+/// nearest plane of every part holds, up to half that part's distance of planes away. Each part thus reaches
+/// as far as it does alone. Other structures stay as they are. Sets `apart_mm` to the parts' least distance.
+Slices joined_parts(Slices planes, double& apart_mm, const std::string& where,
+                    std::vector<std::string>& findings) {
+  const std::vector<Slices> parts = parts_of(planes);
+  const auto has_between = [&](const Slices& part) {
+    return std::any_of(parts.begin(), parts.end(),
+                       [&](const Slices& other) { return interleave(part, other); });
+  };
+  if (std::none_of(parts.begin(), parts.end(), has_between)) return planes;
+  double least_mm = std::numeric_limits<double>::infinity();
+  for (const Slices& part : parts)
+    if (part.size() > 1) least_mm = std::min(least_mm, usual_distance_mm(part));
+  apart_mm = least_mm;
+  for (voxel::SliceMask::Slice& plane : planes)
+    for (const Slices& part : parts) {
+      const double half_mm = 0.5 * (part.size() > 1 ? usual_distance_mm(part) : least_mm);
+      // Half-way between planes belongs to the upper one, so that ends count once.
+      const double rounding_mm = 0.1 * off_plane_mm();
+      const voxel::SliceMask::Slice* nearest = nullptr;
+      double nearest_mm = std::numeric_limits<double>::infinity();
+      for (const voxel::SliceMask::Slice& own : part) {
+        const double above_mm = own.position_mm - plane.position_mm;
+        if (above_mm <= rounding_mm - half_mm || above_mm > half_mm + rounding_mm) continue;
+        if (std::abs(above_mm) >= nearest_mm) continue;
+        nearest = &own;
+        nearest_mm = std::abs(above_mm);
+      }
+      if (nearest == nullptr || nearest_mm == 0.0) continue;
+      plane.polygons_mm.insert(plane.polygons_mm.end(), nearest->polygons_mm.begin(),
+                               nearest->polygons_mm.end());
+    }
+  findings.push_back(
+      where + ": its " + std::to_string(parts.size()) +
+      " parts are drawn on planes between each other's, first at " + plain(planes[0].position_mm) + " and " +
+      plain(planes[1].position_mm) +
+      " mm: each part is continued up to half its own distance of planes; draw all parts on the "
+      "same planes to avoid this");
+  return planes;
+}
+
 /// The largest gap that the file says to be interpolated, or that is asked for; with a hundredth more, as
 /// positions are rounded.
 double bridge_of(const voxel::Structure& structure, const std::optional<double>& asked_mm) {
@@ -233,13 +316,11 @@ double bridge_of(const voxel::Structure& structure, const std::optional<double>&
 /// Tells of planes of the set that lie between the structure's and have none of its contours.
 void tell_gaps(const Slices& planes, double apart_mm, double bridge_mm, const std::string& where,
                std::vector<std::string>& findings) {
-  // Parts that lie farther apart are drawn as parts.
-  constexpr double most_planes = 4.5;
   std::size_t gaps = 0, first = 0;
   double widest_mm = 0.0;
   for (std::size_t i = 1; i < planes.size(); ++i) {
     const double gap_mm = planes[i].position_mm - planes[i - 1].position_mm;
-    if (gap_mm <= misses_plane * apart_mm || gap_mm <= bridge_mm || gap_mm > most_planes * apart_mm) continue;
+    if (gap_mm <= misses_plane * apart_mm || gap_mm <= bridge_mm) continue;
     if (gaps++ == 0) first = i;
     widest_mm = std::max(widest_mm, gap_mm);
   }
@@ -332,14 +413,16 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
   if (found.degenerate > 0) drawn.findings.push_back(where + ": left out what encloses nothing: " + others);
   drawn.mask.view = view_across(normal);
   const PlaneDistances distances = distances_of_planes(set.structures, drawn.mask.view);
-  const Slices planes = planes_of(found, drawn.mask.view, distances, where, drawn.findings);
+  Slices planes = planes_of(found, drawn.mask.view, distances, where, drawn.findings);
   if (!std::isfinite(distances.nearest_mm))
     refuse(where, "lies in one plane, as the whole set does: how thick it is cannot be told");
   if (!std::isfinite(distances.least_mm))
     refuse(where, "lies in planes, as the whole set does, that are " + too_near(distances.nearest_mm));
   const double bridge_mm = bridge_of(found, options.bridge_mm);
-  tell_gaps(planes, distances.least_mm, bridge_mm, where, drawn.findings);
-  drawn.mask.slices = with_empty(planes, distances.least_mm, bridge_mm);
+  double apart_mm = distances.least_mm;
+  planes = joined_parts(std::move(planes), apart_mm, where, drawn.findings);
+  tell_gaps(planes, apart_mm, bridge_mm, where, drawn.findings);
+  drawn.mask.slices = with_empty(planes, apart_mm, bridge_mm);
   voxel::check(drawn.mask);
   return drawn;
 }

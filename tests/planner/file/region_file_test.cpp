@@ -176,7 +176,7 @@ TEST(RegionFile, AStructureOnEverySecondPlaneIsToldAndBridgedWhereAskedOrStated)
       << "slabs that do not meet";
 }
 
-TEST(RegionFile, OneMissingPlaneIsToldAndPartsFarApartAreNot) {
+TEST(RegionFile, OneMissingPlaneAndAWideGapAreTold) {
   const ScratchFolder folder;
   Outlines contours = square_block(), parts = square_block();
   contours.erase(contours.begin() + 2);
@@ -186,7 +186,21 @@ TEST(RegionFile, OneMissingPlaneIsToldAndPartsFarApartAreNot) {
   ASSERT_EQ(missing.findings.size(), 1U);
   EXPECT_HOLDS(missing.findings[0], "1 gap");
   EXPECT_HOLDS(missing.findings[0], "between 2 and 6 mm");
-  EXPECT_TRUE(read_slices(path, SlicesOptions{"B"}).findings.empty());
+  const DrawnSlices wide = read_slices(path, SlicesOptions{"B"});
+  ASSERT_EQ(wide.findings.size(), 1U);
+  EXPECT_HOLDS(wide.findings[0], "between 8 and 40 mm");
+}
+
+TEST(RegionFile, PartsOnPlanesBetweenEachOthersBothCountAndAreTold) {
+  const ScratchFolder folder;
+  for (const double shift : {1.0, 0.4, 0.0}) {
+    Outlines contours = square_block();
+    for (const double z : {0.0, 2.0, 4.0, 6.0, 8.0})
+      contours.push_back(rectangle({20, -10}, {30, 10}, z + shift));
+    const DrawnSlices drawn = read_slices(set_file(folder, {{1, "A", contours}}), SlicesOptions{"A"});
+    EXPECT_EQ(drawn.findings.size(), shift > 0.0 ? 1U : 0U);
+    for (const std::size_t count : contour_counts(drawn.mask)) EXPECT_EQ(count, 2U) << "shifted by " << shift;
+  }
 }
 
 TEST(RegionFile, PointsALittleOffTheirPlaneAreTakenInItAndTold) {
