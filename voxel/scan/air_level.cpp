@@ -11,6 +11,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
+#include "voxel/space/printed.h"
 #include "voxel/space/vector_clones.h"
 
 namespace octotomy::voxel {
@@ -101,6 +102,11 @@ std::string span(const Scene& scene) {
   return text;
 }
 
+/// Air is -1000; noise of 30 to 50 HU leaves hardly a sample below this.
+constexpr double below_air = -1100.0;
+constexpr double padding_gap = 100.0;
+constexpr std::size_t least_padded = 64, samples_for_one_padded = 10000, padded_for_one_in_gap = 100;
+
 }  // namespace
 
 AirLevel air_level_of_ct(const Scene& scene) {
@@ -132,6 +138,34 @@ AirLevel air_level_of_unnamed(const Scene& scene) {
           {"air_level", Verdict::Pass,
            "the file names no unit and no peak of air lies near -1000: values " + span(scene) +
                " are taken as raw"}};
+}
+
+void take_unstated_padding(Scene& scene) {
+  std::visit(
+      [&](const auto& samples) {
+        if (samples.empty()) return;
+        const auto least = *std::min_element(samples.begin(), samples.end());
+        const auto value = static_cast<double>(least);
+        if (!(value < below_air)) return;
+        std::size_t padded = 0, in_gap = 0, measured = 0;
+        for (const auto sample : samples) {
+          const double above = static_cast<double>(sample) - value;
+          padded += above == 0.0;
+          in_gap += above > 0.0 && above < padding_gap;
+          measured += above >= padding_gap;
+        }
+        if (padded < std::max(least_padded, samples.size() / samples_for_one_padded) ||
+            in_gap * padded_for_one_in_gap > padded || measured == 0)
+          return;
+        scene.padding = value;
+        scene.audit.push_back(
+            {"padding", Verdict::Warn,
+             print("%zu samples (%.3g %%) hold %.9g, below air and apart from all other values, and the file "
+                   "names no padding: they are taken as padding, in no window and in no interpolation",
+                   padded, 100.0 * static_cast<double>(padded) / static_cast<double>(samples.size()),
+                   value)});
+      },
+      scene.samples);
 }
 
 }  // namespace octotomy::voxel

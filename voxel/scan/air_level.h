@@ -5,8 +5,9 @@
 
 namespace octotomy::voxel {
 
-// Judges by their air, which is -1000 by definition, if samples are Hounsfield units. Air is a sample within
-// 100 of -1000. Air is seen if at least one sample in a thousand is air.
+// Judges by their air, which is -1000 by definition, if samples are Hounsfield units, and what lies too far
+// below it to be measured. Air is a sample within 100 of -1000. Air is seen if at least one sample in a
+// thousand is air.
 
 struct AirLevel {
   Meaning meaning = Meaning::Raw;
@@ -22,5 +23,14 @@ AirLevel air_level_of_ct(const Scene& scene);
 /// many samples as in the equally wide band above it. Warn, since it is a guess. Otherwise Raw, Pass: nothing
 /// is assumed.
 AirLevel air_level_of_unnamed(const Scene& scene);
+
+/// Takes as padding what only padding can be in a CT whose file names none. Many converters drop that
+/// statement and keep the samples: corners of -2000 or -3024 around a round field of view.
+///
+/// Taken is the least sample if it lies below -1100 HU, thus below air and its noise, if at least 64 samples
+/// and one in ten thousand hold it, and if the hundred units above it are empty but for one sample for each
+/// hundred of its own. The audit gains a WARN, since it is a guess; nothing happens otherwise. Precondition:
+/// samples in Hounsfield units, no padding taken yet. Two passes over the samples.
+void take_unstated_padding(Scene& scene);
 
 }  // namespace octotomy::voxel

@@ -26,7 +26,6 @@
 #include "voxel/scan/dicom_series.h"
 #include "voxel/scan/neighbour_audit.h"
 #include "voxel/scan/slice_plan.h"
-#include "voxel/scan/unstated_padding.h"
 #include "voxel/scan/upright.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "voxel/scan/air_level.h"
-#include "voxel/scan/unstated_padding.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
 #include "voxel/volume/stated_geometry.h"

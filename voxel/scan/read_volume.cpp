@@ -12,7 +12,6 @@
 #include "voxel/scan/audit.h"
 #include "voxel/scan/label_names.h"
 #include "voxel/scan/label_overlaps.h"
-#include "voxel/scan/unstated_padding.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
 #include "voxel/space/printed.h"

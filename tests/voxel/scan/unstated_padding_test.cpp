@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/unstated_padding.h"
-
 #include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
@@ -9,6 +7,7 @@
 #include "tests/voxel/scan/dicom_bytes.h"
 #include "tests/voxel/scan/spoiled_series.h"
 #include "tests/voxel/scratch_folder.h"
+#include "voxel/scan/air_level.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/scan/write_scene.h"
 
