@@ -87,7 +87,8 @@ class Sampler {
       return {static_cast<double>(grey.sample(at)), grey.scan().contains(at)};
     }
     const glm::dvec3 p(source.source_from_target * glm::dvec4(glm::dvec3(voxel), 1.0));
-    return {interpolate(grey, p, options_.resampling.samples),
+    const Interpolation how = options_.resampling.samples;
+    return {how == Interpolation::Linear ? interpolate_scan(grey, p) : interpolate(grey, p, how),
             grey.scan().contains(glm::ivec3(glm::floor(p + 0.5)))};
   }
 

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "voxel/solid/operand.h"
 #include "voxel/solid/operand_frame.h"
@@ -39,6 +40,11 @@ VoxelBox support(const glm::dmat4& source_from_target, const Cube& cube, Interpo
   const ImageBox box = image_of(source_from_target, cube);
   const Margin around = margin(interpolation);
   return {glm::ivec3(glm::floor(box.low)) - around.before, glm::ivec3(glm::floor(box.high)) + around.after};
+}
+
+double value_at(const GreyOctree& grey, const glm::dvec3& position, Interpolation interpolation) {
+  return interpolation == Interpolation::Linear ? interpolate_scan(grey, position)
+                                                : interpolate(grey, position, interpolation);
 }
 
 // The samples around one leaf, copied together from up to 4 leaves an axis.
@@ -88,9 +94,11 @@ class NearSamples {
         }
   }
 
-  // The value at a position of the source.
-  double interpolate(const glm::dvec3& position, Interpolation interpolation) const {
-    if (interpolation == Interpolation::Linear) return trilinear(position);
+  // The value at a position of the source. None: one of its samples has the background's value, as those
+  // beyond the scan do, which no measurement may be mixed with.
+  std::optional<double> interpolate(const glm::dvec3& position, Interpolation interpolation,
+                                    std::int16_t background) const {
+    if (interpolation == Interpolation::Linear) return trilinear(position, background);
     const glm::dvec3 p = position - glm::dvec3(4 * first_);
     const Stencil x = stencil(p.x, interpolation);
     const Stencil y = stencil(p.y, interpolation);
@@ -110,13 +118,17 @@ class NearSamples {
   }
 
  private:
-  double trilinear(const glm::dvec3& position) const {
+  std::optional<double> trilinear(const glm::dvec3& position, std::int16_t background) const {
     const glm::dvec3 p = position - glm::dvec3(4 * first_);
     const glm::ivec3 low(p);
     assert(glm::all(glm::greaterThanEqual(low, glm::ivec3(0))) &&
            glm::all(glm::lessThan(low, glm::ivec3(side - 1))));
     const glm::dvec3 t = p - glm::dvec3(low);
     const std::int16_t* cell = &samples_[index(low.x, low.y, low.z)];
+    bool any_background = false;
+    for (const int row : {0, side, side * side, side * side + side})
+      any_background |= cell[row] == background || cell[row + 1] == background;
+    if (any_background) return std::nullopt;
     const auto along_x = [&](int offset) { return cell[offset] * (1.0 - t.x) + cell[offset + 1] * t.x; };
     const double below = along_x(0) * (1.0 - t.y) + along_x(side) * t.y;
     const double above = along_x(side * side) * (1.0 - t.y) + along_x(side * side + side) * t.y;
@@ -170,7 +182,7 @@ Meets SampledWindowOperand::meets(const Cube& cube) const {
 
 bool SampledWindowOperand::contains(const glm::dvec3& p_voxel) const {
   const double value =
-      interpolate(window_->grey, glm::dvec3(source_from_target_ * glm::dvec4(p_voxel, 1.0)), interpolation_);
+      value_at(window_->grey, glm::dvec3(source_from_target_ * glm::dvec4(p_voxel, 1.0)), interpolation_);
   return value >= window_->low && value <= window_->high;
 }
 
@@ -203,8 +215,9 @@ void SampledWindowOperand::interpolated_words(const WantedLeaves& leaves) const 
     for (int voxel = 0; voxel < 64; ++voxel) {
       const glm::dvec3 p(source_from_target_ * glm::dvec4(glm::dvec3(origin + child_place(voxel)), 1.0));
       // A lattice so coarse that a leaf's surroundings are many is read from the octree itself.
-      const double value =
-          is_near ? near.interpolate(p, interpolation_) : interpolate(grey, p, interpolation_);
+      const std::optional<double> quick =
+          is_near ? near.interpolate(p, interpolation_, grey.background()) : std::nullopt;
+      const double value = quick ? *quick : value_at(grey, p, interpolation_);
       word |= std::uint64_t{value >= window_->low && value <= window_->high} << voxel;
     }
     return word;

@@ -57,4 +57,31 @@ double interpolate(const GreyOctree& grey, const glm::dvec3& p_voxel, Interpolat
   return value;
 }
 
+double interpolate_scan(const GreyOctree& grey, const glm::dvec3& p_voxel) {
+  const int side = grey.universe().side();
+  const auto in_scan = [&](const glm::ivec3& voxel) {
+    return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) &&
+           glm::all(glm::lessThan(voxel, glm::ivec3(side))) && grey.scan().contains(voxel);
+  };
+  if (!in_scan(glm::ivec3(glm::floor(p_voxel + 0.5)))) return grey.background();
+  bool any_beyond = false;
+  const glm::ivec3 low(glm::floor(p_voxel));
+  const glm::dvec3 t = p_voxel - glm::dvec3(low);
+  double value = 0.0, weights = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 by(corner & 1, corner >> 1 & 1, corner >> 2);
+    const glm::dvec3 share = glm::mix(1.0 - t, t, glm::dvec3(by));
+    const double weight = share.x * share.y * share.z;
+    if (weight == 0.0) continue;
+    if (!in_scan(low + by)) {
+      any_beyond = true;
+      continue;
+    }
+    value += weight * grey.sample(low + by);
+    weights += weight;
+  }
+  // Else the same bits as everywhere.
+  return any_beyond ? value / weights : interpolate(grey, p_voxel, Interpolation::Linear);
+}
+
 }  // namespace octotomy::voxel

@@ -38,4 +38,9 @@ ValueRange value_range(const MinMax& samples, Interpolation interpolation);
 /// The value at a position of the octree's universe, in voxel indices; samples beyond it are the background.
 double interpolate(const GreyOctree& grey, const glm::dvec3& p_voxel, Interpolation interpolation);
 
+/// The trilinear value at a position, as above, made of the scan's own samples alone: those about the
+/// position that are none leave their weight to the others. The background where the nearest voxel is not the
+/// scan's.
+double interpolate_scan(const GreyOctree& grey, const glm::dvec3& p_voxel);
+
 }  // namespace octotomy::voxel

@@ -136,7 +136,9 @@ TEST(Resampling, MovedWindowsFollowTheirInterpolation) {
     for (int z = 0; z < 32; ++z)
       for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 32; ++x) {
-          const double value = interpolate(grey, glm::dvec3(back * glm::dvec4(x, y, z, 1.0)), interpolation);
+          const glm::dvec3 p(back * glm::dvec4(x, y, z, 1.0));
+          const double value = interpolation == Interpolation::Linear ? interpolate_scan(grey, p)
+                                                                      : interpolate(grey, p, interpolation);
           if (std::abs(value - 250) < 1e-9 || std::abs(value - 700) < 1e-9) continue;
           ASSERT_EQ(octree.contains({x, y, z}), value >= 250 && value <= 700) << x << ' ' << y << ' ' << z;
         }
@@ -144,6 +146,25 @@ TEST(Resampling, MovedWindowsFollowTheirInterpolation) {
     EXPECT_FALSE(octree == before) << "two interpolations gave the same voxels";
     before = octree;
   }
+}
+
+// A scan of one value that ends within the universe: half way to the background there are neither a film of
+// values between both nor a layer less.
+TEST(Resampling, NoWindowIsMixedWithWhatLiesBeyondItsScan) {
+  const Universe universe{5, glm::dmat4(1.0)};
+  Scene scene;
+  scene.lattice = universe.lattice();
+  scene.lattice.dims = {12, 10, 14};
+  scene.lattice.lps_from_voxel[3] = glm::dvec4(9, 10, 8, 1.0);
+  scene.samples = Int16Samples(scene.lattice.sample_count(), 900);
+  const GreyOctree grey = grey_octree_of(universe, scene, -2000);
+  const glm::dmat4 matrix = turn(23, glm::normalize(glm::dvec3(0.3, 1, -0.6)), {15, 15, 15});
+  const Octree film = combine(universe, moved(Window{grey, -1500, 800}, matrix)),
+               whole = combine(universe, moved(Window{grey, 800, 1000}, matrix)),
+               box = combine(universe, moved(Expression(Box{{8.5, 9.5, 7.5}, {20.5, 19.5, 21.5}}), matrix));
+  EXPECT_TRUE(film.is_empty()) << film.voxel_count();
+  EXPECT_TRUE(whole == box) << whole.voxel_count() << " of " << box.voxel_count();
+  EXPECT_NEAR(static_cast<double>(whole.voxel_count()), 12.0 * 10.0 * 14.0, 60.0);
 }
 
 // 36 turns of 10 degrees, evaluated every time.
