@@ -44,13 +44,7 @@ std::vector<std::string> interpolated_parts(const MadeOf& from, const Object& ob
   return parts;
 }
 
-/// Samples of a scan that were no finite numbers. A reader has put the scan's lowest value in their places
-/// and stated their number at the beginning of its finding.
-struct Unmeasured {
-  std::uint64_t count = 0;
-  bool is_replaced = false;
-};
-
+/// Whether a scan's audit says that samples were no finite numbers, here or in a scan that it was made of.
 const voxel::Finding* unmeasured_finding(const std::vector<voxel::Finding>& audit) {
   const auto found = std::find_if(audit.begin(), audit.end(), [](const voxel::Finding& finding) {
     return finding.check == "finite" && finding.verdict != voxel::Verdict::Pass;
@@ -58,23 +52,27 @@ const voxel::Finding* unmeasured_finding(const std::vector<voxel::Finding>& audi
   return found == audit.end() ? nullptr : &*found;
 }
 
-Unmeasured unmeasured_samples(const voxel::Scene& scene, const std::vector<voxel::Finding>& audit) {
-  if (const voxel::Finding* finding = unmeasured_finding(audit)) return {std::stoull(finding->detail), true};
-  const auto* all = std::get_if<voxel::FloatSamples>(&scene.samples);
-  if (all == nullptr) return {};
-  const auto count =
-      std::count_if(all->begin(), all->end(), [](float sample) { return !std::isfinite(sample); });
-  return {static_cast<std::uint64_t>(count), false};
+/// A reader makes padding of samples that are no finite numbers; scans in memory may hold them as they are.
+bool is_unmeasured(const voxel::Scene& scene, double sample) {
+  return !std::isfinite(sample) || (scene.padding && sample == *scene.padding);
 }
 
-/// The number of unmeasured samples in rows along an axis that begin and end beside samples of a window. Rows
-/// of more samples than are unmeasured are air.
-std::uint64_t enclosed_samples(const voxel::Scene& scene, const Unmeasured& unmeasured, const Shown& window) {
+std::uint64_t unmeasured_samples(const voxel::Scene& scene) {
+  return std::visit(
+      [&](const auto& samples) {
+        return static_cast<std::uint64_t>(std::count_if(samples.begin(), samples.end(), [&](auto sample) {
+          return is_unmeasured(scene, static_cast<double>(sample));
+        }));
+      },
+      scene.samples);
+}
+
+/// The number of unmeasured samples in rows along an axis that begin and end beside samples of a window.
+std::uint64_t enclosed_samples(const voxel::Scene& scene, const Shown& window) {
   const glm::ivec3 dims = scene.lattice.dims;
   const std::array<std::size_t, 3> strides{
       1, static_cast<std::size_t>(dims.x),
       static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y)};
-  const double lowest = voxel::range(scene).low;
   std::vector<bool> enclosed(scene.lattice.sample_count(), false);
   std::uint64_t count = 0;
   std::visit(
@@ -85,12 +83,12 @@ std::uint64_t enclosed_samples(const voxel::Scene& scene, const Unmeasured& unme
           for (int i = 0; i < length; ++i) {
             const auto at = first + static_cast<std::size_t>(i) * stride;
             const auto value = static_cast<double>(samples[at]);
-            if (unmeasured.is_replaced ? value == lowest : !std::isfinite(value)) {
+            if (is_unmeasured(scene, value)) {
               ++run;
               continue;
             }
             const bool is_inside = value >= window.threshold && value <= window.high;
-            if (began_inside && is_inside && run <= unmeasured.count)
+            if (began_inside && is_inside)
               for (std::size_t k = 1; k <= run; ++k)
                 if (!enclosed[at - k * stride]) {
                   enclosed[at - k * stride] = true;
@@ -118,13 +116,17 @@ void add_unmeasured(const MadeOf& from, Object& made) {
     const auto record = std::find_if(from.records.begin(), from.records.end(),
                                      [&](const ScanRecord& scan) { return scan.name == name; });
     const voxel::Scene& scene = from.scan(name).scene();
-    const Unmeasured unmeasured =
-        unmeasured_samples(scene, record == from.records.end() ? scene.audit : record->audit);
-    if (unmeasured.count == 0) continue;
+    const bool has_nonfinite = !scene.padding && std::holds_alternative<voxel::FloatSamples>(scene.samples);
+    // Padding that a scanner states lies around what it measured.
+    if (!has_nonfinite &&
+        unmeasured_finding(record == from.records.end() ? scene.audit : record->audit) == nullptr)
+      continue;
+    const std::uint64_t count = unmeasured_samples(scene);
+    if (count == 0 && has_nonfinite) continue;
     std::uint64_t enclosed = 0;
     for (const Shown& window : made.bound.windows)
-      if (window.scan == name) enclosed = std::max(enclosed, enclosed_samples(scene, unmeasured, window));
-    std::string reason = std::to_string(unmeasured.count) + " samples of '" + name +
+      if (window.scan == name) enclosed = std::max(enclosed, enclosed_samples(scene, window));
+    std::string reason = (count == 0 ? "Some" : std::to_string(count)) + " samples of '" + name +
                          "' are no finite numbers, and both kernels leave out what lies there";
     if (enclosed > 0)
       reason += ": " + std::to_string(enclosed) + " of them lie between samples of this object, where " +

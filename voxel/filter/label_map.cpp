@@ -120,6 +120,7 @@ std::vector<Label> labels(const Scene& scene) {
         auto last = found.end();
         for (const auto sample : samples) {
           const auto value = static_cast<double>(sample);
+          if (scene.padding && value == *scene.padding) continue;
           const std::optional<int> number = label_of(value);
           if (!number)
             throw std::invalid_argument(scene.source + ": holds " + std::to_string(value) +

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "voxel/scan/air_level.h"
@@ -213,6 +214,16 @@ void take_meaning(const VolumeHeader& header, const SmallNumbers& small, Scene& 
 /// one.
 void take_padding_below_all(std::optional<double> stated, Scene& scene) {
   if (!stated) return;
+  // Samples that are no numbers are padding already, below all others: the stated one joins them.
+  if (scene.padding && range(scene).low == *stated)
+    std::visit(
+        [&](auto& samples) {
+          using Sample = std::decay_t<decltype(samples.front())>;
+          std::replace(samples.begin(), samples.end(), static_cast<Sample>(*stated),
+                       static_cast<Sample>(*scene.padding));
+        },
+        scene.samples);
+  if (scene.padding) return;
   const double least = std::visit(
       [](const auto& samples) {
         return static_cast<double>(*std::min_element(samples.begin(), samples.end()));

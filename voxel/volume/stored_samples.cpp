@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -110,13 +111,23 @@ void turn_bytes(Samples<Stored>& stored, bool big_endian) {
   });
 }
 
+/// Below every measured sample, in the type that the samples are kept in; none where single precision has no
+/// such number. Whole numbers keep a whole one.
+std::optional<double> padding_below(const Values& found) {
+  if (found.fits_int16 && found.low > std::numeric_limits<std::int16_t>::min()) return found.low - 1.0;
+  const auto low = static_cast<float>(found.low);
+  const float below = std::min(low - 1.0f, std::nextafter(low, -std::numeric_limits<float>::infinity()));
+  return std::isfinite(below) ? std::optional<double>(below) : std::nullopt;
+}
+
 template <typename Stored, typename Sample>
-void convert(const Samples<Stored>& stored, const StoredSamples& how, double low, Samples<Sample>& samples) {
+void convert(const Samples<Stored>& stored, const StoredSamples& how, double in_place,
+             Samples<Sample>& samples) {
   samples.resize(stored.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, stored.size(), grain), [&](const auto& part) {
     for (std::size_t i = part.begin(); i < part.end(); ++i) {
       const double real = how.slope * static_cast<double>(stored[i]) + how.intercept;
-      samples[i] = static_cast<Sample>(is_kept(real) ? real : low);
+      samples[i] = static_cast<Sample>(is_kept(real) ? real : in_place);
     }
   });
 }
@@ -131,14 +142,20 @@ void put_values(const Samples<Stored>& stored, const StoredSamples& how, Scene& 
       std::plus<>());
   if (found.unreal_count == stored.size())
     throw Error(ErrorCode::Input, scene.source + ": no sample is a finite number");
-  if (found.unreal_count > 0)
+  double in_place = found.low;
+  bool fits_int16 = found.fits_int16;
+  if (found.unreal_count > 0) {
+    scene.padding = padding_below(found);
+    in_place = scene.padding.value_or(found.low);
+    fits_int16 = fits_int16 && in_place >= std::numeric_limits<std::int16_t>::min();
     scene.audit.push_back({"finite", Verdict::Warn,
                            std::to_string(found.unreal_count) +
-                               " samples are no finite numbers of single precision; they are set to the "
-                               "lowest value, " +
-                               std::to_string(found.low)});
-  if (found.fits_int16) return convert(stored, how, found.low, scene.samples.emplace<Int16Samples>());
-  convert(stored, how, found.low, scene.samples.emplace<FloatSamples>());
+                               " samples are no finite numbers of single precision; they are " +
+                               (scene.padding ? "taken as not measured" : "set to the lowest value") +
+                               " and hold " + std::to_string(in_place)});
+  }
+  if (fits_int16) return convert(stored, how, in_place, scene.samples.emplace<Int16Samples>());
+  convert(stored, how, in_place, scene.samples.emplace<FloatSamples>());
   if (!found.is_exact)
     scene.audit.push_back({"precision", Verdict::Warn, "samples are rounded to single precision"});
 }

@@ -460,7 +460,7 @@ TEST(ReadVolumeFile, TurnsOtherFramesIntoLps) {
   EXPECT_EQ(verdict(read_scene(folder / "unnamed.nrrd"), "orientation"), Verdict::Warn);
 }
 
-TEST(ReadVolumeFile, ReplacesWhatIsNoNumberAndSaysSo) {
+TEST(ReadVolumeFile, TakesWhatIsNoNumberAsPaddingAndSaysSo) {
   const ScratchFolder folder;
   Scene scene = linear_scene(axis_aligned_lattice({4, 4, 4}, glm::dvec3(1.0), glm::dvec3(0.0)));
   voxel::FloatSamples samples(64, 2.5f);
@@ -470,7 +470,27 @@ TEST(ReadVolumeFile, ReplacesWhatIsNoNumberAndSaysSo) {
   write_scene(scene, folder / "nan.nrrd");
   const Scene read = read_scene(folder / "nan.nrrd");
   EXPECT_EQ(verdict(read, "finite"), Verdict::Warn);
-  EXPECT_EQ(std::get<voxel::FloatSamples>(read.samples)[5], -7.5f);
+  ASSERT_TRUE(read.padding.has_value());
+  EXPECT_LT(*read.padding, -7.5) << "below every measured sample";
+  EXPECT_EQ(std::get<voxel::FloatSamples>(read.samples)[5], static_cast<float>(*read.padding));
+  EXPECT_EQ(voxel::range(read).low, -7.5);
+}
+
+/// The lowest numbers of either type have none below them of the same type.
+TEST(ReadVolumeFile, HasPaddingBelowTheLowestNumbersToo) {
+  const ScratchFolder folder;
+  for (const float low : {-32768.0f, -3e38f}) {
+    Scene scene = linear_scene(axis_aligned_lattice({4, 4, 4}, glm::dvec3(1.0), glm::dvec3(0.0)));
+    voxel::FloatSamples samples(64, 2.0f);
+    samples[1] = low;
+    samples[5] = std::numeric_limits<float>::infinity();
+    scene.samples = samples;
+    write_scene(scene, folder / "lowest.nrrd");
+    const Scene read = read_scene(folder / "lowest.nrrd");
+    ASSERT_TRUE(read.padding.has_value()) << low;
+    EXPECT_LT(*read.padding, static_cast<double>(low));
+    EXPECT_EQ(voxel::range(read).low, static_cast<double>(low));
+  }
 }
 
 TEST(ReadVolumeFile, DoesNotAllocateWhatTheFileCannotHold) {

@@ -211,7 +211,7 @@ TEST(ReadRaw, ReadsEveryTypeInEitherByteOrderAfterAnOffset) {
   check(double{}, SampleType::Double, 0);
 }
 
-TEST(ReadRaw, ReplacesDoublesBeyondSinglePrecisionAndSaysSo) {
+TEST(ReadRaw, TakesDoublesBeyondSinglePrecisionAsPaddingAndSaysSo) {
   const ScratchFolder folder;
   std::string bytes = raw_bytes<double>(false);
   const double beyond = 1e300;
@@ -221,7 +221,9 @@ TEST(ReadRaw, ReplacesDoublesBeyondSinglePrecisionAndSaysSo) {
   options.raw = RawLayout{dims, SampleType::Double};
   const Scene scene = read_scene(folder / "scan.raw", options);
   EXPECT_EQ(verdict(scene, "finite"), Verdict::Warn);
-  EXPECT_EQ(std::get<voxel::Int16Samples>(scene.samples)[1], ramp(0, dims.y - 1, 0));
+  ASSERT_TRUE(scene.padding.has_value());
+  EXPECT_EQ(std::get<voxel::Int16Samples>(scene.samples)[1], *scene.padding);
+  EXPECT_EQ(voxel::range(scene).low, ramp(0, dims.y - 1, 0));
 }
 
 TEST(ReadRaw, RefusesAFileThatHasNotTheBytesThatItsLayoutTakes) {
