@@ -25,6 +25,7 @@
 #include "verify/certify_surface.h"
 #include "verify/chance.h"
 #include "verify/exact_agreement.h"
+#include "verify/fault_subject.h"
 #include "verify/head_phantom.h"
 #include "verify/implicit_solid.h"
 #include "verify/random_expression.h"
@@ -37,69 +38,6 @@ namespace octotomy::verify {
 namespace {
 
 using voxel::Expression;
-
-/// The question as one kernel understands it.
-struct Making {
-  double low = 0.0;           ///< of the window
-  double slices_apart = 1.0;  ///< times the true distance
-  bool swapped = false;       ///< box less window
-  glm::dvec3 box_shift_mm{0.0};
-  bool pivot_forgotten = false;  ///< turned about the origin
-  bool not_moved = false;        ///< as it was before the motion
-};
-
-struct Subject {
-  std::string name;
-  voxel::Scene scan;
-  voxel::Universe universe;
-  voxel::Box box;
-  voxel::Motion motion;
-  double low = 0.0;       ///< half way between outside and inside
-  double contrast = 1.0;  ///< inside less outside
-};
-
-double edge_mm(const Subject& subject) {
-  return subject.universe.lattice().spacing_mm().x;
-}
-
-voxel::Scene scan_of(const Subject& subject, const Making& making) {
-  voxel::Scene scan = subject.scan;
-  scan.lattice.lps_from_voxel[2] *= making.slices_apart;
-  return scan;
-}
-
-glm::dmat4 motion_of(const Subject& subject, const Making& making) {
-  if (making.not_moved) return glm::dmat4(1.0);
-  voxel::Motion motion = subject.motion;
-  if (making.pivot_forgotten) motion.about_mm = glm::dvec3(0.0);
-  return voxel::moved_from_still(motion);
-}
-
-voxel::Octree voxel_answer(const Subject& subject, const Making& making) {
-  const voxel::GreyOctree grey = voxel::grey_octree_of(subject.universe, scan_of(subject, making));
-  const Expression window = voxel::Window{grey, making.low};
-  const Expression box =
-      voxel::Box{subject.box.low_mm + making.box_shift_mm, subject.box.high_mm + making.box_shift_mm};
-  const Expression still = making.swapped ? box - window : window - box;
-  return voxel::combine(subject.universe, voxel::moved(still, motion_of(subject, making)));
-}
-
-brep::Solid solid_of(const voxel::Box& box) {
-  const glm::dvec3 a = box.low_mm, b = box.high_mm;
-  return brep::solid_of(brep::Prism{
-      {0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {{{a.x, a.z}, {b.x, a.z}, {b.x, b.z}, {a.x, b.z}}}, a.y, b.y});
-}
-
-brep::Triangles mesh_answer(const Subject& subject, const Making& making) {
-  const brep::Solid window = brep::trusted_solid(
-      convert::isosurface(scan_of(subject, making), making.low, std::numeric_limits<double>::infinity()),
-      brep::Proof::Construction);
-  const brep::Solid box =
-      solid_of({subject.box.low_mm + making.box_shift_mm, subject.box.high_mm + making.box_shift_mm});
-  const brep::Solid still = making.swapped ? brep::boolean(box, brep::Operation::Difference, window).solid
-                                           : brep::boolean(window, brep::Operation::Difference, box).solid;
-  return brep::triangles_of(brep::moved(still, motion_of(subject, making)));
-}
 
 brep::Triangles with_flipped_triangle(brep::Triangles triangles) {
   auto& face = triangles.faces[triangles.faces.size() / 2];
@@ -124,27 +62,6 @@ brep::Triangles with_shell_twice(brep::Triangles triangles) {
     for (std::uint32_t& corner : face) corner += points;
     triangles.faces.push_back(face);
   }
-  return triangles;
-}
-/// The triangles and, beside them, those of another surface.
-brep::Triangles with_shell_again(brep::Triangles triangles, const brep::Triangles& again) {
-  const auto points = static_cast<std::uint32_t>(triangles.points_mm.size());
-  triangles.points_mm.insert(triangles.points_mm.end(), again.points_mm.begin(), again.points_mm.end());
-  for (const std::array<std::uint32_t, 3>& face : again.faces)
-    triangles.faces.push_back({face[0] + points, face[1] + points, face[2] + points});
-  return triangles;
-}
-/// An answer with a box or without it.
-voxel::Octree changed(const voxel::Octree& octree, const voxel::Box& box, brep::Operation operation) {
-  const Expression all(octree), part(box);
-  return voxel::combine(octree.universe(), operation == brep::Operation::Union ? all | part : all - part);
-}
-brep::Triangles changed(const brep::Triangles& triangles, const voxel::Box& box, brep::Operation operation) {
-  const brep::Solid solid = brep::trusted_solid(triangles, brep::Proof::Connection);
-  return brep::triangles_of(brep::boolean(solid, operation, solid_of(box)).solid);
-}
-brep::Triangles shifted(brep::Triangles triangles, const glm::dvec3& by_mm) {
-  for (glm::dvec3& p : triangles.points_mm) p += by_mm;
   return triangles;
 }
 /// Mirrored in x about the universe's middle, still turned outward: as a reader with the wrong axis would.
@@ -193,20 +110,7 @@ class Trials {
  public:
   Trials(const Subject& subject, int voxels) : subject_(subject), voxels_(voxels) {
     clean_.low = subject.low;
-    const Witness window = witness_of_window(std::make_shared<const voxel::Scene>(subject.scan), subject.low,
-                                             std::numeric_limits<double>::infinity(), subject.universe);
-    witness_ = both(carried(without(window, witness_of_box(subject.box)), motion_of(subject, clean_)),
-                    witness_of_box(voxel::bounds(subject.universe.lattice())));
-  }
-
-  /// Alterations by chance of the clean answers.
-  std::vector<Alteration> altered(int count, Chance& chance) {
-    octree_ = voxel_answer(subject_, clean_);
-    triangles_ = mesh_answer(subject_, clean_);
-    const Certificate right = certified("clean", *octree_, triangles_);
-    std::vector<Alteration> made;
-    for (int i = 0; i < count; ++i) made.push_back(altered(right, chance));
-    return made;
+    witness_ = witness_of(subject, clean_);
   }
 
   std::vector<FaultTrial> run() {
@@ -263,77 +167,10 @@ class Trials {
     return all;
   }
 
-  /// A box of one to a sixth of the universe's voxels a side, about a vertex of the mesh.
-  voxel::Box box_by_chance(Chance& chance) const {
-    const auto count = static_cast<double>(triangles_.points_mm.size());
-    const glm::dvec3 middle_mm =
-        triangles_.points_mm[static_cast<std::size_t>(chance.between(0.0, count - 1e-6))];
-    glm::dvec3 half_mm;
-    for (int axis = 0; axis < 3; ++axis)
-      half_mm[axis] = 0.5 * edge_mm(subject_) * std::exp(chance.between(0.0, std::log(voxels_ / 6.0)));
-    return {middle_mm - half_mm, middle_mm + half_mm};
-  }
-
-  Alteration altered(const Certificate& right, Chance& chance) const {
-    constexpr std::array<const char*, 9> kinds{
-        "box lost by the voxels",  "box lost by the mesh",  "box lost by both kernels",
-        "box added to the voxels", "box added to the mesh", "box added to both kernels",
-        "mesh several times",      "mesh shifted",          "both kernels empty"};
-    const auto kind = static_cast<std::size_t>(chance.between(0.0, 9.0 - 1e-9));
-    Alteration made;
-    made.kind = kinds[kind];
-    made.subject = subject_.name + ", " + std::to_string(voxels_) + " voxels a side";
-    voxel::Octree octree = *octree_;
-    brep::Triangles triangles = triangles_;
-    const double whole_mm3 = right.mesh.volume_mm3;
-    if (kind < 6) {
-      const voxel::Box box = box_by_chance(chance);
-      const auto operation = kind < 3 ? brep::Operation::Difference : brep::Operation::Union;
-      if (kind % 3 != 1) octree = changed(octree, box, operation);
-      if (kind % 3 != 0) triangles = changed(triangles, box, operation);
-      const double of_mesh_mm3 =
-          std::abs(brep::trusted_solid(triangles, brep::Proof::Connection).size().volume_mm3 - whole_mm3);
-      const double of_voxels_mm3 =
-          std::abs(static_cast<double>(octree.voxel_count()) - static_cast<double>(octree_->voxel_count())) *
-          octree.universe().lattice().voxel_mm3();
-      made.altered_mm3 = kind % 3 == 0   ? of_voxels_mm3
-                         : kind % 3 == 1 ? of_mesh_mm3
-                                         : std::min(of_mesh_mm3, of_voxels_mm3);
-    } else if (kind == 6) {
-      const int times = 1 + static_cast<int>(chance.between(1.0, 4.0));
-      for (int i = 1; i < times; ++i) triangles = with_shell_again(std::move(triangles), triangles_);
-      made.altered_mm3 = whole_mm3 * (times - 1);
-    } else if (kind == 7) {
-      glm::dvec3 by_mm(0.0);
-      const int axis = static_cast<int>(chance.between(0.0, 3.0 - 1e-9));
-      by_mm[axis] = edge_mm(subject_) * chance.even() * 2.0;
-      triangles = shifted(std::move(triangles), by_mm);
-      made.is_over_limit =
-          right.limit && right.limit->shift_mm && std::abs(by_mm[axis]) > *right.limit->shift_mm;
-    } else {
-      octree = voxel::Octree::empty(subject_.universe);
-      triangles = {};
-      made.altered_mm3 = whole_mm3;
-    }
-    made.is_over_limit = made.is_over_limit || made.altered_mm3 > right.limit->volume_mm3;
-    made.verdict = certified(made.kind, octree, triangles).verdict;
-    return made;
-  }
-
   void certify(const std::string& fault, const std::string& kernel, const voxel::Octree& octree,
                const brep::Triangles& triangles) {
-    trials_.push_back({fault, kernel, subject_.name, voxels_, false, certified(fault, octree, triangles)});
-  }
-
-  Certificate certified(const std::string& fault, const voxel::Octree& octree,
-                        const brep::Triangles& triangles) const {
-    BoundInputs inputs;
-    inputs.operation = subject_.name + ", (window - box) turned" + (fault.empty() ? "" : ", " + fault);
-    inputs.voxel_lineage = "window on a grey octree of the scan, in one walk";
-    inputs.mesh_lineage = "isosurface of the scan's own samples, corefinement";
-    inputs.scan_spacing_mm = subject_.scan.lattice.spacing_mm();
-    inputs.witness = witness_;
-    return certify_surface(octree, triangles, inputs);
+    trials_.push_back({fault, kernel, subject_.name, voxels_, false,
+                       certified(subject_, fault, octree, triangles, witness_)});
   }
 
   const Subject& subject_;
@@ -344,67 +181,6 @@ class Trials {
   brep::Triangles triangles_;
   std::vector<FaultTrial> trials_;
 };
-
-/// A scan of a solid: each sample the share of its voxel that is inside, from -1000 to 1000.
-voxel::Scene scan_of(const voxel::Universe& universe, const voxel::Expression& solid) {
-  const voxel::PartialOctree partial = voxel::digitise_partial(universe, solid);
-  const int side = universe.side();
-  const auto at = [&](const glm::ivec3& v) {
-    return static_cast<std::size_t>(v.x) +
-           static_cast<std::size_t>(side) * (static_cast<std::size_t>(v.y) +
-                                             static_cast<std::size_t>(side) * static_cast<std::size_t>(v.z));
-  };
-  voxel::Int16Samples samples(static_cast<std::size_t>(side) * side * side, -1000);
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x)
-        if (partial.inside.contains({x, y, z})) samples[at({x, y, z})] = 1000;
-  voxel::for_each_boundary_voxel(partial, [&](const glm::ivec3& v, std::uint16_t fraction) {
-    samples[at(v)] =
-        static_cast<std::int16_t>(std::lround(2000.0 * fraction / voxel::PartialOctree::whole - 1000.0));
-  });
-  voxel::Scene scan;
-  scan.lattice = universe.lattice();
-  scan.samples = std::move(samples);
-  scan.source = "phantom";
-  return scan;
-}
-
-/// Subjects without a symmetry that would hide a mirrored axis or swapped operands: off the middle, askew,
-/// cut.
-Subject shape_subject(const std::string& name, int voxels) {
-  Subject subject;
-  subject.name = name;
-  const double n = voxels;
-  while ((1 << subject.universe.depth) > voxels) --subject.universe.depth;
-  const glm::dvec3 centre = n * glm::dvec3(0.46, 0.52, 0.49);
-  const glm::dmat3 turn = turned({20, -35, 50});
-  subject.scan = name == "ring" ? scan_of(subject.universe, voxel::Torus{centre, turn[2], 0.24 * n, 0.12 * n})
-                                : scan_of(subject.universe,
-                                          voxel::Ellipsoid{centre, n * glm::dvec3(0.33, 0.26, 0.21), turn});
-  subject.box = {centre + n * glm::dvec3(0.051, -0.383, -0.029),
-                 centre + n * glm::dvec3(0.437, 0.043, 0.377)};
-  subject.motion = {
-      n * glm::dvec3(0.021, -0.013, 0.017), 9.0, {0.3, 0.5, 0.8}, n * glm::dvec3(0.31, 0.62, 0.71)};
-  subject.contrast = 2000.0;
-  return subject;
-}
-
-Subject head_subject(int voxels) {
-  Subject subject;
-  subject.name = "head";
-  HeadOptions options;
-  const voxel::Box bounds = head_bounds();
-  const glm::dvec3 extent_mm = bounds.high_mm - bounds.low_mm;
-  options.voxel_mm = 1.02 * std::max({extent_mm.x, extent_mm.y, extent_mm.z}) / voxels;
-  subject.scan = head_phantom(options);
-  subject.universe = voxel::universe_around(voxel::bounds(subject.scan.lattice), options.voxel_mm);
-  subject.box = {{-42.3, -95.1, -57.2}, {11.4, -31.7, -21.9}};
-  subject.motion = {{2.3, -5.1, 1.7}, 7.0, {1.0, 0.2, 0.1}, {3.0, -60.0, -30.0}};
-  subject.low = 0.5 * (options.tissues.soft + options.tissues.bone);
-  subject.contrast = options.tissues.bone - options.tissues.soft;
-  return subject;
-}
 
 /// Faults for the exact tier, whose answers have integer coordinates: a shift is by one refined voxel.
 std::vector<FaultTrial> exact_trials(int voxels) {
@@ -531,25 +307,6 @@ std::vector<FaultTrial> try_faults(const FaultOptions& options) {
       trials.push_back(std::move(trial));
     }
   return trials;
-}
-
-std::vector<Alteration> try_alterations(const AlterationOptions& options) {
-  constexpr std::array<const char*, 3> subjects{"ellipsoid", "ring", "head"};
-  std::vector<std::vector<Alteration>> parts(subjects.size());
-  voxel::SharedProgress done(options.progress, subjects.size());
-  tbb::parallel_for(std::size_t{0}, subjects.size(), [&](std::size_t i) {
-    done.one_more();
-    const std::string name = subjects[i];
-    const Subject subject =
-        name == "head" ? head_subject(options.voxels) : shape_subject(name, options.voxels);
-    Chance chance(options.seed * subjects.size() + i);
-    const int count = options.count / static_cast<int>(subjects.size());
-    parts[i] = Trials(subject, options.voxels).altered(count, chance);
-  });
-  std::vector<Alteration> all;
-  for (std::vector<Alteration>& part : parts)
-    all.insert(all.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
-  return all;
 }
 
 std::vector<DetectionPower> detection_power(const std::vector<FaultTrial>& trials) {

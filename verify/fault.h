@@ -37,17 +37,6 @@ struct FaultOptions {
   voxel::Progress progress{};
 };
 
-/// An answer altered by chance in kind, place and size, and the verdict on it.
-struct Alteration {
-  std::string kind;     ///< "box lost by both kernels"
-  std::string subject;  ///< and its voxels a side
-  double altered_mm3 = 0.0;
-  bool is_over_limit = false;  ///< larger than the clean certificate's detection limit
-  Verdict verdict = Verdict::Pass;
-  /// Over the limit and passed: there must be none.
-  bool is_missed() const { return is_over_limit && verdict == Verdict::Pass; }
-};
-
 /// The size, in voxels a side, from which every fault must be caught.
 inline constexpr int resolved_size = 64;
 
@@ -57,18 +46,6 @@ inline constexpr int resolved_size = 64;
 /// is thinner than a voxel. Same trials, in the same order, on any thread count. Throws std::invalid_argument
 /// if a size is not a power of two from 8 on; voxel::Stopped. Cost: about a minute of processor time.
 std::vector<FaultTrial> try_faults(const FaultOptions& options = {});
-
-struct AlterationOptions {
-  std::uint64_t seed = 1;
-  int count = 60;              ///< shared out among the subjects
-  int voxels = resolved_size;  ///< a side; a power of two from 32 on
-  voxel::Progress progress{};
-};
-/// Alters the clean answers of the ellipsoid, the ring and the head in one kernel or in both: boxes lost and
-/// added, pieces of the mesh that are there several times, shifts of the mesh, nothing at all. Same
-/// alterations for a seed. Throws voxel::Stopped. Cost: about a second of processor time each at 64 voxels a
-/// side.
-std::vector<Alteration> try_alterations(const AlterationOptions& options = {});
 
 /// Trials of one fault at one size.
 struct DetectionPower {

@@ -27,8 +27,9 @@ struct VerifyText : PlanIn {
   std::optional<std::filesystem::path> answer;  ///< somebody's, to A OP B
   bool accept_unresolved = false;
   bool faults = false, phantoms = false, self = false, thesis = false;
-  int poses = 6;     ///< of --phantoms
-  int solids = 400;  ///< of its intervals
+  int poses = 6;         ///< of --phantoms
+  int solids = 400;      ///< of its intervals
+  int alterations = 60;  ///< of --faults
   int random_count = 0;
   std::vector<RandomTier> random_tiers;  ///< none: all
   std::uint64_t seed = 1;
