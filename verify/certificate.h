@@ -95,6 +95,7 @@ struct Certificate {
   std::optional<double> hausdorff95_mm;  ///< 95th percentile, as the definition in the report says
   std::optional<WorstPlace> worst;       ///< none: the answers are equal, or there is no mesh to compare
   std::optional<DetectionLimit> limit;   ///< where the places were judged
+  std::vector<WorstPlace> bridges;       ///< parts of one kernel alone beyond thin necks, the largest first
   std::optional<LineCount> third;        ///< amounts by lines through the scan, by code of neither kernel
   /// What both kernels take from one place without its being an answer of either: values that a step finds,
   /// filters.

@@ -344,13 +344,15 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
 /// Bridges are decisions that the kernels took differently: a doubt, each with its place.
 void judge_bridges(Certificate& certificate, const Places& places) {
   constexpr std::size_t most_told = 3;
+  certificate.bridges = places.bridges;
   for (std::size_t i = 0; i < std::min(places.bridges.size(), most_told); ++i) {
     const WorstPlace& bridge = places.bridges[i];
     lower(certificate, Verdict::Warn,
           "An ambiguous bridge near " + voxel::rounded(bridge.at_mm) + ": " + bridge.what + ", " +
               voxel::rounded(bridge.volume_mm3) +
               " mm3, that the other one cuts off. The neck is thinner than " + std::to_string(bridge_voxels) +
-              " voxels: cut it by a mask, or take smaller voxels.");
+              " voxels: decide it by 'keep_bridges_mm' or 'cut_bridges_mm' of the step that chooses parts, "
+              "or take smaller voxels.");
   }
   if (places.bridges.size() > most_told)
     certificate.reasons.push_back(std::to_string(places.bridges.size() - most_told) +

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
+#include "brep/mesh/solid.h"
+#include "verify/reading.h"
 #include "voxel/tree/octree.h"
 
 namespace octotomy::verify {
@@ -13,35 +17,44 @@ namespace octotomy::verify {
 /// place.
 inline constexpr int bridge_voxels = 3;
 
-/// How parts that one kernel alone has hold to what both have. Keeps references to both sets of voxels.
+/// What two answers that chose connected parts of one object leave open: how parts that one of them alone has
+/// hold to what both have. Safe to call from several threads.
 class Necks {
  public:
-  Necks(const voxel::Octree& octree, const voxel::Octree& digitised)
-      : octree_(octree), digitised_(digitised) {}
+  /// Both answers, the mesh's as the voxels whose centre lies inside of it, and a reading of the object of
+  /// which they chose parts.
+  Necks(voxel::Octree octree, voxel::Octree digitised, Witness whole);
+  /// The same; the mesh is digitised when it is needed first. `decided_mm` are the places of necks that the
+  /// plan keeps or cuts, LPS: none of them is open.
+  Necks(voxel::Octree octree, brep::Solid solid, Witness whole, std::vector<glm::dvec3> decided_mm);
 
-  /// Whether a path through the voxels of its own set leads from a group of voxels, all of one set, to what
-  /// both sets have. A part that the other set lacks altogether hangs on nothing. Cost: of the first call a
-  /// labelling of the set.
-  bool is_attached(const std::vector<glm::ivec3>& group);
-  /// Whether a neck of bridge_voxels or more holds a group of voxels, all of one set: the set eroded by a
-  /// voxel still connects one of them with what both sets have. Cost: of the first call an erosion and a
-  /// labelling of the set.
-  bool is_thick(const std::vector<glm::ivec3>& group);
-  /// A voxel of the group that touches what both sets have; the group's first one where none does.
-  glm::ivec3 neck(const std::vector<glm::ivec3>& group) const;
+  /// Where the part hangs on whose points are given, LPS, all of one answer alone. None: the answers do not
+  /// differ about each of these points; a neck of bridge_voxels or more holds one of them; no path through
+  /// what the reading may have inside leads from the first one to what both answers have; or the plan has
+  /// decided. Cost: of the first call a labelling and an erosion of the set.
+  std::optional<glm::dvec3> neck_mm(const std::vector<glm::dvec3>& part_mm) const;
 
  private:
-  /// What of a set, whole or eroded by a voxel, is connected with what both sets have.
-  struct Held {
+  /// One answer's set, and what of it, whole or eroded by a voxel, is connected with what both answers have.
+  struct Side {
+    const voxel::Octree* set = nullptr;
     std::optional<voxel::Octree> whole, eroded;
   };
-  /// Of the set that has the group.
-  Held& held_of(const std::vector<glm::ivec3>& group);
-  const voxel::Octree& set_of(const std::vector<glm::ivec3>& group) const;
-  voxel::Octree connected(const voxel::Octree& part) const;
+  void prepare() const;
+  /// Of the answer that alone has a voxel near a point; null where they do not differ.
+  Side* side_near(const glm::ivec3& at) const;
+  bool is_thick(Side& side, const std::vector<glm::ivec3>& part) const;
+  std::optional<glm::dvec3> neck_by_voxels(Side& side, const std::vector<glm::ivec3>& part) const;
+  std::optional<glm::dvec3> neck_by_reading(const glm::ivec3& from) const;
+  bool is_decided(const glm::dvec3& neck_mm) const;
 
-  const voxel::Octree &octree_, &digitised_;
-  Held by_voxels_, by_mesh_;
+  voxel::Octree octree_;
+  std::optional<brep::Solid> solid_;
+  Witness whole_;
+  std::vector<glm::dvec3> decided_mm_;
+  mutable std::mutex mutex_;
+  mutable std::optional<voxel::Octree> digitised_, common_;
+  mutable Side by_voxels_, by_mesh_;
 };
 
 }  // namespace octotomy::verify

@@ -29,7 +29,7 @@
 #include "brep/mesh/components.h"
 #include "brep/mesh/distance.h"
 #include "brep/mesh/triangles.h"
-#include "verify/necks.h"
+#include "verify/bridges.h"
 #include "voxel/measure/distance_map.h"
 #include "voxel/solid/combine.h"
 #include "voxel/tree/octree_node.h"
@@ -95,10 +95,6 @@ void collect(const voxel::BlockRef& block, int height, const glm::ivec3& low,
       voxels.push_back(at + glm::ivec3(bit & 3, (bit >> 2) & 3, bit >> 4));
     }
   }
-}
-
-bool before(const glm::ivec3& a, const glm::ivec3& b) {
-  return a.z != b.z ? a.z < b.z : a.y != b.y ? a.y < b.y : a.x < b.x;
 }
 
 /// Sorts voxels of a universe and leaves each once: dealt out to their slices, these sorted by themselves.
@@ -281,81 +277,55 @@ bool hangs_on_no_face(const glm::ivec3& voxel, const voxel::Octree& octree, cons
   return true;
 }
 
-/// The neck that holds a group of voxels on which one kernel alone has a part; none where they are no such
-/// part, or more than a thin neck holds it.
-std::optional<WorstPlace> bridge_of(const std::vector<glm::ivec3>& group, const voxel::Octree& octree,
-                                    Necks& necks) {
-  const bool in_voxels = octree.contains(group.front());
-  const bool is_of_one = std::all_of(group.begin(), group.end(),
-                                     [&](const glm::ivec3& at) { return octree.contains(at) == in_voxels; });
-  if (!is_of_one || !necks.is_attached(group) || necks.is_thick(group)) return std::nullopt;
-  const voxel::Lattice lattice = octree.universe().lattice();
-  const double part_mm3 = static_cast<double>(group.size()) * lattice.voxel_mm3();
-  return WorstPlace{lattice.lps_mm(glm::dvec3(necks.neck(group))), std::cbrt(part_mm3),
-                    in_voxels ? "the voxel kernel keeps a part beyond a thin neck"
-                              : "the mesh kernel keeps a part beyond a thin neck",
-                    part_mm3};
+/// The place of a group of failed voxels.
+WorstPlace place_of(const std::vector<FailedVoxel>& group, const voxel::Lattice& lattice) {
+  glm::dvec3 middle(0.0);
+  std::array<std::size_t, clauses.size()> votes{};
+  for (const FailedVoxel& voxel : group) {
+    middle += glm::dvec3(voxel.at) / static_cast<double>(group.size());
+    ++votes[static_cast<std::size_t>(voxel.fault)];
+  }
+  // The voxel of the group that is nearest to its middle, so that the place lies in it.
+  const auto nearest =
+      std::min_element(group.begin(), group.end(), [&](const FailedVoxel& a, const FailedVoxel& b) {
+        return glm::distance(glm::dvec3(a.at), middle) < glm::distance(glm::dvec3(b.at), middle);
+      });
+  const auto fault = std::max_element(votes.begin(), votes.end()) - votes.begin();
+  const double volume_mm3 = static_cast<double>(group.size()) * lattice.voxel_mm3();
+  return {lattice.lps_mm(glm::dvec3(nearest->at)), std::cbrt(volume_mm3),
+          clauses[static_cast<std::size_t>(fault)], volume_mm3};
 }
 
-/// Joins failed voxels, which are sorted, leaves out groups by chance, and keeps the largest group.
+/// Joins failed voxels, which are sorted, leaves out groups by chance and parts beyond thin necks, and keeps
+/// the largest group.
 void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& octree,
                 const voxel::Octree& digitised, const Witness& witness, Places& places) {
-  const voxel::Lattice lattice = octree.universe().lattice();
-  Necks necks(octree, digitised);
-  std::vector<std::uint8_t> seen(failed.size(), 0);
-  const auto index_of = [&](const glm::ivec3& at) {
-    const auto found =
-        std::lower_bound(failed.begin(), failed.end(), at,
-                         [](const FailedVoxel& a, const glm::ivec3& b) { return before(a.at, b); });
-    return found != failed.end() && found->at == at ? static_cast<std::size_t>(found - failed.begin())
-                                                    : failed.size();
-  };
-  for (std::size_t first = 0; first < failed.size(); ++first) {
-    if (seen[first]) continue;
-    seen[first] = 1;
-    std::vector<std::size_t> group{first};
-    for (std::size_t next = 0; next < group.size(); ++next)
-      for (int neighbour = 0; neighbour < 27; ++neighbour) {
-        const glm::ivec3 by(neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1);
-        const std::size_t i = index_of(failed[group[next]].at + by);
-        if (i == failed.size() || seen[i]) continue;
-        seen[i] = 1;
-        group.push_back(i);
-      }
-    const bool is_chance =
-        group.size() < chance_voxels && std::all_of(group.begin(), group.end(), [&](std::size_t i) {
-          return failed[i].fault == Fault::Apart &&
-                 hangs_on_no_face(failed[i].at, octree, digitised, witness);
-        });
-    if (is_chance) continue;
-    if (witness.chooses_parts() && std::all_of(group.begin(), group.end(), [&](std::size_t i) {
-          return failed[i].fault == Fault::Apart;
-        })) {
-      std::vector<glm::ivec3> part;
-      for (const std::size_t i : group) part.push_back(failed[i].at);
-      if (const std::optional<WorstPlace> bridge = bridge_of(part, octree, necks)) {
-        places.bridges.push_back(*bridge);
+  const Bridges bridges(octree, digitised, witness);
+  std::vector<glm::ivec3> voxels;
+  for (const FailedVoxel& voxel : failed) voxels.push_back(voxel.at);
+  for (std::vector<std::size_t>& members : groups_of(voxels)) {
+    std::sort(members.begin(), members.end());
+    std::vector<FailedVoxel> group;
+    for (const std::size_t i : members) group.push_back(failed[i]);
+    if (std::all_of(group.begin(), group.end(),
+                    [](const FailedVoxel& voxel) { return voxel.fault == Fault::Apart; })) {
+      if (group.size() < chance_voxels &&
+          std::all_of(group.begin(), group.end(), [&](const FailedVoxel& voxel) {
+            return hangs_on_no_face(voxel.at, octree, digitised, witness);
+          }))
         continue;
-      }
+      std::vector<glm::ivec3> rest;
+      for (const FailedVoxel& voxel : group) rest.push_back(voxel.at);
+      const std::vector<WorstPlace> found = bridges.take_from(rest);
+      places.bridges.insert(places.bridges.end(), found.begin(), found.end());
+      group.clear();
+      for (const glm::ivec3& at : rest) group.push_back({at, Fault::Apart});
+      if (group.empty()) continue;
     }
     places.voxel_count += group.size();
     if (group.size() <= places.largest_count) continue;
     places.largest_count = group.size();
-    glm::dvec3 middle(0.0);
-    std::array<std::size_t, clauses.size()> votes{};
-    for (const std::size_t i : group) {
-      middle += glm::dvec3(failed[i].at) / static_cast<double>(group.size());
-      ++votes[static_cast<std::size_t>(failed[i].fault)];
-    }
-    // The voxel of the group that is nearest to its middle, so that the place lies in it.
-    const auto nearest = std::min_element(group.begin(), group.end(), [&](std::size_t a, std::size_t b) {
-      return glm::distance(glm::dvec3(failed[a].at), middle) <
-             glm::distance(glm::dvec3(failed[b].at), middle);
-    });
-    const auto fault = std::max_element(votes.begin(), votes.end()) - votes.begin();
-    const double volume_mm3 = static_cast<double>(group.size()) * lattice.voxel_mm3();
-    places.worst = WorstPlace{lattice.lps_mm(glm::dvec3(failed[*nearest].at)), std::cbrt(volume_mm3),
-                              clauses[static_cast<std::size_t>(fault)], volume_mm3};
+    places.worst = place_of(group, octree.universe().lattice());
   }
   std::stable_sort(places.bridges.begin(), places.bridges.end(),
                    [](const WorstPlace& a, const WorstPlace& b) { return a.volume_mm3 > b.volume_mm3; });

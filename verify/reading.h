@@ -3,8 +3,10 @@
 
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "verify/line_reading.h"
 
@@ -40,6 +42,14 @@ struct Reading {
 /// The words that are asked for.
 enum class Asked { Both, MeshOnly };
 
+class Necks;
+/// Some of an object's connected parts, as both kernels chose them on the way, and the motion since, LPS to
+/// LPS. Without necks the kernels' answers are not known.
+struct PartChoice {
+  std::shared_ptr<const Necks> necks = {};
+  glm::dmat4 chosen_from_made{1.0};
+};
+
 /// Answers for one object at a point, LPS millimetres, whose surfaces may lie `slack_mm` elsewhere. Empty:
 /// the object has no witness. Safe to call from several threads.
 class Witness {
@@ -70,10 +80,10 @@ class Witness {
     lines_ = std::move(lines);
     return std::move(*this);
   }
-  /// Whether the object is some of another's connected parts, so that a thin neck decides what belongs to it.
-  bool chooses_parts() const { return chooses_parts_; }
-  Witness choosing_parts(bool chooses) && {
-    chooses_parts_ = chooses;
+  /// The choices of connected parts that the object is made of, where a thin neck decides what belongs to it.
+  const std::vector<PartChoice>& choices() const { return choices_; }
+  Witness with_choices(std::vector<PartChoice> choices) && {
+    choices_ = std::move(choices);
     return std::move(*this);
   }
   /// The mesh's word and the surfaces alone, at a fraction of the cost; nothing is said of the voxels.
@@ -82,7 +92,7 @@ class Witness {
  private:
   Read read_;
   LineReading lines_;
-  bool chooses_parts_ = false;
+  std::vector<PartChoice> choices_;
 };
 
 }  // namespace octotomy::verify

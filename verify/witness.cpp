@@ -1,18 +1,4 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-//
-// How far a triangulated surface may stray from the trilinear interpolant f of the samples it is made from:
-// in each cell the part that the mesh calls outside is a polyhedron whose corners are outside samples (f <=
-// t) and crossings of edges (f = t). Each of its points p is a mean of those corners, so the mean of f over
-// them is at most t, and f(p) differs from that mean by the terms of f that are not linear: with f = a +
-// linear terms + b_xy xy + b_yz yz + b_zx zx + b_xyz xyz in the cell's unit coordinates,
-//   f(p) - mean f = -sum of b (mean of the product - product of the means).
-// The mean of xy over points of mean x and y lies between max(0, x + y - 1) and min(x, y), that of xyz
-// between max(0, x + y + z - 2) and min(x, y, z) (Frechet's bounds). The part that it calls inside strays
-// likewise to the other side. No triangulation of the cell between its crossings can break this, whatever it
-// does with ambiguous faces; at samples and on edges nothing strays.
-//
-// The voxel kernel's value at p is a weighted mean of at most eight voxels' samples, each f at the voxel's
-// centre, rounded: it is computed here from f itself.
 #include "verify/witness.h"
 
 #include <algorithm>
@@ -66,227 +52,9 @@ Witness complement(Witness a) {
   };
 }
 
-/// Rounding of numbers and of a few sums of them: a share of the largest magnitude.
-constexpr double rounding = 1e-9;
-
 /// A vertex on a plane of the plan lies this share of its coordinates away after several Booleans and
 /// motions.
 constexpr double on_plane = 1e-8;
-
-/// The vertices of an isosurface keep a thousandth of an edge from its ends (convert/surface/isosurface.h).
-constexpr double kept_from_samples = 1e-3;
-
-/// A voxel's sample is rounded to an integer, and so is a window's bound.
-constexpr double rounded_samples = 1.0;
-
-/// The trilinear interpolant of a scan in one of its cells.
-struct CellValue {
-  double value = 0.0;
-  /// How far f may exceed a bound where the mesh is outside, and fall short of it where the mesh is inside.
-  double above = 0.0, below = 0.0;
-  double low = 0.0, high = 0.0;  ///< of the cell's samples
-};
-
-template <typename Sample>
-class WindowWitness {
- public:
-  WindowWitness(std::shared_ptr<const voxel::Scene> scan, double low, double high,
-                const voxel::Universe& universe)
-      : scan_(std::move(scan)),
-        samples_(std::get<voxel::Samples<Sample>>(scan_->samples).data()),
-        dims_(scan_->lattice.dims),
-        low_(low),
-        high_(high),
-        scan_from_lps_(glm::inverse(scan_->lattice.lps_from_voxel)),
-        universe_from_lps_(glm::inverse(universe.lps_from_voxel)),
-        scan_from_universe_(scan_from_lps_ * universe.lps_from_voxel),
-        side_(universe.side()) {
-    const glm::dvec3 spacing_mm = scan_->lattice.spacing_mm();
-    finest_mm_ = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
-  }
-
-  Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked) const {
-    const glm::dvec3 u(scan_from_lps_ * glm::dvec4(p_mm, 1.0));
-    const double slack = slack_mm / finest_mm_;
-    const Word mesh = mesh_word(u, slack);
-    return {asked == Asked::MeshOnly ? Word{}
-                                     : voxel_word(glm::dvec3(universe_from_lps_ * glm::dvec4(p_mm, 1.0))),
-            mesh, mesh.near ? surfaces(u, slack) : 0};
-  }
-
- private:
-  /// The samples about a position, and where it lies between them.
-  struct Cell {
-    std::array<double, 8> v{};
-    std::array<double, 3> t{};
-
-    double value() const {
-      double sum = 0.0;
-      for (std::size_t i = 0; i < 8; ++i)
-        sum += v[i] * ((i & 1) ? t[0] : 1.0 - t[0]) * (((i >> 1) & 1) ? t[1] : 1.0 - t[1]) *
-               ((i >> 2) ? t[2] : 1.0 - t[2]);
-      return sum;
-    }
-  };
-
-  /// Positions beyond the outermost samples take the nearest value.
-  Cell cell(const glm::dvec3& u) const {
-    Cell made;
-    std::array<std::size_t, 3> offset{}, step{};
-    std::size_t stride = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double at = std::clamp(u[axis], 0.0, static_cast<double>(dims_[axis] - 1));
-      const int first = std::clamp(static_cast<int>(at), 0, std::max(dims_[axis] - 2, 0));
-      const auto i = static_cast<std::size_t>(axis);
-      made.t[i] = at - first;
-      offset[i] = static_cast<std::size_t>(first) * stride;
-      step[i] = dims_[axis] > 1 ? stride : 0;
-      stride *= static_cast<std::size_t>(dims_[axis]);
-    }
-    const Sample* corner = samples_ + offset[0] + offset[1] + offset[2];
-    for (std::size_t i = 0; i < 8; ++i)
-      made.v[i] =
-          static_cast<double>(corner[(i & 1) * step[0] + ((i >> 1) & 1) * step[1] + (i >> 2) * step[2]]);
-    return made;
-  }
-
-  CellValue bounds_of(const Cell& at) const {
-    const auto& [v, t] = at;
-    const auto [least, most] = std::minmax_element(v.begin(), v.end());
-    CellValue cell{.low = *least, .high = *most};
-    cell.value = at.value();
-    const auto stray = [&](double b, double product, double most_mean, double least_mean) {
-      const double up = -b * (least_mean - product), down = -b * (most_mean - product);
-      cell.above += std::max(up, down);
-      cell.below += std::max(-up, -down);
-    };
-    const auto stray_of_two = [&](double b, double x, double y) {
-      stray(b, x * y, std::min(x, y), std::max(0.0, x + y - 1.0));
-    };
-    stray_of_two(v[0] - v[1] - v[2] + v[3], t[0], t[1]);
-    stray_of_two(v[0] - v[1] - v[4] + v[5], t[0], t[2]);
-    stray_of_two(v[0] - v[2] - v[4] + v[6], t[1], t[2]);
-    stray(-v[0] + v[1] + v[2] - v[3] + v[4] - v[5] - v[6] + v[7], t[0] * t[1] * t[2],
-          std::min({t[0], t[1], t[2]}), std::max(0.0, t[0] + t[1] + t[2] - 2.0));
-    const double moved =
-        kept_from_samples * (*most - *least) + rounding * std::max(std::abs(*least), std::abs(*most));
-    cell.above += moved;
-    cell.below += moved;
-    return cell;
-  }
-
-  /// Where f exceeds the lower bound by more than `above` the mesh cannot call it outside, where it is short
-  /// of it by more than `below` not inside; mirrored for the upper bound. A value that is no number allows
-  /// both answers.
-  Word word(double value, double above, double below) const {
-    const bool surely_in = value >= low_ + above && value <= high_ - below;
-    const bool surely_out = value < low_ - below || value > high_ + above;
-    return surely_in ? certainly_in : surely_out ? certainly_out : on_surface;
-  }
-
-  /// How far a position lies beyond the outermost samples, in samples.
-  double beyond(const glm::dvec3& u) const {
-    double most = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-      most = std::max({most, -u[axis], u[axis] - static_cast<double>(dims_[axis] - 1)});
-    return most;
-  }
-
-  /// Beyond the outermost samples the mesh ends half a sample away from each that is inside. In a cell there,
-  /// with p_i the distances beyond along the axes in samples, that is the plane where they add up to a half:
-  /// the surface where all of the cell's own samples are inside, and the farthest that it reaches where some
-  /// are.
-  Word word_beyond(const glm::dvec3& u, double slack) const {
-    double past = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-      past += std::max({0.0, -u[axis], u[axis] - static_cast<double>(dims_[axis] - 1)});
-    const double near =
-        rounding * (1.0 + static_cast<double>(std::max({dims_.x, dims_.y, dims_.z}))) + 3.0 * slack;
-    if (past > 0.5 + near) return certainly_out;
-    bool any_in = false, any_out = false;
-    for (const double v : own_corners(u, slack)) (v >= low_ && v <= high_ ? any_in : any_out) = true;
-    if (!any_in) return certainly_out;
-    return any_out || past > 0.5 - near ? on_surface : certainly_in;
-  }
-
-  /// The samples of the cell that holds a position beyond the outermost ones, each maybe several times; of
-  /// its neighbours, too, where the position lies within `slack` of them.
-  std::vector<double> own_corners(const glm::dvec3& u, double slack) const {
-    const double by = std::max(slack, 1e-6);
-    const Cell low = cell(u - by), high = cell(u + by);
-    std::vector<double> samples;
-    for (const Cell* at : {&low, &high})
-      for (std::size_t i = 0; i < 8; ++i) {
-        // A corner without weight belongs to the cell on the other side of the position.
-        double weight = 1.0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          const double t = at->t[axis];
-          weight *= ((i >> axis) & 1) != 0 ? t : 1.0 - t;
-        }
-        if (weight > 0.0) samples.push_back(at->v[i]);
-      }
-    return samples;
-  }
-
-  /// The mesh's answer, beyond the outermost samples as word_beyond() has it.
-  Word mesh_word(const glm::dvec3& u, double slack) const {
-    const double past = beyond(u);
-    if (past >= 1.0) return certainly_out;
-    if (past > rounding) return word_beyond(u, slack);
-    const CellValue at = bounds_of(cell(u));
-    // In a cell f changes by its samples' range a sample along each axis at most.
-    const double moved = 3.0 * slack * (at.high - at.low);
-    Word answer = word(at.value, at.above + moved, at.below + moved);
-    // A cell with samples below and above the window has outside parts that are no mean of like corners.
-    if (answer == certainly_in && at.low < low_ && at.high > high_) answer = on_surface;
-    return answer;
-  }
-
-  /// Where it is near, the surface has vertices on the edges between samples alone.
-  int surfaces(const glm::dvec3& u, double slack) const {
-    const double on_edge = 1e-6 + slack;
-    int whole = 0;
-    for (int axis = 0; axis < 3; ++axis) whole += std::abs(u[axis] - std::round(u[axis])) < on_edge ? 1 : 0;
-    return whole >= 2 ? 2 : 1;
-  }
-
-  Word voxel_word(const glm::dvec3& q) const {
-    const glm::dvec3 nearest = glm::round(q);
-    // A voxel's own centre has its own sample.
-    const glm::dvec3 at = glm::dvec3(glm::abs(q.x - nearest.x) < 1e-7 ? nearest.x : q.x,
-                                     glm::abs(q.y - nearest.y) < 1e-7 ? nearest.y : q.y,
-                                     glm::abs(q.z - nearest.z) < 1e-7 ? nearest.z : q.z);
-    const glm::dvec3 first = glm::floor(at), t = at - first;
-    double value = 0.0;
-    bool all_scan = true, any_scan = false;
-    for (int i = 0; i < 8; ++i) {
-      const glm::dvec3 corner(i & 1, (i >> 1) & 1, i >> 2);
-      const glm::dvec3 weights = glm::mix(1.0 - t, t, corner);
-      const double weight = weights.x * weights.y * weights.z;
-      if (weight == 0.0) continue;
-      const glm::dvec3 voxel = first + corner;
-      const glm::dvec3 u(scan_from_universe_ * glm::dvec4(voxel, 1.0));
-      const double past = beyond(u);
-      const bool in_universe = glm::all(glm::greaterThanEqual(voxel, glm::dvec3(0.0))) &&
-                               glm::all(glm::lessThan(voxel, glm::dvec3(side_)));
-      // A scan's voxels reach half a sample beyond their centres.
-      all_scan = all_scan && past < 0.5 - 1e-6 && in_universe;
-      any_scan = any_scan || (past < 0.5 + 1e-6 && in_universe);
-      value += weight * cell(u).value();
-    }
-    if (!any_scan) return certainly_out;
-    const Word answer = word(value, rounded_samples, rounded_samples);
-    return all_scan || !answer.in ? answer : on_surface;
-  }
-
-  std::shared_ptr<const voxel::Scene> scan_;
-  const Sample* samples_;
-  glm::ivec3 dims_;
-  double low_, high_;
-  glm::dmat4 scan_from_lps_, universe_from_lps_, scan_from_universe_;
-  int side_;
-  double finest_mm_ = 1.0;
-};
 
 /// Right and up of a view's picture, from its name or its two angles.
 std::array<glm::dvec3, 2> picture_axes(const std::string& view) {
@@ -421,6 +189,18 @@ std::vector<BladePiece> pieces_of(const DrawnBlade& blade) {
   return pieces;
 }
 
+/// Those of all operands, each once.
+std::vector<PartChoice> choices_of(const std::vector<Witness>& operands) {
+  std::vector<PartChoice> all;
+  for (const Witness& operand : operands)
+    for (const PartChoice& choice : operand.choices())
+      if (std::none_of(all.begin(), all.end(), [&](const PartChoice& known) {
+            return known.necks == choice.necks && known.chosen_from_made == choice.chosen_from_made;
+          }))
+        all.push_back(choice);
+  return all;
+}
+
 /// A tree's reading from those of its leaves. Recursion is as deep as the text's parentheses, not as long as
 /// a row of operands.
 Reading reading_of(const ExpressionTree& tree, const std::vector<Reading>& leaves) {
@@ -438,17 +218,6 @@ Reading reading_of(const ExpressionTree& tree, const std::vector<Reading>& leave
 }
 
 }  // namespace
-
-Witness witness_of_window(std::shared_ptr<const voxel::Scene> scan, double low, double high,
-                          const voxel::Universe& universe) {
-  LineReading lines = lines_in_window(scan, low, high);
-  Witness made;
-  if (std::holds_alternative<voxel::Int16Samples>(scan->samples))
-    made = WindowWitness<std::int16_t>(std::move(scan), low, high, universe);
-  else
-    made = WindowWitness<float>(std::move(scan), low, high, universe);
-  return std::move(made).with_lines(std::move(lines));
-}
 
 Witness witness_of_regions(const std::vector<DrawnRegion>& regions) {
   const auto readers = std::make_shared<const std::vector<RegionWitness>>(regions.begin(), regions.end());
@@ -521,61 +290,43 @@ Witness witness_of_surface(brep::Solid solid) {
 
 Witness both(Witness a, Witness b) {
   LineReading lines = lines_in_both(a.lines(), b.lines());
-  const bool chooses = a.chooses_parts() || b.chooses_parts();
-  return joined<conjunction>(std::move(a), std::move(b)).with_lines(std::move(lines)).choosing_parts(chooses);
+  std::vector<PartChoice> choices = choices_of({a, b});
+  return joined<conjunction>(std::move(a), std::move(b))
+      .with_lines(std::move(lines))
+      .with_choices(std::move(choices));
 }
 
 Witness without(Witness a, Witness b) {
   LineReading lines = lines_without(a.lines(), b.lines());
-  const bool chooses = a.chooses_parts() || b.chooses_parts();
+  std::vector<PartChoice> choices = choices_of({a, b});
   return joined<conjunction>(std::move(a), complement(std::move(b)))
       .with_lines(std::move(lines))
-      .choosing_parts(chooses);
+      .with_choices(std::move(choices));
 }
 
 Witness carried(Witness still, const glm::dmat4& moved_from_still) {
   if (!still) return {};
   LineReading lines = lines_moved(still.lines(), moved_from_still);
-  const bool chooses = still.chooses_parts();
-  return Witness([still = std::move(still), still_from_moved = glm::inverse(moved_from_still)](
-                     const glm::dvec3& p_mm, double slack_mm, Asked asked) {
+  const glm::dmat4 still_from_moved = glm::inverse(moved_from_still);
+  std::vector<PartChoice> choices = still.choices();
+  for (PartChoice& choice : choices) choice.chosen_from_made = choice.chosen_from_made * still_from_moved;
+  return Witness([still = std::move(still), still_from_moved](const glm::dvec3& p_mm, double slack_mm,
+                                                              Asked asked) {
            return still(glm::dvec3(still_from_moved * glm::dvec4(p_mm, 1.0)), slack_mm, asked);
          })
       .with_lines(std::move(lines))
-      .choosing_parts(chooses);
+      .with_choices(std::move(choices));
 }
 
 Witness loosened(Witness tight, double by_mm) {
   if (!tight) return {};
   LineReading lines = tight.lines();
-  const bool chooses = tight.chooses_parts();
+  std::vector<PartChoice> choices = tight.choices();
   return Witness([tight = std::move(tight), by_mm](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
            return tight(p_mm, slack_mm + by_mm, asked);
          })
       .with_lines(std::move(lines))
-      .choosing_parts(chooses);
-}
-
-Witness witness_of_parts(Witness whole) {
-  if (!whole) return {};
-  return Witness([whole = std::move(whole)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
-           const auto part = [](const Word& word) { return word == certainly_in ? untold : word; };
-           const Reading reading = whole(p_mm, slack_mm, asked);
-           return {part(reading.voxel), part(reading.mesh), reading.surfaces};
-         })
-      .choosing_parts(true);
-}
-
-Witness witness_of_filled(Witness hollow) {
-  if (!hollow) return {};
-  const bool chooses = hollow.chooses_parts();
-  return Witness(
-             [hollow = std::move(hollow)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
-               const auto filled = [](const Word& word) { return word == certainly_out ? untold : word; };
-               const Reading reading = hollow(p_mm, slack_mm, asked);
-               return {filled(reading.voxel), filled(reading.mesh), reading.surfaces};
-             })
-      .choosing_parts(chooses);
+      .with_choices(std::move(choices));
 }
 
 Witness witness_of_expression(std::string_view text,
@@ -589,8 +340,7 @@ Witness witness_of_expression(std::string_view text,
   }
   LineReading lines =
       lines_in_expression(text, [&](const std::string& name) { return lookup(name).lines(); });
-  const bool chooses =
-      std::any_of(leaves.begin(), leaves.end(), [](const Witness& leaf) { return leaf.chooses_parts(); });
+  std::vector<PartChoice> choices = choices_of(leaves);
   return Witness([tree, leaves = std::move(leaves)](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
            std::vector<Reading> readings;
            readings.reserve(leaves.size());
@@ -598,7 +348,7 @@ Witness witness_of_expression(std::string_view text,
            return reading_of(*tree, readings);
          })
       .with_lines(std::move(lines))
-      .choosing_parts(chooses);
+      .with_choices(std::move(choices));
 }
 
 }  // namespace octotomy::verify

@@ -12,6 +12,7 @@
 #include "verify/reading.h"
 #include "voxel/space/lattice.h"
 #include "voxel/space/scene.h"
+#include "voxel/tree/octree.h"
 
 // Witnesses of windows, regions and what operations make of them. Each reads the scan and the plan by itself.
 namespace octotomy::verify {
@@ -52,6 +53,15 @@ Witness carried(Witness still, const glm::dmat4& moved_from_still);
 Witness loosened(Witness tight, double by_mm);
 /// Some of the object's connected parts: a point inside may belong to none of them.
 Witness witness_of_parts(Witness whole);
+/// What both kernels chose of the object's connected parts, and the places of necks that the plan keeps or
+/// cuts, LPS.
+struct ChosenParts {
+  voxel::Octree voxels;
+  brep::Solid mesh;
+  std::vector<glm::dvec3> decided_mm = {};
+};
+/// The same. Where the choices differ beyond a thin neck, so may all that is made of them.
+Witness witness_of_parts(Witness whole, ChosenParts chosen);
 /// The object with some of its cavities filled: a point outside may lie in one of them.
 Witness witness_of_filled(Witness hollow);
 /// The object that an expression makes. `lookup` answers a name; an empty answer leaves the whole without a

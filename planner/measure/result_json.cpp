@@ -158,6 +158,10 @@ Json to_json(const verify::Certificate& certificate) {
     limit = {
         {"volume_mm3", finite(certificate.limit->volume_mm3)},
         {"shift_mm", certificate.limit->shift_mm ? finite(*certificate.limit->shift_mm) : Json(nullptr)}};
+  Json bridges = Json::array();
+  for (const verify::WorstPlace& bridge : certificate.bridges)
+    bridges.push_back(
+        {{"at_mm", to_json(bridge.at_mm)}, {"volume_mm3", finite(bridge.volume_mm3)}, {"what", bridge.what}});
   Json comparisons = Json::array();
   for (const verify::Comparison& comparison : certificate.comparisons)
     comparisons.push_back(comparison_json(comparison));
@@ -187,6 +191,7 @@ Json to_json(const verify::Certificate& certificate) {
       {"hausdorff95_mm", finite(certificate.hausdorff95_mm)},
       {"worst", worst},
       {"detection_limit", limit},
+      {"bridges", bridges},
       {"third_reading", third_json(certificate.third)},
       {"comparisons", comparisons},
       {"timings_ms", {{"certify", certificate.milliseconds}}}};

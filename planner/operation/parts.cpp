@@ -22,11 +22,18 @@ struct Parts {
   std::optional<int> largest;
   std::optional<double> at_least_mm3;
   std::vector<Mark> at_mm;
+  std::vector<glm::dvec3> keep_bridges_mm, cut_bridges_mm;  ///< as BridgeDecisions
+  double bridge_mm = 5.0;
 };
+
+BridgeDecisions bridges_of(const Parts& parts) {
+  return {parts.keep_bridges_mm, parts.cut_bridges_mm, parts.bridge_mm};
+}
 
 void check(const Parts& parts, const Place& place) {
   if (int{parts.largest.has_value()} + int{parts.at_least_mm3.has_value()} + int{!parts.at_mm.empty()} != 1)
     place.refuse("needs one of 'largest', a number of parts, 'at_least_mm3', a volume, and 'at_mm', points");
+  check(bridges_of(parts), place);
 }
 
 std::string definition(const Parts& parts, const Objects&) {
@@ -59,26 +66,27 @@ voxel::Octree parts_at(const Parts& parts, const voxel::Octree& octree, const Ob
 
 void voxels(const Parts& parts, const VoxelBench& bench, VoxelSide& made) {
   const VoxelSide& object = bench.object(parts.object.name);
-  if (!parts.at_mm.empty()) {
-    made.octree = parts_at(parts, object.octree, bench.objects);
-    made.symbol = symbol_of_parts(*object.symbol, object.octree, made.octree);
+  const BridgeDecisions bridges = bridges_of(parts);
+  const voxel::Octree whole = cut_bridges(object.octree, bridges);
+  const auto choose = [&](const voxel::Octree& chosen) {
+    made.octree = with_kept_parts(chosen, whole, bridges, voxel::Neighbours::Faces);
+    made.symbol = symbol_of_parts(cut_bridges(*object.symbol, bridges), whole, made.octree);
     made.lineage = "voxels that touch by faces";
-    return;
-  }
-  const std::vector<std::uint64_t> counts = voxel::components(object.octree).voxel_counts;
+  };
+  if (!parts.at_mm.empty()) return choose(parts_at(parts, whole, bench.objects));
+  const std::vector<std::uint64_t> counts = voxel::components(whole).voxel_counts;
   if (counts.empty()) throw std::runtime_error("'" + parts.object.name + "' is empty: it has no parts");
   const std::size_t wanted = std::min(static_cast<std::size_t>(parts.largest.value_or(1)), counts.size());
   const std::uint64_t least =
       parts.largest
           ? counts[wanted - 1]
           : static_cast<std::uint64_t>(std::ceil(*parts.at_least_mm3 / bench.universe.lattice().voxel_mm3()));
-  made.octree = voxel::components_of_at_least(object.octree, least);
-  if (made.octree.is_empty())
+  const voxel::Octree chosen = voxel::components_of_at_least(whole, least);
+  if (chosen.is_empty())
     throw std::runtime_error("no part of '" + parts.object.name + "' has " + plain(*parts.at_least_mm3) +
                              " mm\u00b3: the largest has " +
                              plain(static_cast<double>(counts[0]) * bench.universe.lattice().voxel_mm3()));
-  made.symbol = symbol_of_parts(*object.symbol, object.octree, made.octree);
-  made.lineage = "voxels that touch by faces";
+  choose(chosen);
 }
 
 KeptParts kept_parts_at(const Parts& parts, const brep::Solid& solid, const Objects& objects) {
@@ -92,7 +100,7 @@ KeptParts kept_parts_at(const Parts& parts, const brep::Solid& solid, const Obje
     bool is_kept = false;
     for (std::size_t i = 0; i < holds.size(); ++i)
       if (brep::is_inside(mark_mm(parts.at_mm[i], objects), of_part)) holds[i] = is_kept = true;
-    if (!is_kept) continue;
+    if (!is_kept && !reaches_kept_bridge(solid.triangles(), part.faces, bridges_of(parts))) continue;
     faces.insert(faces.end(), part.faces.begin(), part.faces.end());
     ++kept.kept;
   }
@@ -106,12 +114,16 @@ KeptParts kept_parts_at(const Parts& parts, const brep::Solid& solid, const Obje
 
 void triangles(const Parts& parts, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "components");
-  const brep::Solid& solid = bench.object(parts.object.name);
-  KeptParts kept = parts.at_mm.empty() ? kept_parts(solid, parts.largest, parts.at_least_mm3)
+  const BridgeDecisions bridges = bridges_of(parts);
+  const brep::Solid solid =
+      cut_bridges(bench.object(parts.object.name), bridges, bench.progress.stop, made.shift_mm);
+  KeptParts kept = parts.at_mm.empty() ? kept_parts(solid, parts.largest, parts.at_least_mm3, bridges)
                                        : kept_parts_at(parts, solid, bench.objects);
   made.details = {{"parts", kept.kept}, {"of", kept.of}};
   made.whole = brep::trusted_solid(kept.mesh, brep::proof_of_part(solid.proof()));
   made.lineage = "triangles that share vertices";
+  // What was cut is no part of the object any more, nor of those that are left out.
+  if (!bridges.cut_mm.empty()) return;
   std::vector<std::uint32_t> others;
   for (std::uint32_t face = 0, next = 0; face < solid.triangles().faces.size(); ++face)
     if (next < kept.faces.size() && kept.faces[next] == face)
@@ -127,20 +139,27 @@ void triangles(const Parts& parts, const MeshBench& bench, MeshSide& made) {
 void bound(const Parts& parts, const BoundBench& bench, Object& made) {
   const Object& object = bench.objects.at(parts.object.name);
   inherit(object, made);
-  made.witness = verify::witness_of_parts(object.witness);
+  const BridgeDecisions bridges = bridges_of(parts);
+  const verify::Witness whole = cut_bridges(object.witness, bridges);
+  made.witness = made.mesh.whole ? verify::witness_of_parts(
+                                       whole, {made.voxel.octree, *made.mesh.whole, bridges.decided_mm()})
+                                 : verify::witness_of_parts(whole);
   made.shown = object.shown;
 }
 
 }  // namespace
 
-KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::optional<double> at_least_mm3) {
+KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::optional<double> at_least_mm3,
+                     const BridgeDecisions& bridges) {
   const std::vector<brep::Component> all = brep::components(mesh);
+  const brep::Triangles triangles = bridges.keep_mm.empty() ? brep::Triangles() : brep::triangles_of(mesh);
   KeptParts parts{{}, {}, 0, all.size()};
   std::vector<std::uint32_t> faces;
-  for (const brep::Component& part : all) {
-    if (largest && parts.kept == static_cast<std::size_t>(*largest)) break;
-    if (at_least_mm3 && part.volume_mm3 < *at_least_mm3) break;
-    faces.insert(faces.end(), part.faces.begin(), part.faces.end());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool is_large = (!largest || i < static_cast<std::size_t>(*largest)) &&
+                          (!at_least_mm3 || all[i].volume_mm3 >= *at_least_mm3);
+    if (!is_large && !reaches_kept_bridge(triangles, all[i].faces, bridges)) continue;
+    faces.insert(faces.end(), all[i].faces.begin(), all[i].faces.end());
     ++parts.kept;
   }
   std::sort(faces.begin(), faces.end());
@@ -177,6 +196,15 @@ Operation parts_operation() {
                  .greater_than(0.0))
       .takes(field("at_mm", &Parts::at_mm, "Keep the parts that hold these points, LPS, or landmarks.")
                  .from(1)
+                 .in_plans_only())
+      .takes(field("keep_bridges_mm", &Parts::keep_bridges_mm,
+                   "Keep the parts beyond thin necks at these points, LPS, as certificates list them.")
+                 .in_plans_only())
+      .takes(field("cut_bridges_mm", &Parts::cut_bridges_mm,
+                   "Cut thin necks at these points, LPS: takes away what lies in a cube about each.")
+                 .in_plans_only())
+      .takes(field("bridge_mm", &Parts::bridge_mm, "Edge of the cube about each of these points, mm.")
+                 .greater_than(0.0)
                  .in_plans_only())
       .example(R"({"id": "bone", "do": "parts", "object": "skull", "largest": 1})")
       .on_files("octotomy parts skull.stl --largest 1 -o bone.stl")

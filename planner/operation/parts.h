@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "brep/mesh/mesh.h"
+#include "planner/operation/bridges.h"
 #include "voxel/solid/expression.h"
 
 // Choosing connected parts in each kernel, for every operation that does.
@@ -16,8 +17,10 @@ struct KeptParts {
   std::size_t kept = 0, of = 0;
 };
 
-/// The largest parts of a closed mesh, so many or those of at least a volume, each with its cavities.
-KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::optional<double> at_least_mm3);
+/// The largest parts of a closed mesh, so many of them and of those the ones of at least a volume, each with
+/// its cavities; and the parts that reach a neck which is to be kept.
+KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::optional<double> at_least_mm3,
+                     const BridgeDecisions& bridges = {});
 
 /// What an object's symbol becomes where parts were chosen from its voxels: the samples about the parts still
 /// say where their surface lies within a voxel, so that a motion samples it there.

@@ -13,6 +13,7 @@
 #include "convert/surface/isosurface.h"
 #include "planner/file/label_table.h"
 #include "planner/file/region_file.h"
+#include "planner/operation/bridges.h"
 #include "planner/operation/parts.h"
 #include "planner/operation/trace.h"
 #include "planner/table/json.h"
@@ -40,6 +41,14 @@ std::string words_of(const SampleWindow& window) {
 voxel::Neighbours neighbours_of(const Segment& segment) {
   if (segment.neighbours == 18) return voxel::Neighbours::Edges;
   return segment.neighbours == 26 ? voxel::Neighbours::Corners : voxel::Neighbours::Faces;
+}
+
+BridgeDecisions bridges_of(const Segment& segment) {
+  return {segment.keep_bridges_mm, segment.cut_bridges_mm, segment.bridge_mm};
+}
+
+bool chooses_parts(const Segment& segment) {
+  return segment.largest || segment.components || segment.at_least_mm3;
 }
 
 std::vector<glm::ivec3> seed_voxels(const Segment& segment, const voxel::Universe& universe) {
@@ -154,6 +163,11 @@ class Segmenter {
       become(voxel::components_at(made_.octree, seed_voxels(segment_, source_.universe), neighbours),
              {{"do", "components_at_seeds"}});
     go_on();
+    const BridgeDecisions bridges = bridges_of(segment_);
+    if (!bridges.cut_mm.empty())
+      become(cut_bridges(made_.octree, bridges), {{"do", "cut_bridges"}, {"count", bridges.cut_mm.size()}});
+    const voxel::Octree whole = made_.octree;
+    go_on();
     if (segment_.largest || segment_.components) {
       const voxel::Components parts = voxel::components(made_.octree, neighbours);
       const auto wanted = static_cast<std::size_t>(segment_.components.value_or(1));
@@ -169,6 +183,9 @@ class Segmenter {
                  made_.octree, static_cast<std::uint64_t>(std::ceil(*segment_.at_least_mm3 / voxel_mm3)),
                  neighbours),
              {{"do", "components_at_least"}, {"volume_mm3", *segment_.at_least_mm3}});
+    if (!bridges.keep_mm.empty())
+      become(with_kept_parts(made_.octree, whole, bridges, neighbours),
+             {{"do", "keep_bridges"}, {"count", bridges.keep_mm.size()}});
     go_on();
     if (segment_.close_mm)
       become(voxel::close(made_.octree, *segment_.close_mm),
@@ -193,6 +210,11 @@ void check(const Segment& segment, const Place& place) {
     place.at("tolerance").refuse("grows from seeds: add 'seeds_mm'");
   if (segment.otsu_class && (!segment.otsu || *segment.otsu_class > *segment.otsu))
     place.at("class").refuse("is one of the classes of 'otsu', from 1, the darkest");
+  if (bridges_of(segment).any() && !chooses_parts(segment))
+    place.refuse(
+        "has 'keep_bridges_mm' or 'cut_bridges_mm', which decide among connected parts: add "
+        "'largest', 'components' or 'at_least_mm3'");
+  check(bridges_of(segment), place);
   if (segment.neighbours != 6 && segment.neighbours != 18 && segment.neighbours != 26)
     place.at("neighbours").refuse("must be 6 (faces), 18 (edges) or 26 (corners)");
 }
@@ -240,10 +262,6 @@ const char* why_voxels_alone(const Segment& segment) {
   return segment.neighbours != 6 ? "edges and corners join voxels" : nullptr;
 }
 
-bool chooses_parts(const Segment& segment) {
-  return segment.largest || segment.components || segment.at_least_mm3;
-}
-
 void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
   const LoadedScan& scan = bench.loaded(segment.scan.name);
   const Stopwatch watch(bench.timings, "segment");
@@ -261,6 +279,7 @@ void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
   // The window still says where the surface lies within a voxel, so that a motion samples it there.
   made.symbol = bench.within_universe(window_on(scan.grey, *segment.window)) &
                 voxel::Expression(voxel::bounds(scan.scene().lattice));
+  made.symbol = cut_bridges(*made.symbol, bridges_of(segment));
   if (!chooses_parts(segment) && !segment.fill) return;
   const voxel::Octree window = bench.combined(*made.symbol);
   const voxel::Octree kept = bench.combined(voxel::Expression(made.octree) & voxel::Expression(window));
@@ -278,10 +297,20 @@ void triangles(const Segment& segment, const MeshBench& bench, MeshSide& made) {
     mesh = brep::mesh_of(convert::isosurface(scene, segment.window->low, segment.window->high_or_infinity()));
   }
   const Stopwatch watch(bench.timings, "components");
-  if (segment.largest || segment.components)
-    mesh = kept_parts(mesh, segment.components.value_or(1), std::nullopt).mesh;
-  if (segment.at_least_mm3) mesh = kept_parts(mesh, std::nullopt, segment.at_least_mm3).mesh;
-  made.whole = brep::trusted_solid(mesh, brep::Proof::Construction);
+  const BridgeDecisions bridges = bridges_of(segment);
+  brep::Proof proof = brep::Proof::Construction;
+  if (!bridges.cut_mm.empty()) {
+    const brep::Solid cut =
+        cut_bridges(brep::trusted_solid(mesh, proof), bridges, bench.progress.stop, made.shift_mm);
+    mesh = cut;
+    proof = brep::proof_of_part(cut.proof());
+  }
+  if (chooses_parts(segment)) {
+    std::optional<int> largest;
+    if (segment.largest || segment.components) largest = segment.components.value_or(1);
+    mesh = kept_parts(mesh, largest, segment.at_least_mm3, bridges).mesh;
+  }
+  made.whole = brep::trusted_solid(mesh, proof);
   if (segment.fill)
     made.whole = convert::fill_cavities(*made.whole, std::numeric_limits<double>::infinity()).solid;
   made.lineage = "isosurface of the scan's own samples";
@@ -303,7 +332,13 @@ void bound(const Segment& segment, const BoundBench& bench, Object& made) {
   if (!segment.window->high) made.shown = made.bound.windows.front();
   made.witness = verify::witness_of_window(scan.shared, segment.window->low,
                                            segment.window->high_or_infinity(), bench.universe);
-  if (chooses_parts(segment)) made.witness = verify::witness_of_parts(made.witness);
+  const BridgeDecisions bridges = bridges_of(segment);
+  made.witness = cut_bridges(std::move(made.witness), bridges);
+  if (chooses_parts(segment))
+    made.witness = made.mesh.whole
+                       ? verify::witness_of_parts(made.witness,
+                                                  {made.voxel.octree, *made.mesh.whole, bridges.decided_mm()})
+                       : verify::witness_of_parts(made.witness);
   if (segment.fill) made.witness = verify::witness_of_filled(made.witness);
 }
 
@@ -396,6 +431,15 @@ Operation segment_operation() {
                  .to(1000000))
       .takes(field("at_least_mm3", &Segment::at_least_mm3, "Keeps the parts of at least this volume.")
                  .greater_than(0.0))
+      .takes(field("keep_bridges_mm", &Segment::keep_bridges_mm,
+                   "Keeps the parts beyond thin necks at these points, LPS, as certificates list them.")
+                 .in_plans_only())
+      .takes(field("cut_bridges_mm", &Segment::cut_bridges_mm,
+                   "Cuts thin necks at these points, LPS: takes away what lies in a cube about each.")
+                 .in_plans_only())
+      .takes(field("bridge_mm", &Segment::bridge_mm, "Edge of the cube about each of these points, mm.")
+                 .greater_than(0.0)
+                 .in_plans_only())
       .takes(field("close_mm", &Segment::close_mm, "Closes gaps that a ball of that radius does not pass.")
                  .greater_than(0.0))
       .takes(field("fill", &Segment::fill, "Fills cavities."))

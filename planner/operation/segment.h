@@ -35,6 +35,8 @@ struct Segment {
   std::optional<double> at_least_mm3, close_mm;
   bool fill = false;
   int neighbours = 6;
+  std::vector<glm::dvec3> keep_bridges_mm, cut_bridges_mm;  ///< as BridgeDecisions
+  double bridge_mm = 5.0;
 };
 
 /// What an object is segmented from.

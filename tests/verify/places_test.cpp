@@ -373,6 +373,78 @@ TEST(Places, OfPartsALumpBeyondAThinNeckIsABridgeAndBeyondAThickOneOrNoneAnError
   }
 }
 
+/// A body with a lump beyond a neck that passes between the voxels' centres.
+class LumpOnAThread : public testing::Test {
+ protected:
+  LumpOnAThread() { universe_.depth = 5; }
+  static double depth(const voxel::Box& box, const glm::dvec3& p_mm) {
+    const glm::dvec3 inward = glm::min(p_mm - box.low_mm, box.high_mm - p_mm);
+    return std::min({inward.x, inward.y, inward.z});
+  }
+  Witness whole(bool with_thread) const {
+    return [=, this](const glm::dvec3& p_mm, double) -> Reading {
+      if (std::abs(depth(body_, p_mm)) < 0.01) return {on_surface, on_surface, 3};
+      const double inside =
+          std::max({depth(body_, p_mm), depth(lump_, p_mm), with_thread ? depth(thread_, p_mm) : -1.0});
+      const Word word = inside > 0.0 ? certainly_in : certainly_out;
+      return {word, word};
+    };
+  }
+  Places judged(const Expression& voxels, const brep::Solid& mesh, const Witness& witness) const {
+    return judge_places(voxel::combine(universe_, voxels), convert::voxelise(universe_, mesh.linked()), mesh,
+                        witness);
+  }
+  /// What the voxels chose has the lump, what the mesh chose has not.
+  ChosenParts chosen(std::vector<glm::dvec3> decided_mm = {}) const {
+    return {voxel::combine(universe_, Expression(body_) | Expression(lump_)), body_mesh_,
+            std::move(decided_mm)};
+  }
+
+  voxel::Universe universe_;
+  const voxel::Box body_{glm::dvec3(8.5), glm::dvec3(20.5)}, thread_{{20.1, 12.1, 12.1}, {25.1, 12.4, 12.4}},
+      lump_{{24.5, 9.5, 9.5}, {30.5, 19.5, 19.5}};
+  const brep::Solid body_mesh_ = brep::solid_of(brep::Prism{
+      {0, 0, -1}, {0, 1, 0}, {1, 0, 0}, {{{8.5, 8.5}, {20.5, 8.5}, {20.5, 20.5}, {8.5, 20.5}}}, -20.5, -8.5});
+};
+
+TEST_F(LumpOnAThread, IsABridgeAndWithoutTheThreadAnError) {
+  const Expression both_parts = Expression(body_) | Expression(lump_);
+  const Places held = judged(both_parts, body_mesh_, witness_of_parts(whole(true))),
+               loose = judged(both_parts, body_mesh_, witness_of_parts(whole(false)));
+  EXPECT_EQ(held.voxel_count, 0U);
+  ASSERT_EQ(held.bridges.size(), 1U);
+  EXPECT_EQ(held.bridges.front().volume_mm3, 600.0);
+  EXPECT_LT(glm::distance(held.bridges.front().at_mm, glm::dvec3(20.0, 12.0, 12.0)), 2.0);
+  EXPECT_EQ(loose.voxel_count, 600U);
+}
+
+TEST_F(LumpOnAThread, StaysOpenInWhatIsCutFromTheChosenPartsAndMoved) {
+  const voxel::Box region{{22.2, 5.2, 5.2}, {31.2, 25.2, 25.2}};
+  const Expression lump_alone = Expression(lump_) & Expression(region);
+  const Witness carried_on = both(witness_of_parts(whole(true), chosen()), witness_of_box(region)),
+                unknown = both(witness_of_parts(whole(true)), witness_of_box(region));
+  EXPECT_TRUE(judged(lump_alone, brep::Solid(), carried_on).bridges.size() == 1U);
+  EXPECT_EQ(judged(lump_alone, brep::Solid(), carried_on).voxel_count, 0U);
+  EXPECT_EQ(judged(lump_alone, brep::Solid(), unknown).voxel_count, 600U) << "nobody knows that it was open";
+  const glm::dmat4 motion = voxel::moved_from_still({{-6.3, 1.4, 0.6}, 10.0, {1, 0.2, 0}, {27, 15, 15}});
+  const Places moved = judged(voxel::moved(lump_alone, motion), brep::Solid(), carried(carried_on, motion));
+  EXPECT_EQ(moved.voxel_count, 0U);
+  ASSERT_EQ(moved.bridges.size(), 1U);
+  // Of the body, on which the choices agree, nothing is open.
+  const Places lost = judged(Expression(body_), brep::Solid(), witness_of_parts(whole(true), chosen()));
+  EXPECT_GT(lost.voxel_count, 1000U);
+}
+
+TEST_F(LumpOnAThread, IsAnErrorWhereThePlanHasDecided) {
+  const Places open =
+      judged(Expression(body_) | Expression(lump_), body_mesh_, witness_of_parts(whole(true), chosen()));
+  ASSERT_EQ(open.bridges.size(), 1U);
+  const voxel::Box region{{22.2, 5.2, 5.2}, {31.2, 25.2, 25.2}};
+  const Witness decided =
+      both(witness_of_parts(whole(true), chosen({open.bridges.front().at_mm})), witness_of_box(region));
+  EXPECT_EQ(judged(Expression(lump_) & Expression(region), brep::Solid(), decided).voxel_count, 600U);
+}
+
 TEST(Places, OfErrorsOverTheLimitAreAlwaysFound) {
   std::map<std::string, int> over;
   for (const double voxel_mm : {1.0, 2.0})

@@ -49,6 +49,56 @@ TEST(SegmentStep, ThePartsOfAWindowAreChosenAlikeInBothKernels) {
   expect_certified(evaluation.object("on"), ball_mm3(10), 0.03);
 }
 
+/// The balls are joined by a rod of 2 mm: both kernels keep it or cut it as the step says.
+TEST(SegmentStep, BridgesAreKeptAndCutAsThePlanSaysInBothKernels) {
+  const ScratchFolder folder;
+  voxel::Scene scene = ball_scene(20.0);
+  auto& samples = std::get<voxel::Int16Samples>(scene.samples);
+  std::size_t at = 0;
+  for (int z = 0; z < 64; ++z)
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x, ++at) {
+        const glm::dvec3 p = scene.lattice.lps_mm({x, y, z});
+        const auto ball = [&](const glm::dvec3& centre, double radius) {
+          return std::clamp(radius - glm::distance(p, centre), -0.5, 0.5) * 2000.0;
+        };
+        const double rod =
+            std::abs(p.x) < 14.0 ? std::clamp(1.0 - std::hypot(p.y, p.z), -0.5, 0.5) * 2000.0 : -1000.0;
+        samples[at] = static_cast<std::int16_t>(
+            std::lround(std::max({ball({-14, 0, 0}, 8), ball({13, 0, 0}, 10), rod})));
+      }
+  voxel::write_scene(scene, folder / "joined.nrrd");
+  const Evaluation evaluation = evaluate(parse_plan(R"({"octotomy_plan": 1, "name": "joined",
+      "scans": {"ct": {"path": "joined.nrrd"}}, "universe": {"voxel_mm": 1.0}, "steps": [
+      {"id": "joined", "do": "segment", "scan": "ct", "window": "0:", "largest": true},
+      {"id": "cut", "do": "segment", "scan": "ct", "window": "0:", "largest": true,
+       "cut_bridges_mm": [[-1.3, 0.2, 0.1]], "bridge_mm": 3.9},
+      {"id": "kept", "do": "segment", "scan": "ct", "window": "0:", "largest": true,
+       "cut_bridges_mm": [[0.2, 0.2, 0.1]], "bridge_mm": 4.4, "keep_bridges_mm": [[-2.6, 0, 0]]},
+      {"id": "parts", "do": "parts", "object": "joined", "largest": 1,
+       "cut_bridges_mm": [[-1.3, 0.2, 0.1]], "bridge_mm": 3.9},
+      {"id": "on", "do": "move", "object": "cut", "translate_mm": [0.3, 0.2, -0.4]}]})",
+                                                    folder.path()));
+  const double large = ball_mm3(10), both = ball_mm3(10) + ball_mm3(8);
+  expect_certified(evaluation.object("joined"), both, 0.04);
+  expect_certified(evaluation.object("cut"), large, 0.04);
+  expect_certified(evaluation.object("kept"), both, 0.04);
+  expect_certified(evaluation.object("parts"), large, 0.04);
+  expect_certified(evaluation.object("on"), large, 0.04);
+}
+
+TEST(SegmentStep, BridgesWithoutAChoiceOfPartsOrDecidedTwiceAreRefused) {
+  const ScratchFolder folder;
+  EXPECT_NE(ball_refusal(folder, R"({"id": "s", "do": "segment", "scan": "ct", "window": "0:",
+                                     "cut_bridges_mm": [[0, 0, 0]]})")
+                .find("'largest'"),
+            std::string::npos);
+  EXPECT_NE(ball_refusal(folder, R"({"id": "p", "do": "parts", "object": "ball", "largest": 1,
+                                     "cut_bridges_mm": [[0, 0, 1]], "keep_bridges_mm": [[0, 0, 1]]})")
+                .find("kept or cut"),
+            std::string::npos);
+}
+
 TEST(SegmentStep, WhatOnlyVoxelsKnowHasNoMeshAndSaysWhy) {
   const ScratchFolder folder;
   const Evaluation evaluation = evaluate(two_balls(folder, R"(
