@@ -27,7 +27,9 @@ TEST(Alterations, OfObjectsOfAScanOverTheLimitNeverPass) {
     kinds.insert(one.kind);
     over += one.is_over_limit;
     EXPECT_FALSE(one.is_missed()) << one.kind << " in " << one.subject << ", " << one.altered_mm3 << " mm3";
-    if (one.kind == unaltered) EXPECT_EQ(one.verdict, one.clean_verdict);
+    if (one.kind == unaltered) {
+      EXPECT_EQ(one.verdict, one.clean_verdict);
+    }
   }
   EXPECT_GT(over, 20);
   EXPECT_GE(kinds.size(), 10U);
