@@ -29,7 +29,7 @@
 #include "brep/mesh/components.h"
 #include "brep/mesh/distance.h"
 #include "brep/mesh/triangles.h"
-#include "verify/bridges.h"
+#include "verify/necks.h"
 #include "voxel/measure/distance_map.h"
 #include "voxel/solid/combine.h"
 #include "voxel/tree/octree_node.h"

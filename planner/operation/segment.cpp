@@ -13,7 +13,6 @@
 #include "convert/surface/isosurface.h"
 #include "planner/file/label_table.h"
 #include "planner/file/region_file.h"
-#include "planner/operation/bridges.h"
 #include "planner/operation/parts.h"
 #include "planner/operation/trace.h"
 #include "planner/table/json.h"

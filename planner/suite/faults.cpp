@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "planner/suite/suites.h"
-#include "verify/alteration.h"
 #include "verify/fault.h"
 #include "voxel/filter/histogram.h"
 #include "voxel/filter/otsu.h"
