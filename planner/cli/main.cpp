@@ -199,9 +199,7 @@ int say_help(const CLI::App& app, const CLI::ParseError& error) {
   std::cout.flush();
   if (std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return cli::done;
   return refuse("standard output: " + std::generic_category().message(errno),
-                octotomy::voxel::code_of_errno(errno) == octotomy::voxel::ErrorCode::Resource
-                    ? cli::out_of_resources
-                    : cli::bad_input);
+                status_of(octotomy::planner::fault_of(std::system_error(errno, std::generic_category()))));
 }
 
 int parse_and_run(int count, char** arguments) {

@@ -52,7 +52,7 @@ bool is_drawn(const std::string& stem) {
 }
 
 /// BIDS's suffixes of pictures that are no CT, after the last underscore of a name.
-bool is_of_magnetic_resonance(const std::string& stem) {
+bool is_of_another_modality(const std::string& stem) {
   static const std::set<std::string> suffixes{
       "T1w",        "T2w",      "T2star", "FLAIR",  "PDw",     "PDT2",  "bold",  "cbv",
       "sbref",      "dwi",      "asl",    "m0scan", "epi",     "T1rho", "angio", "phasediff",
@@ -104,7 +104,7 @@ Subject subject_of_folder(const std::string& label, const fs::path& folder, cons
     if (fitting.empty() && plan.scans.size() == 1)
       std::copy_if(files.begin(), files.end(), std::back_inserter(fitting), [](const fs::path& file) {
         const std::string stem = stem_of_scan(file.filename().string());
-        return !is_drawn(stem) && !is_of_magnetic_resonance(stem);
+        return !is_drawn(stem) && !is_of_another_modality(stem);
       });
     if (fitting.size() == 1) {
       subject.scans[name] = fitting.front();

@@ -10,15 +10,25 @@
 namespace octotomy::planner {
 namespace {
 
+using AuditsByPath = std::map<std::filesystem::path, std::vector<brep::MeshFinding>>;
+
 /// Of the process, as a run of the program is one verb.
 struct MeshReading {
   std::mutex mutex;
   std::vector<std::string> frames, units;
-  std::map<std::filesystem::path, std::vector<brep::MeshFinding>> read, landmarks;
+  AuditsByPath read, landmarks;
 };
 MeshReading& mesh_reading() {
   static MeshReading of_process;
   return of_process;
+}
+
+std::vector<MeshRecord> records_of(AuditsByPath MeshReading::*read) {
+  MeshReading& now = mesh_reading();
+  const std::lock_guard lock(now.mutex);
+  std::vector<MeshRecord> made;
+  for (const auto& [path, audit] : now.*read) made.push_back({path, audit});
+  return made;
 }
 
 /// "RAS" of "box.stl=RAS".
@@ -82,11 +92,7 @@ brep::Triangles read_mesh_in(const std::filesystem::path& path) {
 }
 
 std::vector<MeshRecord> meshes_read() {
-  MeshReading& now = mesh_reading();
-  const std::lock_guard lock(now.mutex);
-  std::vector<MeshRecord> made;
-  for (const auto& [path, audit] : now.read) made.push_back({path, audit});
-  return made;
+  return records_of(&MeshReading::read);
 }
 
 std::vector<std::string> unused_choices() {
@@ -109,11 +115,7 @@ void keep_landmark_audit(const std::filesystem::path& path, std::vector<brep::Me
 }
 
 std::vector<MeshRecord> landmark_files_read() {
-  MeshReading& now = mesh_reading();
-  const std::lock_guard lock(now.mutex);
-  std::vector<MeshRecord> made;
-  for (const auto& [path, audit] : now.landmarks) made.push_back({path, audit});
-  return made;
+  return records_of(&MeshReading::landmarks);
 }
 
 Json to_json(const std::vector<brep::MeshFinding>& audit) {

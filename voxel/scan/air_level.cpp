@@ -141,6 +141,7 @@ AirLevel air_level_of_unnamed(const Scene& scene) {
 }
 
 void take_unstated_padding(Scene& scene) {
+  if (scene.padding) return;
   std::visit(
       [&](const auto& samples) {
         if (samples.empty()) return;

@@ -29,8 +29,8 @@ AirLevel air_level_of_unnamed(const Scene& scene);
 ///
 /// Taken is the least sample if it lies below -1100 HU, thus below air and its noise, if at least 64 samples
 /// and one in ten thousand hold it, and if the hundred units above it are empty but for one sample for each
-/// hundred of its own. The audit gains a WARN, since it is a guess; nothing happens otherwise. Precondition:
-/// samples in Hounsfield units, no padding taken yet. Two passes over the samples.
+/// hundred of its own. The audit gains a WARN, since it is a guess; nothing happens otherwise. A
+/// scene that has padding keeps it. Precondition: samples in Hounsfield units. Two passes over the samples.
 void take_unstated_padding(Scene& scene);
 
 }  // namespace octotomy::voxel

@@ -265,7 +265,7 @@ Scene read_volume(const fs::path& path, VolumeFormat format, const ReadOptions& 
   const SmallNumbers small = read_samples(path, header.samples, options, scene);
   take_padding_below_all(header.padding, scene);
   if (!take_segments(segments, scene)) take_meaning(header, small, scene);
-  if (!scene.padding && scene.meaning == Meaning::Hounsfield) take_unstated_padding(scene);
+  if (scene.meaning == Meaning::Hounsfield) take_unstated_padding(scene);
   return scene;
 }
 

@@ -19,8 +19,9 @@ from pathlib import Path as _Path
 
 from . import _kernel
 from ._kernel import (CancelledError, Drawn, Error, Expression, GeometryError, GreyOctree, InputError,
-                      InternalError, Mesh, Octree, Picture, ResourceError, Scan, Solid, Universe, __version__, box, half_space, isosurface, mask,
-                      motion, move, read_mesh, read_octree, read_scan, render, sphere, window)
+                      InternalError, Mesh, Octree, Picture, ResourceError, Scan, Solid, Universe, __version__, box,
+                      half_space, isosurface, mask, motion, move, read_mesh, read_octree, read_scan, render, sphere,
+                      window)
 from .names import Name
 from .plan import Made, Plan, Result, region
 
@@ -29,8 +30,8 @@ if "OCTOTOMY_HELPERS" not in _os.environ and _helpers.is_dir():
     _kernel.set_helper_folder(_helpers)
 
 __all__ = [
-    "CancelledError", "Drawn", "Error", "Expression", "GeometryError", "GreyOctree", "InputError", "InternalError", "Made",
-    "Mesh", "Name", "Octree", "Picture", "Plan", "ResourceError", "Result", "Scan", "Solid", "Universe", "__version__", "box",
-    "half_space", "isosurface", "mask", "motion", "move", "read_mesh", "read_octree", "read_scan", "region", "render",
-    "sphere", "window"
+    "CancelledError", "Drawn", "Error", "Expression", "GeometryError", "GreyOctree", "InputError", "InternalError",
+    "Made", "Mesh", "Name", "Octree", "Picture", "Plan", "ResourceError", "Result", "Scan", "Solid", "Universe",
+    "__version__", "box", "half_space", "isosurface", "mask", "motion", "move", "read_mesh", "read_octree",
+    "read_scan", "region", "render", "sphere", "window"
 ]
