@@ -5,6 +5,7 @@
 // - whole triangles stand behind it: the count is too small, as of writers that fill it in at the end and
 //   stopped before; they are read, with a warning;
 // - the count is larger than what the file holds: it is cut short, and refused.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -44,6 +45,15 @@ bool is_triangle(std::string_view bytes) {
 std::size_t triangles_held(std::string_view bytes, MeshStatements& says) {
   const std::uint64_t count = count_of(bytes);
   const std::uint64_t held = (bytes.size() - header_bytes) / triangle_bytes;
+  const std::string_view header = bytes.substr(0, header_bytes);
+  const bool is_text = std::all_of(header.begin(), header.end(), [](unsigned char letter) {
+    return (letter >= ' ' && letter < 0x7f) || letter == '\n' || letter == '\r' || letter == '\t';
+  });
+  if (count > held && is_text)
+    throw Error(ErrorCode::Input,
+                "is text that is no STL, and begins with '" +
+                    std::string(header.substr(0, std::min(header.find_first_of("\r\n"), std::size_t{40}))) +
+                    "': give it the extension of its format");
   if (count > held)
     throw Error(ErrorCode::Input, "the header counts " + std::to_string(count) +
                                       " triangles, more than the rest of the file can hold, " +

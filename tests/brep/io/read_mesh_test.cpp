@@ -106,6 +106,14 @@ TEST(ReadMesh, PlyTakesBothByteOrdersAndSkipsWhatItDoesNotKnow) {
       std::string::npos);
 }
 
+TEST(ReadMesh, ATextThatIsNoStlIsNamedSo) {
+  std::string obj = "# a box\n";
+  for (int i = 0; i < 20; ++i) obj += "v 0 0 " + std::to_string(i) + "\n";
+  const std::string why = refusal_of("box.stl", obj);
+  EXPECT_NE(why.find("text that is no STL"), std::string::npos) << why;
+  EXPECT_NE(why.find("'# a box'"), std::string::npos) << why;
+}
+
 TEST(ReadMesh, LegacyVtkTakesBothLayoutsBinaryAndStrips) {
   const std::string points = "DATASET POLYDATA\nPOINTS 4 float\n0 0 0.5 1 0 0.5 1 1 0.5\n0 1 0.5\n";
   expect_square(
