@@ -105,6 +105,7 @@ void add_info(Program& program) {
       "What a file is: a scan's geometry, range and audit; an octree's levels; a mesh's counts and health",
       "octotomy info head.nrrd --json", [&program, path, in, self] {
         choose_mesh_options(**self);
+        need_options_fit(**self, {path->string()});
         if (is_octree(*path)) return info_of_octree(program, *path);
         return is_mesh(*path) ? info_of_mesh(program, *path) : info_of_scan(program, *path, *in);
       });

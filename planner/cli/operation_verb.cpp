@@ -286,6 +286,7 @@ void add_verb(Program& program, const Operation& operation) {
   CLI::App& verb = program.verb(operation.name, says, operation.verb_example, [&program, &operation, text] {
     const Action action = read_action(operation, text->words);
     choose_mesh_options(*text->verb);
+    if (operation.reads_scans) need_options_fit(*text->verb, objects_used(action));
     return operation.on_files ? answer_from_files(program, action, *text)
                               : OperationRun(program, action, *text).run();
   });

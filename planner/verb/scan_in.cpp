@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "planner/file/file_kind.h"
 #include "planner/verb/numbers.h"
 
 namespace octotomy::planner::cli {
@@ -87,6 +88,25 @@ void add_scan_options(CLI::App& verb, ScanIn& in, const std::string& heading) {
       ->group(heading);
   verb.add_flag("--big-endian", in.big_endian, "Raw samples have their high bytes first")->group(heading);
   verb.add_option("--offset", in.offset, "Bytes before the first raw sample")->group(heading);
+}
+
+void need_options_fit(const CLI::App& verb, const std::vector<std::string>& files) {
+  if (files.empty()) return;
+  const bool are_octrees = std::all_of(files.begin(), files.end(), is_octree);
+  if (!std::all_of(files.begin(), files.end(),
+                   [](const std::string& file) { return is_octree(file) || is_mesh(file); }))
+    return;
+  const auto refuse_given = [&](const char* name, const char* of) {
+    const CLI::Option* option = verb.get_option_no_throw(name);
+    if (option == nullptr || option->count() == 0) return;
+    throw std::runtime_error(files.front() + ": is " + (is_octree(files.front()) ? "an octree" : "a mesh") +
+                             ", and " + name + " is of " + of + ": leave it out");
+  };
+  for (const char* name :
+       {"--series", "--join", "--slices", "--spacing", "--raw", "--big-endian", "--offset"})
+    refuse_given(name, "scans");
+  if (!are_octrees) return;
+  for (const char* name : {"--frame", "--unit"}) refuse_given(name, "scans and meshes");
 }
 
 CLI::Validator scan_path() {

@@ -24,6 +24,10 @@ struct ScanIn {
 /// help, under a heading that says whose they are.
 void add_scan_options(CLI::App& verb, ScanIn& in, const std::string& heading = "scan");
 
+/// Throws std::runtime_error where options about a scan are given to `files` that are all meshes or octrees:
+/// they would change nothing. --frame and --unit are those of meshes, too.
+void need_options_fit(const CLI::App& verb, const std::vector<std::string>& files);
+
 /// A path that is there, or a pattern of image files.
 CLI::Validator scan_path();
 

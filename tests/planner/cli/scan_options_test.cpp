@@ -106,6 +106,21 @@ TEST_F(ScanOptions, LookTakesAPatternOfImagesAndRunReplaysItsPlan) {
   EXPECT_EQ(replayed["scans"][0]["sha256"], look["scans"][0]["sha256"]);
 }
 
+TEST_F(ScanOptions, AreRefusedOfOctreesAndMeshesWhichTheyDoNotChange) {
+  ASSERT_EQ(run("segment " + at("ball.nrrd") + " --window 0: -o " + at("ball.octree")).status, 0);
+  ASSERT_EQ(run("mesh " + at("ball.octree") + " -o " + at("ball.stl")).status, 0);
+  for (const char* option :
+       {"--series 2", "--join", "--slices 1:2", "--spacing 1,1,1", "--raw 2x2x2 int16", "--frame RAS"})
+    for (const char* verb : {"info ", "measure "})
+      for (const char* file : {"ball.octree", "ball.stl"}) {
+        if (std::string(file) == "ball.stl" && std::string(option) == "--frame RAS") continue;
+        const tests::CommandAnswer answer = run(verb + at(file) + " " + option);
+        EXPECT_EQ(answer.status, 2) << verb << file << option;
+        EXPECT_NE(answer.errors.find(": leave it out"), std::string::npos) << answer.errors;
+      }
+  EXPECT_EQ(run("measure " + at("ball.stl") + " --frame RAS").status, 0);
+}
+
 TEST_F(ScanOptions, AreRefusedInOneLineWhereTheyMeanNothing) {
   for (const std::string& arguments :
        {std::string("render ") + at("ball.raw") + " --raw 32x32 int16 -o " + at("x.png"),
