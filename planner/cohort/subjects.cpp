@@ -139,6 +139,45 @@ void add_subject(const std::string& label, const fs::path& folder, const Plan& p
   if (sessions.empty() || !own.scans.empty()) subjects.push_back(std::move(own));
 }
 
+/// A subject of a table of which there is no folder.
+Subject missing_subject(const std::string& label, const fs::path& table) {
+  Subject subject{label, {}};
+  subject.place = fs::absolute(table).parent_path() / ("sub-" + label);
+  subject.trouble = table.string() + ": lists sub-" + label + ", of which there is no folder beside it";
+  return subject;
+}
+
+std::vector<std::vector<std::string>> rows_of_table(const fs::path& input) {
+  std::ifstream file = voxel::opened(input);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file) refuse(input.string() + ": cannot be read");
+  try {
+    return voxel::extension_of(input) == ".tsv" ? parse_tsv(text) : parse_csv(text);
+  } catch (const voxel::Error& error) {
+    refuse(input.string() + ": " + error.what());
+  }
+}
+
+std::optional<std::size_t> column_of(const std::vector<std::string>& header, const std::string& name) {
+  const auto found = std::find(header.begin(), header.end(), name);
+  return found == header.end() ? std::nullopt : std::optional<std::size_t>(found - header.begin());
+}
+
+/// Subjects that BIDS's participants.tsv lists and that have no folder.
+void add_missing_subjects(const fs::path& input, std::vector<Subject>& subjects) {
+  const fs::path table = input / "participants.tsv";
+  if (!fs::is_regular_file(table)) return;
+  const std::vector<std::vector<std::string>> rows = rows_of_table(table);
+  if (rows.empty()) return;
+  const std::optional<std::size_t> id = column_of(rows.front(), "participant_id");
+  for (std::size_t i = 1; id && i < rows.size(); ++i) {
+    if (*id >= rows[i].size()) continue;
+    const std::string label = without_prefix(rows[i][*id]);
+    check_label(label, table.string() + ": row " + std::to_string(i + 1));
+    if (!fs::is_directory(input / ("sub-" + label))) subjects.push_back(missing_subject(label, table));
+  }
+}
+
 std::vector<Subject> subjects_of_folder(const fs::path& input, const Plan& plan) {
   std::vector<Subject> subjects;
   for (const fs::path& folder : folders_in(input, "sub-")) {
@@ -150,11 +189,12 @@ std::vector<Subject> subjects_of_folder(const fs::path& input, const Plan& plan)
     refuse(input.string() +
            ": has no subject: it should hold folders sub-LABEL, or be a .csv or .tsv with the columns "
            "participant_id and scan");
+  add_missing_subjects(input, subjects);
   return subjects;
 }
 
 /// BIDS's table of participants names no scans: the subjects' folders beside it. None where a column names
-/// scans, or a subject has no folder.
+/// scans, or no subject has a folder.
 std::optional<std::vector<Subject>> folders_of_rows(const std::vector<std::vector<std::string>>& rows,
                                                     std::size_t id, const fs::path& input, const Plan& plan) {
   const std::vector<std::string>& header = rows.front();
@@ -165,34 +205,27 @@ std::optional<std::vector<Subject>> folders_of_rows(const std::vector<std::vecto
       std::any_of(plan.scans.begin(), plan.scans.end(), [&](const auto& scan) { return has(scan.first); }))
     return std::nullopt;
   std::vector<Subject> subjects;
+  bool has_folder = false;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     if (id >= rows[i].size()) return std::nullopt;
     const std::string label = without_prefix(rows[i][id]);
     check_label(label, input.string() + ": row " + std::to_string(i + 1));
     const fs::path folder = fs::absolute(input).parent_path() / ("sub-" + label);
-    if (!fs::is_directory(folder)) return std::nullopt;
-    add_subject(label, folder, plan, subjects);
+    if (fs::is_directory(folder))
+      add_subject(label, folder, plan, subjects);
+    else
+      subjects.push_back(missing_subject(label, input));
+    has_folder = has_folder || fs::is_directory(folder);
   }
-  if (subjects.empty()) return std::nullopt;
+  if (!has_folder) return std::nullopt;
   return subjects;
 }
 
 std::vector<Subject> subjects_of_table(const fs::path& input, const Plan& plan) {
-  std::ifstream file = voxel::opened(input);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file) refuse(input.string() + ": cannot be read");
-  std::vector<std::vector<std::string>> rows;
-  try {
-    rows = voxel::extension_of(input) == ".tsv" ? parse_tsv(text) : parse_csv(text);
-  } catch (const voxel::Error& error) {
-    refuse(input.string() + ": " + error.what());
-  }
+  const std::vector<std::vector<std::string>> rows = rows_of_table(input);
   if (rows.empty()) refuse(input.string() + ": is empty");
   const std::vector<std::string>& header = rows.front();
-  const auto column = [&](const std::string& name) -> std::optional<std::size_t> {
-    const auto found = std::find(header.begin(), header.end(), name);
-    return found == header.end() ? std::nullopt : std::optional<std::size_t>(found - header.begin());
-  };
+  const auto column = [&](const std::string& name) { return column_of(header, name); };
   auto id = column("participant_id");
   if (!id) id = column("subject");
   if (!id) refuse(input.string() + ": has no column participant_id");

@@ -116,6 +116,18 @@ TEST_F(BidsSubjects, ATableOfTabsNamesScansOrTheFoldersBesideIt) {
   EXPECT_EQ(labels(folder_ / "participants.tsv", plan_of({"ct"})), (std::vector<std::string>{"01", "03"}));
 }
 
+TEST_F(BidsSubjects, ASubjectThatTheTableListsAndThatHasNoFolderIsTold) {
+  put("sub-01/ct/sub-01_ct.nii.gz");
+  put("participants.tsv", "participant_id\tage\nsub-01\t20\nsub-07\t31\n");
+  for (const std::filesystem::path& input : {folder_.path(), folder_ / "participants.tsv"}) {
+    const std::vector<Subject> found = find_subjects(input, plan_of({"ct"}));
+    ASSERT_EQ(found.size(), 2U) << input;
+    EXPECT_EQ(found[0].trouble, "");
+    EXPECT_EQ(found[1].label, "07");
+    EXPECT_NE(found[1].trouble.find("lists sub-07"), std::string::npos) << found[1].trouble;
+  }
+}
+
 TEST_F(BidsSubjects, AFileThatStepsReadIsTheSubjectsOwnByItsName) {
   put("sub-01/ct/sub-01_ct.nii.gz");
   put("sub-01/ct/sub-01_marks.fcsv");
