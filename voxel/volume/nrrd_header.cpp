@@ -241,9 +241,27 @@ class NrrdReader {
           glm::dvec4(vector_of("space origin", words_in(*origin).empty() ? "" : words_in(*origin)[0]), 1.0);
     else
       warn_of_origin();
+    warn_of_other_spacings();
     if (text_.field("measurementframe"))
       header_.audit.push_back({"measurement_frame", Verdict::Pass,
                                "the file's measurement frame is of vectors and tensors; a scan has none"});
+  }
+
+  /// Spacings beside directions have no meaning in NRRD; where they differ, one of both is wrong.
+  void warn_of_other_spacings() {
+    const std::vector<double> spacings = numbers_an_axis("spacings");
+    for (std::size_t i = 0; i < space_axes_.size(); ++i) {
+      const double stated = std::abs(spacings[space_axes_[i]]),
+                   taken = glm::length(glm::dvec3(header_.geometry.file_from_voxel[static_cast<int>(i)]));
+      if (!std::isfinite(stated) || std::abs(stated - taken) <= 1e-3 * taken) continue;
+      header_.audit.push_back(
+          {"spacing", Verdict::Warn,
+           print(
+               "the file states spacings of %.6g along axis %zu and directions %.6g long: the directions are "
+               "taken",
+               stated, i + 1, taken)});
+      return;
+    }
   }
 
   void warn_of_origin() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/scan/read_volume.h"
 
+#include <algorithm>
 #include <cstring>
 #include <gtest/gtest.h>
 #include <limits>
@@ -68,6 +69,23 @@ TEST(ReadVolume, RefusesWhatIsNoScanAndSaysWhat) {
   write_bytes(folder / "alone.hdr", nifti([](auto&) {}));
   EXPECT_NE(reason_to_refuse(folder / "alone.hdr").find("the other one is missing"), std::string::npos)
       << reason_to_refuse(folder / "alone.hdr");
+}
+
+TEST(ReadVolume, SpacingsThatContradictDirectionsAreTold) {
+  const tests::ScratchFolder folder;
+  const std::string lps = "space: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (0,0,0)\n";
+  for (const auto& [spacings, is_told] :
+       {std::pair{"2 3 4", false}, {"-2 3 4", false}, {"nan nan nan", false}, {"2 3 3", true}}) {
+    write_bytes(folder / "a.nrrd", nrrd(lps + "spacings: " + spacings + "\n"));
+    const Scene scene = read_scene(folder / "a.nrrd");
+    EXPECT_EQ(scene.lattice.spacing_mm(), glm::dvec3(2, 3, 4));
+    EXPECT_EQ(std::any_of(scene.audit.begin(), scene.audit.end(),
+                          [](const Finding& line) {
+                            return line.check == "spacing" && line.verdict == Verdict::Warn;
+                          }),
+              is_told)
+        << spacings;
+  }
 }
 
 TEST(ReadVolume, ANiftiPairIsReadByEitherName) {
