@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <tbb/blocked_range.h>
@@ -141,11 +142,15 @@ AirLevel air_level_of_unnamed(const Scene& scene) {
 }
 
 void take_unstated_padding(Scene& scene) {
-  if (scene.padding) return;
   std::visit(
-      [&](const auto& samples) {
-        if (samples.empty()) return;
-        const auto least = *std::min_element(samples.begin(), samples.end());
+      [&](auto& samples) {
+        using Sample = typename std::decay_t<decltype(samples)>::value_type;
+        const auto is_padded = [&](Sample sample) {
+          return scene.padding && static_cast<double>(sample) == *scene.padding;
+        };
+        Sample least = std::numeric_limits<Sample>::max();
+        for (const Sample sample : samples)
+          if (sample < least && !is_padded(sample)) least = sample;
         const auto value = static_cast<double>(least);
         if (!(value < below_air)) return;
         std::size_t padded = 0, in_gap = 0, measured = 0;
@@ -158,11 +163,15 @@ void take_unstated_padding(Scene& scene) {
         if (padded < std::max(least_padded, samples.size() / samples_for_one_padded) ||
             in_gap * padded_for_one_in_gap > padded || measured == 0)
           return;
-        scene.padding = value;
+        if (scene.padding)
+          std::replace(samples.begin(), samples.end(), least, static_cast<Sample>(*scene.padding));
+        else
+          scene.padding = value;
         scene.audit.push_back(
             {"padding", Verdict::Warn,
              print("%zu samples (%.3g %%) hold %.9g, below air and apart from all other values, and the file "
-                   "names no padding: they are taken as padding, in no window and in no interpolation",
+                   "does not name it as padding: they are taken as padding, in no window and in no "
+                   "interpolation",
                    padded, 100.0 * static_cast<double>(padded) / static_cast<double>(samples.size()),
                    value)});
       },

@@ -28,8 +28,8 @@ bool has_prefix(std::string_view bytes) {
   return bytes.size() >= 132 && bytes.substr(128, 4) == "DICM";
 }
 
-/// Whether the first attribute of a file without a prefix states its value representation. As an implicit
-/// length, two capital letters would mean a first value of 16 kilobytes.
+/// Whether the first attribute states its value representation. As an implicit length, two capital letters
+/// would mean a first value of 16 kilobytes.
 bool spells_vr(std::string_view bytes) {
   const auto is_capital = [&](std::size_t i) { return bytes[i] >= 'A' && bytes[i] <= 'Z'; };
   return bytes.size() >= 8 && is_capital(4) && is_capital(5);
@@ -115,9 +115,13 @@ void DicomFile::require_more() const {
 
 void DicomFile::leave_meta() {
   transfer_syntax_ = text(transfer_syntax_tag);
-  if (transfer_syntax_ == "1.2.840.10008.1.2") explicit_ = false;
+  const bool is_implicit = transfer_syntax_ == "1.2.840.10008.1.2";
+  const bool is_deflated = transfer_syntax_ == "1.2.840.10008.1.2.1.99" && !inflated_;
+  // Some tools change the syntax without the attributes, which show how they are coded themselves.
+  explicit_ = left() >= 8 && !is_deflated ? spells_vr(bytes_.substr(at_)) : !is_implicit;
+  contradicts_syntax_ = explicit_ == is_implicit;
   if (transfer_syntax_ == "1.2.840.10008.1.2.2") big_endian_ = true;
-  if (transfer_syntax_ == "1.2.840.10008.1.2.1.99" && !inflated_) throw Deflated{at_};
+  if (is_deflated) throw Deflated{at_};
 }
 
 /// Steps over the head of the attribute at hand. Precondition: eight bytes are left.

@@ -70,6 +70,9 @@ class DicomFile {
   std::optional<double> float_double(DicomTag tag) const;
   bool big_endian() const { return big_endian_; }
   const std::string& transfer_syntax() const { return transfer_syntax_; }
+  /// Whether the attributes' value representations are explicit where the transfer syntax states implicit
+  /// ones, or the other way round. They are read as they are.
+  bool contradicts_syntax() const { return contradicts_syntax_; }
   /// Uncompressed pixel data; none if the file has none or compressed ones.
   std::optional<DicomExtent> raw_pixels() const { return raw_pixels_; }
   /// Whether uncompressed pixels are stated as words of two bytes, VR OW.
@@ -111,6 +114,7 @@ class DicomFile {
   bool inflated_ = false;
   bool is_item_ = false;
   bool explicit_ = false;
+  bool contradicts_syntax_ = false;
   bool big_endian_ = false;
   std::string transfer_syntax_;
   std::map<DicomTag, std::string_view> values_;

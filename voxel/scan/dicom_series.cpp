@@ -20,8 +20,10 @@
 #include "voxel/scan/dicom_folder.h"
 #include "voxel/scan/dicom_pixels.h"
 #include "voxel/scan/dicom_stacks.h"
+#include "voxel/scan/identity.h"
 #include "voxel/scan/stack_audit.h"
 #include "voxel/space/file_text.h"
+#include "voxel/volume/volume_header.h"
 
 namespace octotomy::voxel {
 
@@ -39,6 +41,9 @@ double repeat_tolerance_mm(double usual_gap_mm) {
 constexpr double unseen_turn_px() {
   return 0.1;
 }
+
+/// Directions whose length is further from 1 are no rounded or badly scaled unit vectors.
+constexpr double most_length_error = 0.1;
 
 /// Cosines rounded to two decimals, each by 0.005, make a vector's length or a product of two vectors err by
 /// up to 0.005 times the root of three, and twice that.
@@ -126,6 +131,11 @@ class SeriesAssembler {
     if (found.empty() && !is_folder(path_))
       refuse(path_, "is not a readable scan: " + std::get<NoSlice>(headers.front()).reason +
                         "; scans are DICOM, .nii, .nii.gz, .nrrd, .nhdr, .mha and .mhd");
+    if (const auto volume = std::find_if(
+            files.begin(), files.end(), [](const fs::path& file) { return volume_format(file).has_value(); });
+        found.empty() && volume != files.end())
+      refuse(path_, "no DICOM slice in the folder or below; it holds " + name_of(*volume) +
+                        ", which is read by its own path: " + volume->string());
     if (found.empty()) refuse_empty(files.size() + folder.staged.size(), skipped);
     return found;
   }
@@ -239,7 +249,9 @@ class SeriesAssembler {
     std::size_t told = 0;
     for (const Series& series : all)
       if (series.number != taken.number && ++told <= 8)
-        others += (others.empty() ? "" : ", ") + std::to_string(series.number) + " " + named(series.members);
+        others +=
+            (others.empty() ? "" : ", ") + std::to_string(series.number) + " " + named(series.members) +
+            (is_of_one_patient(series.members.front(), taken.members.front()) ? "" : " of another patient");
     if (told > 8) others += " and " + std::to_string(told - 8) + " more";
     const Scattered scattered = scattered_of(all, taken);
     const bool is_scattered = options_.series.empty() && scattered.images > 0;
@@ -276,7 +288,8 @@ class SeriesAssembler {
           std::all_of(series.members.begin(), series.members.end(), [&](const DicomSlice& slice) {
             const double height_mm = glm::dot(slice.first_mm, normal);
             return !slice.is_localizer && same_grid(slice, first) && same_orientation(slice, first) &&
-                   is_of_one_patient(slice, first) && (height_mm < low_mm || height_mm > high_mm);
+                   slice.modality == first.modality && is_of_one_patient(slice, first) &&
+                   (height_mm < low_mm || height_mm > high_mm);
           });
       if (!continues) continue;
       ++scattered.series;
@@ -286,11 +299,9 @@ class SeriesAssembler {
   }
 
   static bool is_of_one_patient(const DicomSlice& a, const DicomSlice& b) {
-    for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait)
-      if (dicom_traits[trait].role == TraitRole::Identity && a.traits[trait] != b.traits[trait] &&
-          !a.traits[trait].empty() && !b.traits[trait].empty())
-        return false;
-    return true;
+    return compared({a.identity.patient_id, a.identity.patient_name, {}, {}},
+                    {b.identity.patient_id, b.identity.patient_name, {}, {}})
+        .differing.empty();
   }
 
   struct Asked {
@@ -463,9 +474,9 @@ class SeriesAssembler {
     stack.slices = std::move(members);
     take_mean_spacing(stack);
     make_perpendicular(stack);
-    if (stack.first().spacing_at_detector)
+    if (!stack.first().assumed_spacing.empty())
       find("pixel_spacing", Verdict::Warn,
-           "PixelSpacing is absent; ImagerPixelSpacing, measured at the detector, replaces it");
+           "PixelSpacing is absent; " + stack.first().assumed_spacing + " replaces it");
     return stack;
   }
 
@@ -514,10 +525,21 @@ class SeriesAssembler {
     const double row = glm::length(along_row);
     const double column = glm::length(along_column);
     const double lean = glm::dot(along_row, along_column);
-    const double error = std::max({std::abs(row - 1.0), std::abs(column - 1.0), std::abs(lean)});
-    if (!(error < 1e-3 || error < two_decimals_error()))
-      refuse(stack.first().path, "ImageOrientationPatient is not two perpendicular unit vectors");
-    if (error >= 1e-3)
+    const double length_error = std::max(std::abs(row - 1.0), std::abs(column - 1.0)),
+                 error = std::max(std::abs(lean), std::min(length_error, two_decimals_error()));
+    if (!(std::abs(lean) < two_decimals_error() && length_error < most_length_error))
+      refuse(
+          stack.first().path,
+          print("ImageOrientationPatient is not two perpendicular unit vectors: they are %.4g and %.4g long "
+                "and lean by %.3g degrees; correct the attribute",
+                row, column,
+                std::asin(std::clamp(lean / row / column, -1.0, 1.0)) * 180.0 / 3.14159265358979323846));
+    if (length_error >= two_decimals_error())
+      find("orientation_length", Verdict::Warn,
+           print("the vectors of ImageOrientationPatient are %.4g and %.4g long, not 1: their directions are "
+                 "taken and PixelSpacing as it is",
+                 row, column));
+    else if (error >= 1e-3)
       find("orientation_rounded", Verdict::Warn,
            print("ImageOrientationPatient is no more exact than %.2g: directions may be off by %.2g degrees",
                  error, error * 180.0 / 3.14159265358979323846));

@@ -113,8 +113,10 @@ DicomPixels pixels_of(const DicomFile& file) {
   DicomPixels pixels;
   pixels.transfer_syntax = file.transfer_syntax();
   pixels.allocated = file.unsigned_short(0x00280100).value_or(16);
-  pixels.stored = file.unsigned_short(0x00280101).value_or(static_cast<std::uint16_t>(pixels.allocated));
-  pixels.high = file.unsigned_short(0x00280102).value_or(static_cast<std::uint16_t>(pixels.stored - 1));
+  const auto stored = file.unsigned_short(0x00280101), high = file.unsigned_short(0x00280102);
+  // One of both states the other, as values end at the lowest bit.
+  pixels.stored = stored ? *stored : high ? *high + 1u : pixels.allocated;
+  pixels.high = high ? *high : pixels.stored - 1;
   pixels.is_signed = file.unsigned_short(0x00280103).value_or(0) == 1;
   for (DicomTag group = 0x60000000; group < 0x60200000; group += 0x00020000)
     pixels.holds_overlay = pixels.holds_overlay || (file.unsigned_short(group + 0x0102).value_or(0) != 0 &&
@@ -196,20 +198,37 @@ std::optional<NoSlice> take_geometry(const Attributes& attributes, std::size_t f
     const auto own = position->begin() + 3 * slice.frame;
     position = std::vector<double>(own, own + 3);
   }
-  if (!position || position->size() != 3) return NoSlice{"an image without ImagePositionPatient", unusable};
   if (!orientation || orientation->size() != 6)
-    return NoSlice{"an image without ImageOrientationPatient", unusable};
-  auto spacing = attributes.decimals(0x00280030);
-  if (!spacing) {
-    spacing = attributes.decimals(0x00181164);
-    slice.spacing_at_detector = true;
+    return NoSlice{
+        "an image without ImageOrientationPatient: add it, or read the pixels by --raw with --spacing",
+        unusable};
+  if (const auto location_mm = attributes.decimal(0x00201041); !position && location_mm && frame_count == 1) {
+    const glm::dvec3 row((*orientation)[0], (*orientation)[1], (*orientation)[2]),
+        column((*orientation)[3], (*orientation)[4], (*orientation)[5]), normal = glm::cross(row, column);
+    const glm::dvec3 p = *location_mm / std::max(glm::length(normal), 1e-3) * normal;
+    position = {p.x, p.y, p.z};
+    slice.assumed_place = "SliceLocation along the normal, since ImagePositionPatient is absent";
   }
-  if (!spacing || spacing->size() != 2) return NoSlice{"an image without PixelSpacing", unusable};
+  if (!position || position->size() != 3)
+    return NoSlice{
+        "an image without ImagePositionPatient: add it, or read the pixels by --raw with --spacing",
+        unusable};
+  auto spacing = attributes.decimals(0x00280030);
+  for (const auto& [tag, name] :
+       {std::pair{DicomTag{0x00181164}, "ImagerPixelSpacing, measured at the detector,"},
+        std::pair{DicomTag{0x00182010}, "NominalScannedPixelSpacing, of the film that was scanned,"}})
+    if (!spacing) {
+      spacing = attributes.decimals(tag);
+      slice.assumed_spacing = name;
+    }
+  if (!spacing || spacing->size() != 2)
+    return NoSlice{"an image without PixelSpacing: add it, or read the pixels by --raw with --spacing",
+                   unusable};
   if (!are_within(*spacing, 1e-6, 1e6))  // no scanner's or microscope's
     return NoSlice{"an image whose PixelSpacing is not 1e-6 to 1e6 mm", unusable};
   if (!are_within(*position, -1e9, 1e9))  // doubles still part places by 1e-7 mm there
     return NoSlice{"an image whose ImagePositionPatient is beyond 1e9 mm", unusable};
-  if (!are_within(*orientation, -1.001, 1.001))  // with the tolerance of the stack's own directions
+  if (!are_within(*orientation, -1.1, 1.1))  // with the tolerance of the stack's own directions
     return NoSlice{"an image whose ImageOrientationPatient is not two unit vectors", unusable};
   slice.first_mm = {(*position)[0], (*position)[1], (*position)[2]};
   slice.along_row = {(*orientation)[0], (*orientation)[1], (*orientation)[2]};
@@ -450,6 +469,9 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
   if (!rows || !columns || *rows == 0 || *columns == 0) return NoSlice{"DICOM without an image"};
   slice.size_px = {*columns, *rows};
   constexpr auto unusable = NoSlice::Kind::Unusable;
+  if (file.length(0x7fe00008) || file.length(0x7fe00009))
+    return NoSlice{"pixels of floating point, which nothing here decodes: convert the file to NIfTI or NRRD",
+                   unusable};
   if (file.unsigned_short(0x00280002).value_or(1) != 1) return NoSlice{"a colour image", unusable};
   const std::string photometric = file.readable_text(0x00280004);
   if (!photometric.empty() && !photometric.starts_with("MONOCHROME"))
@@ -459,7 +481,11 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
                    unusable};
   slice.pixels = pixels_of(file);
   if (!is_sound(slice.pixels))
-    return NoSlice{"pixels of " + std::to_string(slice.pixels.allocated) + " bits", unusable};
+    return NoSlice{
+        print("pixels of %u bits, of which %u are stored and bit %u is the highest: that does not fit, or "
+              "is not of 8, 12, 16 or 32 bits",
+              slice.pixels.allocated, slice.pixels.stored, slice.pixels.high),
+        unusable};
   slice.inverted = photometric == "MONOCHROME1";
   slice.lossy = lossy_of(file);
   slice.class_uid = file.text(0x00080016);
@@ -467,6 +493,13 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
   slice.series_uid = file.text(0x0020000e);
   slice.series_description = file.readable_text(0x0008103e);
   slice.modality = file.readable_text(0x00080060);
+  slice.patient_orientation = file.text(0x00200020);
+  if (file.contradicts_syntax())
+    slice.assumed_coding =
+        "value representations as the attributes show them, which contradict the transfer syntax";
+  if (!file.unsigned_short(0x00280101))
+    slice.assumed_coding += print("%s%u bits, as BitsStored is absent",
+                                  slice.assumed_coding.empty() ? "" : "; ", slice.pixels.stored);
   if (is_ct_class(slice.class_uid) && slice.modality != "CT") {
     slice.assumed_modality = slice.modality.empty() ? "absent" : "'" + slice.modality + "'";
     slice.modality = "CT";

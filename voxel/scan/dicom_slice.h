@@ -76,7 +76,7 @@ struct DicomSlice {
   glm::dvec3 along_row{1, 0, 0};      ///< from column to column, as in the file
   glm::dvec3 along_column{0, 1, 0};   ///< from row to row
   glm::dvec3 first_mm{0.0};           ///< centre of the first pixel
-  bool spacing_at_detector = false;   ///< from ImagerPixelSpacing, because PixelSpacing is absent
+  std::string assumed_spacing;        ///< the attribute that replaces PixelSpacing, for people
   bool position_of_acr_nema = false;  ///< from the attributes of 1988, because DICOM's are absent
   bool inverted = false;              ///< MONOCHROME1
   bool is_localizer = false;          ///< by ImageType
@@ -87,6 +87,8 @@ struct DicomSlice {
   std::string decimal_commas;          ///< attributes whose numbers have a comma for the point, for people
   std::string real_world;              ///< a Real World Value Mapping, for people
   std::optional<double> location_mm;   ///< SliceLocation, of no stated origin
+  std::string patient_orientation;     ///< PatientOrientation: "L\\P"
+  std::string assumed_coding;          ///< how the file's coding was read against its header, for people
   std::string assumed_modality;        ///< what the header states where the images' class contradicts it
   std::string assumed_place;           ///< how a frame without a position of its own was placed, for people
   std::string excess_pixels;           ///< pixel data beyond what the header counts, for people

@@ -28,6 +28,8 @@ class StackAudit {
     audit_numbers();
     audit_aspect();
     audit_frames();
+    audit_coding();
+    audit_patient_orientation();
   }
 
  private:
@@ -192,10 +194,12 @@ class StackAudit {
   void audit_spacing_tag() {
     const std::optional<double> tag_mm = stack_.first().spacing_tag_mm;
     if (stack_.slices.size() < 2 || !tag_mm || *tag_mm == 0.0) return;
-    const double gap_mm = usual_gap_mm();
+    const double gap_mm = usual_gap_mm(), mean_mm = stack_.height_mm(stack_.slices.back()) /
+                                                    static_cast<double>(stack_.slices.size() - 1);
     const double cosine = std::cos(stack_.first().tilt_deg.value_or(0.0) * 3.14159265358979323846 / 180.0);
     const auto is_near = [&](double mm) { return std::abs(std::abs(*tag_mm) - mm) <= 0.02 + 0.01 * mm; };
-    if (!is_near(gap_mm) && !is_near(gap_mm / cosine))
+    // Of positions that are rounded, the mean is exact.
+    if (!is_near(gap_mm) && !is_near(gap_mm / cosine) && !is_near(mean_mm))
       find("spacing_tag", Verdict::Warn,
            print("SpacingBetweenSlices is %.4g mm, but by their positions the slices lie %.4g mm apart: the "
                  "positions are used",
@@ -277,6 +281,45 @@ class StackAudit {
     if (const Noted excess = noted(&DicomSlice::excess_pixels); !excess.names.empty())
       find("pixel_data", excess.text.find("images") != std::string::npos ? Verdict::Fail : Verdict::Warn,
            "the file holds " + excess.text + "; the rest is not read: " + listed(excess.names), excess.names);
+  }
+
+  void audit_coding() {
+    if (const Noted coding = noted(&DicomSlice::assumed_coding); !coding.names.empty())
+      find("coding", Verdict::Warn,
+           slices(coding.names.size()) + " are read with " + coding.text + ": " + listed(coding.names),
+           coding.names);
+  }
+
+  /// Holds PatientOrientation, the patient's directions along rows and columns, against
+  /// ImageOrientationPatient.
+  void audit_patient_orientation() {
+    std::vector<std::string> names;
+    std::string stated;
+    for (const DicomSlice& slice : stack_.slices) {
+      const std::string& text = slice.patient_orientation;
+      const std::size_t bar = text.find('\\');
+      if (bar == std::string::npos || (agrees(text, slice.along_row) &&
+                                       agrees(std::string_view(text).substr(bar + 1), slice.along_column)))
+        continue;
+      if (names.empty()) stated = text;
+      names.push_back(slice.name);
+    }
+    if (!names.empty())
+      find("patient_orientation", Verdict::Warn,
+           "PatientOrientation '" + stated + "' contradicts ImageOrientationPatient, which is used, in " +
+               slices(names.size()) + ": check that left and right are not exchanged: " + listed(names),
+           names);
+  }
+
+  /// Whether a direction leads to where its first letter says: L, R, P, A, H or F. Other letters are those of
+  /// animals and agree with all.
+  static bool agrees(std::string_view letters, const glm::dvec3& along) {
+    constexpr std::string_view known = "LRPAHF";
+    const std::size_t at = letters.empty() ? std::string_view::npos : known.find(letters.front());
+    if (at == std::string_view::npos) return true;
+    const double towards = along[static_cast<int>(at / 2)] * (at % 2 == 0 ? 1.0 : -1.0);
+    // The first letter is that of the largest of three components.
+    return towards >= 0.5;
   }
 
   const DicomStack& stack_;

@@ -4,6 +4,7 @@
 // are put together attribute by attribute, so that each test spoils one of them.
 #include <cmath>
 #include <cstdint>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <map>
 #include <utility>
@@ -11,8 +12,10 @@
 #include "tests/file_bytes.h"
 #include "tests/voxel/linear_scene.h"
 #include "tests/voxel/scan/dicom_bytes.h"
+#include "tests/voxel/scan/spoiled_series.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/scan/read_scene.h"
+#include "voxel/scan/write_scene.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -105,6 +108,30 @@ TEST(SeriesAudit, PassesEveryLineOfASoundSeries) {
   EXPECT_EQ(scene.lattice.spacing_mm(), glm::dvec3(0.25, 0.5, 2.0))
       << "the tag gives the distance of rows first";
   EXPECT_EQ(sample(scene, 3, 2, 1), 123 - 1000);
+}
+
+TEST(SeriesAudit, HoldsTheStatedSpacingAgainstTheMeanOfRoundedPositions) {
+  for (const auto& [stated, is_told] : {std::pair{"0.75", false}, std::pair{"0.7", true}}) {
+    const ScratchFolder folder;
+    std::vector<tests::SpoiledImage> images = tests::sound_series(24);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      images[i].place(-6, -5, std::round(7.5 * static_cast<double>(i)) / 10.0);
+      images[i].text(0x00180088, "DS", stated);
+      std::ofstream(folder / images[i].name, std::ios::binary) << images[i].bytes();
+    }
+    EXPECT_EQ(tests::finding(read_scene(folder.path()), "spacing_tag") != nullptr, is_told) << stated;
+  }
+}
+
+TEST(SeriesAudit, NamesTheVolumeThatAFolderWithoutDicomHolds) {
+  const ScratchFolder folder;
+  write_scene(tests::linear_scene(tests::oblique_lattice()), folder / "head.nrrd");
+  try {
+    read_scene(folder.path());
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("holds head.nrrd"), std::string::npos) << error.what();
+  }
 }
 
 TEST(SeriesAudit, LeavesOutAndTellsWhatAnotherRunHasNotFinished) {

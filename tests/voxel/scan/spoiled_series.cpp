@@ -591,6 +591,81 @@ std::vector<SpoiledKind> of_files() {
   };
 }
 
+/// Statements that contradict each other, and attributes that others have to replace.
+std::vector<SpoiledKind> of_replacements() {
+  const auto location = [](Images& images) {
+    each(images,
+         [](SpoiledImage& image, int i) { image.text(0x00201041, "DS", std::to_string(30 + 2 * i)); });
+  };
+  const auto other_series = [](const char* patient) {
+    return [=](Images& images) {
+      Images second = sound_series(5, "b");
+      for (SpoiledImage& image : second) {
+        image.text(0x0020000e, "UI", "1.2.4");
+        image.text(0x00100020, "LO", patient);
+      }
+      images.insert(images.end(), second.begin(), second.end());
+    };
+  };
+  return {
+      {"location_for_the_position",
+       "frame_positions",
+       warn,
+       "SliceLocation along the normal",
+       {},
+       both(location, without({0x00200032}))},
+      {"no_position_and_no_location", "refused", warn, "--raw with --spacing", {}, without({0x00200032})},
+      {"no_spacing_at_all", "refused", warn, "--raw with --spacing", {}, without({0x00280030})},
+      {"spacing_of_a_scanned_film",
+       "pixel_spacing",
+       warn,
+       "NominalScannedPixelSpacing",
+       {},
+       both(without({0x00280030}), text(0x00182010, "DS", "0.5\\0.5"))},
+      {"bits_stored_absent", "coding", warn, "16 bits, as BitsStored is absent", names("a", 0, 11),
+       without({0x00280101})},
+      {"bits_that_do_not_fit",
+       "refused",
+       warn,
+       "12 are stored and bit 5 is the highest",
+       {},
+       both(number(0x00280101, 12), number(0x00280102, 5))},
+      {"directions_too_short",
+       "orientation_length",
+       warn,
+       "0.98 and 0.98 long",
+       {},
+       text(0x00200037, "DS", "0.98\\0\\0\\0\\0.98\\0")},
+      {"directions_far_too_short",
+       "refused",
+       warn,
+       "0.7 and 0.7 long",
+       {},
+       text(0x00200037, "DS", "0.7\\0\\0\\0\\0.7\\0")},
+      {"letters_against_the_directions", "patient_orientation", warn, "'R\\A' contradicts", names("a", 0, 11),
+       text(0x00200020, "CS", "R\\A")},
+      {"letters_as_the_directions", "uniform", pass, "", {}, text(0x00200020, "CS", "L\\P")},
+      {"pixels_of_floating_point",
+       "refused",
+       warn,
+       "pixels of floating point",
+       {},
+       text(0x7fe00008, "OW", "12345678")},
+      {"explicit_called_implicit", "coding", warn, "contradict the transfer syntax", names("a", 0, 11),
+       [](Images& images) {
+         each(images, [](SpoiledImage& image, int) { image.syntax = "1.2.840.10008.1.2"; });
+       }},
+      {"implicit_called_explicit", "coding", warn, "contradict the transfer syntax", names("a", 0, 11),
+       [](Images& images) { each(images, [](SpoiledImage& image, int) { image.implicit = true; }); }},
+      {"a_series_of_another_patient",
+       "series",
+       warn,
+       "(CT, 5 slices) of another patient",
+       {},
+       other_series("B")},
+  };
+}
+
 std::vector<SpoiledKind> that_are_read() {
   return {
       {"twelve_bits_packed",
@@ -923,8 +998,8 @@ void SpoiledKind::write(const std::filesystem::path& folder) const {
 const std::vector<SpoiledKind>& spoiled_kinds() {
   static const std::vector<SpoiledKind> kinds = [] {
     std::vector<SpoiledKind> all;
-    for (const auto& group :
-         {of_identity(), of_stacks(), of_values(), of_places(), of_files(), of_statements(), that_are_read()})
+    for (const auto& group : {of_identity(), of_stacks(), of_values(), of_places(), of_files(),
+                              of_statements(), of_replacements(), that_are_read()})
       all.insert(all.end(), group.begin(), group.end());
     return all;
   }();

@@ -49,6 +49,15 @@ TEST(UnstatedPadding, IsTheIsolatedLeastSampleBelowAir) {
   }
 }
 
+TEST(UnstatedPadding, JoinsThePaddingThatTheFileStates) {
+  Scene scene = round_scene([](int i) { return i % 3 == 0 ? -32768 : -3024; });
+  scene.padding = -32768;
+  take_unstated_padding(scene);
+  EXPECT_EQ(scene.padding, -32768.0);
+  EXPECT_EQ(tests::verdict(scene, "padding"), Verdict::Warn);
+  EXPECT_NEAR(range(scene).low, -1025.0, 1.0);
+}
+
 TEST(UnstatedPadding, IsNotAssumedOfWhatAScannerMeasures) {
   const std::map<std::string, std::function<int(int)>> measured = {
       {"air", [](int) { return -1024; }},
