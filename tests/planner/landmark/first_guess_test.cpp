@@ -168,6 +168,18 @@ TEST(FirstGuessOfARealHead, FindsPointsWhereAPersonSetThem) {
   }
 }
 
+// The scan ends at the nose. The farthest bone at the side is then that of the temple, 35 mm above the arch.
+TEST(FirstGuessOfARealHead, SeeksNoArchFromAFaceThatTheScanCuts) {
+  OCTOTOMY_NEEDS_DATA("ct_ge_tilt_variable");
+  const Skull skull = skull_of(voxel::read_scene(tests::reference_data("ct_ge_tilt_variable")));
+  const SkullGuess guess = guess_landmarks(skull.drawn, skull.surface);
+  const auto found = by_name(guess);
+  const std::map<std::string, std::string> missing(guess.missing.begin(), guess.missing.end());
+  EXPECT_TRUE(found.contains("orbitale_right"));
+  for (const char* name : {"ans", "zygoma_left", "zygoma_right", "gonion_left", "gonion_right"})
+    EXPECT_TRUE(missing.contains(name)) << name;
+}
+
 TEST(FirstGuess, RefusesWhatIsNoSkull) {
   const voxel::Scene& scene = head();
   Skull skull = skull_of(scene);
