@@ -344,9 +344,9 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
 /// Bridges are decisions that the kernels took differently: a doubt, each with its place.
 void judge_bridges(Certificate& certificate, const Places& places) {
   constexpr std::size_t most_told = 3;
-  certificate.bridges = places.bridges;
-  for (std::size_t i = 0; i < std::min(places.bridges.size(), most_told); ++i) {
-    const WorstPlace& bridge = places.bridges[i];
+  for (const OpenPart& part : places.open) certificate.bridges.push_back(part.bridge);
+  for (std::size_t i = 0; i < std::min(certificate.bridges.size(), most_told); ++i) {
+    const WorstPlace& bridge = certificate.bridges[i];
     lower(certificate, Verdict::Warn,
           "An ambiguous bridge near " + voxel::rounded(bridge.at_mm) + ": " + bridge.what + ", " +
               voxel::rounded(bridge.volume_mm3) +
@@ -354,10 +354,10 @@ void judge_bridges(Certificate& certificate, const Places& places) {
               " voxels: decide it by 'keep_bridges_mm' or 'cut_bridges_mm' of the step that chooses parts, "
               "or take smaller voxels.");
   }
-  if (places.bridges.size() > most_told)
-    certificate.reasons.push_back(std::to_string(places.bridges.size() - most_told) +
+  if (certificate.bridges.size() > most_told)
+    certificate.reasons.push_back(std::to_string(certificate.bridges.size() - most_told) +
                                   " more parts hang on by such bridges.");
-  if (!places.bridges.empty() && !certificate.worst) certificate.worst = places.bridges.front();
+  if (!certificate.bridges.empty() && !certificate.worst) certificate.worst = certificate.bridges.front();
 }
 
 /// Sets `unresolved`, independent of the verdict.

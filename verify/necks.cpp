@@ -210,10 +210,10 @@ Bridges::Bridges(const voxel::Octree& octree, const voxel::Octree& digitised, co
   choices_.push_back({std::make_shared<const Necks>(octree, digitised, witness)});
 }
 
-std::vector<WorstPlace> Bridges::take_from(std::vector<glm::ivec3>& voxels) const {
+std::vector<OpenPart> Bridges::take_from(std::vector<glm::ivec3>& voxels) const {
   if (choices_.empty()) return {};
   const voxel::Lattice lattice = octree_.universe().lattice();
-  std::vector<WorstPlace> bridges;
+  std::vector<OpenPart> open;
   std::vector<glm::ivec3> rest;
   for (const bool in_voxels : {true, false}) {
     std::vector<glm::ivec3> side;
@@ -224,13 +224,13 @@ std::vector<WorstPlace> Bridges::take_from(std::vector<glm::ivec3>& voxels) cons
       for (const std::size_t i : part) part_mm.push_back(lattice.lps_mm(glm::dvec3(side[i])));
       const double volume_mm3 = static_cast<double>(part.size()) * lattice.voxel_mm3();
       if (const std::optional<WorstPlace> bridge = bridge_of(part_mm, in_voxels, volume_mm3, choices_))
-        bridges.push_back(*bridge);
+        open.push_back({*bridge, std::move(part_mm)});
       else
         for (const std::size_t i : part) rest.push_back(side[i]);
     }
   }
   voxels = std::move(rest);
-  return bridges;
+  return open;
 }
 
 Witness witness_of_parts(Witness whole) {

@@ -65,6 +65,12 @@ bool before(const glm::ivec3& a, const glm::ivec3& b);
 /// before(), each once. Cost: order n log n.
 std::vector<std::vector<std::size_t>> groups_of(const std::vector<glm::ivec3>& voxels);
 
+/// A part of one answer alone, beyond a thin neck.
+struct OpenPart {
+  WorstPlace bridge;                ///< the neck, with the part's volume
+  std::vector<glm::dvec3> part_mm;  ///< the part's voxels, LPS
+};
+
 /// Finds by which necks parts of one answer alone hang on, in an object or in what it was made of. Keeps a
 /// reference to the octree.
 class Bridges {
@@ -72,8 +78,8 @@ class Bridges {
   Bridges(const voxel::Octree& octree, const voxel::Octree& digitised, const Witness& witness);
 
   /// Takes the parts that hang on by a thin neck (Necks::neck_mm()) from voxels that one answer alone has,
-  /// and returns a place for each. Precondition: the voxels are in the order of before(), each once.
-  std::vector<WorstPlace> take_from(std::vector<glm::ivec3>& voxels) const;
+  /// and returns them. Precondition: the voxels are in the order of before(), each once.
+  std::vector<OpenPart> take_from(std::vector<glm::ivec3>& voxels) const;
 
  private:
   const voxel::Octree& octree_;

@@ -29,6 +29,7 @@
 #include "brep/mesh/components.h"
 #include "brep/mesh/distance.h"
 #include "brep/mesh/triangles.h"
+#include "convert/voxel/voxelise.h"
 #include "verify/necks.h"
 #include "voxel/measure/distance_map.h"
 #include "voxel/solid/combine.h"
@@ -316,8 +317,7 @@ void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& oct
         continue;
       std::vector<glm::ivec3> rest;
       for (const FailedVoxel& voxel : group) rest.push_back(voxel.at);
-      const std::vector<WorstPlace> found = bridges.take_from(rest);
-      places.bridges.insert(places.bridges.end(), found.begin(), found.end());
+      for (OpenPart& part : bridges.take_from(rest)) places.open.push_back(std::move(part));
       group.clear();
       for (const glm::ivec3& at : rest) group.push_back({at, Fault::Apart});
       if (group.empty()) continue;
@@ -327,8 +327,9 @@ void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& oct
     places.largest_count = group.size();
     places.worst = place_of(group, octree.universe().lattice());
   }
-  std::stable_sort(places.bridges.begin(), places.bridges.end(),
-                   [](const WorstPlace& a, const WorstPlace& b) { return a.volume_mm3 > b.volume_mm3; });
+  std::stable_sort(places.open.begin(), places.open.end(), [](const OpenPart& a, const OpenPart& b) {
+    return a.bridge.volume_mm3 > b.bridge.volume_mm3;
+  });
 }
 
 /// A triangle's centroid and area.
@@ -548,6 +549,16 @@ Places contradictions(const voxel::Octree& octree, const voxel::Octree& digitise
 Places contradicted_places(const voxel::Octree& octree, const voxel::Octree& digitised,
                            const brep::Solid& solid, const Witness& witness) {
   return contradictions(octree, digitised, solid, voxel::voxel_boundary(octree), witness, {});
+}
+
+std::vector<OpenPart> open_parts(const voxel::Octree& octree, const brep::Solid& solid,
+                                 const Witness& witness) {
+  if (!witness) return {};
+  const voxel::Octree digitised = convert::voxelise(octree.universe(), solid.linked());
+  Places places;
+  add_groups(failed_voxels(octree, digitised, compared_voxels(octree, digitised, {}), witness, {}), octree,
+             digitised, witness, places);
+  return std::move(places.open);
 }
 
 Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,

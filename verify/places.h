@@ -6,6 +6,7 @@
 
 #include "brep/mesh/solid.h"
 #include "verify/certificate.h"
+#include "verify/necks.h"
 #include "verify/reading.h"
 #include "voxel/space/progress.h"
 #include "voxel/tree/octree.h"
@@ -22,7 +23,7 @@ struct Places {
   std::optional<WorstPlace> worst;
   /// Parts that one kernel joins to the object by a neck thinner than bridge_voxels and the other cuts there,
   /// the largest first. No error of either: on the scan the neck may be there or not.
-  std::vector<WorstPlace> bridges;
+  std::vector<OpenPart> open;
   DetectionLimit limit;
 };
 
@@ -36,5 +37,10 @@ Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised,
 /// The same without the limit, which is left at zero.
 Places contradicted_places(const voxel::Octree& octree, const voxel::Octree& digitised,
                            const brep::Solid& solid, const Witness& witness);
+
+/// The parts that one kernel alone joins to an object by thin necks, the largest first. Cost: digitises the
+/// solid and reads where the kernels differ.
+std::vector<OpenPart> open_parts(const voxel::Octree& octree, const brep::Solid& solid,
+                                 const Witness& witness);
 
 }  // namespace octotomy::verify

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/components.h"
+#include "brep/mesh/distance.h"
 #include "brep/shape/prism.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
@@ -83,21 +85,43 @@ voxel::Octree with_kept_parts(const voxel::Octree& chosen, const voxel::Octree& 
         whole.universe(),
         voxel::Expression(all) | voxel::Expression(voxel::components_that_meet(whole, reached, neighbours)));
   }
-  return all;
+  std::vector<glm::ivec3> seeds;
+  for (const glm::dvec3& p_mm : bridges.agreed_mm) {
+    const glm::ivec3 seed(glm::round(whole.universe().lattice().voxel(p_mm)));
+    if (glm::all(glm::greaterThanEqual(seed, glm::ivec3(0))) &&
+        glm::all(glm::lessThan(seed, glm::ivec3(whole.universe().side()))) && whole.contains(seed))
+      seeds.push_back(seed);
+  }
+  if (seeds.empty()) return all;
+  return voxel::combine(whole.universe(), voxel::Expression(all) | voxel::Expression(voxel::components_at(
+                                                                       whole, seeds, neighbours)));
 }
 
-bool reaches_kept_bridge(const brep::Triangles& triangles, const std::vector<std::uint32_t>& faces,
-                         const BridgeDecisions& bridges) {
+bool stays(const brep::Triangles& triangles, const std::vector<std::uint32_t>& faces,
+           const BridgeDecisions& bridges) {
+  if (!bridges.keeps()) return false;
   const std::vector<voxel::Box> cubes = cubes_about(bridges.keep_mm, bridges.edge_mm);
-  return std::any_of(cubes.begin(), cubes.end(), [&](const voxel::Box& cube) {
-    return std::any_of(faces.begin(), faces.end(), [&](std::uint32_t face) {
-      const auto& corners = triangles.faces[face];
-      return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t corner) {
-        const glm::dvec3& p = triangles.points_mm[corner];
-        return glm::all(glm::greaterThanEqual(p, cube.low_mm)) &&
-               glm::all(glm::lessThanEqual(p, cube.high_mm));
-      });
-    });
+  const auto holds = [](const voxel::Box& box, const glm::dvec3& p_mm) {
+    return glm::all(glm::greaterThanEqual(p_mm, box.low_mm)) &&
+           glm::all(glm::lessThanEqual(p_mm, box.high_mm));
+  };
+  voxel::Box extent{glm::dvec3(std::numeric_limits<double>::infinity()),
+                    glm::dvec3(-std::numeric_limits<double>::infinity())};
+  for (const std::uint32_t face : faces)
+    for (const std::uint32_t corner : triangles.faces[face]) {
+      const glm::dvec3& p_mm = triangles.points_mm[corner];
+      if (std::any_of(cubes.begin(), cubes.end(), [&](const voxel::Box& cube) { return holds(cube, p_mm); }))
+        return true;
+      extent = {glm::min(extent.low_mm, p_mm), glm::max(extent.high_mm, p_mm)};
+    }
+  std::optional<brep::Triangles> part;
+  return std::any_of(bridges.agreed_mm.begin(), bridges.agreed_mm.end(), [&](const glm::dvec3& p_mm) {
+    if (!holds(extent, p_mm)) return false;
+    if (!part) {
+      part.emplace(brep::Triangles{triangles.points_mm, {}});
+      for (const std::uint32_t face : faces) part->faces.push_back(triangles.faces[face]);
+    }
+    return brep::is_inside(p_mm, *part);
   });
 }
 
@@ -110,10 +134,17 @@ struct Parts {
   std::vector<Mark> at_mm;
   std::vector<glm::dvec3> keep_bridges_mm, cut_bridges_mm;  ///< as BridgeDecisions
   double bridge_mm = 5.0;
+  std::vector<glm::dvec3> agreed_mm;  ///< as BridgeDecisions
 };
 
 BridgeDecisions bridges_of(const Parts& parts) {
-  return {parts.keep_bridges_mm, parts.cut_bridges_mm, parts.bridge_mm};
+  return {parts.keep_bridges_mm, parts.cut_bridges_mm, parts.bridge_mm, parts.agreed_mm};
+}
+
+std::optional<Parts> with_parts(const Parts& parts, const std::vector<glm::dvec3>& also_mm) {
+  Parts more = parts;
+  more.agreed_mm.insert(more.agreed_mm.end(), also_mm.begin(), also_mm.end());
+  return more;
 }
 
 void check(const Parts& parts, const Place& place) {
@@ -186,7 +217,7 @@ KeptParts kept_parts_at(const Parts& parts, const brep::Solid& solid, const Obje
     bool is_kept = false;
     for (std::size_t i = 0; i < holds.size(); ++i)
       if (brep::is_inside(mark_mm(parts.at_mm[i], objects), of_part)) holds[i] = is_kept = true;
-    if (!is_kept && !reaches_kept_bridge(solid.triangles(), part.faces, bridges_of(parts))) continue;
+    if (!is_kept && !stays(solid.triangles(), part.faces, bridges_of(parts))) continue;
     faces.insert(faces.end(), part.faces.begin(), part.faces.end());
     ++kept.kept;
   }
@@ -238,13 +269,13 @@ void bound(const Parts& parts, const BoundBench& bench, Object& made) {
 KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::optional<double> at_least_mm3,
                      const BridgeDecisions& bridges) {
   const std::vector<brep::Component> all = brep::components(mesh);
-  const brep::Triangles triangles = bridges.keep_mm.empty() ? brep::Triangles() : brep::triangles_of(mesh);
+  const brep::Triangles triangles = bridges.keeps() ? brep::triangles_of(mesh) : brep::Triangles();
   KeptParts parts{{}, {}, 0, all.size()};
   std::vector<std::uint32_t> faces;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const bool is_large = (!largest || i < static_cast<std::size_t>(*largest)) &&
                           (!at_least_mm3 || all[i].volume_mm3 >= *at_least_mm3);
-    if (!is_large && !reaches_kept_bridge(triangles, all[i].faces, bridges)) continue;
+    if (!is_large && !stays(triangles, all[i].faces, bridges)) continue;
     faces.insert(faces.end(), all[i].faces.begin(), all[i].faces.end());
     ++parts.kept;
   }
@@ -295,6 +326,7 @@ Operation parts_operation() {
       .example(R"({"id": "bone", "do": "parts", "object": "skull", "largest": 1})")
       .on_files("octotomy parts skull.stl --largest 1 -o bone.stl")
       .check(check)
+      .with_parts(with_parts)
       .object(definition, voxels, triangles, bound);
 }
 

@@ -24,8 +24,12 @@ struct BridgeDecisions {
   std::vector<glm::dvec3> keep_mm;  ///< the parts that reach into the cube stay, whatever their size
   std::vector<glm::dvec3> cut_mm;   ///< the object loses what lies within the cube
   double edge_mm = 5.0;             ///< of the cubes
+  /// Points of further parts that stay: those which one kernel alone joins by a neck that is too thin to
+  /// measure.
+  std::vector<glm::dvec3> agreed_mm = {};
 
   bool any() const { return !keep_mm.empty() || !cut_mm.empty(); }
+  bool keeps() const { return !keep_mm.empty() || !agreed_mm.empty(); }
   /// The places of all.
   std::vector<glm::dvec3> decided_mm() const;
 };
@@ -41,12 +45,13 @@ brep::Solid cut_bridges(brep::Solid whole, const BridgeDecisions& bridges, const
                         double& shift_mm);
 verify::Witness cut_bridges(verify::Witness whole, const BridgeDecisions& bridges);
 
-/// The chosen parts and those that a neck to be kept joins to them.
+/// The chosen parts and those that stay with them.
 voxel::Octree with_kept_parts(const voxel::Octree& chosen, const voxel::Octree& whole,
                               const BridgeDecisions& bridges, voxel::Neighbours neighbours);
-/// Whether triangles have a corner within the cube of a neck that is kept.
-bool reaches_kept_bridge(const brep::Triangles& triangles, const std::vector<std::uint32_t>& faces,
-                         const BridgeDecisions& bridges);
+/// Whether a part, some of the triangles, stays with the chosen ones. The triangles are not read where no
+/// decision keeps anything.
+bool stays(const brep::Triangles& triangles, const std::vector<std::uint32_t>& faces,
+           const BridgeDecisions& bridges);
 
 /// The parts that stay, as a mesh.
 struct KeptParts {

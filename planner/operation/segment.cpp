@@ -43,7 +43,7 @@ voxel::Neighbours neighbours_of(const Segment& segment) {
 }
 
 BridgeDecisions bridges_of(const Segment& segment) {
-  return {segment.keep_bridges_mm, segment.cut_bridges_mm, segment.bridge_mm};
+  return {segment.keep_bridges_mm, segment.cut_bridges_mm, segment.bridge_mm, segment.agreed_mm};
 }
 
 bool chooses_parts(const Segment& segment) {
@@ -182,7 +182,7 @@ class Segmenter {
                  made_.octree, static_cast<std::uint64_t>(std::ceil(*segment_.at_least_mm3 / voxel_mm3)),
                  neighbours),
              {{"do", "components_at_least"}, {"volume_mm3", *segment_.at_least_mm3}});
-    if (!bridges.keep_mm.empty())
+    if (bridges.keeps())
       become(with_kept_parts(made_.octree, whole, bridges, neighbours),
              {{"do", "keep_bridges"}, {"count", bridges.keep_mm.size()}});
     go_on();
@@ -259,6 +259,13 @@ const char* why_voxels_alone(const Segment& segment) {
   if (segment.open_mm || segment.close_mm) return "opening and closing go by voxels";
   if (!segment.seeds_mm.empty()) return "seeds choose parts of voxels";
   return segment.neighbours != 6 ? "edges and corners join voxels" : nullptr;
+}
+
+std::optional<Segment> with_parts(const Segment& segment, const std::vector<glm::dvec3>& also_mm) {
+  if (!chooses_parts(segment) || why_voxels_alone(segment) != nullptr) return std::nullopt;
+  Segment more = segment;
+  more.agreed_mm.insert(more.agreed_mm.end(), also_mm.begin(), also_mm.end());
+  return more;
 }
 
 void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
@@ -447,6 +454,7 @@ Operation segment_operation() {
       .example(R"({"id": "skull", "do": "segment", "scan": "ct", "window": "bone", "largest": true})")
       .check(check)
       .settle(settle)
+      .with_parts(with_parts)
       .object(definition, voxels, triangles, bound);
 }
 

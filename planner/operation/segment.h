@@ -37,6 +37,7 @@ struct Segment {
   int neighbours = 6;
   std::vector<glm::dvec3> keep_bridges_mm, cut_bridges_mm;  ///< as BridgeDecisions
   double bridge_mm = 5.0;
+  std::vector<glm::dvec3> agreed_mm = {};  ///< as BridgeDecisions
 };
 
 /// What an object is segmented from.

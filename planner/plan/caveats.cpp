@@ -10,7 +10,9 @@
 #include <variant>
 #include <vector>
 
+#include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
+#include "voxel/space/rounded.h"
 
 namespace octotomy::planner {
 namespace {
@@ -179,6 +181,38 @@ void keep_unmeasured(const Action& action, const std::vector<ScanRecord>& record
       const voxel::Finding* finding = record.name == name ? unmeasured_finding(record.audit) : nullptr;
       if (finding != nullptr && unmeasured_finding(made.audit) == nullptr) made.audit.push_back(*finding);
     }
+}
+
+void add_kept_parts(std::vector<verify::OpenPart> kept, const std::vector<verify::OpenPart>& open,
+                    Object& made) {
+  constexpr double little = 0.05;
+  std::erase_if(kept, [&](const verify::OpenPart& part) {
+    return std::any_of(open.begin(), open.end(), [&](const verify::OpenPart& other) {
+      return std::find(other.part_mm.begin(), other.part_mm.end(), part.part_mm.front()) !=
+             other.part_mm.end();
+    });
+  });
+  if (kept.empty()) return;
+  std::stable_sort(kept.begin(), kept.end(), [](const verify::OpenPart& a, const verify::OpenPart& b) {
+    return a.bridge.volume_mm3 > b.bridge.volume_mm3;
+  });
+  double all_mm3 = 0.0;
+  Json list = Json::array();
+  for (const verify::OpenPart& part : kept) {
+    all_mm3 += part.bridge.volume_mm3;
+    list.push_back({{"at_mm", to_json(part.bridge.at_mm)}, {"volume_mm3", part.bridge.volume_mm3}});
+  }
+  made.mesh.details["kept_bridges"] = std::move(list);
+  const std::string text =
+      std::to_string(kept.size()) + (kept.size() == 1 ? " part of " : " parts of ") +
+      voxel::rounded(all_mm3) + " mm\u00b3 " + (kept.size() == 1 ? "hangs on a neck" : "hang on necks") +
+      " thinner than " + std::to_string(verify::bridge_voxels) + " voxels, the largest near " +
+      voxel::rounded(kept.front().bridge.at_mm) +
+      ": both kernels keep what one of them joins; 'cut_bridges_mm' of the step cuts a neck";
+  made.findings.push_back(text);
+  const double whole_mm3 = static_cast<double>(made.voxel.octree.voxel_count()) *
+                           made.voxel.octree.universe().lattice().voxel_mm3();
+  if (all_mm3 > little * whole_mm3) made.caveats.push_back({voxel::Verdict::Warn, text});
 }
 
 void add_part_outside(const voxel::Box& universe_mm, Object& made) {

@@ -6,6 +6,7 @@
 #include "planner/table/bench.h"
 #include "planner/table/object.h"
 #include "planner/table/operation.h"
+#include "verify/necks.h"
 
 // What forbids an object's certificate a PASS however well both kernels agree: samples that nobody measured,
 // parts that left the universe, and doubts about the objects that it was made of.
@@ -29,6 +30,11 @@ void add_caveats(const MadeOf& from, Object& made);
 /// Adds to the audit of a scan that an action made of others what theirs say of samples that were no finite
 /// numbers, unless it says so itself.
 void keep_unmeasured(const Action& action, const std::vector<ScanRecord>& records, ScanRecord& made);
+
+/// Adds a finding with the parts that stay in an object because one kernel joins them by a thin neck, but for
+/// those that are still open; a WARN where they are over a twentieth of it. Their places are details, too.
+void add_kept_parts(std::vector<verify::OpenPart> kept, const std::vector<verify::OpenPart>& open,
+                    Object& made);
 
 /// Adds a finding, and a FAIL with the volume, where a part of an object lies outside of the universe, a box
 /// in LPS millimetres. Tools and objects of masks alone end there by their nature. Preconditions: the mesh's

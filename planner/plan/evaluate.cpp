@@ -30,6 +30,7 @@
 #include "planner/table/fault.h"
 #include "planner/table/number_format.h"
 #include "planner/table/same_patient.h"
+#include "verify/places.h"
 #include "verify/witness.h"
 #include "voxel/scan/read_image_stack.h"
 #include "voxel/scan/read_scene.h"
@@ -329,6 +330,50 @@ class Evaluator {
       options_.cache->keep(keys_.at(step.id), {loaded_.at(step.id), result_.scans.back()});
   }
 
+  /// Both kernels' answers to a step, and what bounds their difference.
+  Object answer(const Step& step, const void* value, Object object) {
+    const Operation& operation = step.action.operation();
+    if (operation.voxel)
+      operation.voxel(value,
+                      {result_.universe,
+                       result_.objects,
+                       scan_,
+                       result_.timings,
+                       {options_.stop, {}},
+                       plan_.folder,
+                       result_.scans},
+                      object.voxel);
+    object.findings.insert(object.findings.end(), object.voxel.findings.begin(), object.voxel.findings.end());
+    if (with_mesh_.contains(step.id)) make_mesh(step, value, object);
+    if (!operation.voxel) voxelise(object);
+    operation.bound(value, {result_.universe, result_.objects, scan_}, object);
+    object.bound.shift_mm += object.mesh.shift_mm;
+    take_within(object);
+    return object;
+  }
+
+  /// The same of connected parts that are chosen. A neck thinner than a few voxels is there or not by chance,
+  /// so parts that one kernel alone joins by such a neck stay in both.
+  Object agreed_answer(const Step& step, const void* value, const Object& begun) {
+    constexpr int most_rounds = 4;
+    Object made = answer(step, value, begun);
+    std::vector<verify::OpenPart> kept, open;
+    std::vector<glm::dvec3> also_mm;
+    for (int round = 0; made.mesh.within; ++round) {
+      const Stopwatch watch(result_.timings, "bridges");
+      open = verify::open_parts(made.voxel.octree, *made.mesh.within, made.witness);
+      if (open.empty() || round == most_rounds) break;
+      for (const verify::OpenPart& part : open)
+        also_mm.insert(also_mm.end(), part.part_mm.begin(), part.part_mm.end());
+      const std::shared_ptr<void> more = step.action.operation().with_parts(value, also_mm);
+      if (!more) break;
+      kept.insert(kept.end(), open.begin(), open.end());
+      made = answer(step, more.get(), begun);
+    }
+    add_kept_parts(std::move(kept), open, made);
+    return made;
+  }
+
   /// Makes an object in both kernels and certifies it.
   void make(const Step& step) {
     const Operation& operation = step.action.operation();
@@ -346,23 +391,9 @@ class Evaluator {
     const void* value = settled ? settled.get() : step.action.value();
     object.is_tool = operation.is_tool;
     object.definition = operation.definition(value, result_.objects);
-    if (operation.voxel)
-      operation.voxel(value,
-                      {result_.universe,
-                       result_.objects,
-                       scan_,
-                       result_.timings,
-                       {options_.stop, {}},
-                       plan_.folder,
-                       result_.scans},
-                      object.voxel);
-    object.findings.insert(object.findings.end(), object.voxel.findings.begin(), object.voxel.findings.end());
-    if (with_mesh_.contains(step.id)) make_mesh(step, value, object);
+    object = operation.with_parts && options_.certify ? agreed_answer(step, value, object)
+                                                      : answer(step, value, object);
     object.mesh.details.update(told);
-    if (!operation.voxel) voxelise(object);
-    operation.bound(value, {result_.universe, result_.objects, scan_}, object);
-    object.bound.shift_mm += object.mesh.shift_mm;
-    take_within(object);
     object.voxel.measures = voxel::measure(object.voxel.octree);
     const MadeOf made_of{step.action, result_.objects, scan_, result_.scans};
     add_caveats(made_of, object);

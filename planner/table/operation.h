@@ -64,6 +64,9 @@ struct Operation {
   /// What the verb does where its answer is not the object that both kernels make; its objects are paths of
   /// files.
   std::function<FileAnswer(const void* value, const FileBench& bench)> on_files;
+  /// The same value where the parts that hold these points, LPS, stay, too; null where it chooses no parts in
+  /// both kernels.
+  std::function<std::shared_ptr<void>(const void* value, const std::vector<glm::dvec3>& also_mm)> with_parts;
   /// Fields that only the verb has.
   std::vector<Field> verb_fields;
   /// The verb has the options that say how a scan is read.
@@ -118,6 +121,14 @@ class Describe {
   Describe&& settle(Value (*part)(const Value&, const SettleBench&)) && {
     entry_.settle = [part](const void* value, const SettleBench& bench) -> std::shared_ptr<void> {
       return std::make_shared<Value>(part(*static_cast<const Value*>(value), bench));
+    };
+    return std::move(*this);
+  }
+  Describe&& with_parts(std::optional<Value> (*part)(const Value&, const std::vector<glm::dvec3>&)) && {
+    entry_.with_parts = [part](const void* value,
+                               const std::vector<glm::dvec3>& also_mm) -> std::shared_ptr<void> {
+      std::optional<Value> made = part(*static_cast<const Value*>(value), also_mm);
+      return made ? std::make_shared<Value>(std::move(*made)) : nullptr;
     };
     return std::move(*this);
   }

@@ -364,12 +364,12 @@ TEST(Places, OfPartsALumpBeyondAThinNeckIsABridgeAndBeyondAThickOneOrNoneAnError
   };
   const Places thin = judged(20.5, 2), thick = judged(20.5, 5), apart = judged(22.5, 2);
   EXPECT_EQ(thin.voxel_count, 0U);
-  ASSERT_EQ(thin.bridges.size(), 1U);
-  EXPECT_EQ(thin.bridges.front().volume_mm3, 6.0 * 10.0 * 10.0 + 4.0 * 2.0 * 2.0);
-  EXPECT_LT(glm::distance(thin.bridges.front().at_mm, glm::dvec3(21.0, 12.5, 12.5)), 2.0);
+  ASSERT_EQ(thin.open.size(), 1U);
+  EXPECT_EQ(thin.open.front().bridge.volume_mm3, 6.0 * 10.0 * 10.0 + 4.0 * 2.0 * 2.0);
+  EXPECT_LT(glm::distance(thin.open.front().bridge.at_mm, glm::dvec3(21.0, 12.5, 12.5)), 2.0);
   for (const Places* error : {&thick, &apart}) {
     EXPECT_GE(error->voxel_count, 600U);
-    EXPECT_TRUE(error->bridges.empty());
+    EXPECT_TRUE(error->open.empty());
   }
 }
 
@@ -412,9 +412,9 @@ TEST_F(LumpOnAThread, IsABridgeAndWithoutTheThreadAnError) {
   const Places held = judged(both_parts, body_mesh_, witness_of_parts(whole(true))),
                loose = judged(both_parts, body_mesh_, witness_of_parts(whole(false)));
   EXPECT_EQ(held.voxel_count, 0U);
-  ASSERT_EQ(held.bridges.size(), 1U);
-  EXPECT_EQ(held.bridges.front().volume_mm3, 600.0);
-  EXPECT_LT(glm::distance(held.bridges.front().at_mm, glm::dvec3(20.0, 12.0, 12.0)), 2.0);
+  ASSERT_EQ(held.open.size(), 1U);
+  EXPECT_EQ(held.open.front().bridge.volume_mm3, 600.0);
+  EXPECT_LT(glm::distance(held.open.front().bridge.at_mm, glm::dvec3(20.0, 12.0, 12.0)), 2.0);
   EXPECT_EQ(loose.voxel_count, 600U);
 }
 
@@ -423,13 +423,13 @@ TEST_F(LumpOnAThread, StaysOpenInWhatIsCutFromTheChosenPartsAndMoved) {
   const Expression lump_alone = Expression(lump_) & Expression(region);
   const Witness carried_on = both(witness_of_parts(whole(true), chosen()), witness_of_box(region)),
                 unknown = both(witness_of_parts(whole(true)), witness_of_box(region));
-  EXPECT_TRUE(judged(lump_alone, brep::Solid(), carried_on).bridges.size() == 1U);
+  EXPECT_TRUE(judged(lump_alone, brep::Solid(), carried_on).open.size() == 1U);
   EXPECT_EQ(judged(lump_alone, brep::Solid(), carried_on).voxel_count, 0U);
   EXPECT_EQ(judged(lump_alone, brep::Solid(), unknown).voxel_count, 600U) << "nobody knows that it was open";
   const glm::dmat4 motion = voxel::moved_from_still({{-6.3, 1.4, 0.6}, 10.0, {1, 0.2, 0}, {27, 15, 15}});
   const Places moved = judged(voxel::moved(lump_alone, motion), brep::Solid(), carried(carried_on, motion));
   EXPECT_EQ(moved.voxel_count, 0U);
-  ASSERT_EQ(moved.bridges.size(), 1U);
+  ASSERT_EQ(moved.open.size(), 1U);
   // Of the body, on which the choices agree, nothing is open.
   const Places lost = judged(Expression(body_), brep::Solid(), witness_of_parts(whole(true), chosen()));
   EXPECT_GT(lost.voxel_count, 1000U);
@@ -438,10 +438,10 @@ TEST_F(LumpOnAThread, StaysOpenInWhatIsCutFromTheChosenPartsAndMoved) {
 TEST_F(LumpOnAThread, IsAnErrorWhereThePlanHasDecided) {
   const Places open =
       judged(Expression(body_) | Expression(lump_), body_mesh_, witness_of_parts(whole(true), chosen()));
-  ASSERT_EQ(open.bridges.size(), 1U);
+  ASSERT_EQ(open.open.size(), 1U);
   const voxel::Box region{{22.2, 5.2, 5.2}, {31.2, 25.2, 25.2}};
   const Witness decided =
-      both(witness_of_parts(whole(true), chosen({open.bridges.front().at_mm})), witness_of_box(region));
+      both(witness_of_parts(whole(true), chosen({open.open.front().bridge.at_mm})), witness_of_box(region));
   EXPECT_EQ(judged(Expression(lump_) & Expression(region), brep::Solid(), decided).voxel_count, 600U);
 }
 

@@ -175,7 +175,6 @@ TEST(FirstGuessOfARealHead, SeeksNoArchFromAFaceThatTheScanCuts) {
   const SkullGuess guess = guess_landmarks(skull.drawn, skull.surface);
   const auto found = by_name(guess);
   const std::map<std::string, std::string> missing(guess.missing.begin(), guess.missing.end());
-  EXPECT_TRUE(found.contains("orbitale_right"));
   for (const char* name : {"ans", "zygoma_left", "zygoma_right", "gonion_left", "gonion_right"})
     EXPECT_TRUE(missing.contains(name)) << name;
 }
