@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "voxel/scan/audit.h"
+#include "voxel/scan/character_set.h"
 #include "voxel/scan/identity.h"
 #include "voxel/scan/inflate.h"
 #include "voxel/space/file_text.h"
@@ -452,6 +453,32 @@ int stated_short(const DicomFile& file, DicomTag tag) {
   return file.unsigned_short(tag).value_or(0);
 }
 
+/// What a header says that makes its image no plain measurement of a person.
+std::string doubts_of(const DicomFile& file) {
+  std::string doubts;
+  const auto add = [&](const std::string& doubt) { doubts += (doubts.empty() ? "" : "; ") + doubt; };
+  std::string kinds = file.text(0x00080008) + "\\" + file.text(0x00089207);
+  for (const DicomTag groups : {shared_groups_tag, frame_groups_tag})
+    for (const DicomFile& group : file.items(groups))
+      for (const DicomTag type : {DicomTag{0x00189329}, DicomTag{0x00189226}, DicomTag{0x00189341}})
+        for (const DicomFile& item : group.items(type))
+          kinds += "\\" + item.text(0x00089007) + "\\" + item.text(0x00089207);
+  kinds += "\\";
+  for (const char* kind : {"MIP", "MAX_IP", "MIN_IP", "MINIP", "PROJECTION IMAGE"})
+    if (kinds.find("\\" + std::string(kind) + "\\") != std::string::npos)
+      add(std::string("ImageType or FrameType ") + kind +
+          ": a projection through several slices, in which bone is thicker than it is");
+  if (const std::string name = file.text(0x00100010), set = file.text(character_set_tag);
+      !utf8_of(set, name) && std::any_of(name.begin(), name.end(), [](char c) { return (c & 0x80) != 0; }))
+    add("SpecificCharacterSet '" + set + "' does not fit the patient's name, whose letters are shown as ?");
+  if (file.text(0x00280301) == "YES") add("BurnedInAnnotation YES: letters in the pixels look like bone");
+  if (file.text(0x20500020) == "INVERSE")
+    add("PresentationLUTShape INVERSE: the stored values may be inverted");
+  if (file.text(0x00102210) == "QUADRUPED")
+    add("AnatomicalOrientationType QUADRUPED: left, front and head are those of an animal on four feet");
+  return doubts;
+}
+
 /// CT Image, Enhanced CT Image and Legacy Converted Enhanced CT Image (DICOM PS3.4, B.5).
 bool is_ct_class(const std::string& class_uid) {
   return class_uid == "1.2.840.10008.5.1.4.1.1.2" || class_uid == "1.2.840.10008.5.1.4.1.1.2.1" ||
@@ -494,6 +521,7 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
   slice.series_description = file.readable_text(0x0008103e);
   slice.modality = file.readable_text(0x00080060);
   slice.patient_orientation = file.text(0x00200020);
+  slice.doubts = doubts_of(file);
   if (file.contradicts_syntax())
     slice.assumed_coding =
         "value representations as the attributes show them, which contradict the transfer syntax";

@@ -89,6 +89,7 @@ struct DicomSlice {
   std::optional<double> location_mm;   ///< SliceLocation, of no stated origin
   std::string patient_orientation;     ///< PatientOrientation: "L\\P"
   std::string assumed_coding;          ///< how the file's coding was read against its header, for people
+  std::string doubts;                  ///< what the header says against a measurement, for people
   std::string assumed_modality;        ///< what the header states where the images' class contradicts it
   std::string assumed_place;           ///< how a frame without a position of its own was placed, for people
   std::string excess_pixels;           ///< pixel data beyond what the header counts, for people

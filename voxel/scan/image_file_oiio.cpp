@@ -148,6 +148,17 @@ void turn_upright(StoredImage& image) {
   image.height = static_cast<int>(rows);
 }
 
+/// Takes what a page states about its pixels.
+void take_statements(const OIIO::ImageSpec& spec, std::string_view format, StoredImage& image) {
+  image.pixels_per_unit = static_cast<double>(spec.get_float_attribute("XResolution", 0.0f));
+  const std::string unit = spec.get_string_attribute("ResolutionUnit");
+  const double mm = unit == "in" || unit == "inch" ? 25.4 : unit == "cm" ? 10.0 : unit == "m" ? 1000.0 : 0.0;
+  if (mm > 0.0) image.pixels_per_mm = image.pixels_per_unit / mm;
+  image.is_white_zero = format == "tiff" && spec.get_int_attribute("tiff:PhotometricInterpretation", 1) == 0;
+  image.is_lossy = format == "jpeg" || spec.get_string_attribute("compression") == "jpeg";
+  image.description = spec.get_string_attribute("ImageDescription");
+}
+
 /// Reads the current page. Returns the reason if it cannot be a slice, else an empty text.
 std::string read_page(OIIO::ImageInput& in, int page, std::uint32_t largest_sample, std::size_t most_bytes,
                       StoredImage& image) {
@@ -180,6 +191,7 @@ std::string read_page(OIIO::ImageInput& in, int page, std::uint32_t largest_samp
     return "a colour image; a scan is grey";
   image.bytes = reading.take(pixels, channels, largest_sample > 0 ? largest_sample : largest_sample_of(spec));
   image.orientation = spec.get_int_attribute("Orientation", 1);
+  take_statements(spec, format, image);
   turn_upright(image);
   return {};
 }

@@ -5,12 +5,16 @@
 #include <array>
 #include <bit>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <optional>
 #include <set>
 
 #include "voxel/scan/image_file.h"
 #include "voxel/scan/read_raw.h"
 #include "voxel/space/file_text.h"
+#include "voxel/space/printed.h"
+#include "voxel/volume/frame_words.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -122,6 +126,109 @@ std::string skipped(const std::vector<fs::path>& files) {
          ": if slices are missing there, those above them lie too low";
 }
 
+/// The number behind a key in a description: "spacing=1.5", "SizeT=\"7\"".
+std::optional<double> number_behind(const std::string& text, const std::string& key) {
+  std::size_t at = text.find(key);
+  if (at == std::string::npos) return std::nullopt;
+  at += key.size();
+  if (at < text.size() && text[at] == '"') ++at;
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data() + at, text.data() + text.size(), number);
+  return error == std::errc() ? std::optional(number) : std::nullopt;
+}
+
+/// What ImageJ and OME write into a picture's description, and the picture's own resolution.
+struct StatedPicture {
+  std::optional<double> pixel_mm, slice_mm;
+  std::string further_axis;  ///< "7 times"
+};
+StatedPicture stated_by(const StoredImage& image) {
+  const std::string& text = image.description;
+  StatedPicture stated;
+  const auto unit_mm = [&](const std::string& key) -> std::optional<double> {
+    const std::size_t at = text.find(key);
+    if (at == std::string::npos) return std::nullopt;
+    std::string_view word = std::string_view(text).substr(at + key.size());
+    if (word.starts_with('"')) word.remove_prefix(1);
+    word = word.substr(0, word.find_first_of(" \"\r\n"));
+    const std::optional<LengthUnit> unit = length_unit(std::string(word));
+    return unit ? std::optional(unit->mm) : std::nullopt;
+  };
+  const auto add_axis = [&](const char* key, const char* what) {
+    if (const auto count = number_behind(text, key); count && *count > 1.0 && stated.further_axis.empty())
+      stated.further_axis = print("%g %s", *count, what);
+  };
+  if (text.starts_with("ImageJ=")) {
+    if (const auto mm = unit_mm("\nunit=")) {
+      if (image.pixels_per_unit > 0.0) stated.pixel_mm = *mm / image.pixels_per_unit;
+      if (const auto spacing = number_behind(text, "\nspacing=")) stated.slice_mm = *mm * *spacing;
+    }
+    add_axis("\nframes=", "times");
+    add_axis("\nchannels=", "channels");
+  } else if (text.find("<OME") != std::string::npos) {
+    const double mm = unit_mm("PhysicalSizeXUnit=").value_or(1e-3);  // micrometres, by OME's definition
+    if (const auto size = number_behind(text, "PhysicalSizeX=")) stated.pixel_mm = *size * mm;
+    const double slice_mm = unit_mm("PhysicalSizeZUnit=").value_or(1e-3);
+    if (const auto size = number_behind(text, "PhysicalSizeZ=")) stated.slice_mm = *size * slice_mm;
+    add_axis("SizeT=", "times");
+    add_axis("SizeC=", "channels");
+  }
+  // Print resolutions that programs write by default state no pixel's size.
+  const double per_inch = 25.4 * image.pixels_per_mm;
+  constexpr std::array<double, 6> of_print{72.0, 96.0, 100.0, 150.0, 300.0, 600.0};
+  const bool is_of_print = std::any_of(of_print.begin(), of_print.end(),
+                                       [&](double usual) { return std::abs(per_inch - usual) < 0.1; });
+  if (!stated.pixel_mm && image.pixels_per_mm > 0.0 && !is_of_print)
+    stated.pixel_mm = 1.0 / image.pixels_per_mm;
+  return stated;
+}
+
+/// Holds what pictures state about themselves against how they are read.
+class PictureAudit {
+ public:
+  void add(const StoredImage& image) {
+    ++count_;
+    white_zero_ += image.is_white_zero;
+    lossy_ += image.is_lossy;
+    StatedPicture stated = stated_by(image);
+    if (count_ == 1) first_ = stated;
+    differs_ = differs_ || stated.pixel_mm.has_value() != first_.pixel_mm.has_value() ||
+               (stated.pixel_mm && !is_near(*stated.pixel_mm, *first_.pixel_mm));
+  }
+  void report(Scene& scene) const {
+    const auto warn = [&](const char* check, std::string text) {
+      scene.audit.push_back({check, Verdict::Warn, std::move(text)});
+    };
+    const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
+    if (first_.pixel_mm && !is_near(*first_.pixel_mm, spacing_mm.x))
+      warn("picture_spacing",
+           print("the pictures state pixels of %.6g mm, and %.6g mm is taken as --spacing gives it",
+                 *first_.pixel_mm, spacing_mm.x));
+    if (first_.slice_mm && !is_near(*first_.slice_mm, spacing_mm.z))
+      warn("picture_spacing",
+           print("the pictures state slices %.6g mm apart, and %.6g mm is taken as --spacing gives it",
+                 *first_.slice_mm, spacing_mm.z));
+    if (differs_)
+      warn("picture_spacing", "the pictures state different sizes of their pixels: one is taken for all");
+    if (!first_.further_axis.empty())
+      warn("picture_axes",
+           "the pictures state " + first_.further_axis + ", which are read as slices: export one volume");
+    if (white_zero_ > 0)
+      warn("polarity",
+           print("%zu of %zu pictures state that 0 is white (WhiteIsZero): their numbers are taken as "
+                 "stored, so that bright and dark may be exchanged",
+                 white_zero_, count_));
+    if (lossy_ > 0)
+      warn("compression", print("%zu of %zu pictures lost values by JPEG's compression", lossy_, count_));
+  }
+
+ private:
+  static bool is_near(double a, double b) { return std::abs(a - b) <= 0.01 * b; }
+  std::size_t count_ = 0, white_zero_ = 0, lossy_ = 0;
+  bool differs_ = false;
+  StatedPicture first_;
+};
+
 }  // namespace
 
 std::vector<fs::path> image_files(const fs::path& path) {
@@ -143,6 +250,7 @@ Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
   glm::ivec3 dims(0);
   SampleType type = SampleType::UInt8;
   std::set<int> orientations;
+  PictureAudit statements;
   for (std::size_t i = 0; i < files.size(); ++i) {
     options.progress.at(static_cast<double>(i) / static_cast<double>(files.size()));
     for (const StoredImage& image : read_images(files[i])) {
@@ -155,6 +263,7 @@ Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
                              std::to_string(dims.x) + " x " + std::to_string(dims.y) +
                              ": put each stack into a folder of its own");
       orientations.insert(image.orientation);
+      statements.add(image);
       bytes.insert(bytes.end(), image.bytes.begin(), image.bytes.end());
       ++dims.z;
     }
@@ -176,6 +285,7 @@ Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
                                      ": they were turned upright by it"
                                : "the pictures state different orientations: each was turned upright by its "
                                  "own; check that all slices lie alike"});
+  statements.report(scene);
   StoredSamples stored{type, std::endian::native == std::endian::big};
   take_bytes(bytes, stored, scene);
   return scene;

@@ -13,6 +13,7 @@
 #include "voxel/scan/audit.h"
 #include "voxel/scan/label_names.h"
 #include "voxel/scan/label_overlaps.h"
+#include "voxel/scan/neighbour_audit.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
 #include "voxel/space/printed.h"
@@ -241,6 +242,16 @@ void take_padding_below_all(std::optional<double> stated, Scene& scene) {
   }
 }
 
+/// Holds a CT's slices against their neighbours, as those of a DICOM series are.
+void audit_slices(Scene& scene) {
+  const glm::ivec3& dims = scene.lattice.dims;
+  std::vector<std::string> names;
+  for (int k = 0; k < dims.z; ++k) names.push_back("slice " + std::to_string(k + 1));
+  // Padding lies below every measured sample, and air is -1000.
+  constexpr double floor = -1100.0;
+  audit_neighbours(scene.samples, {dims.x, dims.y}, names, floor, scene.audit);
+}
+
 }  // namespace
 
 Scene read_volume(const fs::path& path, VolumeFormat format, const ReadOptions& options) {
@@ -265,7 +276,9 @@ Scene read_volume(const fs::path& path, VolumeFormat format, const ReadOptions& 
   const SmallNumbers small = read_samples(path, header.samples, options, scene);
   take_padding_below_all(header.padding, scene);
   if (!take_segments(segments, scene)) take_meaning(header, small, scene);
-  if (scene.meaning == Meaning::Hounsfield) take_unstated_padding(scene);
+  if (scene.meaning != Meaning::Hounsfield) return scene;
+  take_unstated_padding(scene);
+  audit_slices(scene);
   return scene;
 }
 

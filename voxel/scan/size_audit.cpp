@@ -14,13 +14,13 @@ namespace {
 
 // Lengths in mm. Scanners: the widest bore in use is 900 mm and reconstructs 820; a whole body is two metres
 // long. Pixels of CT: 1000 mm over 256 at the coarsest. Organs: an inner ear is reconstructed to 40 mm and
-// more, over 256 pixels and more. Heads: a newborn's is 90 mm wide.
+// more, over 256 pixels and more; halved twice it has 64. Heads: a newborn's is 90 mm wide.
 constexpr double widest_field_mm = 1000.0, longest_field_mm = 2500.0;
 constexpr double coarsest_ct_mm = 5.0, finest_pixel_mm = 0.05;
 constexpr double smallest_field_mm = 10.0, smallest_fine_field_mm = 36.0;
-constexpr int fine_side_px = 128;
+constexpr int fine_side_px = 64;
 constexpr double smallest_body_mm = 70.0;
-constexpr int fine_body_px = 100;
+constexpr int fine_body_px = 60;
 
 /// The width that a field should have, by which a factor is chosen: of a head.
 constexpr double usual_field_mm = 250.0;
@@ -52,9 +52,11 @@ std::optional<glm::ivec2> body_px(const Scene& scene) {
       scene.samples);
 }
 
-/// The power of ten that brings a width nearest to that of a head, of those that make a scanner's pixel.
+/// The ratio of two units, millimetres, centimetres, inches, metres or micrometres, that brings a width
+/// nearest to that of a head, of those that make a scanner's pixel.
 double factor_to(double width_mm, double pixel_mm) {
-  constexpr std::array<double, 8> factors = {1e-4, 1e-3, 1e-2, 1e-1, 10.0, 100.0, 1000.0, 1e4};
+  constexpr std::array<double, 12> factors = {1e-4, 1e-3,       1e-2, 1e-1,     10.0, 100.0,
+                                              1e3,  1.0 / 25.4, 25.4, 1 / 2.54, 2.54, 1e4};
   const auto cost = [&](double factor) {
     const bool is_pixel = factor * pixel_mm >= finest_pixel_mm && factor * pixel_mm <= coarsest_ct_mm;
     return std::abs(std::log(factor * width_mm / usual_field_mm)) + (is_pixel ? 0.0 : 1e3);
@@ -84,7 +86,7 @@ std::optional<Finding> size_finding(const Scene& scene) {
               field_mm.z, spacing_mm.z)};
   } else if (is_ct && std::min(spacing_mm.x, spacing_mm.y) > coarsest_ct_mm) {
     doubt = print("pixels of %.3g mm are coarser than any CT's", spacing_mm.x);
-  } else if ((wide_mm < smallest_field_mm && !scene.modality.empty()) ||
+  } else if (wide_mm < smallest_field_mm ||
              (wide_mm < smallest_fine_field_mm && std::min(dims.x, dims.y) >= fine_side_px)) {
     doubt = print("the images are %.3g x %.3g mm, smaller than any organ", field_mm.x, field_mm.y);
   } else if (body && std::min(body->x, body->y) >= fine_body_px) {

@@ -284,6 +284,9 @@ class StackAudit {
   }
 
   void audit_coding() {
+    if (const Noted doubts = noted(&DicomSlice::doubts); !doubts.names.empty())
+      find("image_kind", Verdict::Warn,
+           doubts.text + ", in " + slices(doubts.names.size()) + ": " + listed(doubts.names), doubts.names);
     if (const Noted coding = noted(&DicomSlice::assumed_coding); !coding.names.empty())
       find("coding", Verdict::Warn,
            slices(coding.names.size()) + " are read with " + coding.text + ": " + listed(coding.names),

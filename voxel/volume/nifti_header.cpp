@@ -152,6 +152,7 @@ class NiftiReader {
   }
 
  private:
+  static constexpr int most_code = 5;             ///< template coordinates of another kind
   static constexpr std::size_t most_read = 4096;  ///< the header, and our own extension behind it
 
   void read_fields() {
@@ -263,6 +264,11 @@ class NiftiReader {
   void take_geometry(std::size_t axes) {
     StatedGeometry& geometry = header_.geometry;
     const PatientFrame ras = *patient_frame("RAS");
+    for (const auto& [name, code] : {std::pair("sform", fields_.sform_code), {"qform", fields_.qform_code}})
+      if (code < 0 || code > most_code)
+        header_.audit.push_back({"form_code", Verdict::Warn,
+                                 print("the %s has the code %d, which NIfTI does not define: it is %s", name,
+                                       code, code < 0 ? "taken as none" : "taken as of the patient")});
     const bool has_sform = fields_.sform_code > 0 && is_sound_sform(axes);
     if (fields_.sform_code > 0 && !has_sform) {
       if (fields_.qform_code <= 0)
@@ -296,6 +302,14 @@ class NiftiReader {
       const glm::dvec3 centre = 0.5 * glm::dvec3(geometry.dims - 1) * length;
       geometry.file_from_voxel[3] = glm::dvec4(-centre, 1.0);
     }
+    const int code = has_sform ? fields_.sform_code : fields_.qform_code;
+    if (code == NIFTI_XFORM_TALAIRACH || code == NIFTI_XFORM_MNI_152)
+      header_.audit.push_back({"form_code", Verdict::Warn,
+                               "places are " + name_of_code(code) +
+                                   ": lengths and volumes are the template's, not the patient's"});
+    if (!has_sform && fields_.qform_code > 0 && fields_.pixdim[0] == 0.0)
+      header_.audit.push_back(
+          {"qfac", Verdict::Warn, "pixdim[0] is 0 and does not state the third axis' side: 1 is assumed"});
     if (axes < 3 && !third_is_missing_)
       header_.audit.push_back(
           {"slice_spacing", Verdict::Pass, "a single slice, whose thickness the header states"});
@@ -477,6 +491,12 @@ class NiftiReader {
       if (gap != std::string::npos) header_.modality = trimmed(rest.substr(gap));
     } else if (fields_.intent_code == NIFTI_INTENT_LABEL) {
       header_.meaning = "label";
+    } else if (fields_.intent_code >= NIFTI_FIRST_STATCODE && fields_.intent_code <= NIFTI_LAST_STATCODE) {
+      header_.meaning = "raw";
+      header_.audit.push_back({"intent", Verdict::Warn,
+                               print("the file states that its values are a statistic (intent %d): they are "
+                                     "taken as raw, not as Hounsfield units",
+                                     fields_.intent_code)});
     }
   }
 

@@ -186,7 +186,19 @@ class NrrdReader {
 
   void take_units() {
     const char* const name = has_directions_ ? "spaceunits" : "units";
-    const std::optional<std::string> text = text_.field(name);
+    const std::optional<std::string> text = text_.field(name),
+                                     unused = text_.field(has_directions_ ? "units" : "spaceunits");
+    const auto millimetres = [](const std::optional<std::string>& units) {
+      const std::vector<std::string> words = units ? words_in(*units) : std::vector<std::string>{};
+      const std::optional<LengthUnit> unit = words.empty() ? std::nullopt : length_unit(words.front());
+      return unit ? unit->mm : 0.0;
+    };
+    if (millimetres(unused) > 0.0 && millimetres(unused) != (text ? millimetres(text) : 1.0))
+      header_.audit.push_back({"length_unit", Verdict::Warn,
+                               std::string("the file states ") +
+                                   (has_directions_ ? "units " : "space units ") + *unused + ", which its " +
+                                   (has_directions_ ? "directions do" : "spacings do") +
+                                   " not use, and they contradict the unit that is taken"});
     if (!text) return;
     std::vector<std::string> words = has_directions_ ? words_in(*text) : words_an_axis(name);
     if (!has_directions_) {
@@ -242,9 +254,23 @@ class NrrdReader {
     else
       warn_of_origin();
     warn_of_other_spacings();
+    warn_of_ends();
     if (text_.field("measurementframe"))
       header_.audit.push_back({"measurement_frame", Verdict::Pass,
                                "the file's measurement frame is of vectors and tensors; a scan has none"});
+  }
+
+  /// What axes state of their own beside directions has no meaning in NRRD: it is not used.
+  void warn_of_ends() {
+    for (const char* name : {"axismins", "axismaxs"}) {
+      const std::vector<double> ends = numbers_an_axis(name);
+      if (std::none_of(ends.begin(), ends.end(), [](double end) { return std::isfinite(end); })) continue;
+      header_.audit.push_back(
+          {"origin", Verdict::Warn,
+           "the file states where its axes begin or end (axis mins, axis maxs) beside space "
+           "origin and directions, which are taken"});
+      return;
+    }
   }
 
   /// Spacings beside directions have no meaning in NRRD; where they differ, one of both is wrong.
@@ -289,6 +315,15 @@ class NrrdReader {
       const std::string center = centers.empty() ? "" : lower_case(centers[axis]);
       const bool is_node = center == "node";
       double spacing = spacings[axis];
+      if (const double stretch = highs[axis] - lows[axis],
+          cells = geometry.dims[static_cast<int>(i)] - (is_node ? 1 : 0);
+          std::isfinite(spacing) && std::isfinite(stretch) && cells > 0.0 &&
+          std::abs(stretch / cells - spacing) > 1e-3 * std::abs(spacing) &&
+          std::abs(stretch / (cells + (is_node ? 1 : -1)) - spacing) > 1e-3 * std::abs(spacing))
+        header_.audit.push_back(
+            {"spacing", Verdict::Warn,
+             print("axis %zu has a spacing of %.6g and ends that make it %.6g: the spacing is taken",
+                   axis + 1, spacing, stretch / cells)});
       if (!std::isfinite(spacing)) {
         const double cells = geometry.dims[static_cast<int>(i)] - (is_node ? 1 : 0);
         spacing = cells > 0.0 ? (highs[axis] - lows[axis]) / cells : std::numeric_limits<double>::quiet_NaN();
@@ -394,6 +429,7 @@ class NrrdReader {
     };
     header_.meaning = key(meaning_key);
     header_.modality = key(modality_key);
+    if (header_.modality.empty()) header_.modality = key("DICOM_0008_0060");
     if (text_.keys.contains(padding_key)) take_padding(key(padding_key), header_);
     const std::optional<std::string> unit = text_.field("sampleunits");
     if (!unit) return;

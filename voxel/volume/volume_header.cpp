@@ -106,6 +106,11 @@ glm::ivec3 dims_of(const fs::path& path, const std::vector<double>& lengths) {
 Finding rescale_finding(const StoredSamples& stored, const std::string& says) {
   if (!stored.is_rescaled())
     return {"rescale", Verdict::Pass, "values are the stored numbers (" + says + ")"};
+  constexpr double least_step = 0x1p-24;  // what single precision keeps beside 1
+  if (std::abs(stored.slope) < least_step * std::abs(stored.intercept))
+    return {"rescale", Verdict::Warn,
+            print("values are %.9g * stored + %.9g (", stored.slope, stored.intercept) + says +
+                "): beside such an intercept single precision loses the steps of the stored numbers"};
   return {"rescale", Verdict::Pass,
           print("values are %.9g * stored %c %.9g (", stored.slope, stored.intercept < 0.0 ? '-' : '+',
                 std::abs(stored.intercept)) +

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <map>
 #include <zlib.h>
 
 #include "tests/voxel/linear_scene.h"
@@ -138,6 +139,44 @@ TEST(ReadImageStack, TurnsPicturesUprightByTheOrientationThatTheyState) {
   write_turned(folder / "a1.tif", 1);
   write_turned(folder / "a2.tif", 3);
   EXPECT_EQ(verdict(read_scene(folder.path(), spaced()), "picture_orientation"), Verdict::Warn);
+}
+
+/// The lines that a stack of pages gets whose description and resolution are as given.
+std::map<std::string, std::string> lines_of_picture(const std::string& description, float per_cm) {
+  const ScratchFolder folder;
+  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create("a.tif");
+  OIIO::ImageSpec spec(dims.x, dims.y, 1, OIIO::TypeDesc::INT16);
+  if (!description.empty()) spec.attribute("ImageDescription", description);
+  if (per_cm > 0.0f) {
+    spec.attribute("XResolution", per_cm);
+    spec.attribute("YResolution", per_cm);
+    spec.attribute("ResolutionUnit", "cm");
+  }
+  EXPECT_TRUE(out && out->open((folder / "a.tif").string(), spec));
+  EXPECT_TRUE(out->write_image(OIIO::TypeDesc::INT16, page<std::int16_t>(0, 0).data()) && out->close());
+  std::map<std::string, std::string> found;
+  for (const Finding& line : read_scene(folder / "a.tif", spaced()).audit)
+    if (line.verdict == Verdict::Warn) found[line.check] += line.detail;
+  return found;
+}
+
+TEST(ReadImageStack, HoldsWhatPicturesStateAgainstHowTheyAreRead) {
+  // The spacing given is 0.5 x 0.75 x 1.25 mm.
+  EXPECT_FALSE(lines_of_picture("", 20.0f).contains("picture_spacing"));
+  EXPECT_NE(lines_of_picture("", 25.0f)["picture_spacing"].find("0.4 mm"), std::string::npos);
+  const std::string image_j = "ImageJ=1.53t\nimages=1\nunit=mm\n",
+                    ome = "<OME><Pixels PhysicalSizeXUnit=\"mm\" ";
+  EXPECT_NE(lines_of_picture(image_j + "spacing=3\n", 0.0f)["picture_spacing"].find("slices 3 mm apart"),
+            std::string::npos);
+  EXPECT_FALSE(lines_of_picture(image_j + "spacing=1.25\n", 0.0f).contains("picture_spacing"));
+  EXPECT_NE(lines_of_picture(image_j + "frames=7\n", 0.0f)["picture_axes"].find("7 times"),
+            std::string::npos);
+  EXPECT_NE(lines_of_picture(ome + "PhysicalSizeX=\"0.8\" SizeC=\"3\"/></OME>", 0.0f)["picture_spacing"].find(
+                "0.8 mm"),
+            std::string::npos);
+  EXPECT_NE(lines_of_picture(ome + "SizeC=\"3\"/></OME>", 0.0f)["picture_axes"].find("3 channels"),
+            std::string::npos);
+  EXPECT_FALSE(lines_of_picture("a photograph", 0.0f).contains("picture_axes"));
 }
 
 TEST(ReadImageStack, WarnsOfNumbersThatTheNamesSkip) {

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <gtest/gtest.h>
 #include <limits>
+#include <map>
 #include <tuple>
 
 #include "tests/file_bytes.h"
@@ -86,6 +87,59 @@ TEST(ReadVolume, SpacingsThatContradictDirectionsAreTold) {
               is_told)
         << spacings;
   }
+}
+
+/// The warnings that a file gets, each check once.
+std::map<std::string, std::string> warnings_of(const std::string& name, const std::string& bytes) {
+  const tests::ScratchFolder folder;
+  write_bytes(folder / name, bytes);
+  std::map<std::string, std::string> found;
+  for (const Finding& line : read_scene(folder / name).audit)
+    if (line.verdict != Verdict::Pass) found[line.check] += line.detail;
+  return found;
+}
+
+TEST(ReadVolume, StatementsThatAreNoPatientsAreTold) {
+  const auto nifti_warnings = [](const std::function<void(nifti_1_header&)>& change) {
+    return warnings_of("a.nii", nifti(change));
+  };
+  EXPECT_FALSE(nifti_warnings([](auto&) {}).contains("form_code"));
+  EXPECT_NE(nifti_warnings([](auto& h) { h.sform_code = 4; })["form_code"].find("template"),
+            std::string::npos);
+  EXPECT_NE(nifti_warnings([](auto& h) { h.sform_code = 7; })["form_code"].find("does not define"),
+            std::string::npos);
+  EXPECT_NE(nifti_warnings([](auto& h) { h.sform_code = -1; })["form_code"].find("as none"),
+            std::string::npos);
+  const auto of_qform = [](float qfac) {
+    return [qfac](auto& h) {
+      h.sform_code = 0;
+      h.pixdim[0] = qfac;
+    };
+  };
+  EXPECT_TRUE(nifti_warnings(of_qform(0)).contains("qfac"));
+  EXPECT_FALSE(nifti_warnings(of_qform(1)).contains("qfac"));
+  EXPECT_TRUE(nifti_warnings([](auto& h) { h.intent_code = NIFTI_INTENT_TTEST; }).contains("intent"));
+  EXPECT_NE(nifti_warnings([](auto& h) {
+              h.scl_slope = 1;
+              h.scl_inter = 1e30f;
+            })["rescale"]
+                .find("loses the steps"),
+            std::string::npos);
+}
+
+TEST(ReadVolume, NrrdFieldsThatContradictWhatIsTakenAreTold) {
+  const std::string placed =
+      "space: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (0,0,0)\nspace units: \"mm\" "
+      "\"mm\" "
+      "\"mm\"\n";
+  const auto nrrd_warnings = [](const std::string& fields) { return warnings_of("a.nrrd", nrrd(fields)); };
+  EXPECT_FALSE(nrrd_warnings(placed).contains("length_unit"));
+  EXPECT_TRUE(nrrd_warnings(placed + "units: \"cm\" \"cm\" \"cm\"\n").contains("length_unit"));
+  EXPECT_FALSE(nrrd_warnings(placed + "units: \"mm\" \"mm\" \"mm\"\n").contains("length_unit"));
+  EXPECT_TRUE(nrrd_warnings(placed + "axis mins: 5 6 7\n").contains("origin"));
+  const std::string older = "centers: cell cell cell\naxis mins: 0 0 0\naxis maxs: 4 9 16\n";
+  EXPECT_FALSE(nrrd_warnings(older + "spacings: 2 3 4\n").contains("spacing"));
+  EXPECT_TRUE(nrrd_warnings(older + "spacings: 2 3 0.8\n").contains("spacing"));
 }
 
 TEST(ReadVolume, ANiftiPairIsReadByEitherName) {
