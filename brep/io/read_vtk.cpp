@@ -121,8 +121,9 @@ struct VtkReader {
   }
 
   void take_field(const std::string& name, const std::string& value) {
-    if (name == "SPACE") made.says.add_frame(value, "SPACE=" + value.substr(0, 40) + " in the field");
-    if (name == "UNIT" || name == "UNITS")
+    const std::string key = lower_case(name);
+    if (key == "space") made.says.add_frame(value, "SPACE=" + value.substr(0, 40) + " in the field");
+    if (key == "unit" || key == "units")
       made.says.add_unit(value, "unit " + value.substr(0, 40) + " in the field");
   }
 

@@ -143,8 +143,8 @@ class XmlReader {
 
   /// SPACE names the frame; a string's letters are numbers, as text or as bytes, and 0 ends it.
   void take_field(const XmlElement& field) {
-    const std::string_view name = field.get("Name");
-    const bool is_frame = name == "SPACE", is_unit = name == "UNIT" || name == "UNITS";
+    const std::string name = lower_case(field.get("Name"));
+    const bool is_frame = name == "space", is_unit = name == "unit" || name == "units";
     if ((!is_frame && !is_unit) || field.get("type") != "String") return;
     std::string text;
     if (field.get("format", "ascii") == "ascii") {
