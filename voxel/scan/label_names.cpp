@@ -16,14 +16,13 @@ namespace {
 namespace fs = std::filesystem;
 
 std::map<int, std::string> of_dicom(const fs::path& path) {
-  const std::string bytes = file_bytes(path);
   std::map<int, std::string> names;
+  std::string stored = file_bytes(path);
   try {
-    const DicomFile file(bytes, bytes.size());
+    const std::string bytes = whole_dicom(std::move(stored));
+    const DicomFile file(bytes, bytes.size(), true);
     for (const DicomFile& segment : file.items(0x00620002))
       names[segment.unsigned_short(0x00620004).value_or(0)] = trimmed(segment.readable_text(0x00620005));
-  } catch (const DicomFile::Deflated&) {
-    refuse(path, "a deflated segmentation: inflate it first");
   } catch (const DicomFile::NeedsMore&) {
     refuse(path, "a segmentation that is cut short");
   } catch (const Error& error) {
