@@ -5,6 +5,7 @@
 #include <charconv>
 #include <fstream>
 #include <set>
+#include <utility>
 
 #include "voxel/scan/dicom_file.h"
 #include "voxel/scan/read_dicom_seg.h"
@@ -36,11 +37,13 @@ std::map<int, std::string> of_dicom(const fs::path& path) {
 
 std::vector<SlicerSegment> slicer_segments(const fs::path& path) {
   std::map<int, SlicerSegment> listed;
+  bool has_layers = false;
   std::ifstream in = opened(path);
   constexpr std::size_t most_lines = 100000;
   std::string line;
   for (std::size_t i = 0; i < most_lines && std::getline(in, line) && !trimmed(line).empty(); ++i) {
     const std::size_t middle = line.find(":=");
+    if (line.starts_with("dimension:")) has_layers = trimmed(line.substr(10)) != "3";
     if (!line.starts_with("Segment") || middle == std::string::npos) continue;
     int number = 0;
     const char* const end = line.data() + middle;
@@ -61,11 +64,15 @@ std::vector<SlicerSegment> slicer_segments(const fs::path& path) {
     // Without a value the segments are numbered as they are listed.
     if (segment.value <= 0) segment.value = number + 1;
     largest = std::max(largest, segment.value);
+    if (!has_layers) segment.layer = 0;
     segments.push_back(std::move(segment));
   }
   std::set<int> taken;
+  std::map<std::pair<int, int>, int> number_of;  // of a layer and a value in it
   for (SlicerSegment& segment : segments) {
-    segment.number = taken.contains(segment.value) ? ++largest : segment.value;
+    const auto [known, is_new] = number_of.try_emplace({segment.layer, segment.value}, segment.value);
+    if (is_new && taken.contains(segment.value)) known->second = ++largest;
+    segment.number = known->second;
     taken.insert(segment.number);
   }
   return segments;
@@ -75,7 +82,10 @@ std::map<int, std::string> label_names(const fs::path& path) {
   const std::string extension = extension_of(path);
   if (extension == ".nrrd" || extension == ".nhdr") {
     std::map<int, std::string> names;
-    for (const SlicerSegment& segment : slicer_segments(path)) names[segment.number] = segment.name;
+    for (const SlicerSegment& segment : slicer_segments(path)) {
+      std::string& name = names[segment.number];
+      name += (name.empty() ? "" : " + ") + segment.name;
+    }
     return names;
   }
   std::error_code ignored;
