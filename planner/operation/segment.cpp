@@ -82,12 +82,7 @@ class Segmenter {
     base();
     refine();
     if (made_.octree.is_empty())
-      throw std::runtime_error(source_.name + ": '" + name() + "' holds no voxel" +
-                               (made_.steps.size() > 1 ? " after its " + std::to_string(made_.steps.size()) +
-                                                             " steps: leave some out"
-                                : source_.scene.meaning == voxel::Meaning::Label
-                                    ? ": choose another label; 'octotomy info' lists those that the file has"
-                                    : ": choose another window, or see what --otsu 3 suggests"));
+      throw std::runtime_error(source_.name + ": '" + name() + "' holds no voxel" + advice());
     return std::move(made_);
   }
 
@@ -112,6 +107,17 @@ class Segmenter {
     if (auto beyond = beyond_scan(drawn.mask, source_.scene.lattice, segment_.regions.string()))
       made_.findings.push_back(std::move(*beyond));
     return std::move(drawn.mask);
+  }
+
+  /// What to do about an object without voxels.
+  std::string advice() const {
+    if (made_.steps.size() > 1)
+      return " after its " + std::to_string(made_.steps.size()) + " steps: leave some out";
+    if (source_.scene.meaning != voxel::Meaning::Label)
+      return ": choose another window, or see what --otsu 3 suggests";
+    for (const voxel::Finding& finding : source_.scene.audit)
+      if (finding.check == "fractions") return ": " + finding.detail;
+    return ": choose another label";
   }
 
   std::string name() const {

@@ -166,7 +166,8 @@ class SegReader {
     double off_mm = 0.0;  ///< of `worst`, the frame that lies farthest off
     Frame worst = {};
     bool is_distinct = true;  ///< no two planes become one
-    bool is_exact() const { return is_distinct && off_mm <= position_tolerance_mm(step_mm); }
+    /// A single position errs by half of what the difference of two does.
+    bool is_exact() const { return is_distinct && off_mm <= 0.5 * position_tolerance_mm(step_mm); }
     bool holds() const { return is_distinct && off_mm <= jitter * step_mm; }
   };
 
