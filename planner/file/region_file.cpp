@@ -422,7 +422,9 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
   const PlaneDistances distances = distances_of_planes(set.structures, drawn.mask.view);
   Slices planes = planes_of(found, drawn.mask.view, distances, where, drawn.findings);
   if (!std::isfinite(distances.nearest_mm))
-    refuse(where, "lies in one plane, as the whole set does: how thick it is cannot be told");
+    refuse(where,
+           "lies in one plane, as the whole set does: how thick it is cannot be told; draw it on the next "
+           "plane, too");
   if (!std::isfinite(distances.least_mm))
     refuse(where, "lies in planes, as the whole set does, that are " + too_near(distances.nearest_mm));
   drawn.mask.slices = std::move(planes);
