@@ -49,8 +49,8 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 #include <utility>
 #include <vector>
 
@@ -420,8 +420,8 @@ void judge_volume(Certificate& certificate, const Evidence& evidence) {
              .statement = "The centroids are % apart"});
 }
 
-/// The mesh's volume against the voxels' centres inside of it: parts that it has several times count once
-/// there.
+/// The mesh's volume against the voxels' centres inside of it, where parts that it has several times count
+/// once.
 void compare_counted(Certificate& certificate, const Evidence& evidence, const voxel::Octree& digitised) {
   const double counted_mm3 = static_cast<double>(digitised.voxel_count()) * evidence.voxel_mm3;
   add_comparison(
@@ -433,9 +433,21 @@ void compare_counted(Certificate& certificate, const Evidence& evidence, const v
        "several times"});
 }
 
-/// Area of triangles that the mesh has a second time, wound the same way: their places, and so the kernel's
-/// sets of voxels, show nothing of it. Triangles are known by a hash of their corners, which two different
-/// ones share with a chance of 2^-24 on a million.
+/// Numbers of the keys that share a slot, of eight slots a key: of equal ones all, of others an eighth.
+std::vector<std::uint32_t> in_shared_slots(const std::vector<std::uint64_t>& keys) {
+  const std::uint64_t last = std::bit_ceil(8 * keys.size() + 1) - 1;
+  std::vector<bool> taken(last + 1, false), shared(last + 1, false);
+  for (const std::uint64_t key : keys)
+    (taken[(key >> 32) & last] ? shared : taken)[(key >> 32) & last] = true;
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t i = 0; i < keys.size(); ++i)
+    if (shared[(keys[i] >> 32) & last]) found.push_back(i);
+  return found;
+}
+
+/// Area of triangles that the mesh has a second time, wound the same way, which no set of voxels shows.
+/// Equal triangles are found by a hash of their corners; two different ones of a million share it with a
+/// chance of 2^-24.
 void compare_repeated(Certificate& certificate, const brep::Triangles& mesh) {
   const auto hash = [](const glm::dvec3& p) {
     std::uint64_t made = 0;
@@ -443,21 +455,24 @@ void compare_repeated(Certificate& certificate, const brep::Triangles& mesh) {
       made = (std::rotl(made, 21) ^ std::bit_cast<std::uint64_t>(p[axis] + 0.0)) * 0x9E3779B97F4A7C15ULL;
     return made ^ (made >> 29);
   };
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(mesh.faces.size());
-  tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) {
-    std::array<std::uint64_t, 3> corners{};
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = hash(mesh.points_mm[mesh.faces[i][k]]);
-    // From the corner of the least hash on, so that the winding stays.
-    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
-    std::uint64_t all = 0;
-    for (const std::uint64_t corner : corners) all = (std::rotl(all, 17) ^ corner) * 0xBF58476D1CE4E5B9ULL;
-    keys[i] = {all, static_cast<std::uint32_t>(i)};
+  std::vector<std::uint64_t> keys(mesh.faces.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, keys.size(), 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      std::array<std::uint64_t, 3> corners{};
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = hash(mesh.points_mm[mesh.faces[i][k]]);
+      // From the corner of the least hash on, so that the winding stays.
+      std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+      for (const std::uint64_t corner : corners)
+        keys[i] = (std::rotl(keys[i], 17) ^ corner) * 0xBF58476D1CE4E5B9ULL;
+    }
   });
-  tbb::parallel_sort(keys.begin(), keys.end());
   double area_mm2 = 0.0;
-  for (std::size_t i = 1; i < keys.size(); ++i) {
-    if (keys[i].first != keys[i - 1].first) continue;
-    const auto& [a, b, c] = mesh.faces[keys[i].second];
+  std::vector<std::uint32_t> shared = in_shared_slots(keys);
+  std::stable_sort(shared.begin(), shared.end(),
+                   [&](std::uint32_t i, std::uint32_t j) { return keys[i] < keys[j]; });
+  for (std::size_t i = 1; i < shared.size(); ++i) {
+    if (keys[shared[i]] != keys[shared[i - 1]]) continue;
+    const auto& [a, b, c] = mesh.faces[shared[i]];
     area_mm2 += 0.5 * glm::length(glm::cross(mesh.points_mm[b] - mesh.points_mm[a],
                                              mesh.points_mm[c] - mesh.points_mm[a]));
   }
@@ -479,8 +494,7 @@ void compare_with_lines(Certificate& certificate, const Evidence& evidence, cons
   options.progress.stop = progress.stop;
   certificate.third = count_along_lines(lines, options);
   const LineCount& third = *certificate.third;
-  // The deviation comes from twelve directions, whose mean strays further than five of it once in 2000
-  // objects.
+  // The mean of twelve directions strays further than five deviations once in 2000 objects.
   constexpr double sure = 5.0;
   const double tolerance_mm3 = certificate.tolerance_mm3 + sure * third.deviation_mm3 + evidence.voxel_mm3;
   const double of_voxels = std::abs(evidence.voxels.volume_mm3 - third.volume_mm3);

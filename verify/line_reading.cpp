@@ -2,7 +2,7 @@
 //
 // Windows: a line is followed through the scan in steps of half a sample. The interpolant counts as linear
 // within a step, so a stretch's ends are good to a few hundredths of a sample, and layers thinner than half a
-// sample may be missed where the interpolant bends. Bricks of 8 cells a side whose samples all lie inside or
+// sample may be missed where the interpolant bends. Bricks of 4 cells a side whose samples all lie inside or
 // all outside of the window are passed in one step. Expressions: operators and names are put into postfix
 // order by two stacks (Dijkstra's shunting yard), then joined.
 #include "verify/line_reading.h"
@@ -16,6 +16,7 @@
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <tbb/parallel_for.h>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -128,9 +129,7 @@ class WindowAlong {
     for (int axis = 0; axis < 3; ++axis) bricks_[axis] = std::max(1, (dims_[axis] - 1 + brick - 1) / brick);
     states_.resize(static_cast<std::size_t>(bricks_.x) * static_cast<std::size_t>(bricks_.y) *
                    static_cast<std::size_t>(bricks_.z));
-    for (int z = 0; z < bricks_.z; ++z)
-      for (int y = 0; y < bricks_.y; ++y)
-        for (int x = 0; x < bricks_.x; ++x) states_[index_of({x, y, z})] = state_of({x, y, z});
+    tbb::parallel_for(0, bricks_.z, [this](int z) { set_states(z); });
   }
 
   Spans operator()(const Line& line, const Spans& within) const {
@@ -158,7 +157,7 @@ class WindowAlong {
 
  private:
   enum class State : std::uint8_t { Out, In, Mixed };
-  static constexpr int brick = 8;  ///< cells a side
+  static constexpr int brick = 4;  ///< cells a side
 
   std::size_t index_of(const glm::ivec3& b) const {
     return static_cast<std::size_t>(b.x) +
@@ -173,19 +172,48 @@ class WindowAlong {
                 static_cast<std::size_t>(dims_.y) * static_cast<std::size_t>(z));
   }
 
-  State state_of(const glm::ivec3& b) const {
-    const glm::ivec3 first = b * brick, last = glm::min(first + brick, dims_ - 1);
-    double least = infinity, most = -infinity;
-    for (int z = first.z; z <= last.z; ++z)
-      for (int y = first.y; y <= last.y; ++y) {
-        const Sample* row = sample(0, y, z);
-        for (int x = first.x; x <= last.x; ++x) {
-          const auto value = static_cast<double>(row[x]);
-          if (!std::isfinite(value)) return State::Mixed;
-          least = std::min(least, value);
-          most = std::max(most, value);
+  /// The samples of a brick, its neighbours' first ones included.
+  struct Range {
+    Sample least = std::numeric_limits<Sample>::max(), most = std::numeric_limits<Sample>::lowest();
+    bool is_finite = true;
+
+    void add(const Range& other) {
+      least = std::min(least, other.least);
+      most = std::max(most, other.most);
+      is_finite = is_finite && other.is_finite;
+    }
+  };
+
+  /// The states of one layer of bricks.
+  void set_states(int z) {
+    std::vector<Range> layer(static_cast<std::size_t>(bricks_.x) * static_cast<std::size_t>(bricks_.y));
+    for (int slice = z * brick; slice <= std::min((z + 1) * brick, dims_.z - 1); ++slice)
+      for (int y = 0; y < dims_.y; ++y) {
+        const Sample* row = sample(0, y, slice);
+        const int last = std::min(y / brick, bricks_.y - 1),
+                  first = y % brick == 0 ? std::max(y / brick - 1, 0) : last;
+        for (int x = 0; x < bricks_.x; ++x) {
+          const Range range = range_of(row + x * brick, row + std::min((x + 1) * brick, dims_.x - 1));
+          for (int b = std::min(first, last); b <= last; ++b) layer[index_of({x, b, 0})].add(range);
         }
       }
+    for (int y = 0; y < bricks_.y; ++y)
+      for (int x = 0; x < bricks_.x; ++x) states_[index_of({x, y, z})] = state_of(layer[index_of({x, y, 0})]);
+  }
+
+  static Range range_of(const Sample* first, const Sample* last) {
+    Range range{*first, *first};
+    for (const Sample* at = first; at <= last; ++at) {
+      range.least = std::min(range.least, *at);
+      range.most = std::max(range.most, *at);
+      if constexpr (std::is_floating_point_v<Sample>) range.is_finite = range.is_finite && std::isfinite(*at);
+    }
+    return range;
+  }
+
+  State state_of(const Range& range) const {
+    const auto least = static_cast<double>(range.least), most = static_cast<double>(range.most);
+    if (!range.is_finite) return State::Mixed;
     return most < low_ || least > high_     ? State::Out
            : least >= low_ && most <= high_ ? State::In
                                             : State::Mixed;

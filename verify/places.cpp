@@ -150,7 +150,7 @@ std::vector<FailedVoxel> failed_voxels(const voxel::Octree& octree, const voxel:
     if (progress.stop.stop_requested()) return;
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const glm::dvec3 p_mm(lps_from_voxel * glm::dvec4(glm::dvec3(voxels[i]), 1.0));
-      faults[i] = fault_of(witness(p_mm, 0.0), octree.contains(voxels[i]), digitised.contains(voxels[i]));
+      faults[i] = fault_of(witness.words(p_mm), octree.contains(voxels[i]), digitised.contains(voxels[i]));
     }
   });
   progress.at(0.5);
@@ -162,8 +162,11 @@ std::vector<FailedVoxel> failed_voxels(const voxel::Octree& octree, const voxel:
 
 /// Voxels of step 3.
 constexpr int sampled_one_in = 8;
+constexpr bool is_sampled(int x, int y, int z) {
+  return ((x + 2 * y + 4 * z) & (sampled_one_in - 1)) == 0;
+}
 bool is_sampled(const glm::ivec3& voxel) {
-  return ((voxel.x + 2 * voxel.y + 4 * voxel.z) & (sampled_one_in - 1)) == 0;
+  return is_sampled(voxel.x, voxel.y, voxel.z);
 }
 /// The one of the block of two voxels a side that begins at a voxel.
 glm::ivec3 sampled_in_block(const glm::ivec3& first) {
@@ -173,13 +176,28 @@ glm::ivec3 sampled_in_block(const glm::ivec3& first) {
   return at;
 }
 
-/// A block of voxels and where it ends, exclusive.
-struct VoxelBlock {
-  glm::ivec3 low{0}, high{0};
-};
-/// The blocks of the universe in which the object may be, by its reading along lines, or voxels are.
-std::vector<VoxelBlock> blocks_of(const voxel::Octree& octree, const LineReading& lines) {
-  constexpr int block = 8;
+/// A leaf's voxels, and of those the ones of step 3.
+constexpr int leaf_side = 4;
+std::uint64_t leaf_word(const voxel::Octree& octree, const glm::ivec3& low) {
+  const glm::ivec3 leaf = (low / leaf_side) % leaf_side;
+  return octree.leaf_block(low / 16).word(voxel::child_index(leaf.x, leaf.y, leaf.z));
+}
+std::uint64_t sampled_word(const glm::ivec3& low) {
+  constexpr auto at_even_and_odd_leaves = [] {
+    std::array<std::uint64_t, 2> words{};
+    for (int bit = 0; bit < 64; ++bit)
+      for (int odd = 0; odd < 2; ++odd)
+        if (is_sampled(leaf_side * odd + (bit & 3), (bit >> 2) & 3, bit >> 4))
+          words[static_cast<std::size_t>(odd)] |= std::uint64_t{1} << bit;
+    return words;
+  }();
+  return at_even_and_odd_leaves[static_cast<std::size_t>(low.x / leaf_side % 2)];
+}
+
+/// Blocks of the universe in which the object may be, by its reading along lines, or voxels are: their lowest
+/// voxels.
+constexpr int block_side = 8;
+std::vector<glm::ivec3> blocks_of(const voxel::Octree& octree, const LineReading& lines) {
   const voxel::Lattice lattice = octree.universe().lattice();
   glm::dvec3 low(octree.universe().side()), high(-1.0);
   // A box with sides in infinity has no corners: it reaches over all.
@@ -201,11 +219,11 @@ std::vector<VoxelBlock> blocks_of(const voxel::Octree& octree, const LineReading
   const glm::ivec3 first(
       glm::clamp(glm::floor(low), glm::dvec3(0.0), glm::dvec3(octree.universe().side() - 1))),
       last(glm::clamp(glm::ceil(high), glm::dvec3(0.0), glm::dvec3(octree.universe().side() - 1)));
-  std::vector<VoxelBlock> blocks;
-  for (int z = first.z; z <= last.z; z += block)
-    for (int y = first.y; y <= last.y; y += block)
-      for (int x = first.x; x <= last.x; x += block)
-        blocks.push_back({{x, y, z}, glm::min(glm::ivec3(x, y, z) + block, last + 1)});
+  std::vector<glm::ivec3> blocks;
+  for (int z = first.z / block_side * block_side; z <= last.z; z += block_side)
+    for (int y = first.y / block_side * block_side; y <= last.y; y += block_side)
+      for (int x = first.x / block_side * block_side; x <= last.x; x += block_side)
+        blocks.emplace_back(x, y, z);
   return blocks;
 }
 
@@ -217,27 +235,29 @@ std::vector<FailedVoxel> failed_inside(const voxel::Octree& octree, const voxel:
                                        const voxel::Progress& progress) {
   if (!witness.lines()) return {};
   const voxel::Lattice lattice = octree.universe().lattice();
-  const std::vector<VoxelBlock> blocks = blocks_of(octree, witness.lines());
+  const std::vector<glm::ivec3> blocks = blocks_of(octree, witness.lines());
   std::vector<std::vector<FailedVoxel>> found(blocks.size());
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
     if (progress.stop.stop_requested()) return;
-    const VoxelBlock& block = blocks[i];
-    const glm::dvec3 a = lattice.lps_mm(glm::dvec3(block.low) - 0.5),
-                     b = lattice.lps_mm(glm::dvec3(block.high) - 0.5);
+    const glm::dvec3 a = lattice.lps_mm(glm::dvec3(blocks[i]) - 0.5),
+                     b = lattice.lps_mm(glm::dvec3(blocks[i] + block_side) - 0.5);
     const bool may_meet = witness.lines().may_meet({glm::min(a, b), glm::max(a, b)});
-    for (int z = block.low.z; z < block.high.z; ++z)
-      for (int y = block.low.y; y < block.high.y; ++y)
-        for (int x = block.low.x + ((8 - ((block.low.x + 2 * y + 4 * z) & 7)) & 7); x < block.high.x;
-             x += sampled_one_in) {
-          const glm::ivec3 at(x, y, z);
-          const bool inside = octree.contains(at);
-          if ((!may_meet && !inside) || digitised.contains(at) != inside) continue;
-          // Its interpolation of the scan is enough: the voxels' own differs at surfaces alone.
-          if (witness.of_mesh(lattice.lps_mm(glm::dvec3(at))).mesh.allows(inside) ||
-              std::binary_search(compared.begin(), compared.end(), at, before))
-            continue;
-          found[i].push_back({at, inside ? Fault::MeshHas : Fault::MeshLacks});
-        }
+    for (int leaf = 0; leaf < 8; ++leaf) {
+      const glm::ivec3 low = blocks[i] + leaf_side * glm::ivec3(leaf & 1, (leaf >> 1) & 1, leaf >> 2);
+      const std::uint64_t voxels = leaf_word(octree, low);
+      std::uint64_t tried = sampled_word(low) & ~(voxels ^ leaf_word(digitised, low));
+      if (!may_meet) tried &= voxels;
+      for (; tried != 0; tried &= tried - 1) {
+        const int bit = std::countr_zero(tried);
+        const glm::ivec3 at = low + voxel::child_place(bit);
+        const bool inside = ((voxels >> bit) & 1) != 0;
+        // Its interpolation of the scan is enough: the voxels' own differs at surfaces alone.
+        if (!is_within(at, octree) || witness.mesh_word(lattice.lps_mm(glm::dvec3(at))).allows(inside) ||
+            std::binary_search(compared.begin(), compared.end(), at, before))
+          continue;
+        found[i].push_back({at, inside ? Fault::MeshHas : Fault::MeshLacks});
+      }
+    }
   });
   std::vector<FailedVoxel> failed;
   for (const std::vector<FailedVoxel>& part : found) failed.insert(failed.end(), part.begin(), part.end());
@@ -272,7 +292,7 @@ bool hangs_on_no_face(const glm::ivec3& voxel, const voxel::Octree& octree, cons
       glm::ivec3 neighbour = voxel;
       neighbour[axis] += by;
       if (!is_within(neighbour, octree) || !lacking.contains(neighbour)) continue;
-      const Reading reading = witness(octree.universe().lattice().lps_mm(glm::dvec3(neighbour)), 0.0);
+      const Reading reading = witness.words(octree.universe().lattice().lps_mm(glm::dvec3(neighbour)));
       if ((in_voxels ? reading.mesh : reading.voxel) == untold) return false;
     }
   return true;
@@ -361,7 +381,7 @@ void add_stray_triangles(const brep::Triangles& mesh, const Witness& witness, co
     const auto& face = mesh.faces[i];
     return std::none_of(face.begin(), face.end(),
                         [&](std::uint32_t vertex) { return stray_vertex[vertex] != 0; }) &&
-           witness.of_mesh(facet_of(mesh, i).centroid_mm).mesh.near;
+           witness.mesh_word(facet_of(mesh, i).centroid_mm).near;
   });
   progress.at(0.8);
   double largest_mm2 = 0.0;
@@ -400,7 +420,7 @@ std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digi
     if (!is_within(at, octree) || octree.contains(at) != inside) continue;
     ++count;
     if (digitised.contains(at) != inside) continue;
-    const Reading reading = witness(octree.universe().lattice().lps_mm(glm::dvec3(at)), 0.0);
+    const Reading reading = witness.words(octree.universe().lattice().lps_mm(glm::dvec3(at)));
     if (fault_of(reading, !inside, inside) != Fault::None) return count;
   }
   return count;
@@ -438,12 +458,12 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
   bool seen_alone = false, seen_in_both = !witness.lines();
   const auto is_lost = [&](const glm::ivec3& at, bool in_voxels) {
     const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(at));
-    const Fault fault = fault_of(witness(centre, 0.0), in_voxels, false);
+    const Fault fault = fault_of(witness.words(centre), in_voxels, false);
     return fault != Fault::None && !(fault == Fault::Apart && is_small) && brep::is_inside(centre, own);
   };
   const auto is_lost_in_both = [&](const glm::ivec3& at) {
     const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(at));
-    return !witness.of_mesh(centre).mesh.allows(false) && brep::is_inside(centre, own);
+    return !witness.mesh_word(centre).allows(false) && brep::is_inside(centre, own);
   };
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
   for (const glm::dvec3& p : own.points_mm) {
@@ -523,7 +543,7 @@ std::optional<double> shift_limit_mm(const brep::Triangles& mesh, double voxel_m
       glm::dvec3 by_mm(0.0);
       by_mm[direction / 2] = (direction % 2 == 0 ? 1.0 : -1.0) * voxels * voxel_mm;
       seen_everywhere = std::any_of(points_mm.begin(), points_mm.end(), [&](const glm::dvec3& p_mm) {
-        return !witness.of_mesh(p_mm + by_mm).mesh.near;
+        return !witness.mesh_word(p_mm + by_mm).near;
       });
     }
     if (seen_everywhere) return voxels * voxel_mm;

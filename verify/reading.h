@@ -39,8 +39,15 @@ struct Reading {
   int surfaces = 0;
 };
 
-/// The words that are asked for.
-enum class Asked { Both, MeshOnly };
+/// What of a reading is needed. Words without surfaces cost less: an operand that decides alone spares the
+/// others.
+enum class Asked { Both, MeshOnly, BothWords, MeshWord };
+constexpr bool needs_voxels(Asked asked) {
+  return asked == Asked::Both || asked == Asked::BothWords;
+}
+constexpr bool needs_surfaces(Asked asked) {
+  return asked == Asked::Both || asked == Asked::MeshOnly;
+}
 
 class Necks;
 /// Some of an object's connected parts, as both kernels chose them on the way, and the motion since, LPS to
@@ -57,7 +64,7 @@ class Witness {
   using Read = std::function<Reading(const glm::dvec3& p_mm, double slack_mm, Asked asked)>;
 
   Witness() = default;
-  /// `read` answers both words, or takes what is asked for as well; it may then leave out the other word.
+  /// `read` answers both words and the surfaces, or takes what is needed as well and may leave out the rest.
   template <typename Reader>
   requires std::is_invocable_v<const Reader&, const glm::dvec3&, double> ||
       std::is_invocable_v<const Reader&, const glm::dvec3&, double, Asked>
@@ -88,6 +95,9 @@ class Witness {
   }
   /// The mesh's word and the surfaces alone, at a fraction of the cost; nothing is said of the voxels.
   Reading of_mesh(const glm::dvec3& p_mm) const { return read_(p_mm, 0.0, Asked::MeshOnly); }
+  /// Both words, nothing of the surfaces.
+  Reading words(const glm::dvec3& p_mm) const { return read_(p_mm, 0.0, Asked::BothWords); }
+  Word mesh_word(const glm::dvec3& p_mm) const { return read_(p_mm, 0.0, Asked::MeshWord).mesh; }
 
  private:
   Read read_;

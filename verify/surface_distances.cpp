@@ -24,8 +24,9 @@ namespace {
 
 /// Spacing of the points on the solid. An isosurface's triangles are smaller and have one point each.
 constexpr double spacing_voxels = 2.0;
-/// Runs that a point is chosen from. A percentile of so many is good to some thousandths of the spread.
-constexpr std::size_t most_runs = std::size_t{1} << 17;
+/// Runs that a point is chosen from. The 95th percentile of so many points is the true one of a share between
+/// 0.946 and 0.954: three standard deviations, 3 sqrt(0.95 * 0.05 / 32768). The largest distance is exact.
+constexpr std::size_t most_runs = std::size_t{1} << 15;
 
 SurfaceDistances::Points face_centres(const voxel::Octree& octree) {
   const voxel::Lattice lattice = octree.universe().lattice();

@@ -19,7 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
+#include <cstdio>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -44,12 +44,17 @@ constexpr double kept_from_samples = 1e-3;
 /// A voxel's sample is rounded to an integer, and so is a window's bound.
 constexpr double rounded_samples = 1.0;
 
-/// The trilinear interpolant of a scan in one of its cells.
-struct CellValue {
-  double value = 0.0;
-  /// How far f may exceed a bound where the mesh is outside, and fall short of it where the mesh is inside.
+/// An affine map, without the products that a matrix of four rows has beyond it.
+struct Affine {
+  glm::dvec3 x, y, z, at;
+
+  explicit Affine(const glm::dmat4& map) : x(map[0]), y(map[1]), z(map[2]), at(map[3]) {}
+  glm::dvec3 operator()(const glm::dvec3& p) const { return p.x * x + p.y * y + p.z * z + at; }
+};
+
+/// How far f may exceed a bound where the mesh is outside, and fall short of it where the mesh is inside.
+struct Stray {
   double above = 0.0, below = 0.0;
-  double low = 0.0, high = 0.0;  ///< of the cell's samples
 };
 
 template <typename Sample>
@@ -64,19 +69,23 @@ class WindowWitness {
         high_(high),
         scan_from_lps_(glm::inverse(scan_->lattice.lps_from_voxel)),
         universe_from_lps_(glm::inverse(universe.lps_from_voxel)),
-        scan_from_universe_(scan_from_lps_ * universe.lps_from_voxel),
+        scan_from_universe_(glm::inverse(scan_->lattice.lps_from_voxel) * universe.lps_from_voxel),
         side_(universe.side()) {
     const glm::dvec3 spacing_mm = scan_->lattice.spacing_mm();
     finest_mm_ = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+    std::size_t stride = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      strides_[static_cast<std::size_t>(axis)] = stride;
+      stride *= static_cast<std::size_t>(dims_[axis]);
+    }
   }
 
   Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked) const {
-    const glm::dvec3 u(scan_from_lps_ * glm::dvec4(p_mm, 1.0));
+    const glm::dvec3 u = scan_from_lps_(p_mm);
     const double slack = slack_mm / finest_mm_;
     const Word mesh = mesh_word(u, slack);
-    return {asked == Asked::MeshOnly ? Word{}
-                                     : voxel_word(glm::dvec3(universe_from_lps_ * glm::dvec4(p_mm, 1.0))),
-            mesh, mesh.near ? surfaces(u, slack) : 0};
+    return {needs_voxels(asked) ? voxel_word(universe_from_lps_(p_mm)) : Word{}, mesh,
+            mesh.near && needs_surfaces(asked) ? surfaces(u, slack) : 0};
   }
 
  private:
@@ -84,46 +93,49 @@ class WindowWitness {
   struct Cell {
     std::array<double, 8> v{};
     std::array<double, 3> t{};
+    double low = 0.0, high = 0.0;  ///< of the samples
 
     double value() const {
-      double sum = 0.0;
-      for (std::size_t i = 0; i < 8; ++i)
-        sum += v[i] * ((i & 1) ? t[0] : 1.0 - t[0]) * (((i >> 1) & 1) ? t[1] : 1.0 - t[1]) *
-               ((i >> 2) ? t[2] : 1.0 - t[2]);
-      return sum;
+      const auto between = [&](std::size_t i) { return v[i] + t[0] * (v[i + 1] - v[i]); };
+      const double a = between(0), b = between(2), c = between(4), d = between(6);
+      const double below = a + t[1] * (b - a), above = c + t[1] * (d - c);
+      return below + t[2] * (above - below);
     }
   };
 
   /// Positions beyond the outermost samples take the nearest value.
   Cell cell(const glm::dvec3& u) const {
     Cell made;
-    std::array<std::size_t, 3> offset{}, step{};
-    std::size_t stride = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double at = std::clamp(u[axis], 0.0, static_cast<double>(dims_[axis] - 1));
-      const int first = std::clamp(static_cast<int>(at), 0, std::max(dims_[axis] - 2, 0));
-      const auto i = static_cast<std::size_t>(axis);
+    const Sample* corner = samples_;
+    std::array<std::size_t, 3> step{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int last = dims_[static_cast<int>(i)] - 1;
+      const double at = std::clamp(u[static_cast<int>(i)], 0.0, static_cast<double>(last));
+      const int first = std::min(static_cast<int>(at), std::max(last - 1, 0));
       made.t[i] = at - first;
-      offset[i] = static_cast<std::size_t>(first) * stride;
-      step[i] = dims_[axis] > 1 ? stride : 0;
-      stride *= static_cast<std::size_t>(dims_[axis]);
+      corner += static_cast<std::size_t>(first) * strides_[i];
+      step[i] = last > 0 ? strides_[i] : 0;
     }
-    const Sample* corner = samples_ + offset[0] + offset[1] + offset[2];
-    for (std::size_t i = 0; i < 8; ++i)
-      made.v[i] =
-          static_cast<double>(corner[(i & 1) * step[0] + ((i >> 1) & 1) * step[1] + (i >> 2) * step[2]]);
+    Sample low = *corner, high = low;
+    for (std::size_t i = 0; i < 8; ++i) {
+      const Sample sample = corner[(i & 1) * step[0] + ((i >> 1) & 1) * step[1] + (i >> 2) * step[2]];
+      made.v[i] = static_cast<double>(sample);
+      low = std::min(low, sample);
+      high = std::max(high, sample);
+    }
+    made.low = static_cast<double>(low);
+    made.high = static_cast<double>(high);
     return made;
   }
 
-  CellValue bounds_of(const Cell& at) const {
-    const auto& [v, t] = at;
-    const auto [least, most] = std::minmax_element(v.begin(), v.end());
-    CellValue cell{.low = *least, .high = *most};
-    cell.value = at.value();
+  static Stray stray_of(const Cell& at) {
+    const auto& v = at.v;
+    const auto& t = at.t;
+    Stray found;
     const auto stray = [&](double b, double product, double most_mean, double least_mean) {
       const double up = -b * (least_mean - product), down = -b * (most_mean - product);
-      cell.above += std::max(up, down);
-      cell.below += std::max(-up, -down);
+      found.above += std::max(up, down);
+      found.below += std::max(-up, -down);
     };
     const auto stray_of_two = [&](double b, double x, double y) {
       stray(b, x * y, std::min(x, y), std::max(0.0, x + y - 1.0));
@@ -134,10 +146,10 @@ class WindowWitness {
     stray(-v[0] + v[1] + v[2] - v[3] + v[4] - v[5] - v[6] + v[7], t[0] * t[1] * t[2],
           std::min({t[0], t[1], t[2]}), std::max(0.0, t[0] + t[1] + t[2] - 2.0));
     const double moved =
-        kept_from_samples * (*most - *least) + rounding * std::max(std::abs(*least), std::abs(*most));
-    cell.above += moved;
-    cell.below += moved;
-    return cell;
+        kept_from_samples * (at.high - at.low) + rounding * std::max(std::abs(at.low), std::abs(at.high));
+    found.above += moved;
+    found.below += moved;
+    return found;
   }
 
   /// Where f exceeds the lower bound by more than `above` the mesh cannot call it outside, where it is short
@@ -150,13 +162,12 @@ class WindowWitness {
   }
 
   /// The word of a cell whose samples are so far from the window's bounds that no stray reaches them: of the
-  /// four terms of bounds_of() three are at most half the samples' range each, the last 1.6 times it.
+  /// four terms of stray_of() three are at most half the samples' range each, the last 1.6 times it.
   std::optional<Word> clear_word(const Cell& at, double slack) const {
-    const auto [least, most] = std::minmax_element(at.v.begin(), at.v.end());
     const double reach =
-        (3.2 + 3.0 * slack) * (*most - *least) + rounding * std::max(std::abs(*least), std::abs(*most));
-    if (*most + reach < low_ || *least - reach > high_) return certainly_out;
-    if (*least - reach >= low_ && *most + reach <= high_) return certainly_in;
+        (3.2 + 3.0 * slack) * (at.high - at.low) + rounding * std::max(std::abs(at.low), std::abs(at.high));
+    if (at.high + reach < low_ || at.low - reach > high_) return certainly_out;
+    if (at.low - reach >= low_ && at.high + reach <= high_) return certainly_in;
     return std::nullopt;
   }
 
@@ -209,12 +220,12 @@ class WindowWitness {
     const double past = beyond(u);
     if (past >= 1.0) return certainly_out;
     if (past > rounding) return word_beyond(u, slack);
-    const Cell made = cell(u);
-    if (const std::optional<Word> clear = clear_word(made, slack)) return *clear;
-    const CellValue at = bounds_of(made);
+    const Cell at = cell(u);
+    if (const std::optional<Word> clear = clear_word(at, slack)) return *clear;
+    const Stray stray = stray_of(at);
     // In a cell f changes by its samples' range a sample along each axis at most.
     const double moved = 3.0 * slack * (at.high - at.low);
-    Word answer = word(at.value, at.above + moved, at.below + moved);
+    Word answer = word(at.value(), stray.above + moved, stray.below + moved);
     // A cell with samples below and above the window has outside parts that are no mean of like corners.
     if (answer == certainly_in && at.low < low_ && at.high > high_) answer = on_surface;
     return answer;
@@ -274,7 +285,7 @@ class WindowWitness {
     if (glm::any(glm::lessThan(voxel, glm::dvec3(0.0))) ||
         glm::any(glm::greaterThanEqual(voxel, glm::dvec3(side_))))
       return {};
-    const glm::dvec3 u(scan_from_universe_ * glm::dvec4(voxel, 1.0));
+    const glm::dvec3 u = scan_from_universe_(voxel);
     // A scan's voxels reach half a sample beyond their centres.
     const double past = beyond(u);
     if (past > 0.5 + 1e-6) return {};
@@ -291,7 +302,8 @@ class WindowWitness {
   const Sample* samples_;
   glm::ivec3 dims_;
   double low_, high_;
-  glm::dmat4 scan_from_lps_, universe_from_lps_, scan_from_universe_;
+  std::array<std::size_t, 3> strides_{};
+  Affine scan_from_lps_, universe_from_lps_, scan_from_universe_;
   int side_;
   double finest_mm_ = 1.0;
 };
@@ -325,22 +337,46 @@ Word exclusive(const Word& a, const Word& b) {
   return {(a.in && b.out) || (a.out && b.in), (a.in && b.in) || (a.out && b.out), a.near || b.near};
 }
 
-template <Word (*Rule)(const Word&, const Word&)>
-Witness joined(Witness a, Witness b) {
-  if (!a || !b) return {};
-  return
-      [a = std::move(a), b = std::move(b)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
-        const Reading x = a(p_mm, slack_mm, asked), y = b(p_mm, slack_mm, asked);
-        return {Rule(x.voxel, y.voxel), Rule(x.mesh, y.mesh), x.surfaces + y.surfaces};
-      };
+/// Operands that decide alone spare the others, the cheap ones come first.
+double cost_of(const Witness& witness) {
+  constexpr double of_a_window = 100.0;
+  return witness.lines() ? witness.lines().cost : of_a_window;
 }
 
-Witness complement(Witness a) {
-  if (!a) return {};
-  return [a = std::move(a)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
-    const Reading x = a(p_mm, slack_mm, asked);
-    return {negated(x.voxel), negated(x.mesh), x.surfaces};
-  };
+Reading negated(const Reading& a) {
+  return {negated(a.voxel), negated(a.mesh), a.surfaces};
+}
+
+Reading conjunction(const Reading& a, const Reading& b) {
+  return {conjunction(a.voxel, b.voxel), conjunction(a.mesh, b.mesh), a.surfaces + b.surfaces};
+}
+Reading exclusive(const Reading& a, const Reading& b) {
+  return {exclusive(a.voxel, b.voxel), exclusive(a.mesh, b.mesh), a.surfaces + b.surfaces};
+}
+
+/// Whether no further operand of an intersection changes what is needed of the reading.
+bool decides(const Reading& a, Asked asked) {
+  return !needs_surfaces(asked) && a.mesh == certainly_out &&
+         (!needs_voxels(asked) || a.voxel == certainly_out);
+}
+
+/// The intersection of operands, some of them as their complements.
+struct Operand {
+  Witness witness;
+  bool is_complement = false;
+};
+Witness intersection(Operand a, Operand b) {
+  if (!a.witness || !b.witness) return {};
+  if (cost_of(b.witness) < cost_of(a.witness)) std::swap(a, b);
+  return
+      [a = std::move(a), b = std::move(b)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
+        const auto read = [&](const Operand& operand) {
+          const Reading reading = operand.witness(p_mm, slack_mm, asked);
+          return operand.is_complement ? negated(reading) : reading;
+        };
+        const Reading first = read(a);
+        return decides(first, asked) ? first : conjunction(first, read(b));
+      };
 }
 
 /// A vertex on a plane of the plan lies this share of its coordinates away after several Booleans and
@@ -429,14 +465,6 @@ class RegionWitness {
   double low_ = std::numeric_limits<double>::infinity(), high_ = -low_, reach_mm_ = 0.0;
 };
 
-Reading negated(const Reading& a) {
-  return {negated(a.voxel), negated(a.mesh), a.surfaces};
-}
-
-Reading joined(Word (*rule)(const Word&, const Word&), const Reading& a, const Reading& b) {
-  return {rule(a.voxel, b.voxel), rule(a.mesh, b.mesh), a.surfaces + b.surfaces};
-}
-
 /// A straight piece of a blade: planes where the blade ends, and those through which it goes on in the next
 /// piece.
 struct BladePiece {
@@ -492,21 +520,75 @@ std::vector<PartChoice> choices_of(const std::vector<Witness>& operands) {
   return all;
 }
 
-/// A tree's reading from those of its leaves. Recursion is as deep as the text's parentheses, not as long as
-/// a row of operands.
-Reading reading_of(const ExpressionTree& tree, const std::vector<Reading>& leaves) {
-  if (tree.parts.empty()) return leaves[static_cast<std::size_t>(tree.leaf)];
-  Reading made = reading_of(tree.parts.front(), leaves);
-  if (tree.symbol == '~') return negated(made);
-  for (std::size_t i = 1; i < tree.parts.size(); ++i) {
-    const Reading next = reading_of(tree.parts[i], leaves);
-    if (tree.symbol == '&') made = joined(conjunction, made, next);
-    if (tree.symbol == '-') made = joined(conjunction, made, negated(next));
-    if (tree.symbol == '^') made = joined(exclusive, made, next);
-    if (tree.symbol == '|') made = negated(joined(conjunction, negated(made), negated(next)));
+/// An expression's operands, numbered as its leaves.
+class ReadExpression {
+ public:
+  ReadExpression(const ExpressionTree& tree, std::vector<Witness> leaves)
+      : leaves_(std::move(leaves)),
+        is_read_once_(static_cast<std::size_t>(tree.leaf_count()) == leaves_.size()),
+        whole_(joint_of(tree)) {}
+
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked) const {
+    if (is_read_once_)
+      return read(
+          whole_, [&](std::size_t leaf) { return leaves_[leaf](p_mm, slack_mm, asked); }, asked);
+    std::vector<std::optional<Reading>> known(leaves_.size());
+    const auto once = [&](std::size_t leaf) {
+      if (!known[leaf]) known[leaf] = leaves_[leaf](p_mm, slack_mm, asked);
+      return *known[leaf];
+    };
+    return read(whole_, once, asked);
   }
-  return made;
-}
+
+ private:
+  /// A leaf, or what joins parts: an intersection, or where they are exclusive.
+  struct Joint {
+    bool is_complement = false, is_exclusive = false;
+    std::size_t leaf = 0;
+    double cost = 0.0;
+    std::vector<Joint> parts = {};
+  };
+
+  Joint joint_of(const ExpressionTree& tree) const {
+    Joint made;
+    if (tree.parts.empty()) {
+      made.leaf = static_cast<std::size_t>(tree.leaf);
+      made.cost = cost_of(leaves_[made.leaf]);
+      return made;
+    }
+    for (const ExpressionTree& part : tree.parts) {
+      made.parts.push_back(joint_of(part));
+      made.cost += made.parts.back().cost;
+    }
+    const auto complement = [](Joint& part) { part.is_complement = !part.is_complement; };
+    made.is_exclusive = tree.symbol == '^';
+    if (tree.symbol == '~') made.is_complement = true;
+    if (tree.symbol == '-') std::for_each(made.parts.begin() + 1, made.parts.end(), complement);
+    if (tree.symbol == '|') {
+      made.is_complement = true;
+      std::for_each(made.parts.begin(), made.parts.end(), complement);
+    }
+    std::stable_sort(made.parts.begin(), made.parts.end(),
+                     [](const Joint& a, const Joint& b) { return a.cost < b.cost; });
+    return made;
+  }
+
+  /// Recursion is as deep as the text's parentheses, not as long as a row of operands.
+  template <typename ReadLeaf>
+  static Reading read(const Joint& joint, const ReadLeaf& leaf, Asked asked) {
+    if (joint.parts.empty()) return joint.is_complement ? negated(leaf(joint.leaf)) : leaf(joint.leaf);
+    Reading made = read(joint.parts.front(), leaf, asked);
+    for (std::size_t i = 1; i < joint.parts.size() && (joint.is_exclusive || !decides(made, asked)); ++i) {
+      const Reading next = read(joint.parts[i], leaf, asked);
+      made = joint.is_exclusive ? exclusive(made, next) : conjunction(made, next);
+    }
+    return joint.is_complement ? negated(made) : made;
+  }
+
+  std::vector<Witness> leaves_;
+  bool is_read_once_;  ///< no leaf occurs twice
+  Joint whole_;
+};
 
 }  // namespace
 
@@ -522,8 +604,7 @@ Witness witness_of_regions(const std::vector<DrawnRegion>& regions) {
            Reading all{certainly_in, certainly_in, 0};
            for (const RegionWitness& reader : *readers) {
              const Reading one = reader(p_mm, slack_mm);
-             all = {conjunction(all.voxel, one.voxel), conjunction(all.mesh, one.mesh),
-                    all.surfaces + one.surfaces};
+             all = conjunction(all, one);
            }
            return all;
          })
@@ -582,7 +663,7 @@ Witness witness_of_surface(brep::Solid solid) {
 Witness both(Witness a, Witness b) {
   LineReading lines = lines_in_both(a.lines(), b.lines());
   std::vector<PartChoice> choices = choices_of({a, b});
-  return joined<conjunction>(std::move(a), std::move(b))
+  return intersection({std::move(a)}, {std::move(b)})
       .with_lines(std::move(lines))
       .with_choices(std::move(choices));
 }
@@ -590,7 +671,7 @@ Witness both(Witness a, Witness b) {
 Witness without(Witness a, Witness b) {
   LineReading lines = lines_without(a.lines(), b.lines());
   std::vector<PartChoice> choices = choices_of({a, b});
-  return joined<conjunction>(std::move(a), complement(std::move(b)))
+  return intersection({std::move(a)}, {std::move(b), true})
       .with_lines(std::move(lines))
       .with_choices(std::move(choices));
 }
@@ -601,9 +682,9 @@ Witness carried(Witness still, const glm::dmat4& moved_from_still) {
   const glm::dmat4 still_from_moved = glm::inverse(moved_from_still);
   std::vector<PartChoice> choices = still.choices();
   for (PartChoice& choice : choices) choice.chosen_from_made = choice.chosen_from_made * still_from_moved;
-  return Witness([still = std::move(still), still_from_moved](const glm::dvec3& p_mm, double slack_mm,
-                                                              Asked asked) {
-           return still(glm::dvec3(still_from_moved * glm::dvec4(p_mm, 1.0)), slack_mm, asked);
+  return Witness([still = std::move(still), back = Affine(still_from_moved)](const glm::dvec3& p_mm,
+                                                                             double slack_mm, Asked asked) {
+           return still(back(p_mm), slack_mm, asked);
          })
       .with_lines(std::move(lines))
       .with_choices(std::move(choices));
@@ -623,7 +704,7 @@ Witness loosened(Witness tight, double by_mm) {
 Witness witness_of_expression(std::string_view text,
                               const std::function<Witness(const std::string&)>& lookup) {
   std::vector<std::string> names;
-  const auto tree = std::make_shared<const ExpressionTree>(expression_tree_of(text, names));
+  const ExpressionTree tree = expression_tree_of(text, names);
   std::vector<Witness> leaves;
   for (const std::string& name : names) {
     leaves.push_back(lookup(name));
@@ -632,11 +713,9 @@ Witness witness_of_expression(std::string_view text,
   LineReading lines =
       lines_in_expression(text, [&](const std::string& name) { return lookup(name).lines(); });
   std::vector<PartChoice> choices = choices_of(leaves);
-  return Witness([tree, leaves = std::move(leaves)](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
-           std::vector<Reading> readings;
-           readings.reserve(leaves.size());
-           for (const Witness& leaf : leaves) readings.push_back(leaf(p_mm, slack_mm, asked));
-           return reading_of(*tree, readings);
+  const auto read = std::make_shared<const ReadExpression>(tree, std::move(leaves));
+  return Witness([read](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
+           return (*read)(p_mm, slack_mm, asked);
          })
       .with_lines(std::move(lines))
       .with_choices(std::move(choices));

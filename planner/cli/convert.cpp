@@ -50,6 +50,20 @@ std::optional<voxel::DicomSource> source_of(const Program& program, const Conver
   return source;
 }
 
+/// Refuses options of DICOM where something else is written, which they would not change.
+void need_used(const ConvertText& text, bool writes_dicom, bool writes_segments) {
+  const auto need = [&](bool is_given, const std::string& option, bool is_used, const std::string& of) {
+    if (is_given && !is_used)
+      throw std::runtime_error(text.out.string() + ": " + option + " is of " + of +
+                               ", which is not written: leave it out, or write " + of);
+  };
+  need(!text.label.empty(), "--label", writes_segments, "a DICOM segmentation (.dcm)");
+  need(!text.source.empty(), "--source", writes_dicom, "DICOM (a folder or .dcm)");
+  need(text.other_identity, "--other-identity", writes_dicom, "DICOM (a folder or .dcm)");
+  if (text.other_identity && text.source.empty())
+    throw std::runtime_error("--other-identity is about --source: give it, or leave both out");
+}
+
 /// Findings in the answer, and as warnings.
 void tell(const std::vector<std::string>& findings, Json& json) {
   json["findings"] = findings;
@@ -62,6 +76,10 @@ int convert_octree(const Program& program, const ConvertText& text) {
         text.out.string() +
         ": an octree is converted to a DICOM segmentation, .dcm; octotomy octree --as has "
         "other forms");
+  if (text.dicom)
+    throw std::runtime_error(text.in.string() +
+                             ": an octree is no series of images: leave --dicom out and write a .dcm");
+  need_used(text, true, true);
   need_folder_of(text.out);
   Timings timings;
   const voxel::OctreeFile file = read_timed(text.in, timings);
@@ -97,6 +115,7 @@ int convert_octree(const Program& program, const ConvertText& text) {
 
 /// A label map as a DICOM segmentation of its labels on its own slices, under the names that it has.
 int convert_labels(const Program& program, const ConvertText& text) {
+  need_used(text, true, true);
   need_folder_of(text.out);
   Timings timings;
   const voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
@@ -148,6 +167,7 @@ int convert(const Program& program, const ConvertText& text) {
   if (!folder && !is_volume(text.out))
     throw std::runtime_error(text.out.string() +
                              ": unknown kind of scan; use .nrrd, .nii.gz or .mha, or a folder for DICOM");
+  need_used(text, folder, false);
   need_folder_of(text.out, folder ? Output::Folder : Output::File);
   Timings timings;
   const voxel::Scene scene = read_scan(program, text.in, text.scan, timings);

@@ -281,11 +281,47 @@ LabelTable table_or_why(const fs::path& path, const std::set<int>& occurring, st
   return table;
 }
 
+/// A name or number that two tables give differently; empty where they agree.
+std::string disagreement(const LabelTable& taken, const LabelTable& other) {
+  std::map<std::string, int> numbers;
+  for (const auto& [number, name] : other.names) numbers.emplace(name, number);
+  for (const auto& [number, name] : taken.names) {
+    if (const auto there = other.names.find(number); there != other.names.end() && there->second != name)
+      return std::to_string(number) + " is '" + there->second + "' there and '" + name + "' here";
+    if (const auto there = numbers.find(name); there != numbers.end() && there->second != number)
+      return "'" + name + "' is " + std::to_string(there->second) + " there and " + std::to_string(number) +
+             " here";
+  }
+  return {};
+}
+
+/// Reports tables in the label map's folder that contradict the one that is used.
+void add_disagreements(const fs::path& label_map, const std::set<int>& occurring, LabelTable& taken) {
+  for (const fs::path& beside : tables_beside(label_map)) {
+    if (beside == taken.file || beside.parent_path() != label_map.parent_path()) continue;
+    std::string why;
+    const LabelTable other = table_or_why(beside, occurring, why);
+    if (!why.empty()) continue;
+    if (const std::string differs = disagreement(taken, other); !differs.empty())
+      taken.passed_over.push_back(beside.string() + ": passed over, as it contradicts " +
+                                  taken.file.string() + ", whose names are used: " + differs +
+                                  "; remove the wrong one, or choose one by --names");
+  }
+}
+
 }  // namespace
 
 int LabelTable::label(const std::string& name) const {
+  std::vector<int> numbers;
   for (const auto& [number, label] : names)
-    if (label == name) return number;
+    if (label == name) numbers.push_back(number);
+  if (numbers.size() == 1) return numbers.front();
+  if (!numbers.empty()) {
+    std::string list;
+    for (const int number : numbers) list += (list.empty() ? "" : ", ") + std::to_string(number);
+    refuse(file.string(), "has " + std::to_string(numbers.size()) + " labels '" + name +
+                              "', of the numbers " + list + ": choose one by its number, 'label'");
+  }
   std::vector<std::string> known;
   for (const auto& [number, label] : names) known.push_back(label);
   if (known.empty())
@@ -316,13 +352,19 @@ LabelTable read_label_table(const fs::path& path) {
 }
 
 LabelTable label_table_of(const fs::path& label_map, const std::set<int>& occurring) {
-  if (LabelTable own{voxel::label_names(label_map), label_map}; !own.names.empty()) return own;
+  if (LabelTable own{voxel::label_names(label_map), label_map}; !own.names.empty()) {
+    add_disagreements(label_map, occurring, own);
+    return own;
+  }
   std::vector<std::string> passed_over;
   for (const fs::path& beside : tables_beside(label_map)) {
     std::string why;
     LabelTable table = table_or_why(beside, occurring, why);
     table.passed_over = std::move(passed_over);
-    if (why.empty()) return table;
+    if (why.empty()) {
+      add_disagreements(label_map, occurring, table);
+      return table;
+    }
     passed_over = std::move(table.passed_over);
     passed_over.push_back(beside.string() + ": passed over, as it is no table of this label map's names: " +
                           why + "; --names takes a table as it is");

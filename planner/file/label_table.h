@@ -15,10 +15,11 @@ namespace octotomy::planner {
 struct LabelTable {
   std::map<int, std::string> names;
   std::filesystem::path file;  ///< that has them; empty where there are none
-  /// Files beside a label map that look like its table and are none, each with the reason.
+  /// Files beside a label map that look like its table and are none, or contradict it, each with the reason.
   std::vector<std::string> passed_over = {};
 
-  /// The label of a name. Throws std::runtime_error with the names that there are.
+  /// The label of a name. Throws std::runtime_error with the names that there are, or with the numbers of
+  /// several labels of that name.
   int label(const std::string& name) const;
 };
 

@@ -8,13 +8,13 @@
 #include <set>
 #include <stdexcept>
 
+#include "planner/file/contour_findings.h"
 #include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "planner/table/number_format.h"
 #include "voxel/scan/read_rtstruct.h"
 #include "voxel/solid/polygon.h"
-#include "voxel/solid/polygon_overlaps.h"
 
 namespace octotomy::planner {
 namespace {
@@ -57,11 +57,6 @@ voxel::SliceMask slices_of(const SortedJson& json, const std::string& source) {
                    [](const auto& a, const auto& b) { return a.position_mm < b.position_mm; });
   voxel::check(mask);
   return mask;
-}
-
-/// A plane may be off by as much as a decimal string rounds: a part of the least distance of planes.
-constexpr double off_plane_mm() {
-  return 0.01;
 }
 
 /// Points of one plane may be this far apart along its normal, where planes are ten times as far apart: some
@@ -262,46 +257,58 @@ bool interleave(const Slices& part, const Slices& other) {
   return false;
 }
 
-/// Continues parts that are drawn on planes between each other's: each plane of the structure gets what the
-/// nearest plane of every part holds, up to half that part's distance of planes away. Each part thus reaches
-/// as far as it does alone. Other structures stay as they are. Sets `apart_mm` to the parts' least distance.
-Slices joined_parts(Slices planes, double& apart_mm, const std::string& where,
-                    std::vector<std::string>& findings) {
-  const std::vector<Slices> parts = parts_of(planes);
-  const auto has_between = [&](const Slices& part) {
+bool are_interleaved(const std::vector<Slices>& parts) {
+  return std::any_of(parts.begin(), parts.end(), [&](const Slices& part) {
     return std::any_of(parts.begin(), parts.end(),
                        [&](const Slices& other) { return interleave(part, other); });
+  });
+}
+
+/// Parts that are drawn on planes between each other's, each as thick as it is alone: a plane speaks for half
+/// the gap to the part's next one, and for half its usual distance beyond its ends and beside gaps that are
+/// not bridged. Nothing is interpolated.
+Slices joined_parts(const std::vector<Slices>& parts, double bridge_mm) {
+  struct Slab {
+    double low_mm, high_mm;
+    const voxel::SliceMask::Slice* plane;
   };
-  if (std::none_of(parts.begin(), parts.end(), has_between)) return planes;
+  std::vector<Slab> slabs;
+  std::vector<double> borders;
   double least_mm = std::numeric_limits<double>::infinity();
   for (const Slices& part : parts)
     if (part.size() > 1) least_mm = std::min(least_mm, usual_distance_mm(part));
-  apart_mm = least_mm;
-  for (voxel::SliceMask::Slice& plane : planes)
-    for (const Slices& part : parts) {
-      const double half_mm = 0.5 * (part.size() > 1 ? usual_distance_mm(part) : least_mm);
-      // Half-way between planes belongs to the upper one, so that ends count once.
-      const double rounding_mm = 0.1 * off_plane_mm();
-      const voxel::SliceMask::Slice* nearest = nullptr;
-      double nearest_mm = std::numeric_limits<double>::infinity();
-      for (const voxel::SliceMask::Slice& own : part) {
-        const double above_mm = own.position_mm - plane.position_mm;
-        if (above_mm <= rounding_mm - half_mm || above_mm > half_mm + rounding_mm) continue;
-        if (std::abs(above_mm) >= nearest_mm) continue;
-        nearest = &own;
-        nearest_mm = std::abs(above_mm);
-      }
-      if (nearest == nullptr || nearest_mm == 0.0) continue;
-      plane.polygons_mm.insert(plane.polygons_mm.end(), nearest->polygons_mm.begin(),
-                               nearest->polygons_mm.end());
+  for (const Slices& part : parts) {
+    const double usual_mm = part.size() > 1 ? usual_distance_mm(part) : least_mm;
+    const auto half_mm = [&](std::size_t below) {
+      if (below >= part.size() - 1) return 0.5 * usual_mm;  // beyond either end
+      const double gap_mm = part[below + 1].position_mm - part[below].position_mm;
+      return 0.5 * (gap_mm > std::max(misses_plane * usual_mm, bridge_mm) ? usual_mm : gap_mm);
+    };
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const double at_mm = part[i].position_mm;
+      slabs.push_back({at_mm - half_mm(i == 0 ? part.size() : i - 1), at_mm + half_mm(i), &part[i]});
+      borders.insert(borders.end(), {slabs.back().low_mm, slabs.back().high_mm});
     }
-  findings.push_back(
-      where + ": its " + std::to_string(parts.size()) +
-      " parts are drawn on planes between each other's, first at " + plain(planes[0].position_mm) + " and " +
-      plain(planes[1].position_mm) +
-      " mm: each part is continued up to half its own distance of planes; draw all parts on the "
-      "same planes to avoid this");
-  return planes;
+  }
+  std::sort(borders.begin(), borders.end());
+  const auto are_one = [](double low_mm, double high_mm) { return high_mm - low_mm < 0.1 * off_plane_mm(); };
+  borders.erase(std::unique(borders.begin(), borders.end(), are_one), borders.end());
+  // Planes on both sides of each border, nearer than combine() moves centres off a border.
+  constexpr double beside_mm = 0x1p-22;
+  Slices all{{borders.front() - beside_mm, {}}};
+  for (std::size_t k = 1; k < borders.size(); ++k) {
+    voxel::SliceMask::Slice between{borders[k - 1] + beside_mm, {}};
+    const double middle_mm = 0.5 * (borders[k - 1] + borders[k]);
+    for (const Slab& slab : slabs)
+      if (slab.low_mm < middle_mm && middle_mm < slab.high_mm)
+        between.polygons_mm.insert(between.polygons_mm.end(), slab.plane->polygons_mm.begin(),
+                                   slab.plane->polygons_mm.end());
+    all.push_back(between);
+    between.position_mm = borders[k] - beside_mm;
+    all.push_back(std::move(between));
+  }
+  all.push_back({borders.back() + beside_mm, {}});
+  return all;
 }
 
 /// The largest gap that the file says to be interpolated, or that is asked for; with a hundredth more, as
@@ -415,94 +422,32 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
   const PlaneDistances distances = distances_of_planes(set.structures, drawn.mask.view);
   Slices planes = planes_of(found, drawn.mask.view, distances, where, drawn.findings);
   if (!std::isfinite(distances.nearest_mm))
-    refuse(where, "lies in one plane, as the whole set does: how thick it is cannot be told");
+    refuse(where,
+           "lies in one plane, as the whole set does: how thick it is cannot be told; draw it on the next "
+           "plane, too");
   if (!std::isfinite(distances.least_mm))
     refuse(where, "lies in planes, as the whole set does, that are " + too_near(distances.nearest_mm));
+  drawn.mask.slices = std::move(planes);
+  add_contour_findings(drawn.mask, where, drawn.findings);
+  planes = std::move(drawn.mask.slices);
   const double bridge_mm = bridge_of(found, options.bridge_mm);
-  double apart_mm = distances.least_mm;
-  planes = joined_parts(std::move(planes), apart_mm, where, drawn.findings);
-  tell_gaps(planes, apart_mm, bridge_mm, where, drawn.findings);
-  drawn.mask.slices = with_empty(planes, apart_mm, bridge_mm);
+  const std::vector<Slices> parts = parts_of(planes);
+  if (!are_interleaved(parts)) {
+    tell_gaps(planes, distances.least_mm, bridge_mm, where, drawn.findings);
+    drawn.mask.slices = with_empty(planes, distances.least_mm, bridge_mm);
+  } else {
+    for (const Slices& part : parts)
+      tell_gaps(part, usual_distance_mm(part), bridge_mm, where, drawn.findings);
+    drawn.findings.push_back(
+        where + ": its " + std::to_string(parts.size()) +
+        " parts are drawn on planes between each other's, first at " + plain(planes[0].position_mm) +
+        " and " + plain(planes[1].position_mm) +
+        " mm: each part is as thick as it is alone, and nothing is interpolated; draw all "
+        "parts on the same planes to avoid this");
+    drawn.mask.slices = joined_parts(parts, bridge_mm);
+  }
   voxel::check(drawn.mask);
   return drawn;
-}
-
-/// "10, 12 and 3 more".
-class Listed {
- public:
-  void add(const std::string& word) {
-    constexpr int most = 8;
-    if (++count_ <= most)
-      words_ += (words_.empty() ? "" : ", ") + word;
-    else
-      ++left_;
-  }
-  std::string text() const { return words_ + (left_ > 0 ? " and " + std::to_string(left_) + " more" : ""); }
-
- private:
-  std::string words_;
-  int count_ = 0, left_ = 0;
-};
-
-std::string contours(std::size_t count) {
-  return std::to_string(count) + (count == 1 ? " contour" : " contours");
-}
-
-std::string place(const voxel::View& view, const glm::dvec2& p, double position_mm) {
-  const glm::dvec3 at = p.x * view.right + p.y * view.up + position_mm * view.look;
-  const auto number = [](double value) { return plain(std::round(100.0 * value) / 100.0 + 0.0); };
-  return "near (" + number(at.x) + ", " + number(at.y) + ", " + number(at.z) + ") mm";
-}
-
-/// Takes contours that are drawn again in their plane once: by the even-odd rule they would delete each
-/// other.
-void take_once(voxel::SliceMask& mask, const std::string& where, std::vector<std::string>& findings) {
-  std::size_t count = 0;
-  std::string first;
-  Listed planes;
-  for (voxel::SliceMask::Slice& slice : mask.slices) {
-    const std::vector<std::size_t> again = voxel::repeated_polygons(slice.polygons_mm, off_plane_mm());
-    if (again.empty()) continue;
-    if (count == 0) first = place(mask.view, slice.polygons_mm[again.front()].front(), slice.position_mm);
-    count += again.size();
-    planes.add(plain(slice.position_mm));
-    const std::set<std::size_t> left(again.begin(), again.end());
-    std::vector<std::vector<glm::dvec2>> kept;
-    for (std::size_t i = 0; i < slice.polygons_mm.size(); ++i)
-      if (!left.contains(i)) kept.push_back(std::move(slice.polygons_mm[i]));
-    slice.polygons_mm = std::move(kept);
-  }
-  if (count > 0)
-    findings.push_back(where + ": " + contours(count) + (count == 1 ? " repeats" : " repeat") +
-                       " another of the same plane, which is taken once: planes at " + planes.text() +
-                       " mm, first " + first);
-}
-
-/// The even-odd rule leaves out what two contours enclose, which is a hole where one lies in the other. Of
-/// contours that cross, DICOM's exclusive or says the same (PS3.3, C.8.8.6.3), and other programs join them.
-void tell_crossings(const voxel::SliceMask& mask, const std::string& where,
-                    std::vector<std::string>& findings) {
-  std::size_t count = 0;
-  std::string first;
-  Listed planes, unknown;
-  for (const voxel::SliceMask::Slice& slice : mask.slices) {
-    const voxel::CrossingPolygons crossing = voxel::crossing_polygons(slice.polygons_mm, off_plane_mm());
-    if (!crossing.is_complete) unknown.add(plain(slice.position_mm));
-    if (crossing.all.empty()) continue;
-    if (count == 0) first = place(mask.view, crossing.all.front().at_mm, slice.position_mm);
-    count += crossing.all.size();
-    planes.add(std::to_string(crossing.all.size()) + " at " + plain(slice.position_mm) + " mm");
-  }
-  if (count > 0)
-    findings.push_back(where + ": " + contours(count) +
-                       (count == 1 ? " crosses itself" : " cross another of the same plane or themselves") +
-                       ", so that parts enclosed twice are left out: " + planes.text() + ", first " + first +
-                       "; redraw them as one outline if the parts belong to it");
-  if (!unknown.text().empty())
-    findings.push_back(where +
-                       ": too many edges lie over each other to tell all contours that cross: "
-                       "planes at " +
-                       unknown.text() + " mm");
 }
 
 }  // namespace
@@ -521,12 +466,9 @@ DrawnSlices read_slices(const std::filesystem::path& path, const SlicesOptions& 
   if (!is_set && options.bridge_mm)
     refuse(path.string(), "is no DICOM structure set, whose gaps 'bridge_mm' fills");
   try {
-    DrawnSlices drawn = is_set ? slices_of(voxel::read_rtstruct(path), options, path.string())
-                               : DrawnSlices{slices_of(read_json(path), path.string())};
-    const std::string where =
-        path.string() + (options.structure.empty() ? "" : ": '" + options.structure + "'");
-    take_once(drawn.mask, where, drawn.findings);
-    tell_crossings(drawn.mask, where, drawn.findings);
+    if (is_set) return slices_of(voxel::read_rtstruct(path), options, path.string());
+    DrawnSlices drawn{slices_of(read_json(path), path.string())};
+    add_contour_findings(drawn.mask, path.string(), drawn.findings);
     return drawn;
   } catch (const std::invalid_argument& error) {
     refuse(path.string(), error.what());

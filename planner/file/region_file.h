@@ -30,6 +30,9 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 /// several; if the region's contours cannot be read, lie in no parallel planes, or all in one plane or in
 /// planes within 0.02 mm, which tell no distance.
 ///
+/// A voxel whose centre lies on a contour, within a millionth of a millimetre, is inside where the region
+/// goes on towards growing u, v or position, so that it counts once among regions that share the contour.
+///
 /// A contour that is drawn again in its plane, within 0.01 mm, is taken once. Where planes are ten times as
 /// far apart, points up to 0.1 mm off a plane belong to it.
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure = {});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "brep/measure/difference.h"
@@ -76,10 +77,21 @@ struct Totals {
   std::size_t compared = 0;
 };
 
-Json label_json(int label, const std::string& name, const Side& a, const Side& b,
-                const voxel::Universe& universe, Totals& totals) {
-  const voxel::Octree of_a = voxel::octree_of_label(universe, a.scene, label),
-                      of_b = voxel::octree_of_label(universe, b.scene, label);
+/// A label of both maps, or of one; each has its own number.
+struct Pair {
+  std::optional<int> a, b;
+  std::string name;
+
+  int number() const { return a ? *a : *b; }
+};
+
+voxel::Octree object_of(const voxel::Universe& universe, const Side& side, const std::optional<int>& label) {
+  return label ? voxel::octree_of_label(universe, side.scene, *label) : voxel::Octree::empty(universe);
+}
+
+Json label_json(const Pair& pair, const Side& a, const Side& b, const voxel::Universe& universe,
+                Totals& totals) {
+  const voxel::Octree of_a = object_of(universe, a, pair.a), of_b = object_of(universe, b, pair.b);
   const auto count_a = static_cast<double>(of_a.voxel_count()),
              count_b = static_cast<double>(of_b.voxel_count());
   const auto common = static_cast<double>(
@@ -87,16 +99,16 @@ Json label_json(int label, const std::string& name, const Side& a, const Side& b
   const double voxel_mm3 = universe.lattice().voxel_mm3();
   totals.common_mm3 += common * voxel_mm3;
   totals.both_mm3 += (count_a + count_b) * voxel_mm3;
-  Json json{{"label", label},
-            {"name", name},
-            {"volume_a_mm3", a.volume_mm3(label)},
-            {"volume_b_mm3", b.volume_mm3(label)},
+  Json json{{"label", pair.number()},
+            {"name", pair.name},
+            {"volume_a_mm3", pair.a ? a.volume_mm3(*pair.a) : 0.0},
+            {"volume_b_mm3", pair.b ? b.volume_mm3(*pair.b) : 0.0},
             {"dice", count_a + count_b > 0.0 ? Json(2.0 * common / (count_a + count_b)) : Json(nullptr)}};
   for (const char* key : {"hausdorff_mm", "hausdorff95_mm", "mean_mm"}) json[key] = nullptr;
-  if (!a.samples.contains(label) || !b.samples.contains(label)) return json;
+  if (!pair.a || !pair.b) return json;
   const brep::Difference difference =
-      brep::difference(brep::linked(brep::surface_of_part(a.surfaces, label)),
-                       brep::linked(brep::surface_of_part(b.surfaces, label)));
+      brep::difference(brep::linked(brep::surface_of_part(a.surfaces, *pair.a)),
+                       brep::linked(brep::surface_of_part(b.surfaces, *pair.b)));
   json["hausdorff_mm"] = difference.hausdorff_mm;
   json["hausdorff95_mm"] = difference.hausdorff95_mm;
   json["mean_mm"] = difference.mean_mm;
@@ -120,6 +132,61 @@ Json definitions() {
           {"dice", "twice the common samples by the sum of both, at A's samples; of all: of all labels"}};
 }
 
+using Names = std::map<int, std::string>;
+
+std::string name_of(const Names& names, int label) {
+  const auto name = names.find(label);
+  return name == names.end() ? "label " + std::to_string(label) : name->second;
+}
+
+/// The names of the labels that occur.
+Names names_of(const Side& side, std::vector<std::string>& findings) {
+  std::set<int> occurring;
+  for (const auto& [label, samples] : side.samples) occurring.insert(label);
+  LabelTable table = label_table_of(side.path, occurring);
+  findings.insert(findings.end(), table.passed_over.begin(), table.passed_over.end());
+  std::erase_if(table.names, [&](const auto& entry) { return !occurring.contains(entry.first); });
+  return std::move(table.names);
+}
+
+/// The numbers of a map's labels by name, or by "label 5" without one; refuses a name that two labels have.
+std::map<std::string, int> numbers_of(const Side& side, const Names& names) {
+  std::map<std::string, int> numbers;
+  for (const auto& [label, samples] : side.samples)
+    if (const auto [known, is_new] = numbers.try_emplace(name_of(names, label), label); !is_new)
+      throw std::runtime_error(side.path.string() + ": the labels " + std::to_string(known->second) +
+                               " and " + std::to_string(label) + " are both named '" + known->first +
+                               "', so that labels cannot be paired by name: give each a name of its own");
+  return numbers;
+}
+
+/// Pairs labels by name where both maps have names, else by number; reports where these contradict.
+std::vector<Pair> pairs_of(const Side& a, const Side& b, std::vector<std::string>& findings) {
+  const Names names_a = names_of(a, findings), names_b = names_of(b, findings);
+  const bool by_name = !names_a.empty() && !names_b.empty();
+  if (names_a.empty() != names_b.empty())
+    findings.push_back("labels are paired by number, as only " + (names_b.empty() ? a : b).path.string() +
+                       " has names");
+  for (const auto& [label, samples] : a.samples)
+    if (by_name && b.samples.contains(label) && name_of(names_a, label) != name_of(names_b, label))
+      findings.push_back("number " + std::to_string(label) + " is '" + name_of(names_a, label) + "' in " +
+                         a.path.string() + " and '" + name_of(names_b, label) + "' in " + b.path.string() +
+                         ": labels are paired by name");
+  const Names none;
+  std::map<std::string, Pair> by_key;
+  for (const auto& [key, label] : numbers_of(a, by_name ? names_a : none)) by_key[key].a = label;
+  for (const auto& [key, label] : numbers_of(b, by_name ? names_b : none)) by_key[key].b = label;
+  std::vector<Pair> pairs;
+  for (auto& [key, pair] : by_key) {
+    const Names& names = pair.a && names_a.contains(*pair.a) ? names_a : names_b;
+    pair.name = by_name ? key : name_of(names, pair.number());
+    pairs.push_back(std::move(pair));
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& left, const Pair& right) { return left.number() < right.number(); });
+  return pairs;
+}
+
 }  // namespace
 
 bool is_label_map(const fs::path& path) {
@@ -134,12 +201,7 @@ FileAnswer compare_label_maps(const fs::path& path_a, const fs::path& path_b, bo
        need_same_patient({path_a.string(), a.scene.identity}, {path_b.string(), b.scene.identity},
                          other_identity, "--other-identity"))
     answer.findings.push_back(std::move(finding));
-  std::set<int> all, of_a, of_b;
-  for (const auto& [label, samples] : a.samples) of_a.insert(label);
-  for (const auto& [label, samples] : b.samples) of_b.insert(label);
-  std::set_union(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), std::inserter(all, all.end()));
-  std::map<int, std::string> names = label_table_of(path_b, of_b).names;
-  for (const auto& [label, name] : label_table_of(path_a, of_a).names) names[label] = name;
+  const std::vector<Pair> pairs = pairs_of(a, b, answer.findings);
   const voxel::Lattice lattice = covering(a.scene.lattice, b.scene.lattice);
   const bool is_one_lattice =
       lattice.dims == a.scene.lattice.dims && lattice.dims == b.scene.lattice.dims &&
@@ -151,19 +213,19 @@ FileAnswer compare_label_maps(const fs::path& path_a, const fs::path& path_b, bo
   const Stopwatch watch(bench.timings, "compare");
   Totals totals;
   answer.json["labels"] = Json::array();
-  for (const int label : all) {
+  for (const Pair& pair : pairs) {
     if (bench.stop.stop_requested()) throw voxel::Stopped("stopped while labels were compared");
-    const std::string name = names.contains(label) ? names[label] : "label " + std::to_string(label);
-    const Json json = label_json(label, name, a, b, universe, totals);
+    const Json json = label_json(pair, a, b, universe, totals);
     answer.rows.emplace_back(
-        name, "Dice " + grouped(json["dice"].is_null() ? 0.0 : json["dice"].get<double>(), 5) +
-                  (json["mean_mm"].is_null()
-                       ? std::string()
-                       : ", mean " + grouped(json["mean_mm"].get<double>(), 3) + " mm, Hausdorff 95 " +
-                             grouped(json["hausdorff95_mm"].get<double>(), 3) + " mm"));
+        pair.name, "Dice " + grouped(json["dice"].is_null() ? 0.0 : json["dice"].get<double>(), 5) +
+                       (json["mean_mm"].is_null()
+                            ? std::string()
+                            : ", mean " + grouped(json["mean_mm"].get<double>(), 3) + " mm, Hausdorff 95 " +
+                                  grouped(json["hausdorff95_mm"].get<double>(), 3) + " mm"));
     if (json["mean_mm"].is_null())
-      answer.findings.push_back("'" + name + "' (" + std::to_string(label) + ") is only in " +
-                                (of_a.contains(label) ? path_a : path_b).string() + ": it has no distances");
+      answer.findings.push_back("'" + pair.name + "'" + " (" + std::to_string(pair.number()) +
+                                ") is only in " + (pair.a ? path_a : path_b).string() +
+                                ": it has no distances");
     answer.json["labels"].push_back(json);
   }
   const bool has_any = totals.compared > 0;

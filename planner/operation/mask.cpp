@@ -4,6 +4,7 @@
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/move.h"
 #include "brep/shape/prism.h"
+#include "planner/file/contour_findings.h"
 #include "planner/file/region_file.h"
 #include "planner/operation/mask_file.h"
 #include "planner/operation/trace.h"
@@ -45,6 +46,10 @@ std::optional<glm::dmat4> held(const Mask& mask, const Objects& objects) {
 }
 
 void check(const Mask& mask, const Place& place) {
+  const char* const of_set = "is about a structure set: add the set as 'slices'";
+  if (mask.slices.empty() && !mask.structure.empty()) place.at("structure").refuse(of_set);
+  if (mask.slices.empty() && mask.bridge_mm) place.at("bridge_mm").refuse(of_set);
+  if (mask.slices.empty() && mask.other_identity) place.at("other_identity").refuse(of_set);
   if (place.scope == nullptr) return;
   if (mask.regions.empty() && mask.slices.empty()) place.refuse("'regions' is missing: add it, or 'slices'");
   if (mask.regions.empty()) return;
@@ -74,23 +79,37 @@ std::string definition(const Mask& mask, const Objects&) {
          mask.slices.filename().string();
 }
 
-/// A structure set is of one of the plan's scans, whose steps may be in several frames of reference. Held
-/// against the first scan that it agrees with, or the first at all.
-std::vector<std::string> checked_identity(const Mask& mask, const voxel::Identity& of_set,
-                                          const std::vector<ScanRecord>& scans) {
+/// The scan that slices were drawn on: of a structure set, which a plan may read beside several scans, the
+/// first that it agrees with, or the first at all; of other files the only one. Null where there is none.
+const ScanRecord* drawn_on(const std::optional<voxel::Identity>& of_set,
+                           const std::vector<ScanRecord>& scans) {
   const ScanRecord* nearest = nullptr;
   voxel::Verdict best = voxel::Verdict::Fail;
   for (const ScanRecord& scan : scans) {
     if (!scan.made_by.empty()) continue;
-    const voxel::Verdict verdict = identity_finding({scan.name, scan.identity}, {"", of_set}).verdict;
+    if (!of_set && nearest != nullptr) return nullptr;
+    const voxel::Verdict verdict =
+        of_set ? identity_finding({scan.name, scan.identity}, {"", *of_set}).verdict : voxel::Verdict::Fail;
     if (nearest != nullptr && verdict >= best) continue;
     nearest = &scan;
     best = verdict;
   }
-  if (nearest == nullptr) return {};
-  return need_same_patient({"scan '" + nearest->name + "'", nearest->identity},
-                           {mask.slices.generic_string(), of_set}, mask.other_identity,
-                           "\"other_identity\": true");
+  return nearest;
+}
+
+/// What slices and the scan that they were drawn on say of each other; refuses those of another patient.
+std::vector<std::string> findings_of_slices(const Mask& mask, const DrawnSlices& drawn,
+                                            const std::vector<ScanRecord>& scans) {
+  std::vector<std::string> findings;
+  if (const ScanRecord* const scan = drawn_on(drawn.identity, scans)) {
+    const std::string file = mask.slices.generic_string();
+    if (drawn.identity)
+      findings = need_same_patient({"scan '" + scan->name + "'", scan->identity}, {file, *drawn.identity},
+                                   mask.other_identity, "\"other_identity\": true");
+    if (auto beyond = beyond_scan(drawn.mask, scan->lattice, file)) findings.push_back(std::move(*beyond));
+  }
+  findings.insert(findings.end(), drawn.findings.begin(), drawn.findings.end());
+  return findings;
 }
 
 void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
@@ -100,11 +119,8 @@ void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
   if (!mask.slices.empty()) {
     DrawnSlices drawn =
         read_slices(bench.folder / mask.slices, SlicesOptions{mask.structure, mask.bridge_mm});
-    if (drawn.identity) {
-      const auto found = checked_identity(mask, *drawn.identity, bench.scans);
-      made.findings.insert(made.findings.end(), found.begin(), found.end());
-    }
-    made.findings.insert(made.findings.end(), drawn.findings.begin(), drawn.findings.end());
+    const auto found = findings_of_slices(mask, drawn, bench.scans);
+    made.findings.insert(made.findings.end(), found.begin(), found.end());
     const voxel::Expression slices = std::move(drawn.mask);
     made.symbol = made.symbol ? *made.symbol & slices : slices;
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "planner/file/contour_findings.h"
 #include "planner/file/drawn_region.h"
 #include "planner/file/file_kind.h"
 #include "planner/file/octree_in.h"
@@ -54,16 +55,21 @@ class Bounds {
   voxel::Box box_{glm::dvec3(-far), glm::dvec3(far)};
 };
 
-/// Whose voxels the mask has; an octree states no identity.
+/// Whose voxels the mask has; an octree states no identity and no end of its samples.
 struct Like {
   voxel::Universe universe;
   voxel::Identity identity = {};
+  std::optional<voxel::Lattice> scan = std::nullopt;
 };
 
 Like like_file(const fs::path& path, const std::optional<double>& voxel_mm, const FileBench& bench) {
-  if (is_octree(path)) return {voxel::universe(voxel::read_octree(path))};
+  if (is_octree(path)) {
+    if (voxel_mm)
+      throw std::runtime_error(path.string() + ": the mask has an octree's voxels: leave --voxel out");
+    return {voxel::universe(voxel::read_octree(path))};
+  }
   const voxel::Scene scene = bench.read_scan(path);
-  return {universe_of(scene.lattice, voxel_mm), scene.identity};
+  return {universe_of(scene.lattice, voxel_mm), scene.identity, scene.lattice};
 }
 
 /// The slices that cut the mask; refuses those of another patient than the scan.
@@ -74,6 +80,13 @@ voxel::SliceMask slices_of(const Mask& asked, const std::optional<Like>& like,
     findings =
         need_same_patient({asked.like.string(), like->identity}, {asked.slices.string(), *drawn.identity},
                           asked.other_identity, "--other-identity");
+  else if (asked.other_identity)
+    throw std::runtime_error(
+        "--other-identity lets a structure set be of another patient than a scan: give both, as --slices and "
+        "--like, or leave it out");
+  if (like && like->scan)
+    if (auto beyond = beyond_scan(drawn.mask, *like->scan, asked.slices.string()))
+      findings.push_back(std::move(*beyond));
   findings.insert(findings.end(), drawn.findings.begin(), drawn.findings.end());
   return std::move(drawn.mask);
 }
@@ -139,6 +152,9 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
       const auto* octree = std::get_if<voxel::Octree>(&old.tree);
       if (octree == nullptr)
         throw std::runtime_error(asked.edit.string() + ": only a binary octree is a mask that can be edited");
+      if (!universe && asked.voxel_mm)
+        throw std::runtime_error(asked.edit.string() +
+                                 ": the mask has its voxels: leave --voxel out, or give a scan as --like");
       if (!universe) universe = octree->universe();
       expression = *octree;
     }

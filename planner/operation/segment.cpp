@@ -11,6 +11,7 @@
 #include "brep/mesh/triangles.h"
 #include "convert/surface/fill_cavities.h"
 #include "convert/surface/isosurface.h"
+#include "planner/file/contour_findings.h"
 #include "planner/file/label_table.h"
 #include "planner/file/region_file.h"
 #include "planner/operation/parts.h"
@@ -81,11 +82,7 @@ class Segmenter {
     base();
     refine();
     if (made_.octree.is_empty())
-      throw std::runtime_error(
-          source_.name + ": '" + name() + "' holds no voxel" +
-          (made_.steps.size() > 1
-               ? " after its " + std::to_string(made_.steps.size()) + " steps: leave some out"
-               : ": choose another window, or see what --otsu 3 suggests"));
+      throw std::runtime_error(source_.name + ": '" + name() + "' holds no voxel" + advice());
     return std::move(made_);
   }
 
@@ -107,7 +104,20 @@ class Segmenter {
                                          {segment_.regions.generic_string(), *drawn.identity},
                                          segment_.other_identity, "'other_identity'");
     made_.findings.insert(made_.findings.end(), drawn.findings.begin(), drawn.findings.end());
+    if (auto beyond = beyond_scan(drawn.mask, source_.scene.lattice, segment_.regions.string()))
+      made_.findings.push_back(std::move(*beyond));
     return std::move(drawn.mask);
+  }
+
+  /// What to do about an object without voxels.
+  std::string advice() const {
+    if (made_.steps.size() > 1)
+      return " after its " + std::to_string(made_.steps.size()) + " steps: leave some out";
+    if (source_.scene.meaning != voxel::Meaning::Label)
+      return ": choose another window, or see what --otsu 3 suggests";
+    for (const voxel::Finding& finding : source_.scene.audit)
+      if (finding.check == "fractions") return ": " + finding.detail;
+    return ": choose another label";
   }
 
   std::string name() const {
@@ -205,6 +215,10 @@ void check(const Segment& segment, const Place& place) {
     place.refuse("needs one of 'window', 'otsu', 'tolerance' with 'seeds_mm', 'label' and 'named'");
   if (!segment.names.empty() && !segment.named)
     place.at("names").refuse("is the table of a label that is 'named'");
+  if (segment.regions.empty() && !segment.structure.empty())
+    place.at("structure").refuse("chooses one of a structure set's structures: add the set as 'regions'");
+  if (segment.regions.empty() && segment.other_identity)
+    place.at("other_identity").refuse("is about a structure set: add the set as 'regions'");
   if (segment.tolerance && segment.seeds_mm.empty())
     place.at("tolerance").refuse("grows from seeds: add 'seeds_mm'");
   if (segment.otsu_class && (!segment.otsu || *segment.otsu_class > *segment.otsu))

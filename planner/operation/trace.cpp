@@ -122,16 +122,19 @@ glm::dvec3 area_on_planes(const brep::Triangles& triangles, const std::vector<Cu
   glm::dvec3 area_mm2(0.0);
   if (planes.empty()) return area_mm2;
   for (const auto& face : triangles.faces) {
-    const glm::dvec3 corner[] = {triangles.points_mm[face[1]], triangles.points_mm[face[2]],
-                                 triangles.points_mm[face[0]]};
-    const double reach_mm = glm::length(corner[0]) + glm::length(corner[1]) + glm::length(corner[2]);
+    const glm::dvec3 &a = triangles.points_mm[face[1]], &b = triangles.points_mm[face[2]],
+                     &c = triangles.points_mm[face[0]];
+    const auto sum = [](const glm::dvec3& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); };
+    // No less than the lengths' sum, without a root: enough for nearly all triangles.
+    const double surely_off_mm = on_plane_mm(sum(a) + sum(b) + sum(c));
     for (const CutPlane& plane : planes) {
-      const auto off = [&](const glm::dvec3& p) {
-        return std::abs(glm::dot(plane.normal, p) - plane.offset_mm);
+      const auto is_off = [&](const glm::dvec3& p) {
+        const double off_mm = std::abs(glm::dot(plane.normal, p) - plane.offset_mm);
+        return off_mm > surely_off_mm ||
+               off_mm > on_plane_mm(glm::length(a) + glm::length(b) + glm::length(c));
       };
-      if (std::max({off(corner[0]), off(corner[1]), off(corner[2])}) > on_plane_mm(reach_mm)) continue;
-      area_mm2[plane.axis] +=
-          plane.voxels * 0.5 * glm::length(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
+      if (is_off(a) || is_off(b) || is_off(c)) continue;
+      area_mm2[plane.axis] += plane.voxels * 0.5 * glm::length(glm::cross(a - c, b - c));
       break;
     }
   }

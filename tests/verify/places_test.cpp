@@ -493,7 +493,7 @@ TEST(Places, OfRightAnswersOnRealHeadsAreNeverContradicted) {
       expect_right(subject);
 }
 
-TEST(Witness, SaysOfTheMeshAloneWhatItSaysOfBoth) {
+TEST(Witness, SaysOfTheMeshAloneAndOfWordsAloneWhatItSaysOfAll) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> at(-70.0, 70.0);
   std::size_t near = 0;
@@ -503,6 +503,12 @@ TEST(Witness, SaysOfTheMeshAloneWhatItSaysOfBoth) {
        loosened(witness_of_expression(
                     "a ^ b", [&](const std::string& name) { return subjects[name == "a" ? 1 : 2].witness; }),
                 0.05)});
+  // Names that occur twice, complements, and operands of every cost.
+  subjects.push_back(
+      {"nested", subjects[0].octree, subjects[0].mesh,
+       witness_of_expression("(a - b) | (b & ~(a & c)) | (c ^ a) - b", [&](const std::string& name) {
+         return subjects[name == "a" ? 0 : name == "b" ? 1 : 2].witness;
+       })});
   subjects.push_back({"parts", subjects[0].octree, subjects[0].mesh,
                       witness_of_filled(witness_of_parts(subjects[3].witness))});
   for (const Subject& subject : subjects) {
@@ -514,6 +520,10 @@ TEST(Witness, SaysOfTheMeshAloneWhatItSaysOfBoth) {
       const Reading both = subject.witness(p, 0.0), mesh = subject.witness.of_mesh(p);
       ASSERT_EQ(mesh.mesh, both.mesh) << subject.name << " at " << p.x << ", " << p.y << ", " << p.z;
       ASSERT_EQ(mesh.surfaces, both.surfaces) << subject.name << " at " << p.x << ", " << p.y << ", " << p.z;
+      const Reading words = subject.witness.words(p);
+      ASSERT_EQ(words.mesh, both.mesh) << subject.name << " at " << p.x << ", " << p.y << ", " << p.z;
+      ASSERT_EQ(words.voxel, both.voxel) << subject.name << " at " << p.x << ", " << p.y << ", " << p.z;
+      ASSERT_EQ(subject.witness.mesh_word(p), both.mesh) << subject.name << " at " << p.x << ", " << p.y;
       near += both.mesh.near ? 1 : 0;
     }
   }

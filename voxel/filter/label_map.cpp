@@ -125,7 +125,8 @@ std::vector<Label> labels(const Scene& scene) {
           if (!number)
             throw std::invalid_argument(scene.source + ": holds " + std::to_string(value) +
                                         ", which is no label: labels are whole numbers from 0 to " +
-                                        std::to_string(most_label));
+                                        std::to_string(most_label) +
+                                        (value > most_label ? ": give its labels smaller numbers" : ""));
           if (last == found.end() || last->first != *number)
             last = found.emplace(*number, Label{*number}).first;
           ++last->second.samples;

@@ -35,8 +35,9 @@ struct LabelMap {
 };
 LabelMap label_map(const Lattice& lattice, std::span<const Octree> objects, const Progress& progress = {});
 
-/// The largest label: up to here a sample of single precision holds every whole number.
-constexpr int most_label = 1 << 24;
+/// The largest label: a sample of single precision holds every whole number up to here, and the next one is
+/// what larger ones round to.
+constexpr int most_label = (1 << 24) - 1;
 
 /// The label that a sample stores: its nearest whole number, if the sample is within a hundredth of it. Scale
 /// factors and single precision shift stored labels by less; interpolation between labels shifts them by

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "voxel/scan/character_set.h"
+#include "voxel/scan/inflate.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::voxel {
@@ -331,6 +332,15 @@ std::optional<std::vector<double>> DicomFile::decimals(DicomTag tag) const {
 std::optional<double> DicomFile::decimal(DicomTag tag) const {
   const std::optional<std::vector<double>> numbers = decimals(tag);
   return numbers ? std::optional<double>(numbers->front()) : std::nullopt;
+}
+
+std::string whole_dicom(std::string bytes) {
+  try {
+    const DicomFile file(bytes, bytes.size());
+  } catch (const DicomFile::Deflated& from) {
+    return bytes.substr(0, from.at) + inflate_raw(std::string_view(bytes).substr(from.at));
+  }
+  return bytes;
 }
 
 }  // namespace octotomy::voxel

@@ -125,4 +125,8 @@ class DicomFile {
   std::vector<std::uint64_t> frame_offsets_;
 };
 
+/// A DICOM file's bytes with deflated attributes inflated, for DicomFile's `inflated`. `bytes` are the whole
+/// file. Throws as DicomFile; Error, Input, without a path, if the deflated bytes are damaged.
+std::string whole_dicom(std::string bytes);
+
 }  // namespace octotomy::voxel

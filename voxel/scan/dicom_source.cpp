@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "voxel/scan/dicom_series.h"
-#include "voxel/scan/inflate.h"
 #include "voxel/scan/slice_plan.h"
 #include "voxel/space/file_text.h"
 
@@ -56,17 +55,13 @@ DicomSource dicom_source(const fs::path& path, const ReadOptions& options) {
         {slice.class_uid, file_uid(slice.instance_uid), glm::dot(slice.first_mm, stack.normal)});
   if (const SlicePlan plan = slice_plan(stack, path, ignored); plan.is_copy())
     source.lattice = lattice_of(stack, plan);
-  const std::string bytes = file_bytes(stack.first().path);
-  const auto take = [&](const DicomFile& file) {
+  std::string stored = file_bytes(stack.first().path);
+  try {
+    const std::string bytes = whole_dicom(std::move(stored));
+    const DicomFile file(bytes, bytes.size(), true);
     for (const auto& [tag, vr] : shared_attributes)
       if (std::string value = file.text(tag); !value.empty())
         source.attributes.emplace(tag, DicomSource::Text{vr, std::move(value)});
-  };
-  try {
-    take(DicomFile(bytes, bytes.size()));
-  } catch (const DicomFile::Deflated& from) {
-    const std::string whole = bytes.substr(0, from.at) + inflate_raw(std::string_view(bytes).substr(from.at));
-    take(DicomFile(whole, whole.size(), true));
   } catch (const DicomFile::NeedsMore&) {
     refuse(stack.first().path, "changed while it was read: read it again");
   }

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <fstream>
 #include <set>
+#include <utility>
 
 #include "voxel/scan/dicom_file.h"
 #include "voxel/scan/read_dicom_seg.h"
@@ -16,14 +17,13 @@ namespace {
 namespace fs = std::filesystem;
 
 std::map<int, std::string> of_dicom(const fs::path& path) {
-  const std::string bytes = file_bytes(path);
   std::map<int, std::string> names;
+  std::string stored = file_bytes(path);
   try {
-    const DicomFile file(bytes, bytes.size());
+    const std::string bytes = whole_dicom(std::move(stored));
+    const DicomFile file(bytes, bytes.size(), true);
     for (const DicomFile& segment : file.items(0x00620002))
       names[segment.unsigned_short(0x00620004).value_or(0)] = trimmed(segment.readable_text(0x00620005));
-  } catch (const DicomFile::Deflated&) {
-    refuse(path, "a deflated segmentation: inflate it first");
   } catch (const DicomFile::NeedsMore&) {
     refuse(path, "a segmentation that is cut short");
   } catch (const Error& error) {
@@ -37,11 +37,13 @@ std::map<int, std::string> of_dicom(const fs::path& path) {
 
 std::vector<SlicerSegment> slicer_segments(const fs::path& path) {
   std::map<int, SlicerSegment> listed;
+  bool has_layers = false;
   std::ifstream in = opened(path);
   constexpr std::size_t most_lines = 100000;
   std::string line;
   for (std::size_t i = 0; i < most_lines && std::getline(in, line) && !trimmed(line).empty(); ++i) {
     const std::size_t middle = line.find(":=");
+    if (line.starts_with("dimension:")) has_layers = trimmed(line.substr(10)) != "3";
     if (!line.starts_with("Segment") || middle == std::string::npos) continue;
     int number = 0;
     const char* const end = line.data() + middle;
@@ -62,11 +64,15 @@ std::vector<SlicerSegment> slicer_segments(const fs::path& path) {
     // Without a value the segments are numbered as they are listed.
     if (segment.value <= 0) segment.value = number + 1;
     largest = std::max(largest, segment.value);
+    if (!has_layers) segment.layer = 0;
     segments.push_back(std::move(segment));
   }
   std::set<int> taken;
+  std::map<std::pair<int, int>, int> number_of;  // of a layer and a value in it
   for (SlicerSegment& segment : segments) {
-    segment.number = taken.contains(segment.value) ? ++largest : segment.value;
+    const auto [known, is_new] = number_of.try_emplace({segment.layer, segment.value}, segment.value);
+    if (is_new && taken.contains(segment.value)) known->second = ++largest;
+    segment.number = known->second;
     taken.insert(segment.number);
   }
   return segments;
@@ -76,7 +82,10 @@ std::map<int, std::string> label_names(const fs::path& path) {
   const std::string extension = extension_of(path);
   if (extension == ".nrrd" || extension == ".nhdr") {
     std::map<int, std::string> names;
-    for (const SlicerSegment& segment : slicer_segments(path)) names[segment.number] = segment.name;
+    for (const SlicerSegment& segment : slicer_segments(path)) {
+      std::string& name = names[segment.number];
+      name += (name.empty() ? "" : " + ") + segment.name;
+    }
     return names;
   }
   std::error_code ignored;

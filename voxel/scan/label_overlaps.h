@@ -11,6 +11,10 @@
 
 namespace octotomy::voxel {
 
+/// The largest number of a label or of several: single precision holds every whole number up to here, and the
+/// next one is what larger ones round to.
+constexpr int most_number = (1 << 24) - 1;
+
 /// Numbers for samples that lie in several labels, beyond the labels' own: see Scene::overlaps.
 class LabelOverlaps {
  public:

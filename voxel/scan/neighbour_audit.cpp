@@ -11,9 +11,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <tbb/parallel_for.h>
+#include <type_traits>
 
 #include "voxel/scan/audit.h"
+#include "voxel/space/vector_clones.h"
 
 namespace octotomy::voxel {
 
@@ -35,6 +39,16 @@ struct Thumbnail {
   double length = 0.0;
 };
 
+/// Adds a row's pixels, at least `floor` each, to the sums of their columns. A block has fewer than 2^15
+/// rows, so that 32 bits hold its sums.
+OCTOTOMY_VECTOR_CLONES void add_row(const std::int16_t* __restrict row, std::size_t count, std::int16_t floor,
+                                    std::int32_t* __restrict sums) {
+  for (std::size_t i = 0; i < count; ++i) sums[i] += std::max(row[i], floor);
+}
+void add_row(const float* row, std::size_t count, float floor, double* sums) {
+  for (std::size_t i = 0; i < count; ++i) sums[i] += static_cast<double>(std::max(row[i], floor));
+}
+
 template <typename Sample>
 Thumbnail thumbnail_of(const Sample* pixels, const glm::ivec2& size_px, double floor) {
   const int block = (std::max(size_px.x, size_px.y) + largest_side - 1) / largest_side;
@@ -44,20 +58,21 @@ Thumbnail thumbnail_of(const Sample* pixels, const glm::ivec2& size_px, double f
   // A rest that fills no block is left out on both sides alike, so that flips meet the same pixels.
   const glm::ivec2 start = (size_px - block * glm::ivec2(small.width, small.height)) / 2;
   double mean = 0.0;
-  for (int y = 0; y < small.height; ++y)
+  const auto width = static_cast<std::size_t>(size_px.x);
+  using Sum = std::conditional_t<std::is_same_v<Sample, std::int16_t>, std::int32_t, double>;
+  std::vector<Sum> columns(width);
+  for (int y = 0; y < small.height; ++y) {
+    std::fill(columns.begin(), columns.end(), Sum{0});
+    for (int j = 0; j < block; ++j)
+      add_row(pixels + static_cast<std::size_t>(start.y + y * block + j) * width, width,
+              static_cast<Sample>(floor), columns.data());
     for (int x = 0; x < small.width; ++x) {
-      double sum = 0.0;
-      for (int j = 0; j < block; ++j)
-        for (int i = 0; i < block; ++i) {
-          const int row = start.y + y * block + j, column = start.x + x * block + i;
-          sum += std::max(
-              static_cast<double>(pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(size_px.x) +
-                                         static_cast<std::size_t>(column)]),
-              floor);
-        }
+      const auto first = columns.begin() + start.x + x * block;
+      const double sum = std::accumulate(first, first + block, 0.0);
       small.values.push_back(static_cast<float>(sum / (block * block)));
       mean += sum / (block * block);
     }
+  }
   mean /= static_cast<double>(small.values.size());
   double square = 0.0;
   for (float& value : small.values) {

@@ -9,13 +9,14 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <map>
-#include <set>
 
 #include "voxel/scan/audit.h"
 #include "voxel/scan/dicom_file.h"
 #include "voxel/scan/identity.h"
 #include "voxel/scan/label_overlaps.h"
+#include "voxel/scan/slice_plan.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {
@@ -27,6 +28,12 @@ namespace fs = std::filesystem;
 constexpr const char* segmentation_storage = "1.2.840.10008.5.1.4.1.1.66.4";
 /// Of segmentations whose pixels are the numbers of segments.
 constexpr const char* label_map_storage = "1.2.840.10008.5.1.4.1.1.66.7";
+
+/// The part of the planes' distance that positions may be off and still count as even, with a warning. Two
+/// planes that are off towards each other stay apart.
+constexpr double jitter = 0.2;
+/// Positions within this are one, as decimal strings round.
+constexpr double same_position_mm = 1e-4;
 
 struct Frame {
   int segment = 0;
@@ -59,12 +66,19 @@ class SegReader {
     rows_ = file_.unsigned_short(0x00280010).value_or(0);
     columns_ = file_.unsigned_short(0x00280011).value_or(0);
     bits_ = file_.unsigned_short(0x00280100).value_or(1);
-    is_label_map_ = trimmed(file_.text(0x00620001)) == "LABELMAP";
+    const std::string type = trimmed(file_.text(0x00620001));
+    is_label_map_ = type == "LABELMAP";
     const bool fits = is_label_map_ ? bits_ == 8 || bits_ == 16 : bits_ == 1 || bits_ == 8;
     if (rows_ == 0 || columns_ == 0 || !fits)
       refused(is_label_map_ ? "without pixels of 8 or 16 bits" : "without pixels of 1 or 8 bits");
     if (!file_.raw_pixels()) refused("whose pixels are compressed or absent: decompress it first");
-    if (bits_ == 8) least_ = (file_.unsigned_short(0x0062000e).value_or(255) + 1) / 2;
+    if (bits_ != 8 || is_label_map_) return;
+    if (type == "BINARY") {
+      least_ = 1;
+      return;
+    }
+    most_fraction_ = file_.unsigned_short(0x0062000e).value_or(255);
+    least_ = std::max(1, (most_fraction_ + 1) / 2);
   }
 
   void read_segments() {
@@ -103,9 +117,12 @@ class SegReader {
     if (!spacing || spacing->size() != 2 || !((*spacing)[0] > 0.0) || !((*spacing)[1] > 0.0))
       refused("without PixelSpacing");
     spacing_mm_ = {(*spacing)[1], (*spacing)[0]};
-    for (const DicomTag tag : {DicomTag{0x00180088}, DicomTag{0x00180050}})
-      if (const auto step = measures(tag); step_mm_ == 0.0 && step && step->front() > 0.0)
-        step_mm_ = step->front();
+    const auto positive = [&](DicomTag tag) {
+      const auto number = measures(tag);
+      return number && number->front() > 0.0 ? std::optional(number->front()) : std::nullopt;
+    };
+    stated_step_mm_ = positive(0x00180088);
+    thickness_mm_ = positive(0x00180050);
     for (std::size_t i = 0; i < own.size(); ++i) take_frame(own[i], common, i);
   }
 
@@ -143,32 +160,136 @@ class SegReader {
     frames_.push_back({segment, glm::dot(offset, normal_), number});
   }
 
-  void lay() {
-    std::set<double> heights;
-    for (const Frame& frame : frames_) heights.insert(frame.height_mm);
-    low_mm_ = *heights.begin();
-    // The header's distance of planes, if the positions are multiples of it; else their least distance.
-    double least_mm = 0.0;
-    for (auto height = std::next(heights.begin()); height != heights.end(); ++height)
-      if (const double gap = *height - *std::prev(height); gap > 1e-4)
-        least_mm = least_mm == 0.0 ? gap : std::min(least_mm, gap);
-    const auto fits = [&](double step_mm) {
-      return step_mm > 0.0 && std::all_of(heights.begin(), heights.end(), [&](double height) {
-               const double planes = (height - low_mm_) / step_mm;
-               return std::abs(planes - std::round(planes)) < 0.02;
-             });
+  /// How the frames lie on a lattice of this step.
+  struct Fit {
+    double step_mm = 0.0, low_mm = 0.0;
+    double off_mm = 0.0;  ///< of `worst`, the frame that lies farthest off
+    Frame worst = {};
+    bool is_distinct = true;  ///< no two planes become one
+    /// A single position errs by half of what the difference of two does.
+    bool is_exact() const { return is_distinct && off_mm <= 0.5 * position_tolerance_mm(step_mm); }
+    bool holds() const { return is_distinct && off_mm <= jitter * step_mm; }
+  };
+
+  Fit fit_of(double step_mm) const {
+    const double first_mm = frames_.front().height_mm;
+    const auto off_mm = [&](const Frame& frame) {
+      return std::remainder(frame.height_mm - first_mm, step_mm);
     };
-    if (!fits(step_mm_)) step_mm_ = least_mm;
-    if (step_mm_ == 0.0) step_mm_ = 1.0;
-    if (!fits(step_mm_)) refused("whose planes lie on no lattice");
-    const double planes = std::round((*heights.rbegin() - low_mm_) / step_mm_) + 1.0;
+    double sum_mm = 0.0;
+    for (const Frame& frame : frames_) sum_mm += off_mm(frame);
+    const double mean_mm = sum_mm / static_cast<double>(frames_.size());
+    Fit fit{step_mm, first_mm + mean_mm};
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      if (const double off = std::abs(off_mm(frames_[i]) - mean_mm); off > fit.off_mm) {
+        fit.off_mm = off;
+        fit.worst = frames_[i];
+      }
+      if (i > 0 && frames_[i].height_mm - frames_[i - 1].height_mm > same_plane_mm_ &&
+          plane_of(frames_[i], fit) == plane_of(frames_[i - 1], fit))
+        fit.is_distinct = false;
+    }
+    return fit;
+  }
+
+  static long plane_of(const Frame& frame, const Fit& fit) {
+    return std::lround((frame.height_mm - fit.low_mm) / fit.step_mm);
+  }
+
+  /// How far apart frames of one plane may lie: a part of the least distance of two frames of a segment, or
+  /// of the stated one.
+  double distance_in_plane_mm() const {
+    double least_mm = std::numeric_limits<double>::infinity();
+    std::map<int, double> last_mm;
+    for (const Frame& frame : frames_) {
+      const auto [last, is_first] = last_mm.try_emplace(frame.segment, frame.height_mm);
+      if (const double gap_mm = frame.height_mm - last->second; !is_first && gap_mm > same_position_mm)
+        least_mm = std::min(least_mm, gap_mm);
+      last->second = frame.height_mm;
+    }
+    if (std::isfinite(least_mm)) return jitter * least_mm;
+    return std::max(same_position_mm, jitter * stated_step_mm_.value_or(thickness_mm_.value_or(0.0)));
+  }
+
+  /// The distances of neighbouring planes, ascending.
+  std::vector<double> gaps_mm() const {
+    std::vector<double> gaps;
+    for (std::size_t i = 1; i < frames_.size(); ++i)
+      if (const double gap = frames_[i].height_mm - frames_[i - 1].height_mm; gap > same_plane_mm_)
+        gaps.push_back(gap);
+    std::sort(gaps.begin(), gaps.end());
+    return gaps;
+  }
+
+  /// The planes' distance: the stated one if the frames lie on it, else the usual one of neighbours, else,
+  /// where none is stated, the least one.
+  Fit chosen_fit() {
+    const std::vector<double> gaps = gaps_mm();
+    if (gaps.empty()) {
+      if (!stated_step_mm_ && !thickness_mm_)
+        warn_spacing("all frames lie in one plane and the file states no thickness: taken as 1 mm");
+      return fit_of(stated_step_mm_.value_or(thickness_mm_.value_or(1.0)));
+    }
+    const std::optional<Fit> stated =
+        stated_step_mm_ ? std::optional(fit_of(*stated_step_mm_)) : std::nullopt;
+    if (stated && stated->holds()) {
+      if (gaps.front() > 1.5 * stated->step_mm)
+        warn_spacing(
+            print("the file states planes %.6g mm apart, and the nearest lie %.6g mm apart: those "
+                  "between them are taken as empty",
+                  stated->step_mm, gaps.front()));
+      return *stated;
+    }
+    const double median_mm = gaps[gaps.size() / 2];
+    double steps = 0.0;
+    for (const double gap : gaps) steps += std::max(1.0, std::round(gap / median_mm));
+    const Fit usual = fit_of((frames_.back().height_mm - frames_.front().height_mm) / steps);
+    if (stated && !usual.is_exact()) return *stated;
+    if (!usual.holds()) {
+      warn_spacing(print("planes are taken as %.6g mm apart, the least distance, as the file states none",
+                         gaps.front()));
+      return fit_of(gaps.front());
+    }
+    const double said_mm = stated_step_mm_ ? *stated_step_mm_ : thickness_mm_.value_or(usual.step_mm);
+    if (stated || usual.step_mm > 1.5 * said_mm)
+      warn_spacing(
+          print("the file states a distance or thickness of %.6g mm and its planes lie %.6g mm "
+                "apart: the positions are taken",
+                said_mm, usual.step_mm));
+    return usual;
+  }
+
+  void warn_spacing(std::string detail) {
+    scene_.audit.push_back({"slice_spacing", Verdict::Warn, std::move(detail)});
+  }
+
+  std::string place_of(const Frame& frame) const {
+    const glm::dvec3 p = origin_mm_ + frame.height_mm * normal_;
+    return "frame " + std::to_string(frame.number + 1) + print(" at (%.6g, %.6g, %.6g) mm", p.x, p.y, p.z);
+  }
+
+  void lay() {
+    std::stable_sort(frames_.begin(), frames_.end(),
+                     [](const Frame& a, const Frame& b) { return a.height_mm < b.height_mm; });
+    same_plane_mm_ = distance_in_plane_mm();
+    fit_ = chosen_fit();
+    if (!fit_.holds())
+      refused("whose planes are not evenly apart: " + place_of(fit_.worst) +
+              print(" lies %.3g mm off planes %.6g mm apart: write it with evenly spaced frames, or as .nrrd "
+                    "on the lattice of its scan",
+                    fit_.off_mm, fit_.step_mm));
+    if (!fit_.is_exact())
+      warn_spacing(
+          print("planes lie up to %.3g mm off planes %.6g mm apart, most ", fit_.off_mm, fit_.step_mm) +
+          place_of(fit_.worst) + ": they are taken as even");
+    const double planes = std::round((frames_.back().height_mm - fit_.low_mm) / fit_.step_mm) + 1.0;
     if (planes > 4.0 * static_cast<double>(frames_.size()) + 64.0)
       refused("whose planes are scattered: " + print("%.0f for %zu frames", planes, frames_.size()));
-    const glm::dvec3 first = origin_mm_ + low_mm_ * normal_;
+    const glm::dvec3 first = origin_mm_ + fit_.low_mm * normal_;
     scene_.lattice = {
         {columns_, rows_, static_cast<int>(planes)},
         glm::dmat4(glm::dvec4(row_ * spacing_mm_.x, 0.0), glm::dvec4(column_ * spacing_mm_.y, 0.0),
-                   glm::dvec4(normal_ * step_mm_, 0.0), glm::dvec4(first, 1.0))};
+                   glm::dvec4(normal_ * fit_.step_mm, 0.0), glm::dvec4(first, 1.0))};
   }
 
   /// The segment of a pixel; 0 is none.
@@ -186,6 +307,17 @@ class SegReader {
     return ((bytes_[at + pixel / 8] >> (pixel % 8)) & 1) != 0;
   }
 
+  /// Counts the fractions of a frame between nothing and all.
+  void count_fractions(const Frame& frame, std::size_t area) {
+    int& largest = largest_fractions_[frame.segment];
+    for (const char pixel :
+         std::string_view(bytes_).substr(file_.raw_pixels()->at + frame.number * area, area)) {
+      const int fraction = static_cast<unsigned char>(pixel);
+      largest = std::max(largest, fraction);
+      if (fraction > 0 && fraction < most_fraction_) ++(fraction < least_ ? rounded_down_ : rounded_up_);
+    }
+  }
+
   void fill() {
     int largest = names_.rbegin()->first;
     for (const Frame& frame : frames_) largest = std::max(largest, frame.segment);
@@ -194,9 +326,34 @@ class SegReader {
                      [](const Frame& a, const Frame& b) { return a.segment < b.segment; });
     // Half of int16's numbers are left for overlaps.
     constexpr int most_of_int16 = 1 << 14;
+    held_.resize(static_cast<std::size_t>(largest) + 1);
     LabelOverlaps overlaps(largest);
     largest <= most_of_int16 ? fill_as<std::int16_t>(overlaps, 2 * most_of_int16 - 1)
-                             : fill_as<float>(overlaps, 1 << 24);
+                             : fill_as<float>(overlaps, most_number);
+    audit_segments();
+  }
+
+  /// Reports samples of segments that the file does not describe, and what was cut at one half.
+  void audit_segments() {
+    std::vector<std::string> undescribed, below;
+    for (std::size_t i = 1; i < held_.size(); ++i)
+      if (held_[i] > 0 && !names_.contains(static_cast<int>(i)))
+        undescribed.push_back(std::to_string(i) + " (" + std::to_string(held_[i]) + " samples)");
+    if (!undescribed.empty())
+      scene_.audit.push_back({"undescribed", Verdict::Warn,
+                              "samples belong to segments that the file does not describe: " +
+                                  listed(undescribed) + ": they have a number and no name"});
+    if (rounded_down_ + rounded_up_ == 0) return;
+    for (const auto& [segment, fraction] : largest_fractions_)
+      if (fraction > 0 && fraction < least_)
+        below.push_back(std::to_string(segment) + " (at most " + std::to_string(fraction) + ")");
+    scene_.audit.push_back(
+        {"fractions", Verdict::Warn,
+         print(
+             "a FRACTIONAL segmentation is cut at one half, %d of %d: %zu samples of less are left out, and "
+             "%zu of more are whole",
+             least_, most_fraction_, rounded_down_, rounded_up_) +
+             (below.empty() ? "" : "; no sample reaches one half of segment " + listed(below))});
   }
 
   template <typename Sample>
@@ -205,10 +362,12 @@ class SegReader {
     Samples<Sample> samples(scene_.lattice.sample_count(), Sample{0});
     std::map<int, std::size_t> counts;
     for (const Frame& frame : frames_) {
-      const auto plane = static_cast<std::size_t>(std::lround((frame.height_mm - low_mm_) / step_mm_));
+      const auto plane = static_cast<std::size_t>(plane_of(frame, fit_));
+      if (most_fraction_ > 0) count_fractions(frame, area);
       for (std::size_t i = 0; i < area; ++i) {
         const int segment = segment_at(frame, frame.number * area + i);
         if (segment == 0) continue;
+        ++held_[static_cast<std::size_t>(segment)];
         Sample& sample = samples[plane * area + i];
         if (sample == Sample{0}) {
           sample = static_cast<Sample>(segment);
@@ -239,9 +398,14 @@ class SegReader {
   std::size_t bits_ = 1;
   bool is_label_map_ = false;
   int least_ = 128;
+  int most_fraction_ = 0;  ///< of a fractional segmentation; 0 in others
+  std::size_t rounded_down_ = 0, rounded_up_ = 0;
+  std::map<int, int> largest_fractions_;  ///< by segment
+  std::vector<std::size_t> held_;         ///< samples by segment
+  std::optional<double> stated_step_mm_, thickness_mm_;
   glm::dvec2 spacing_mm_{1.0};
-  double step_mm_ = 0.0;
-  double low_mm_ = 0.0;
+  double same_plane_mm_ = 0.0;
+  Fit fit_;
   glm::dvec3 row_{1, 0, 0}, column_{0, 1, 0}, normal_{0, 0, 1}, origin_mm_{0.0};
 };
 
@@ -258,12 +422,10 @@ bool is_dicom_seg(const fs::path& path) {
 }
 
 Scene read_dicom_seg(const fs::path& path) {
-  const std::string bytes = file_bytes(path);
+  std::string stored = file_bytes(path);
   try {
-    const DicomFile file(bytes, bytes.size());
-    return SegReader(path, file, bytes).run();
-  } catch (const DicomFile::Deflated&) {
-    refuse(path, "a deflated segmentation: inflate it first");
+    const std::string bytes = whole_dicom(std::move(stored));
+    return SegReader(path, DicomFile(bytes, bytes.size(), true), bytes).run();
   } catch (const DicomFile::NeedsMore&) {
     refuse(path, "changed while it was read");
   } catch (const Error& error) {

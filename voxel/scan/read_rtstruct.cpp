@@ -80,9 +80,10 @@ bool is_rtstruct(const fs::path& path) {
 }
 
 StructureSet read_rtstruct(const fs::path& path) {
-  const std::string bytes = file_bytes(path);
+  std::string stored = file_bytes(path);
   try {
-    const DicomFile file(bytes, bytes.size());
+    const std::string bytes = whole_dicom(std::move(stored));
+    const DicomFile file(bytes, bytes.size(), true);
     StructureSet set{{}, identity_of_set(file)};
     std::vector<Structure>& structures = set.structures;
     for (const DicomFile& region : file.items(0x30060020)) {
@@ -102,8 +103,6 @@ StructureSet read_rtstruct(const fs::path& path) {
       add_contours(contours, *found);
     }
     return set;
-  } catch (const DicomFile::Deflated&) {
-    refuse(path, "a deflated structure set: inflate it first");
   } catch (const DicomFile::NeedsMore&) {
     refuse(path, "a structure set that is cut short");
   } catch (const Error& error) {

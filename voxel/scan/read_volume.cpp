@@ -107,6 +107,12 @@ std::optional<Meaning> meaning_of(const std::string& word) {
   return std::nullopt;
 }
 
+Finding undescribed(const std::vector<std::string>& values) {
+  return {"undescribed", Verdict::Warn,
+          "samples have values that no segment of the file has: " + listed(values) +
+              ": they have a number and no name"};
+}
+
 /// The layers of a segmentation of 3D Slicer as one label map, in which a number stands for several labels
 /// where segments overlap.
 class LayerReader {
@@ -127,12 +133,12 @@ class LayerReader {
 
   void fill(Scene& scene) {
     scene.audit.insert(scene.audit.end(), wide_.audit.begin(), wide_.audit.end());
-    number_unlisted();
+    number_unlisted(scene);
     LabelOverlaps overlaps(largest_);
     // Half of int16's numbers are left for overlaps.
     constexpr int most_of_int16 = 1 << 14;
     largest_ <= most_of_int16 ? fill_as<std::int16_t>(overlaps, 2 * most_of_int16 - 1, scene)
-                              : fill_as<float>(overlaps, 1 << 24, scene);
+                              : fill_as<float>(overlaps, most_number, scene);
   }
 
  private:
@@ -140,18 +146,27 @@ class LayerReader {
     return std::visit(
         [&](const auto& samples) {
           const double value = samples[index];
-          return value >= 0.5 && value <= 1 << 24 ? static_cast<int>(std::lround(value)) : 0;
+          if (value > most_number)
+            refuse(path_, print("has the label %.9g; the largest that is read is %d: give labels smaller "
+                                "numbers",
+                                value, most_number));
+          return value >= 0.5 ? static_cast<int>(std::lround(value)) : 0;
         },
         wide_.samples);
   }
 
-  /// Gives numbers beyond the listed ones to values that no segment has.
-  void number_unlisted() {
+  /// Gives numbers beyond the listed ones to values that no segment has, and reports them.
+  void number_unlisted(Scene& scene) {
+    std::vector<std::string> unlisted;
     for (std::size_t i = 0; i < wide_.lattice.sample_count(); ++i)
       if (const int value = value_at(i); value != 0) {
-        const auto [entry, is_new] = number_of_.try_emplace({static_cast<int>(i % layers_), value}, 0);
-        if (is_new) entry->second = ++largest_;
+        const auto layer = static_cast<int>(i % layers_);
+        const auto [entry, is_new] = number_of_.try_emplace({layer, value}, 0);
+        if (!is_new) continue;
+        entry->second = ++largest_;
+        unlisted.push_back(print("%d in layer %d (as number %d)", value, layer, largest_));
       }
+    if (!unlisted.empty()) scene.audit.push_back(undescribed(unlisted));
   }
 
   template <typename Sample>
@@ -182,6 +197,32 @@ class LayerReader {
   int largest_ = 0;
 };
 
+/// Reports values of a file of one layer that no segment has.
+void audit_undescribed(const std::vector<SlicerSegment>& segments, Scene& scene) {
+  std::map<double, std::size_t> counts{{0.0, 0}};
+  for (const SlicerSegment& segment : segments) counts[segment.number] = 0;
+  const std::size_t most = counts.size() + 100;
+  std::visit(
+      [&](const auto& samples) {
+        auto last = counts.begin();
+        for (const double value : samples) {
+          if (last->first != value) {
+            const auto found = counts.find(value);
+            if (found == counts.end() && counts.size() == most) continue;
+            last = found == counts.end() ? counts.emplace(value, 0).first : found;
+          }
+          ++last->second;
+        }
+      },
+      scene.samples);
+  counts.erase(0.0);
+  for (const SlicerSegment& segment : segments) counts.erase(segment.number);
+  std::vector<std::string> values;
+  for (const auto& [value, count] : counts)
+    values.push_back(print("%.9g (%zu %s)", value, count, count == 1 ? "sample" : "samples"));
+  if (!values.empty()) scene.audit.push_back(undescribed(values));
+}
+
 /// Whether the file lists 3D Slicer's segments, whose labels its samples are; lists them in the audit.
 bool take_segments(const std::vector<SlicerSegment>& segments, Scene& scene) {
   std::string list;
@@ -190,6 +231,16 @@ bool take_segments(const std::vector<SlicerSegment>& segments, Scene& scene) {
   if (list.empty()) return false;
   scene.meaning = Meaning::Label;
   scene.audit.push_back({"segments", Verdict::Pass, list});
+  std::map<int, std::string> names;
+  for (const SlicerSegment& segment : segments) {
+    const auto [known, is_new] = names.try_emplace(segment.number, segment.name);
+    if (!is_new)
+      scene.audit.push_back({"segments", Verdict::Warn,
+                             "'" + known->second + "' and '" + segment.name + "' both have the value " +
+                                 std::to_string(segment.value) + " in layer " +
+                                 std::to_string(segment.layer) +
+                                 ": nothing tells their samples apart, and they are taken as one label"});
+  }
   return true;
 }
 
@@ -275,7 +326,10 @@ Scene read_volume(const fs::path& path, VolumeFormat format, const ReadOptions& 
                                       : bytes_of(header.samples.stored.type) + sizeof(std::int16_t));
   const SmallNumbers small = read_samples(path, header.samples, options, scene);
   take_padding_below_all(header.padding, scene);
-  if (!take_segments(segments, scene)) take_meaning(header, small, scene);
+  if (take_segments(segments, scene))
+    audit_undescribed(segments, scene);
+  else
+    take_meaning(header, small, scene);
   if (scene.meaning != Meaning::Hounsfield) return scene;
   take_unstated_padding(scene);
   audit_slices(scene);

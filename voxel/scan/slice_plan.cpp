@@ -20,12 +20,6 @@ namespace octotomy::voxel {
 
 namespace {
 
-/// Some scanners write positions with two decimals, so that the difference of two positions errs by up to
-/// 0.01 mm. A shift of a hundredth of the step changes samples by less than interpolation would.
-double position_tolerance_mm(double step_mm) {
-  return std::max(0.01, 0.01 * step_mm);
-}
-
 /// A shift of d pixels changes a sample at a step edge by d times the step; a tenth is below the partial
 /// volume effect of any slice, and far above the rounding of positions.
 constexpr double aside_tolerance_px() {

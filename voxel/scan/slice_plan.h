@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <vector>
 
@@ -38,6 +39,12 @@ Lattice lattice_of(const DicomStack& stack, const SlicePlan& plan);
 /// or of a lower canine's crown, either of which would vanish without a trace.
 constexpr double longest_unmeasured_mm() {
   return 5.0;
+}
+
+/// Some scanners write positions with two decimals, so that the difference of two positions errs by up to
+/// 0.01 mm. A shift of a hundredth of the step changes samples by less than interpolation would.
+inline double position_tolerance_mm(double step_mm) {
+  return std::max(0.01, 0.01 * step_mm);
 }
 
 /// Lays a lattice through an ordered stack. Its step is the finest distance that at least a fifth of the

@@ -4,11 +4,20 @@
 
 namespace octotomy::voxel {
 
+namespace {
+
+/// Moves places off borders that run through voxel centres: farther than coordinates round, and less than any
+/// border is known. Such a centre is inside where the region goes on towards growing u, v or position, so
+/// that it counts once among regions that share the border.
+constexpr double off_border_mm = 0x1p-20;
+
+}  // namespace
+
 SliceMaskOperand::SliceMaskOperand(const SliceMask& mask, const glm::dmat4& still_from_target)
     : distance_(mask),
-      u_(along(still_from_target, mask.view.right, 0.0)),
-      v_(along(still_from_target, mask.view.up, 0.0)),
-      w_(along(still_from_target, mask.view.look, 0.0)) {}
+      u_(along(still_from_target, mask.view.right, -off_border_mm)),
+      v_(along(still_from_target, mask.view.up, -off_border_mm)),
+      w_(along(still_from_target, mask.view.look, -off_border_mm)) {}
 
 Meets SliceMaskOperand::meets(const Cube& cube) const {
   const double in_plane_mm = glm::length(glm::dvec2(reach(u_, cube.half), reach(v_, cube.half)));

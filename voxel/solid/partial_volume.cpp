@@ -75,6 +75,24 @@ OCTOTOMY_VECTOR_CLONES void find_cell_ranges(const Corners& corners, Corners& lo
 using CornerBits = std::uint8_t;
 constexpr CornerBits all_corners = 0xff;
 
+// Gives the corners of a cell that are not the scan's the mean of the nearest ones that are: up to half a
+// sample beyond its last ones the scan keeps their values, as both kernels' surfaces have it.
+void extend(std::array<double, 8>& c, CornerBits scanned) {
+  const std::array<double, 8> own = c;
+  for (unsigned k = 0; k < 8; ++k) {
+    if ((scanned >> k) & 1) continue;
+    double sum = 0.0;
+    int count = 0;
+    for (int edges = 1; edges <= 3 && count == 0; ++edges)
+      for (unsigned j = 0; j < 8; ++j) {
+        if (((scanned >> j) & 1) == 0 || std::popcount(j ^ k) != edges) continue;
+        sum += own[j];
+        ++count;
+      }
+    if (count > 0) c[k] = sum / count;
+  }
+}
+
 class BlockSum {
  public:
   explicit BlockSum(const Window& window) : grey_(window.grey), low_(window.low), high_(window.high) {}
@@ -167,14 +185,15 @@ class BlockSum {
   double share(const std::int16_t* corner, CornerBits scanned) const {
     constexpr int along_y = corner_side;
     constexpr int along_z = corner_side * corner_side;
-    const std::array<double, 8> c{static_cast<double>(corner[0]),
-                                  static_cast<double>(corner[1]),
-                                  static_cast<double>(corner[along_y]),
-                                  static_cast<double>(corner[along_y + 1]),
-                                  static_cast<double>(corner[along_z]),
-                                  static_cast<double>(corner[along_z + 1]),
-                                  static_cast<double>(corner[along_z + along_y]),
-                                  static_cast<double>(corner[along_z + along_y + 1])};
+    std::array<double, 8> c{static_cast<double>(corner[0]),
+                            static_cast<double>(corner[1]),
+                            static_cast<double>(corner[along_y]),
+                            static_cast<double>(corner[along_y + 1]),
+                            static_cast<double>(corner[along_z]),
+                            static_cast<double>(corner[along_z + 1]),
+                            static_cast<double>(corner[along_z + along_y]),
+                            static_cast<double>(corner[along_z + along_y + 1])};
+    if (scanned != all_corners) extend(c, scanned);
     Lines lines;
     find_lines(c, low_, high_, lines);
     double sum = 0.0;

@@ -11,7 +11,7 @@ namespace octotomy::voxel {
 
 /// A volume of interest from regions drawn on parallel slices (thesis 6.2.1.3). On a slice the object is the
 /// inside of its polygons, by the even-odd rule. Each slice speaks for half the gap to its neighbours, the
-/// first and last for as much beyond them.
+/// first and last for as much beyond them. combine() counts a centre on a border at its lower end only.
 struct SliceMask {
   struct Slice {
     double position_mm = 0.0;                          ///< p . look of its plane

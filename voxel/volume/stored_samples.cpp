@@ -157,7 +157,11 @@ void put_values(const Samples<Stored>& stored, const StoredSamples& how, Scene& 
   if (fits_int16) return convert(stored, how, in_place, scene.samples.emplace<Int16Samples>());
   convert(stored, how, in_place, scene.samples.emplace<FloatSamples>());
   if (!found.is_exact)
-    scene.audit.push_back({"precision", Verdict::Warn, "samples are rounded to single precision"});
+    scene.audit.push_back({"precision", Verdict::Warn,
+                           std::string("samples are rounded to single precision") +
+                               (std::is_integral_v<Stored>
+                                    ? ", which merges whole numbers from 16777216 on: labels must be smaller"
+                                    : "")});
 }
 
 using Fill = std::function<void(char* memory, std::size_t bytes)>;

@@ -54,6 +54,34 @@ TEST_F(ScanOptions, RenderDrawsARawFileAsTheNrrdOfTheSameSamples) {
   EXPECT_EQ(raw["depth_range_mm"], nrrd["depth_range_mm"]);
 }
 
+TEST_F(ScanOptions, OptionsThatWouldChangeNothingAreRefused) {
+  const std::string ball = at("ball.nrrd");
+  ASSERT_EQ(run("octree " + ball + " --window 0: -o " + at("ball.octree")).status, 0);
+  std::ofstream(folder_ / "r.json") << R"({"polygons_mm": [[[-5, -5], [5, -5], [5, 5], [-5, 5]]]})";
+  const std::string mask = "mask -o " + at("m.octree") + " --region anterior:" + at("r.json");
+  for (const auto& [command, option] : {
+           std::pair<std::string, std::string>{"convert " + ball + " -o " + at("x.nii") + " --label B",
+                                               "--label"},
+           {"convert " + ball + " -o " + at("x") + " --label B", "--label"},
+           {"convert " + ball + " -o " + at("x.nii") + " --source " + ball, "--source"},
+           {"convert " + ball + " -o " + at("x") + " --other-identity", "--other-identity"},
+           {"convert " + at("ball.octree") + " -o " + at("x.dcm") + " --other-identity", "--other-identity"},
+           {"convert " + at("ball.octree") + " -o " + at("x.dcm") + " --dicom", "--dicom"},
+           {"segment " + ball + " --window 0: -o " + at("x.octree") + " --structure B", "regions"},
+           {mask + " --like " + ball + " --structure B", "slices"},
+           {mask + " --like " + ball + " --bridge 2", "slices"},
+           {mask + " --like " + at("ball.octree") + " --voxel 2", "--voxel"},
+           {mask + " --edit " + at("ball.octree") + " --voxel 2", "--voxel"},
+       }) {
+    const tests::CommandAnswer answer = run(command);
+    EXPECT_EQ(answer.status, 2) << command;
+    EXPECT_NE(answer.errors.find(option), std::string::npos) << command << "\n" << answer.errors;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x.nii"));
+  EXPECT_EQ(run("convert " + at("ball.octree") + " -o " + at("x.dcm") + " --label B").status, 0);
+  EXPECT_EQ(run(mask + " --like " + ball + " --voxel 2").status, 0);
+}
+
 TEST_F(ScanOptions, RunTakesARawFileInTheScansPlace) {
   const SortedJson nrrd = json("verify " + at("ball.plan.json"));
   const SortedJson raw = json("verify " + at("ball.plan.json") + " --scan ct=" + at("ball.raw") + layout_);

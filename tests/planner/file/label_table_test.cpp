@@ -91,6 +91,40 @@ TEST(LabelTable, OfALabelMapIsItsOwnOrTheOneBesideItAndOfADicomSegmentationItsSe
   EXPECT_EQ(label_table_of(folder / "c.dcm").names, (Names{{1, "Skull"}}));
 }
 
+TEST(LabelTable, ANameOfTwoLabelsIsRefusedWithBothNumbers) {
+  const LabelTable table{{{2, "Bone"}, {5, "Fat"}, {7, "Bone"}}, "a.seg.nrrd"};
+  EXPECT_EQ(table.label("Fat"), 5);
+  try {
+    table.label("Bone");
+    FAIL() << "one of two labels was chosen";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("a.seg.nrrd: has 2 labels 'Bone', of the numbers 2, 7"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(LabelTable, ATableThatContradictsTheUsedOneIsReportedAndOneThatAgreesIsNot) {
+  const ScratchFolder folder;
+  const auto map = put(folder, "a.nii.gz", "");
+  put(folder, "a.json", R"({"Fat": 1, "Bone": 2})");
+  put(folder, "a.csv", "1,Fat\n2,Bone\n3,Air\n");
+  EXPECT_TRUE(label_table_of(map, {1, 2}).passed_over.empty());
+  for (const char* other : {"1,Bone\n2,Fat\n", "1,Fat\n2,Muscle\n", "1,Fat\n3,Bone\n"}) {
+    put(folder, "a.csv", other);
+    const LabelTable table = label_table_of(map, {1, 2});
+    EXPECT_EQ(table.names, (Names{{1, "Fat"}, {2, "Bone"}}));
+    ASSERT_EQ(table.passed_over.size(), 1U) << other;
+    EXPECT_NE(table.passed_over[0].find("a.csv: passed over, as it contradicts"), std::string::npos)
+        << table.passed_over[0];
+  }
+  const auto slicer =
+      put(folder, "b.seg.nrrd", "NRRD0004\ntype: short\nSegment0_Name:=Fat\nSegment0_LabelValue:=1\n\n");
+  put(folder, "b.csv", "1,Bone\n");
+  EXPECT_EQ(label_table_of(slicer, {1}).names, (Names{{1, "Fat"}}));
+  EXPECT_EQ(label_table_of(slicer, {1}).passed_over.size(), 1U) << "the file's own names count, too";
+}
+
 TEST(LabelTable, NumbersOfAnAcquisitionOrLabelsThatDoNotOccurNameNothing) {
   const ScratchFolder folder;
   const auto map = put(folder, "a.nii.gz", "");
@@ -146,6 +180,21 @@ TEST(LabelTable, FurtherProgramsFormsAreRead) {
 }
 
 class LabelNames : public tests::CommandLine {};
+
+TEST_F(LabelNames, TwoSegmentsOfOneNameAreRefusedByVerbAndPlan) {
+  write("two.seg.nrrd",
+        "NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 3 1 1\n"
+        "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nencoding: ascii\n"
+        "Segment0_Name:=Bone\nSegment0_LabelValue:=1\nSegment1_Name:=Bone\nSegment1_LabelValue:=2\n\n"
+        "0 1 2\n");
+  expect_refused(run("segment " + at("two.seg.nrrd") + " --named Bone -o " + at("x.octree")),
+                 "of the numbers 1, 2");
+  EXPECT_EQ(run("segment " + at("two.seg.nrrd") + " --label 2 -o " + at("x.octree")).status, 0);
+  write("two.plan.json",
+        R"({ "octotomy_plan": 1, "name": "n", "scans": { "seg": { "path": "two.seg.nrrd" } },
+      "steps": [ { "id": "bone", "do": "segment", "scan": "seg", "named": "Bone" } ] })");
+  expect_refused(run("run " + at("two.plan.json") + " -o " + at("report")), "of the numbers 1, 2");
+}
 
 TEST_F(LabelNames, ANamedLabelIsTheOctreeOfItsNumberUnshiftedAndAnUnknownNameIsRefused) {
   ASSERT_EQ(

@@ -67,6 +67,46 @@ TEST_F(CompareLabels, EqualMapsOfAnotherLatticeAndNumbersAreStillEqualAndALabelO
   EXPECT_NE(findings.find("is only in"), std::string::npos) << findings;
 }
 
+TEST_F(CompareLabels, LabelsArePairedByNameAndNumbersThatContradictNamesAreReported) {
+  put("a.nrrd", 5, 3, true);
+  put("b.nrrd", 5, 7, true);
+  write("a.csv", "3,Mandible\n9,Tooth\n");
+  const SortedJson by_number = compared("a.nrrd", "b.nrrd");
+  EXPECT_EQ(by_number["labels"].size(), 3u);
+  EXPECT_NE(by_number["findings"].dump().find("paired by number, as only"), std::string::npos);
+  write("b.csv", "7,Mandible\n9,Skull\n");
+  const SortedJson json = compared("a.nrrd", "b.nrrd");
+  ASSERT_EQ(json["labels"].size(), 3u);
+  EXPECT_EQ(json["labels"][0]["name"], "Mandible");
+  EXPECT_EQ(json["labels"][0]["label"], 3);
+  EXPECT_EQ(json["labels"][0]["dice"], 1.0);
+  EXPECT_NEAR(json["labels"][0]["hausdorff_mm"].get<double>(), 0.0, 1e-9);
+  for (const std::size_t i : {1u, 2u}) {
+    EXPECT_EQ(json["labels"][i]["label"], 9);
+    EXPECT_EQ(json["labels"][i]["dice"], 0.0) << "Tooth and Skull have one number and nothing in common";
+  }
+  const std::string findings = json["findings"].dump();
+  EXPECT_NE(findings.find("number 9 is 'Tooth' in"), std::string::npos) << findings;
+  EXPECT_NE(findings.find("'Skull' (9) is only in"), std::string::npos) << findings;
+  write("b.csv", "7,Mandible\n9,Tooth\n");
+  EXPECT_EQ(compared("a.nrrd", "b.nrrd")["findings"].dump().find("number"), std::string::npos);
+}
+
+TEST_F(CompareLabels, ANameOfTwoLabelsPairsNothing) {
+  const auto segments = [&](const std::string& file, const std::string& second) {
+    write(file,
+          "NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 3 3 3\n"
+          "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nencoding: ascii\n"
+          "Segment0_Name:=Bone\nSegment0_LabelValue:=1\nSegment1_Name:=" +
+              second + "\nSegment1_LabelValue:=2\n\n1 1 1 1 1 1 1 1 1 0 0 0 0 0 0 0 0 0 2 2 2 2 2 2 2 2 2\n");
+  };
+  segments("a.seg.nrrd", "Bone");
+  segments("b.seg.nrrd", "Fat");
+  expect_refused(run("compare " + at("a.seg.nrrd") + " " + at("b.seg.nrrd")),
+                 "the labels 1 and 2 are both named 'Bone'");
+  EXPECT_EQ(compared("b.seg.nrrd", "b.seg.nrrd")["dice"], 1.0);
+}
+
 TEST_F(CompareLabels, AScanASurfaceOrAnEmptyMapIsRefused) {
   put("a.nrrd", 5, 3);
   put("none.nrrd", 5, 0);

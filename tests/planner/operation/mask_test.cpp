@@ -31,6 +31,35 @@ TEST(MaskStep, AMaskOfNothingIsRefused) {
             std::string::npos);
 }
 
+TEST(MaskStep, OptionsOfAStructureSetWithoutOneAreRefused) {
+  const ScratchFolder folder;
+  const std::string region =
+      R"("regions": [{"view": "anterior", "polygons_mm": [[[0, 0], [9, 0], [9, 9]]]}])";
+  for (const char* option : {R"("structure": "A")", R"("bridge_mm": 2)", R"("other_identity": true)"})
+    EXPECT_NE(ball_refusal(folder, R"({"id": "m", "do": "mask", )" + region + ", " + option + "}")
+                  .find("add the set as 'slices'"),
+              std::string::npos)
+        << option;
+}
+
+TEST(MaskStep, AStructureThatReachesBeyondTheScanIsReported) {
+  const ScratchFolder folder;
+  const auto findings = [&](double x_mm) {
+    std::vector<std::vector<glm::dvec3>> contours;
+    for (const double z : {0.0, 2.0, 4.0}) contours.push_back(rectangle({-8, -8}, {8, 8}, z));
+    contours[1][1].x = x_mm;
+    std::ofstream(folder / "rs.dcm", std::ios::binary) << structure_set({{1, "A", contours}});
+    std::string all;
+    const Evaluation evaluation =
+        evaluate(ball_plan(folder, R"({"id": "a", "do": "mask", "slices": "rs.dcm"})"));
+    for (const std::string& finding : evaluation.object("a").findings) all += finding + "\n";
+    return all;
+  };
+  EXPECT_NE(findings(200).find("rs.dcm: reaches beyond the scan in 1 of 3 planes"), std::string::npos)
+      << findings(200);
+  EXPECT_EQ(findings(9).find("beyond the scan"), std::string::npos) << findings(9);
+}
+
 /// A ring on four planes, a second block behind a gap of two planes, and a structure of one plane.
 std::string ring_and_block() {
   std::vector<std::vector<glm::dvec3>> ring;

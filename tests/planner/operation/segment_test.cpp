@@ -159,6 +159,17 @@ TEST(SegmentStep, OtsuSettlesTheWindowThatBothKernelsTake) {
   ASSERT_EQ(bright.mesh.details["thresholds"].size(), 1u);
 }
 
+TEST(SegmentStep, AStructureWithoutAStructureSetIsRefused) {
+  const ScratchFolder folder;
+  for (const char* option : {R"("structure": "Mandible")", R"("other_identity": true)"})
+    EXPECT_NE(
+        ball_refusal(folder, std::string(R"({"id": "b", "do": "segment", "scan": "ct", "window": "0:", )") +
+                                 option + "}")
+            .find("add the set as 'regions'"),
+        std::string::npos)
+        << option;
+}
+
 TEST(SegmentStep, WhatCannotBeMeantIsRefused) {
   const ScratchFolder folder;
   const auto refusal = [&](const std::string& rest) {

@@ -107,7 +107,7 @@ TEST(Labels, AreWholeNumbers) {
 TEST(Labels, AreThoseThatFilesStoreWithAFractionOrBeyondSixteenBits) {
   Scene scene;
   scene.lattice = axis_aligned_lattice({6, 1, 1}, {1, 1, 1}, {0, 0, 0});
-  scene.samples = FloatSamples{2.9999F, 3.0001F, 3.0F, 0.00001F, 40000.0F, 16777216.0F};
+  scene.samples = FloatSamples{2.9999F, 3.0001F, 3.0F, 0.00001F, 40000.0F, 16777215.0F};
   const std::vector<Label> found = labels(scene);
   ASSERT_EQ(found.size(), 3U);
   EXPECT_EQ(found[0].number, 3);
@@ -119,7 +119,7 @@ TEST(Labels, AreThoseThatFilesStoreWithAFractionOrBeyondSixteenBits) {
   const Universe universe = universe_on(scene.lattice);
   EXPECT_EQ(octree_of_label(universe, scene, 3).voxel_count(), 3U);
   EXPECT_EQ(octree_of_label(universe, scene, 40000).voxel_count(), 1U);
-  for (const double none : {2.98, 2.5, -1.0, -0.02, 16777217.5})
+  for (const double none : {2.98, 2.5, -1.0, -0.02, 16777216.0, 16777217.5})
     EXPECT_FALSE(label_of(none)) << none << " is no label";
 }
 

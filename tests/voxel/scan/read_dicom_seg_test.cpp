@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/scan/read_dicom_seg.h"
 
+#include <array>
 #include <fstream>
 #include <gtest/gtest.h>
 
 #include "tests/file_bytes.h"
+#include "tests/voxel/scan/deflated.h"
 #include "tests/voxel/scan/dicom_bytes.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/codes/run_length.h"
 #include "voxel/filter/label_map.h"
+#include "voxel/scan/label_names.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/scan/write_dicom_seg.h"
 
@@ -57,8 +60,19 @@ TEST(ReadDicomSeg, HoldsTheVoxelsThatWereWrittenWhereTheyAre) {
   EXPECT_GT(refused, 50);
 }
 
-/// Two segments on three planes of 4 x 2 pixels; they overlap in one pixel of the middle plane.
-std::string two_segments(bool fractional) {
+/// Two segments on planes of 4 x 2 pixels; they overlap in one pixel of the middle plane. Frames: segment 2
+/// on the first two heights, segment 1 on the last two.
+struct TwoSegments {
+  std::string type = "BINARY";
+  int bits = 1;
+  int inside = 1, outside = 0;  ///< pixels of 8 bits
+  std::array<const char*, 4> heights_mm = {"6", "4", "4", "2"};
+  std::string spacing_mm = {}, thickness_mm = {};
+  bool describes_second = true;
+  bool is_deflated = false;
+};
+
+std::string two_segments(const TwoSegments& how) {
   const auto seq = [](std::uint32_t at, const std::string& inner) {
     return DicomBytes::sequence(at, DicomBytes::item(inner));
   };
@@ -66,37 +80,57 @@ std::string two_segments(bool fractional) {
     return DicomBytes::item(DicomBytes::us(0x00620004, number) +
                             DicomBytes::element(0x00620005, "LO", label));
   };
-  const auto frame = [&](std::uint16_t number, int z) {
+  const auto frame = [&](std::uint16_t number, const char* z) {
     return DicomBytes::item(
-        seq(0x00209113, DicomBytes::element(0x00200032, "DS", "1\\2\\" + std::to_string(z))) +
+        seq(0x00209113, DicomBytes::element(0x00200032, "DS", std::string("1\\2\\") + z)) +
         seq(0x0062000a, DicomBytes::us(0x0062000b, number)));
   };
-  const std::string shared = seq(0x00209116, DicomBytes::element(0x00200037, "DS", "1\\0\\0\\0\\1\\0")) +
-                             seq(0x00289110, DicomBytes::element(0x00280030, "DS", "0.5\\0.25"));
-  // Frames: segment 2 at z 6 and 4, segment 1 at z 4 and 2.
+  const std::string shared =
+      seq(0x00209116, DicomBytes::element(0x00200037, "DS", "1\\0\\0\\0\\1\\0")) +
+      seq(0x00289110,
+          (how.spacing_mm.empty() ? "" : DicomBytes::element(0x00180088, "DS", how.spacing_mm)) +
+              (how.thickness_mm.empty() ? "" : DicomBytes::element(0x00180050, "DS", how.thickness_mm)) +
+              DicomBytes::element(0x00280030, "DS", "0.5\\0.25"));
   const unsigned char bits[] = {0x0f, 0x81, 0x80, 0x10};
   std::string pixels;
   for (const unsigned char byte : bits)
-    if (!fractional)
+    if (how.bits == 1)
       pixels += static_cast<char>(byte);
     else
-      for (int i = 0; i < 8; ++i) pixels += static_cast<char>((byte >> i) & 1 ? 120 : 40);
-  return DicomBytes::file(
-      "1.2.840.10008.1.2.1",
+      for (int i = 0; i < 8; ++i) pixels += static_cast<char>((byte >> i) & 1 ? how.inside : how.outside);
+  const auto& z = how.heights_mm;
+  const std::string rest =
       DicomBytes::element(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.66.4") + DicomBytes::us(0x00280010, 2) +
-          DicomBytes::us(0x00280011, 4) + DicomBytes::us(0x00280100, fractional ? 8 : 1) +
-          DicomBytes::sequence(0x00620002, segment(1, "Mandible") + segment(2, "Skull")) +
-          (fractional ? DicomBytes::us(0x0062000e, 200) : "") +
-          DicomBytes::sequence(0x52009229, DicomBytes::item(shared)) +
-          DicomBytes::sequence(0x52009230, frame(2, 6) + frame(2, 4) + frame(1, 4) + frame(1, 2)) +
-          DicomBytes::element(0x7fe00010, "OB", pixels));
+      DicomBytes::us(0x00280011, 4) + DicomBytes::us(0x00280100, static_cast<std::uint16_t>(how.bits)) +
+      DicomBytes::element(0x00620001, "CS", how.type) +
+      DicomBytes::sequence(0x00620002,
+                           segment(1, "Mandible") + (how.describes_second ? segment(2, "Skull") : "")) +
+      (how.type == "FRACTIONAL" ? DicomBytes::us(0x0062000e, 200) : "") +
+      DicomBytes::sequence(0x52009229, DicomBytes::item(shared)) +
+      DicomBytes::sequence(0x52009230, frame(2, z[0]) + frame(2, z[1]) + frame(1, z[2]) + frame(1, z[3])) +
+      DicomBytes::element(0x7fe00010, "OB", pixels);
+  return how.is_deflated ? DicomBytes::file("1.2.840.10008.1.2.1.99", tests::deflated(rest, -MAX_WBITS))
+                         : DicomBytes::file("1.2.840.10008.1.2.1", rest);
+}
+
+const TwoSegments fractional{.type = "FRACTIONAL", .bits = 8, .inside = 120, .outside = 40};
+
+std::filesystem::path put(const ScratchFolder& folder, const TwoSegments& how) {
+  std::ofstream(folder / "two.dcm", std::ios::binary) << two_segments(how);
+  return folder / "two.dcm";
+}
+
+std::string warnings_of(const Scene& scene) {
+  std::string all;
+  for (const Finding& finding : scene.audit)
+    if (finding.verdict == Verdict::Warn) all += finding.check + ": " + finding.detail + "\n";
+  return all;
 }
 
 TEST(ReadDicomSeg, OverlappingSegmentsKeepTheirSamplesAndAreNamed) {
   const ScratchFolder folder;
-  for (const bool fractional : {false, true}) {
-    std::ofstream(folder / "two.dcm", std::ios::binary) << two_segments(fractional);
-    const Scene scene = read_dicom_seg(folder / "two.dcm");
+  for (const TwoSegments& how : {TwoSegments{}, fractional}) {
+    const Scene scene = read_dicom_seg(put(folder, how));
     EXPECT_EQ(scene.lattice.dims, glm::ivec3(4, 2, 3));
     EXPECT_EQ(scene.lattice.spacing_mm(), glm::dvec3(0.25, 0.5, 2));
     EXPECT_EQ(scene.lattice.lps_mm({0, 0, 0}), glm::dvec3(1, 2, 2));
@@ -104,7 +138,7 @@ TEST(ReadDicomSeg, OverlappingSegmentsKeepTheirSamplesAndAreNamed) {
     const Int16Samples expected{0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 3, 2, 2, 2, 2, 0, 0, 0, 0};
     EXPECT_EQ(std::get<Int16Samples>(scene.samples), expected);
     EXPECT_EQ(scene.audit[0].detail, "1 'Mandible', 2 'Skull'");
-    ASSERT_EQ(scene.audit.size(), 2U);
+    ASSERT_EQ(scene.audit.size(), how.type == "FRACTIONAL" ? 3U : 2U);
     EXPECT_EQ(scene.audit[1].check, "overlaps");
     EXPECT_EQ(scene.audit[1].verdict, Verdict::Warn);
     EXPECT_NE(scene.audit[1].detail.find("1 sample lies in 1 'Mandible' and 2 'Skull', as number 3"),
@@ -119,6 +153,96 @@ TEST(ReadDicomSeg, OverlappingSegmentsKeepTheirSamplesAndAreNamed) {
     EXPECT_EQ(octree_of_label(universe, scene, 1).voxel_count(), 2U);
     EXPECT_EQ(octree_of_label(universe, scene, 2).voxel_count(), 6U);
   }
+}
+
+TEST(ReadDicomSeg, UnevenPlanesAreRefusedByTheirFrameAndJitterIsEvenWithAWarning) {
+  const ScratchFolder folder;
+  try {
+    read_dicom_seg(put(folder, {.heights_mm = {"38", "37.1", "36.5", "35"}, .spacing_mm = "1"}));
+    FAIL() << "uneven planes were read";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("not evenly apart: frame 3"), std::string::npos) << error.what();
+  }
+  for (const char* stated : {"1", ""}) {
+    for (const double jitter_mm : {0.02, 0.1}) {
+      const std::string high = std::to_string(38.0 + jitter_mm), low = std::to_string(36.0 - jitter_mm);
+      const Scene scene = read_dicom_seg(
+          put(folder, {.heights_mm = {high.c_str(), "37", low.c_str(), "35"}, .spacing_mm = stated}));
+      EXPECT_EQ(scene.lattice.dims.z, 4);
+      EXPECT_NEAR(scene.lattice.spacing_mm().z, 1.0, 0.3 * jitter_mm + (*stated == '1' ? 0.0 : jitter_mm));
+      EXPECT_NE(warnings_of(scene).find("taken as even"), std::string::npos) << warnings_of(scene);
+    }
+    EXPECT_EQ(warnings_of(read_dicom_seg(
+                  put(folder, {.heights_mm = {"38", "37", "36", "35"}, .spacing_mm = stated}))),
+              "");
+  }
+}
+
+TEST(ReadDicomSeg, FramesOfTwoSegmentsThatJitterInOnePlaneShareIt) {
+  const ScratchFolder folder;
+  const Scene scene = read_dicom_seg(put(folder, {.heights_mm = {"37.05", "36", "36.04", "35"}}));
+  EXPECT_EQ(scene.lattice.dims.z, 3);
+  EXPECT_EQ(scene.overlaps.size(), 1U) << "they overlap in the middle plane";
+}
+
+TEST(ReadDicomSeg, ADistanceOfPlanesThatPositionsContradictIsReported) {
+  const ScratchFolder folder;
+  const auto read = [&](std::array<const char*, 4> heights_mm, const char* spacing_mm,
+                        const char* thickness_mm) {
+    return read_dicom_seg(
+        put(folder, {.heights_mm = heights_mm, .spacing_mm = spacing_mm, .thickness_mm = thickness_mm}));
+  };
+  const auto expect = [](const Scene& scene, int planes, double step_mm, const std::string& warning) {
+    EXPECT_EQ(scene.lattice.dims.z, planes) << warning;
+    EXPECT_NEAR(scene.lattice.spacing_mm().z, step_mm, 1e-9) << warning;
+    if (warning.empty())
+      EXPECT_EQ(warnings_of(scene), "");
+    else
+      EXPECT_NE(warnings_of(scene).find(warning), std::string::npos) << warnings_of(scene);
+  };
+  expect(read({"38", "36.5", "35", "33.5"}, "1", ""), 4, 1.5, "positions are taken");
+  expect(read({"38", "35", "32", "29"}, "1", ""), 10, 1.0, "taken as empty");
+  expect(read({"41", "40", "36", "35"}, "", ""), 7, 1.0, "");
+  expect(read({"41", "40", "36", "35"}, "1", ""), 7, 1.0, "");
+  expect(read({"42", "40", "38", "36"}, "", "3"), 4, 2.0, "");
+  expect(read({"42", "40", "38", "36"}, "", "1"), 4, 2.0, "positions are taken");
+  expect(read({"43", "40", "37", "36"}, "", ""), 8, 1.0, "the least distance");
+}
+
+TEST(ReadDicomSeg, FractionsThatAreCutAndSegmentsWithoutADescriptionAreReported) {
+  const ScratchFolder folder;
+  const auto warnings = [&](const TwoSegments& how) { return warnings_of(read_dicom_seg(put(folder, how))); };
+  EXPECT_NE(warnings(fractional).find("100 of 200: 24 samples of less are left out, and 8 of more are whole"),
+            std::string::npos)
+      << warnings(fractional);
+  TwoSegments faint = fractional;
+  faint.inside = 99;
+  EXPECT_NE(warnings(faint).find("no sample reaches one half of segment 1 (at most 99), 2 (at most 99)"),
+            std::string::npos)
+      << warnings(faint);
+  TwoSegments whole = fractional;
+  whole.inside = 200;
+  whole.outside = 0;
+  EXPECT_EQ(warnings(whole).find("fractions"), std::string::npos) << "nothing is cut";
+  EXPECT_NE(warnings({.describes_second = false}).find("2 (6 samples)"), std::string::npos);
+  EXPECT_EQ(warnings({}).find("undescribed"), std::string::npos);
+}
+
+TEST(ReadDicomSeg, ABinarySegmentationOfBytesAndADeflatedOneAreRead) {
+  const ScratchFolder folder;
+  const Scene bits = read_dicom_seg(put(folder, {}));
+  for (const TwoSegments& how : {TwoSegments{.bits = 8},
+                                 {.bits = 8, .inside = 255},
+                                 {.is_deflated = true},
+                                 {.bits = 8, .is_deflated = true}}) {
+    const Scene scene = read_dicom_seg(put(folder, how));
+    EXPECT_EQ(std::get<Int16Samples>(scene.samples), std::get<Int16Samples>(bits.samples));
+    EXPECT_EQ(label_names(folder / "two.dcm"), label_names(put(folder, {})));
+  }
+  std::string spoiled = two_segments({.is_deflated = true});
+  spoiled.resize(spoiled.size() - 20);
+  std::ofstream(folder / "two.dcm", std::ios::binary) << spoiled;
+  EXPECT_THROW(read_dicom_seg(folder / "two.dcm"), Error);
 }
 
 TEST(ReadDicomSeg, APixelOfALabelMapIsTheNumberOfItsSegment) {

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "tests/voxel/scan/deflated.h"
 #include "tests/voxel/scan/structure_set.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/space/error.h"
@@ -37,6 +38,17 @@ TEST(ReadRtstruct, NamesNumbersAndPointsAreTheFilesAndLinesAreCountedApart) {
   EXPECT_EQ(all[1].others, 1u);
   EXPECT_TRUE(all[1].contours_mm.empty());
   EXPECT_TRUE(all[2].contours_mm.empty());
+}
+
+TEST(ReadRtstruct, ADeflatedSetIsTheInflatedOne) {
+  const ScratchFolder folder;
+  const std::string plain = structure_set({{7, "Mandible", {rectangle({-1.5, 2.25}, {3, 4}, -10)}}});
+  const std::string rest = plain.substr(plain.find(std::string("\x08\0\x16\0UI", 6)));
+  const auto set = read_rtstruct(
+      written(folder, tests::DicomBytes::file("1.2.840.10008.1.2.1.99", tests::deflated(rest, -MAX_WBITS))));
+  ASSERT_EQ(set.structures.size(), 1U);
+  EXPECT_EQ(set.structures[0].name, "Mandible");
+  EXPECT_EQ(set.structures[0].contours_mm, read_rtstruct(written(folder, plain)).structures[0].contours_mm);
 }
 
 TEST(ReadRtstruct, ANameInsideASequenceIsReadInTheFilesCharacterSet) {

@@ -13,6 +13,7 @@
 
 #include "tests/voxel/linear_scene.h"
 #include "tests/voxel/scratch_folder.h"
+#include "voxel/filter/label_map.h"
 #include "voxel/scan/read_scene.h"
 
 namespace octotomy::voxel {
@@ -135,6 +136,35 @@ TEST(SampleTypes, ComeOutOfEveryVolumeFileAsTheyWere) {
         ++read;
       }
   EXPECT_EQ(read, 48);
+}
+
+TEST(SampleTypes, LabelsThatSinglePrecisionMergesAreRefusedInEveryVolumeFile) {
+  const tests::ScratchFolder folder;
+  for (Type wide : {type<std::int32_t>("int32", "MET_INT", 8), type<std::uint32_t>("uint32", "MET_UINT", 768),
+                    type<std::int64_t>("int64", "MET_LONG_LONG", 1024),
+                    type<std::uint64_t>("uint64", "MET_ULONG_LONG", 1280)})
+    for (const char* name : {"labels.nrrd", "labels.mha", "labels.nii", "labels.raw"}) {
+      SCOPED_TRACE(std::string(name) + ", " + wide.name);
+      const std::string file(name);
+      ReadOptions options;
+      if (file == "labels.raw") options.raw = RawLayout{{2, 2, 2}, *sample_type(wide.name)};
+      if (file == "labels.raw") options.spacing_mm = glm::dvec3(1.0);
+      const auto scene_of = [&](std::vector<double> values) {
+        wide.values = std::move(values);
+        std::ofstream(folder / file, std::ios::binary) << (file == "labels.nrrd"  ? nrrd(wide, false)
+                                                           : file == "labels.mha" ? meta(wide, false)
+                                                           : file == "labels.nii" ? nifti(wide, false)
+                                                                                  : samples_of(wide, false));
+        return read_scene(folder / file, options);
+      };
+      EXPECT_EQ(labels(scene_of({0, 1, 1, 2, 0, 0, 16777214, 16777215})).size(), 4U);
+      const Scene merged = scene_of({0, 1, 1, 2, 0, 0, 16777216, 16777217});
+      ASSERT_NE(tests::finding(merged, "precision"), nullptr);
+      EXPECT_NE(tests::finding(merged, "precision")->detail.find("labels must be smaller"),
+                std::string::npos);
+      EXPECT_THROW(labels(merged), std::invalid_argument);
+      EXPECT_THROW(labels(scene_of({0, 0, 0, 0, 0, 0, 0, 16777216})), std::invalid_argument);
+    }
 }
 
 TEST(SampleTypes, OfNiftiAreRescaledToTheBit) {

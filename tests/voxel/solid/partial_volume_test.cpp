@@ -84,6 +84,27 @@ TEST(PartialVolume, OfAWindowThatHoldsTheBackgroundEndsWithTheScan) {
   EXPECT_NEAR(partial_volume_mm3({grey, -1100.0, -200.0}), scan_mm3 - ball_mm3, 1e-9 * scan_mm3);
 }
 
+TEST(PartialVolume, OfAnObjectThatEndsWithTheScanReachesHalfASampleBeyondItsLastSamples) {
+  // A slab of 500 in air of -500 that fills the scan along x and y: 13.5 mm thick, at two places in the
+  // universe.
+  const Universe universe = universe_around({{-16, -16, -16}, {16, 16, 16}}, 1.0);
+  const auto slab_mm3 = [&](const glm::ivec3& dims, double low) {
+    Lattice lattice = universe.lattice();
+    lattice.dims = dims;
+    const double first_mm = lattice.lps_mm(glm::dvec3(0.0)).z;
+    const auto sample = [&](const glm::dvec3& p_mm) { return p_mm.z - first_mm < 13.0 ? 500.0 : -500.0; };
+    return partial_volume_mm3(
+        {grey_octree_of(universe, tests::field_scene<std::int16_t>(lattice, sample), -1024), low});
+  };
+  for (const glm::ivec3& dims : {glm::ivec3(20, 11, 25), glm::ivec3(32, 32, 32)})
+    for (const double low : {-400.0, 0.0, 300.0})
+      // The last sample inside is the 13th; the interpolant passes `low` beyond it, and the slab begins half
+      // a sample before the first.
+      EXPECT_NEAR(slab_mm3(dims, low), dims.x * dims.y * (12.5 + (500.0 - low) / 1000.0),
+                  1e-6 * dims.x * dims.y)
+          << dims.x << " at " << low;
+}
+
 TEST(PartialVolume, IsTheSameOnOneThreadAndTwo) {
   const Window window{ball(64, 9, {0.3, 0, 0}), 0.0};
   const double two = partial_volume_mm3(window);

@@ -75,6 +75,29 @@ TEST(SliceMask, NearestStepsInTheMiddleWhereShapesFollowEachOther) {
   EXPECT_LT(shaped, 0.9 * nearest);
 }
 
+TEST(SliceMask, ABorderThroughVoxelCentresCountsThemOnce) {
+  for (const double voxel_mm : {0.5, 0.9, 0.8})
+    for (const char* view : {"inferior", "left", "posterior"}) {
+      const Universe grid = universe_around({{-12.3, -12.3, -12.3}, {12.3, 12.3, 12.3}}, voxel_mm);
+      const auto box = [&](int from_u, int to_u) {
+        SliceMask mask;
+        mask.view = parse_view(view);
+        const glm::dvec3 first = grid.lattice().lps_mm({12, 12, 12});
+        const glm::dvec2 at = mask.view.project(first);
+        const auto corner = [&](int u, int v) { return at + voxel_mm * glm::dvec2(u, v); };
+        for (int plane = 0; plane < 3; ++plane)  // the ends, half a gap beyond, run through centres
+          mask.slices.push_back(
+              {glm::dot(first, mask.view.look) + 2 * voxel_mm * plane,
+               {{corner(from_u, -3), corner(to_u, -3), corner(to_u, 5), corner(from_u, 5)}}});
+        return combine(grid, mask);
+      };
+      const Octree left = box(-4, 2), right = box(2, 6);
+      EXPECT_EQ(left.voxel_count(), 6U * 8U * 6U) << view << voxel_mm;
+      EXPECT_EQ(right.voxel_count(), 4U * 8U * 6U) << view << voxel_mm;
+      EXPECT_EQ(combine(grid, Expression(left) | Expression(right)), box(-4, 6)) << view << voxel_mm;
+    }
+}
+
 TEST(SliceMask, EndsHalfWayToAnEmptySliceAndKeepsHoles) {
   SliceMask mask = along_z({{-8, {}}, {0, {circle({0, 0}, 8), circle({1, 0}, 3)}}, {8, {}}});
   const Octree octree = combine(universe, mask);

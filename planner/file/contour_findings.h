@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "voxel/solid/slice_mask.h"
+#include "voxel/space/lattice.h"
+
+// What is doubtful about contours on slices, in sentences. `where` begins each.
+namespace octotomy::planner {
+
+/// A plane may be off by as much as a decimal string rounds: a part of the least distance of planes.
+constexpr double off_plane_mm() {
+  return 0.01;
+}
+
+/// Removes contours that repeat another of their plane, as the even-odd rule would delete both, and adds a
+/// line on these, and one on contours that cross another of their plane or themselves.
+void add_contour_findings(voxel::SliceMask& mask, const std::string& where,
+                          std::vector<std::string>& findings);
+
+/// A line on contours that reach beyond a scan's samples: in how many planes, how far and where; none where
+/// all lie within. `where` begins the line.
+std::optional<std::string> beyond_scan(const voxel::SliceMask& mask, const voxel::Lattice& scan,
+                                       const std::string& where);
+
+}  // namespace octotomy::planner
