@@ -3,20 +3,26 @@
 #include "planner/operation/parts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/components.h"
 #include "brep/mesh/distance.h"
 #include "brep/shape/prism.h"
+#include "convert/voxel/voxelise.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "verify/certify_bounded.h"
 #include "verify/witness.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/morphology.h"
+#include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/rounded.h"
 
 namespace octotomy::planner {
 namespace {
@@ -97,6 +103,29 @@ voxel::Octree with_kept_parts(const voxel::Octree& chosen, const voxel::Octree& 
                                                                        whole, seeds, neighbours)));
 }
 
+voxel::Octree largest_parts(const voxel::Octree& whole, std::size_t count, voxel::Neighbours neighbours) {
+  const voxel::Components parts = voxel::components(whole, neighbours);
+  const std::vector<std::uint64_t>& counts = parts.voxel_counts;
+  if (count >= counts.size()) return whole;
+  if (count == 1) return parts.largest;
+  const std::uint64_t last = counts[count - 1];
+  voxel::Octree chosen = voxel::components_of_at_least(whole, last, neighbours);
+  constexpr std::size_t most_chosen = 64;
+  const auto wanted = static_cast<std::size_t>(
+      std::count(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(count), last));
+  if (counts[count] < last || wanted > most_chosen) return chosen;
+  const voxel::Universe universe = whole.universe();
+  const voxel::Octree larger = voxel::components_of_at_least(whole, last + 1, neighbours);
+  voxel::Octree equal = voxel::combine(universe, voxel::Expression(chosen) - voxel::Expression(larger));
+  chosen = larger;
+  for (std::size_t i = 0; i < wanted; ++i) {
+    const voxel::Octree first = voxel::components(equal, neighbours).largest;
+    chosen = voxel::combine(universe, voxel::Expression(chosen) | voxel::Expression(first));
+    equal = voxel::combine(universe, voxel::Expression(equal) - voxel::Expression(first));
+  }
+  return chosen;
+}
+
 bool stays(const brep::Triangles& triangles, const std::vector<std::uint32_t>& faces,
            const BridgeDecisions& bridges) {
   if (!bridges.keeps()) return false;
@@ -123,6 +152,111 @@ bool stays(const brep::Triangles& triangles, const std::vector<std::uint32_t>& f
     }
     return brep::is_inside(p_mm, *part);
   });
+}
+
+namespace {
+
+/// The pieces of a set that share no voxel with another.
+voxel::Octree pieces_apart(const voxel::Octree& set, const voxel::Octree& other) {
+  const voxel::Universe universe = set.universe();
+  const voxel::Octree common = voxel::combine(universe, voxel::Expression(set) & voxel::Expression(other));
+  return voxel::combine(universe, voxel::Expression(set) - voxel::Expression(voxel::components_that_meet(
+                                                               set, common, voxel::Neighbours::Corners)));
+}
+
+/// Components of a solid by a corner of their first triangle, which choosing among them leaves as it is.
+using Corner = std::array<double, 3>;
+Corner corner_of(const brep::Triangles& triangles, const brep::Component& component) {
+  const glm::dvec3& p = triangles.points_mm[triangles.faces[component.faces.front()][0]];
+  return {p.x, p.y, p.z};
+}
+
+/// Components of a solid that hold a voxel of a set. Those of less than a quarter of its smallest part do not
+/// count.
+std::vector<std::size_t> components_in(const brep::Solid& solid, const voxel::Octree& set) {
+  const double least_mm3 = 0.25 * set.universe().lattice().voxel_mm3() *
+                           static_cast<double>(voxel::components(set).voxel_counts.back());
+  std::vector<std::size_t> found;
+  const std::vector<brep::Component>& all = solid.components();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].volume_mm3 < least_mm3) continue;
+    const brep::Solid part =
+        brep::trusted_solid(brep::part_of(solid, all[i].faces), brep::proof_of_part(solid.proof()));
+    const voxel::Octree digitised = convert::voxelise(set.universe(), part.linked());
+    if (!voxel::combine(set.universe(), voxel::Expression(digitised) & voxel::Expression(set)).is_empty())
+      found.push_back(i);
+  }
+  return found;
+}
+
+brep::Solid solid_of(const brep::Solid& whole, const std::vector<std::size_t>& components) {
+  std::vector<std::uint32_t> faces;
+  for (const std::size_t i : components) {
+    const std::vector<std::uint32_t>& own = whole.components()[i].faces;
+    faces.insert(faces.end(), own.begin(), own.end());
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces.empty() ? brep::Solid()
+                       : brep::trusted_solid(brep::part_of(whole, faces), brep::proof_of_part(whole.proof()));
+}
+
+/// Whether both kernels hold the same parts.
+bool is_same(const voxel::Octree& voxels, const brep::Solid& mesh, const verify::Witness& parts,
+             const Object& made) {
+  verify::BoundInputs inputs;
+  inputs.scan_spacing_mm = made.bound.spacing_mm;
+  inputs.flat_cut_mm2 = area_on_planes(mesh.triangles(), made.bound.planes);
+  inputs.scan_box_mm = made.bound.scan_box_mm;
+  inputs.witness = verify::both(parts, verify::witness_of_box(voxel::bounds(voxels.universe().lattice())));
+  if (made.bound.shift_mm > 0.0) inputs.witness = verify::loosened(inputs.witness, made.bound.shift_mm);
+  return verify::certify_bounded(voxels, mesh, inputs).verdict != voxel::Verdict::Fail;
+}
+
+std::string size_and_place(const voxel::Octree& parts) {
+  const voxel::Measures measures = voxel::measure(parts);
+  return voxel::rounded(measures.volume_mm3) + " mm\u00b3 about " + voxel::rounded(*measures.centroid_mm);
+}
+
+}  // namespace
+
+void settle_choice(const WholeObject& whole, const voxel::Universe& universe, Object& made) {
+  const voxel::Octree& chosen = made.voxel.octree;
+  const voxel::Octree digitised = convert::voxelise(universe, made.mesh.whole->linked());
+  const voxel::Octree by_voxels = pieces_apart(chosen, digitised), by_mesh = pieces_apart(digitised, chosen);
+  if (by_voxels.is_empty() || by_mesh.is_empty()) return;
+  const voxel::Octree passed_over = voxel::components_that_meet(whole.voxels(), by_mesh);
+  if (passed_over.is_empty()) return;
+  const brep::Solid solid = whole.mesh();
+  const std::vector<brep::Component>& all = solid.components();
+  const std::vector<std::size_t> wanted = components_in(solid, by_voxels),
+                                 unwanted = components_in(solid, by_mesh);
+  if (wanted.empty() || unwanted.empty()) return;
+  // Components are in the order of their volumes. Each kernel must have kept what it finds larger.
+  if (voxel::components(by_voxels).voxel_counts.back() <
+          voxel::components(passed_over).voxel_counts.front() ||
+      all[unwanted.back()].volume_mm3 < all[wanted.front()].volume_mm3)
+    return;
+  const verify::Witness parts = verify::witness_of_parts(whole.witness);
+  if (!is_same(by_voxels, solid_of(solid, wanted), parts, made) ||
+      !is_same(passed_over, solid_of(solid, unwanted), parts, made))
+    return;
+  std::set<Corner> kept;
+  for (const brep::Component& component : made.mesh.whole->components())
+    kept.insert(corner_of(made.mesh.whole->triangles(), component));
+  for (const std::size_t i : unwanted) kept.erase(corner_of(solid.triangles(), all[i]));
+  for (const std::size_t i : wanted) kept.insert(corner_of(solid.triangles(), all[i]));
+  std::vector<std::size_t> inside, others;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    (kept.contains(corner_of(solid.triangles(), all[i])) ? inside : others).push_back(i);
+  made.mesh.whole = solid_of(solid, inside);
+  if (made.mesh.parts_of) made.mesh.parts_of->second = solid_of(solid, others);
+  made.caveats.push_back(
+      {voxel::Verdict::Warn,
+       "Two parts are nearly as large as each other: " + size_and_place(by_voxels) + " is kept, " +
+           size_and_place(passed_over) +
+           " is not, which the mesh kernel finds larger. Name the one that is meant: 'parts' with 'at_mm'.",
+       false});
+  made.findings.push_back(made.caveats.back().reason);
 }
 
 namespace {
@@ -191,18 +325,16 @@ void voxels(const Parts& parts, const VoxelBench& bench, VoxelSide& made) {
     made.lineage = "voxels that touch by faces";
   };
   if (!parts.at_mm.empty()) return choose(parts_at(parts, whole, bench.objects));
-  const std::vector<std::uint64_t> counts = voxel::components(whole).voxel_counts;
-  if (counts.empty()) throw std::runtime_error("'" + parts.object.name + "' is empty: it has no parts");
-  const std::size_t wanted = std::min(static_cast<std::size_t>(parts.largest.value_or(1)), counts.size());
-  const std::uint64_t least =
-      parts.largest
-          ? counts[wanted - 1]
-          : static_cast<std::uint64_t>(std::ceil(*parts.at_least_mm3 / bench.universe.lattice().voxel_mm3()));
-  const voxel::Octree chosen = voxel::components_of_at_least(whole, least);
+  if (whole.is_empty()) throw std::runtime_error("'" + parts.object.name + "' is empty: it has no parts");
+  if (parts.largest) return choose(largest_parts(whole, static_cast<std::size_t>(*parts.largest)));
+  const double voxel_mm3 = bench.universe.lattice().voxel_mm3();
+  const voxel::Octree chosen = voxel::components_of_at_least(
+      whole, static_cast<std::uint64_t>(std::ceil(*parts.at_least_mm3 / voxel_mm3)));
   if (chosen.is_empty())
-    throw std::runtime_error("no part of '" + parts.object.name + "' has " + plain(*parts.at_least_mm3) +
-                             " mm\u00b3: the largest has " +
-                             plain(static_cast<double>(counts[0]) * bench.universe.lattice().voxel_mm3()));
+    throw std::runtime_error(
+        "no part of '" + parts.object.name + "' has " + plain(*parts.at_least_mm3) +
+        " mm\u00b3: the largest has " +
+        plain(static_cast<double>(voxel::components(whole).voxel_counts[0]) * voxel_mm3));
   choose(chosen);
 }
 
@@ -258,6 +390,14 @@ void bound(const Parts& parts, const BoundBench& bench, Object& made) {
   inherit(object, made);
   const BridgeDecisions bridges = bridges_of(parts);
   const verify::Witness whole = cut_bridges(object.witness, bridges);
+  if (parts.largest && made.mesh.whole)
+    settle_choice({[&] { return cut_bridges(object.voxel.octree, bridges); },
+                   [&] {
+                     double shift_mm = 0.0;
+                     return cut_bridges(*object.mesh.whole, bridges, {}, shift_mm);
+                   },
+                   whole},
+                  bench.universe, made);
   made.witness = made.mesh.whole ? verify::witness_of_parts(
                                        whole, {made.voxel.octree, *made.mesh.whole, bridges.decided_mm()})
                                  : verify::witness_of_parts(whole);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <stop_token>
@@ -9,6 +10,7 @@
 
 #include "brep/mesh/mesh.h"
 #include "brep/mesh/solid.h"
+#include "planner/table/object.h"
 #include "planner/table/scope.h"
 #include "verify/reading.h"
 #include "voxel/filter/components.h"
@@ -53,6 +55,12 @@ voxel::Octree with_kept_parts(const voxel::Octree& chosen, const voxel::Octree& 
 bool stays(const brep::Triangles& triangles, const std::vector<std::uint32_t>& faces,
            const BridgeDecisions& bridges);
 
+/// So many of the largest parts of voxels; of equal ones at the end of the row those whose first voxel comes
+/// first, x fastest. Where more than 64 equal ones are to be chosen from, all of them stay. Precondition: the
+/// object is not empty, `count` is positive.
+voxel::Octree largest_parts(const voxel::Octree& whole, std::size_t count,
+                            voxel::Neighbours neighbours = voxel::Neighbours::Faces);
+
 /// The parts that stay, as a mesh.
 struct KeptParts {
   brep::Mesh mesh;
@@ -64,6 +72,20 @@ struct KeptParts {
 /// its cavities; and the parts that reach a neck which is to be kept.
 KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::optional<double> at_least_mm3,
                      const BridgeDecisions& bridges = {});
+
+/// An object that parts are chosen from; both answers are made only where the kernels chose different parts.
+struct WholeObject {
+  std::function<voxel::Octree()> voxels;
+  std::function<brep::Solid()> mesh;
+  verify::Witness witness;
+};
+
+/// Of parts that are nearly as large as each other chance decides which each kernel finds larger. Where the
+/// kernels chose different parts, each the larger ones by its own measure, and hold each other's parts as
+/// well (verify::certify_bounded), the mesh takes those of the voxels, with a caveat that names both. Where a
+/// kernel chose the smaller part, or lacks the other's, nothing changes: the certificate fails. Cost: that of
+/// digitising the mesh; where the choices differ, of two certificates as well. Throws as its functions.
+void settle_choice(const WholeObject& whole, const voxel::Universe& universe, Object& made);
 
 /// What an object's symbol becomes where parts were chosen from its voxels: the samples about the parts still
 /// say where their surface lies within a voxel, so that a motion samples it there.

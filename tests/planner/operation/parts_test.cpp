@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/parts.h"
+
 #include <gtest/gtest.h>
 
 #include "tests/planner/operation/ball_operation.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
 namespace {
@@ -56,6 +59,93 @@ TEST(PartsStep, NeitherOrBothWaysToChooseAreRefused) {
   EXPECT_THROW(evaluate(ball_plan(folder, R"({"id": "p", "do": "parts", "object": "ball",
                                                "at_least_mm3": 1e6})")),
                std::runtime_error);
+}
+
+/// The ball without the slab from -`below_mm` to `above_mm`: two caps, and the larger one by each kernel.
+std::string caps_apart(const std::string& name, double below_mm, double above_mm) {
+  const std::string low = std::to_string(-below_mm), high = std::to_string(above_mm);
+  return R"({"id": "cut_)" + name +
+         R"(", "do": "mask", "regions": [{"view": "anterior", "polygons_mm": [[[-30, )" + low + "], [30, " +
+         low + "], [30, " + high + "], [-30, " + high + R"(]]]}]},
+      {"id": "caps_)" +
+         name + R"(", "do": "combine", "expression": "ball - cut_)" + name + R"("},
+      {"id": "one_)" +
+         name + R"(", "do": "parts", "object": "caps_)" + name + R"(", "largest": 1})";
+}
+
+TEST(PartsStep, OfPartsNearlyAsLargeAsEachOtherBothKernelsKeepTheSameAndTheChoiceIsADoubt) {
+  const ScratchFolder folder;
+  std::string steps;
+  for (int i = 0; i < 8; ++i)
+    steps += (i == 0 ? "" : ", ") + caps_apart(std::to_string(i), 4.0, 4.0 + 0.25 * (i - 4) + 0.1);
+  const Evaluation evaluation = evaluate(ball_plan(folder, steps));
+  int doubts = 0, passes = 0;
+  for (int i = 0; i < 8; ++i) {
+    const Object& one = evaluation.object("one_" + std::to_string(i));
+    SCOPED_TRACE(one.id + testing::PrintToString(one.certificate->reasons));
+    EXPECT_NE(one.certificate->verdict, voxel::Verdict::Fail);
+    EXPECT_EQ(one.voxel.measures.centroid_mm->z > 0.0, one.mesh.within->measures().centroid_mm->z > 0.0);
+    if (one.caveats.empty()) {
+      passes += one.certificate->verdict == voxel::Verdict::Pass ? 1 : 0;
+      continue;
+    }
+    ++doubts;
+    EXPECT_EQ(one.certificate->verdict, voxel::Verdict::Warn);
+    EXPECT_NE(one.caveats[0].reason.find("nearly as large as each other"), std::string::npos);
+    EXPECT_NE(one.caveats[0].reason.find("at_mm"), std::string::npos);
+  }
+  EXPECT_GT(doubts, 0);
+  EXPECT_GT(passes, 0);
+}
+
+TEST(LargestParts, OfEqualPartsAreAsManyAsWanted) {
+  const voxel::Universe universe = voxel::universe_around({{-16, -16, -16}, {16, 16, 16}}, 1.0);
+  voxel::Expression all = voxel::Expression(voxel::Box{{-15, -15, -15}, {-5, -5, -5}});
+  for (int i = 0; i < 5; ++i)
+    all = all | voxel::Expression(voxel::Box{{-14.0 + 6 * i, 6, 6}, {-10.0 + 6 * i, 10, 10}});
+  const voxel::Octree whole = voxel::combine(universe, all);
+  for (std::size_t count = 1; count <= 7; ++count) {
+    const voxel::Octree chosen = largest_parts(whole, count);
+    EXPECT_EQ(voxel::component_count(chosen), std::min<std::size_t>(count, 6)) << count;
+    EXPECT_EQ(chosen.voxel_count(), 1000 + 64 * (std::min<std::size_t>(count, 6) - 1)) << count;
+  }
+  EXPECT_TRUE(largest_parts(voxel::Octree::empty(universe), 2).is_empty());
+}
+
+TEST(PartsStep, AKernelThatKeepsTheSmallerPartOrSpoilsOneIsNotFollowed) {
+  const ScratchFolder folder;
+  const Evaluation evaluation =
+      evaluate(ball_plan(folder, caps_apart("far", 4.0, 10.0) + ", " + caps_apart("near", 4.0, 4.1) + R"(,
+      {"id": "low_far", "do": "parts", "object": "caps_far", "at_mm": [[0, 0, -15]]},
+      {"id": "high_far", "do": "parts", "object": "caps_far", "at_mm": [[0, 0, 15]]},
+      {"id": "low_near", "do": "parts", "object": "caps_near", "at_mm": [[0, 0, -15]]},
+      {"id": "high_near", "do": "parts", "object": "caps_near", "at_mm": [[0, 0, 15]]})"));
+  const auto settled = [&](const std::string& of, voxel::Octree voxels, const std::string& mesh) {
+    const Object& caps = evaluation.object("caps_" + of);
+    Object made = evaluation.object(mesh + "_" + of);
+    made.voxel.octree = std::move(voxels);
+    settle_choice({[&] { return caps.voxel.octree; }, [&] { return *caps.mesh.whole; }, caps.witness},
+                  evaluation.universe, made);
+    return made;
+  };
+  const auto is_high = [](const Object& made) { return made.mesh.whole->measures().centroid_mm->z > 0.0; };
+  // The smaller part of caps that differ by far, by voxels and by the mesh.
+  EXPECT_FALSE(is_high(settled("far", evaluation.object("high_far").voxel.octree, "low")));
+  EXPECT_TRUE(is_high(settled("far", evaluation.object("low_far").voxel.octree, "high")));
+  // The other one of caps that are nearly as large is followed one way at least.
+  const auto followed = [&](const voxel::Octree& high, const voxel::Octree& low) {
+    return int{is_high(settled("near", high, "low"))} + int{!is_high(settled("near", low, "high"))};
+  };
+  const voxel::Octree high = evaluation.object("high_near").voxel.octree,
+                      low = evaluation.object("low_near").voxel.octree;
+  // Without a bite of 6 mm neither is.
+  const auto bitten = [&](const voxel::Octree& cap, double z_mm) {
+    return voxel::combine(
+        cap.universe(),
+        voxel::Expression(cap) - voxel::Expression(voxel::Box{{-3, -3, z_mm - 3}, {3, 3, z_mm + 3}}));
+  };
+  EXPECT_EQ(followed(bitten(high, 10.0), bitten(low, -10.0)), 0);
+  EXPECT_EQ(followed(high, low), 1);
 }
 
 }  // namespace
