@@ -217,7 +217,8 @@ void add_thickness(const Thickness& thickness, double share, verify::SizeInterva
 }
 
 std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is_of_phases, bool has_core,
-                                     const std::array<std::optional<double>, 2>& kernels_mm3) {
+                                     const std::array<std::optional<double>, 2>& kernels_mm3,
+                                     const std::array<std::optional<double>, 2>& kernels_mm2) {
   std::vector<std::string> findings;
   const double value = found.volume_mm3.value;
   const auto& [voxels_mm3, mesh_mm3] = kernels_mm3;
@@ -234,6 +235,16 @@ std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is
                          "of the samples does not"
                        : "no part is thicker than the scan's blur; the sum of the samples is taken, with the "
                          "window's bound as the half level"));
+  constexpr double far_off = 0.1;
+  const double area = found.area_mm2.value;
+  if (const auto& [voxels_mm2, mesh_mm2] = kernels_mm2;
+      voxels_mm2 && mesh_mm2 &&
+      (area > (1.0 + far_off) * std::max(*voxels_mm2, *mesh_mm2) ||
+       area < (1.0 - far_off) * std::min(*voxels_mm2, *mesh_mm2)))
+    findings.push_back("WARN area: the recommended " + grouped(area, 1) +
+                       " mm\u00b2 lies over a tenth outside of both kernels' answers (voxels " +
+                       grouped(*voxels_mm2, 1) + ", mesh " + grouped(*mesh_mm2, 1) +
+                       " mm\u00b2): it allows for what the scan's blur rounds off");
   for (const auto& [name, interval] :
        {std::pair("volume", &found.volume_mm3), std::pair("area", &found.area_mm2)}) {
     if (interval->half_width <= interval->value || interval->sources.empty()) continue;

@@ -57,10 +57,12 @@ void add_voxels(const glm::dvec3& voxel_mm, double area_mm2, verify::SizeInterva
 /// scan's border. `share` is the object's of the window's surface. Precondition: 0 <= share <= 1.
 void add_thickness(const Thickness& thickness, double share, verify::SizeIntervals& found);
 
-/// What people must be told of recommended numbers: one that leaves both kernels' answers, with the reason,
-/// and an interval wider than its value. Empty strings in `kernels` have no answer.
+/// What people must be told of recommended numbers: a volume that leaves both kernels' answers, with the
+/// reason, an area that leaves them by over a tenth, and an interval wider than its value. The answers are
+/// the voxels' and the mesh's; one may be missing.
 std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is_of_phases, bool has_core,
-                                     const std::array<std::optional<double>, 2>& kernels_mm3);
+                                     const std::array<std::optional<double>, 2>& kernels_mm3,
+                                     const std::array<std::optional<double>, 2>& kernels_mm2);
 
 /// By the mesh kernel, whose surface samples place to a part of their spacing. An object of several scans or
 /// motions has the interval of each for the share of its surface that the source shows; a cut has none.

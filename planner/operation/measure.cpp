@@ -265,7 +265,9 @@ Json size_json(const Measure& asked, const AnswerBench& bench) {
   json["volume_half_width_terms"] = to_json(width);
   std::vector<std::string> findings = findings_of(
       recommended, with_reason.is_of_phases, with_reason.has_core,
-      {voxels_mm3, object.mesh.within ? std::optional(object.mesh.within->size().volume_mm3) : std::nullopt});
+      {voxels_mm3, object.mesh.within ? std::optional(object.mesh.within->size().volume_mm3) : std::nullopt},
+      {object.voxel.measures.area_crofton13_mm2,
+       object.mesh.within ? std::optional(object.mesh.within->size().area_mm2) : std::nullopt});
   if (const auto finding = too_coarse_finding(object, width)) findings.insert(findings.begin(), *finding);
   if (!findings.empty()) {
     std::string all;

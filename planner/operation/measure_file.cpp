@@ -357,9 +357,9 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   const bool is_of_phases = phases && !phases->evidence.is_ambiguous;
   const verify::SizeIntervals recommended =
       recommended_of({scene, window.low, high, isosurface, phases, digitised});
-  for (const std::string& finding :
-       findings_of(recommended, is_of_phases, is_of_phases && phases->evidence.has_core,
-                   {measures.volume_mm3, surface.volume_mm3}))
+  for (const std::string& finding : findings_of(
+           recommended, is_of_phases, is_of_phases && phases->evidence.has_core,
+           {measures.volume_mm3, surface.volume_mm3}, {measures.area_crofton13_mm2, surface.area_mm2}))
     json["findings"].push_back(finding);
   const HalfWidth width =
       area_half_width({recommended.triangles.area_mm2, recommended.triangles.curvature_mm}, digitised);

@@ -46,12 +46,51 @@ struct Question {
   std::optional<fs::path> answer;
 };
 
-/// All voxels that have a label.
+/// The same labels on another lattice, of which each sample is one: as of a map that was cropped, or whose
+/// axes were turned or exchanged. None where samples lie between those of the lattice, or labels beyond it.
+std::optional<voxel::Scene> laid_on(const voxel::Scene& scene, const voxel::Lattice& lattice) {
+  constexpr double nearly = 1e-3;
+  const glm::dmat4 to = glm::inverse(lattice.lps_from_voxel) * scene.lattice.lps_from_voxel,
+                   exact = glm::round(to);
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 3; ++row)
+      if (std::abs(to[column][row] - exact[column][row]) > nearly) return std::nullopt;
+  if (std::abs(std::abs(glm::determinant(exact)) - 1.0) > nearly) return std::nullopt;
+  voxel::Scene laid = scene;
+  laid.lattice = lattice;
+  const glm::ivec3 from = scene.lattice.dims, dims = lattice.dims;
+  const bool fits = std::visit(
+      [&](auto& samples) {
+        const auto stored = samples;
+        samples.assign(lattice.sample_count(), 0);
+        std::size_t i = 0;
+        for (int z = 0; z < from.z; ++z)
+          for (int y = 0; y < from.y; ++y)
+            for (int x = 0; x < from.x; ++x, ++i) {
+              if (stored[i] == 0) continue;
+              const glm::ivec3 at(exact * glm::dvec4(x, y, z, 1.0));
+              if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, dims)))
+                return false;
+              samples[(static_cast<std::size_t>(at.z) * static_cast<std::size_t>(dims.y) +
+                       static_cast<std::size_t>(at.y)) *
+                          static_cast<std::size_t>(dims.x) +
+                      static_cast<std::size_t>(at.x)] = stored[i];
+            }
+        return true;
+      },
+      laid.samples);
+  return fits ? std::optional(std::move(laid)) : std::nullopt;
+}
+
+/// All voxels that have a label; on the lattice `onto` where that is given and has them.
 voxel::Octree labelled(const Program& program, const fs::path& path, Timings& timings,
-                       voxel::Lattice& lattice, bool may_be_empty = false) {
+                       voxel::Lattice& lattice, const voxel::Lattice* onto = nullptr,
+                       bool may_be_empty = false) {
   const Stopwatch watch(timings, "read");
-  const voxel::Scene scene = voxel::read_scene(path);
+  voxel::Scene scene = voxel::read_scene(path);
   program.note_scan(path, scene);
+  if (onto != nullptr && !(scene.lattice == *onto))
+    if (std::optional<voxel::Scene> laid = laid_on(scene, *onto)) scene = std::move(*laid);
   lattice = scene.lattice;
   const voxel::Universe universe = voxel::universe_on(scene.lattice);
   const std::vector<voxel::Label> labels = voxel::labels(scene);
@@ -68,6 +107,7 @@ struct Answered {
   verify::KernelAnswers kernels;
   std::vector<verify::Certificate> certificates;
   std::vector<std::string> not_covered;
+  std::optional<voxel::Lattice> lattice = std::nullopt;  ///< of label maps
   double volume_mm3() const {
     return static_cast<double>(kernels.octree.voxel_count()) *
            kernels.octree.universe().lattice().voxel_mm3();
@@ -77,7 +117,7 @@ struct Answered {
 Answered of_label_maps(Program& program, const Question& asked, Timings& timings) {
   voxel::Lattice lattice_a, lattice_b;
   const voxel::Octree left = labelled(program, asked.a, timings, lattice_a),
-                      right = labelled(program, asked.b, timings, lattice_b);
+                      right = labelled(program, asked.b, timings, lattice_b, &lattice_a);
   if (!(lattice_a == lattice_b))
     throw std::runtime_error(
         asked.a.string() + " and " + asked.b.string() +
@@ -102,6 +142,7 @@ Answered of_label_maps(Program& program, const Question& asked, Timings& timings
   answered.certificates.push_back(verify::certify_exact(verify::exact_answers(expression, progress)));
   answered.certificates.back().operation =
       question + ", both sets refined and smaller by a quarter of a voxel all round, no faces shared";
+  answered.lattice = lattice_a;
   return answered;
 }
 
@@ -118,9 +159,9 @@ Answered of_meshes(Program& program, const Question& asked, const VerifyText& te
   return {{*answers.octree, answers.solid, answers.shift_mm, answers.findings}, {answers.certificate}, {}};
 }
 
-/// Reads the answer and holds it against both kernels'.
+/// Reads the answer and holds it against both kernels'. `operands` is the lattice of label maps, or null.
 std::vector<verify::Certificate> judged(const fs::path& answer, const verify::KernelAnswers& kernels,
-                                        Program& program, Timings& timings) {
+                                        const voxel::Lattice* operands, Program& program, Timings& timings) {
   if (is_mesh(answer)) {
     brep::Triangles triangles;
     {
@@ -131,7 +172,7 @@ std::vector<verify::Certificate> judged(const fs::path& answer, const verify::Ke
     return verify::judge_mesh(kernels, triangles, {program.stop.get_token(), {}});
   }
   voxel::Lattice lattice;
-  const voxel::Octree voxels = labelled(program, answer, timings, lattice, true);
+  const voxel::Octree voxels = labelled(program, answer, timings, lattice, operands, true);
   if (!(voxels.universe() == kernels.octree.universe()))
     throw std::runtime_error(answer.string() +
                              ": has another lattice than the operands: resample it onto theirs first "
@@ -149,7 +190,8 @@ Answered answered(Program& program, const Question& asked, const VerifyText& tex
   Answered found =
       is_mesh(asked.a) ? of_meshes(program, asked, text, timings) : of_label_maps(program, asked, timings);
   if (asked.answer)
-    for (verify::Certificate& certificate : judged(*asked.answer, found.kernels, program, timings)) {
+    for (verify::Certificate& certificate :
+         judged(*asked.answer, found.kernels, found.lattice ? &*found.lattice : nullptr, program, timings)) {
       certificate.operation = asked.answer->string() + ": " + certificate.operation;
       found.certificates.push_back(std::move(certificate));
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "planner/suite/suites.h"
 #include "planner/table/number_format.h"
@@ -55,7 +56,7 @@ void add_intervals(const std::vector<verify::IntervalCoverage>& table,
                     {"spacing", all ? "all" : row.spacing},
                     {"sampling", all ? "all" : row.sampling},
                     {"solids", row.cases},
-                    {"held_percent", 100.0 * row.held},
+                    {"held_percent", std::min(100.0, 100.0 * row.held)},
                     {"width_over_p99_error", width},
                     {"bias_percent", row.bias_percent},
                     {"p99_error_percent", row.p99_error_percent}});
@@ -88,7 +89,7 @@ void add_drawn(const std::vector<verify::IntervalCoverage>& table,
                     {"class", all ? "all" : row.group},
                     {"calibration", row.sampling},
                     {"solids", row.cases},
-                    {"held_percent", 100.0 * row.held},
+                    {"held_percent", std::min(100.0, 100.0 * row.held)},
                     {"median_width_percent", row.median_width_percent},
                     {"width_over_p99_error", width},
                     {"bias_percent", row.bias_percent},
