@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -10,6 +11,7 @@
 #include "tests/planner/cli/command_line.h"
 #include "verify/general_position.h"
 #include "verify/random_expression.h"
+#include "voxel/filter/crop.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/solid/combine.h"
@@ -174,6 +176,33 @@ TEST_F(VerifyTouchingBoxes, AnAnswerOfAnybodyIsJudgedAgainstBothKernels) {
   EXPECT_EQ(spoiled["certificates"][0]["verdict"], "PASS");
   EXPECT_EQ(spoiled["certificates"][2]["verdict"], "FAIL");
   EXPECT_EQ(spoiled["certificates"][3]["verdict"], "FAIL");
+}
+
+TEST_F(VerifyTouchingBoxes, AnAnswerOnAPartOrWithTurnedAxesIsLaidOnTheOperands) {
+  const voxel::Octree right = voxel::combine(universe_, a_ | b_);
+  const voxel::Scene whole = voxel::label_map(universe_.lattice(), {&right, 1}).scene;
+  voxel::write_scene(voxel::crop(whole, {{1, 1, 1}, {14, 10, 12}}), folder_ / "part.nrrd");
+  voxel::Scene turned = whole;
+  const int last = whole.lattice.dims.x - 1;
+  turned.lattice.lps_from_voxel[0] *= -1.0;
+  turned.lattice.lps_from_voxel[3] = glm::dvec4(whole.lattice.lps_mm({last, 0, 0}), 1.0);
+  std::visit(
+      [&](auto& samples) {
+        for (auto row = samples.begin(); row != samples.end(); row += last + 1)
+          std::reverse(row, row + last + 1);
+      },
+      turned.samples);
+  voxel::write_scene(turned, folder_ / "turned.nrrd");
+  voxel::Scene between = whole;
+  between.lattice.lps_from_voxel[3].x += 0.5;
+  voxel::write_scene(between, folder_ / "between.nrrd");
+  const std::string question = "verify " + at("a.nrrd") + " union " + at("b.nrrd") + " --json --answer ";
+  for (const char* name : {"part.nrrd", "turned.nrrd"}) {
+    const auto answer = run(question + at(name));
+    EXPECT_EQ(answer.status, 0) << name << answer.errors;
+    EXPECT_EQ(tests::SortedJson::parse(answer.out)["counts"]["PASS"], 4) << name;
+  }
+  EXPECT_EQ(run(question + at("between.nrrd")).status, 2);
 }
 
 TEST_F(VerifyTouchingBoxes, AFolderOfTriplesIsJudgedInOneRunWithATable) {
