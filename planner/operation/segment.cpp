@@ -178,13 +178,9 @@ class Segmenter {
     const voxel::Octree whole = made_.octree;
     go_on();
     if (segment_.largest || segment_.components) {
-      const voxel::Components parts = voxel::components(made_.octree, neighbours);
       const auto wanted = static_cast<std::size_t>(segment_.components.value_or(1));
-      become(wanted == 1 ? parts.largest
-             : wanted < parts.voxel_counts.size()
-                 ? voxel::components_of_at_least(made_.octree, parts.voxel_counts[wanted - 1], neighbours)
-                 : made_.octree,
-             {{"do", "largest_components"}, {"of", parts.voxel_counts.size()}});
+      const std::size_t of = voxel::component_count(made_.octree, neighbours);
+      become(largest_parts(made_.octree, wanted, neighbours), {{"do", "largest_components"}, {"of", of}});
     }
     go_on();
     if (segment_.at_least_mm3)
@@ -307,33 +303,56 @@ void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
   if (segment.fill) made.symbol = symbol_of_filled(*made.symbol, kept, made.octree);
 }
 
+/// The mesh kernel's window, with bridges cut, before parts are chosen. Adds to `shift_mm` as cut_bridges().
+brep::Solid window_mesh(const Segment& segment, const voxel::Scene& scene, const std::stop_token& stop,
+                        double& shift_mm) {
+  const brep::Solid whole = brep::trusted_solid(
+      brep::mesh_of(convert::isosurface(scene, segment.window->low, segment.window->high_or_infinity())),
+      brep::Proof::Construction);
+  return cut_bridges(whole, bridges_of(segment), stop, shift_mm);
+}
+brep::Solid filled(const brep::Solid& solid) {
+  return convert::fill_cavities(solid, std::numeric_limits<double>::infinity()).solid;
+}
+
 void triangles(const Segment& segment, const MeshBench& bench, MeshSide& made) {
   if (const char* why = why_voxels_alone(segment)) throw std::runtime_error(why);
   const voxel::Scene& scene = bench.samples(segment.scan.name);
   need_hounsfield(*segment.window, scene);
-  brep::Mesh mesh;
   {
     const Stopwatch watch(bench.timings, "isosurface");
-    mesh = brep::mesh_of(convert::isosurface(scene, segment.window->low, segment.window->high_or_infinity()));
+    made.whole = window_mesh(segment, scene, bench.progress.stop, made.shift_mm);
   }
   const Stopwatch watch(bench.timings, "components");
-  const BridgeDecisions bridges = bridges_of(segment);
-  brep::Proof proof = brep::Proof::Construction;
-  if (!bridges.cut_mm.empty()) {
-    const brep::Solid cut =
-        cut_bridges(brep::trusted_solid(mesh, proof), bridges, bench.progress.stop, made.shift_mm);
-    mesh = cut;
-    proof = brep::proof_of_part(cut.proof());
-  }
   if (chooses_parts(segment)) {
     std::optional<int> largest;
     if (segment.largest || segment.components) largest = segment.components.value_or(1);
-    mesh = kept_parts(mesh, largest, segment.at_least_mm3, bridges).mesh;
+    made.whole =
+        brep::trusted_solid(kept_parts(*made.whole, largest, segment.at_least_mm3, bridges_of(segment)).mesh,
+                            bridges_of(segment).cut_mm.empty() ? brep::Proof::Construction
+                                                               : brep::proof_of_part(made.whole->proof()));
   }
-  made.whole = brep::trusted_solid(mesh, proof);
-  if (segment.fill)
-    made.whole = convert::fill_cavities(*made.whole, std::numeric_limits<double>::infinity()).solid;
+  if (segment.fill) made.whole = filled(*made.whole);
   made.lineage = "isosurface of the scan's own samples";
+}
+
+/// Settles which of the largest parts are kept, as settle_choice().
+void settle_largest(const Segment& segment, const LoadedScan& scan, const voxel::Universe& universe,
+                    Object& made) {
+  const auto voxels = [&] {
+    const voxel::Octree window =
+        voxel::combine(universe, cut_bridges(voxel::Expression(window_on(scan.grey, *segment.window)) &
+                                                 voxel::Expression(voxel::bounds(scan.scene().lattice)),
+                                             bridges_of(segment)));
+    return segment.fill ? voxel::fill_cavities(window) : window;
+  };
+  const auto mesh = [&] {
+    double shift_mm = 0.0;
+    const brep::Solid whole = window_mesh(segment, scan.scene(), {}, shift_mm);
+    return segment.fill ? filled(whole) : whole;
+  };
+  settle_choice({voxels, mesh, segment.fill ? verify::witness_of_filled(made.witness) : made.witness},
+                universe, made);
 }
 
 void bound(const Segment& segment, const BoundBench& bench, Object& made) {
@@ -354,6 +373,8 @@ void bound(const Segment& segment, const BoundBench& bench, Object& made) {
                                            segment.window->high_or_infinity(), bench.universe);
   const BridgeDecisions bridges = bridges_of(segment);
   made.witness = cut_bridges(std::move(made.witness), bridges);
+  if ((segment.largest || segment.components) && made.mesh.whole)
+    settle_largest(segment, scan, bench.universe, made);
   if (chooses_parts(segment))
     made.witness = made.mesh.whole
                        ? verify::witness_of_parts(made.witness,
@@ -445,8 +466,7 @@ Operation segment_operation() {
                  .repeated()
                  .called("seed"))
       .takes(field("largest", &Segment::largest, "Keeps the largest part."))
-      .takes(field("components", &Segment::components,
-                   "Keeps so many of the largest parts, and those as large as the last of them.")
+      .takes(field("components", &Segment::components, "Keeps so many of the largest parts.")
                  .from(1)
                  .to(1000000))
       .takes(field("at_least_mm3", &Segment::at_least_mm3, "Keeps the parts of at least this volume.")
