@@ -4,6 +4,7 @@
 // each other; then C is held against each of them. A triple is such a question as JSON, or a folder of files.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 
 #include "planner/file/mesh_file.h"
 #include "planner/file/mesh_in.h"
@@ -50,11 +51,13 @@ struct Question {
 /// axes were turned or exchanged. None where samples lie between those of the lattice, or labels beyond it.
 std::optional<voxel::Scene> laid_on(const voxel::Scene& scene, const voxel::Lattice& lattice) {
   constexpr double nearly = 1e-3;
-  const glm::dmat4 to = glm::inverse(lattice.lps_from_voxel) * scene.lattice.lps_from_voxel,
-                   exact = glm::round(to);
+  const glm::dmat4 to = glm::inverse(lattice.lps_from_voxel) * scene.lattice.lps_from_voxel;
+  glm::dmat4 exact(1.0);
   for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 3; ++row)
+    for (int row = 0; row < 3; ++row) {
+      exact[column][row] = std::round(to[column][row]);
       if (std::abs(to[column][row] - exact[column][row]) > nearly) return std::nullopt;
+    }
   if (std::abs(std::abs(glm::determinant(exact)) - 1.0) > nearly) return std::nullopt;
   voxel::Scene laid = scene;
   laid.lattice = lattice;
