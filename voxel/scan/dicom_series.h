@@ -33,8 +33,8 @@ struct DicomStack {
 /// form a stack. The audit names the files that were left out and why: stray_files, unusable_images,
 /// damaged_files, series, localizers, patient, study, modality, frame_of_reference, size, orientation,
 /// stacks, pixel_spacing, duplicates; then audit_stack()'s lines. Slices left out of a series are a Fail. If
-/// there is a doubt also orientation_noise, orientation_rounded, join, image_count and concatenation. Folders
-/// of staged files count as stray files. Throws as read_scene().
+/// there is a doubt also orientation_noise, orientation_rounded, orientation_length, join, image_count and
+/// concatenation. Folders of staged files count as stray files. Throws as read_scene().
 DicomStack stack_of_series(const std::filesystem::path& path, const ReadOptions& options,
                            std::vector<Finding>& audit);
 

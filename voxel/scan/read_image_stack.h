@@ -12,7 +12,9 @@ std::vector<std::filesystem::path> image_files(const std::filesystem::path& path
 
 /// Reads images as the slices of a stack, the first at the feet, with the options' spacing; each page of a
 /// file is a slice. All must have the same size and type. Images hold neither patient frame nor unit: the
-/// audit states the assumed ones. Throws as read_scene().
+/// audit states the assumed ones. What pictures state of themselves is held against the options: sizes of
+/// pixels and slices (picture_spacing; ImageJ's, OME's or the format's own), times and channels
+/// (picture_axes), WhiteIsZero (polarity), JPEG's losses (compression). Throws as read_scene().
 Scene read_image_stack(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace octotomy::voxel

@@ -8,7 +8,8 @@ namespace octotomy::voxel {
 /// Judges by their headers what the slices of a stack have in common; each line of the audit names the slices
 /// that differ from most others: the attributes of dicom_traits, uniform, compression, photometric,
 /// pixel_format, slice_thickness, instance_order, spacing_tag, acr_nema, decimal_commas, real_world_values,
-/// pixel_aspect, frame_positions, pixel_data. Those from instance_order on only if there is a doubt.
+/// pixel_aspect, frame_positions, pixel_data, image_kind, coding, patient_orientation. Those from
+/// instance_order on only if there is a doubt.
 /// Precondition: the stack is ordered and not empty.
 void audit_stack(const DicomStack& stack, std::vector<Finding>& audit);
 
