@@ -181,6 +181,16 @@ int convert(const Program& program, const ConvertText& text) {
       if (scene.modality.empty())
         findings.push_back(text.in.string() + " does not state its modality: written as CT");
       options.source = source_of(program, text, is_dicom(scene), scene.identity, findings);
+      if (!options.source) {
+        options.patient_name =
+            scene.identity.patient_name.empty() ? "Anonymous" : scene.identity.patient_name;
+        findings.push_back(text.in.string() + " states no patient and study: the series is of '" +
+                           options.patient_name +
+                           "', in a study of its own; --source takes those of a series");
+      }
+      if (const double off = voxel::dicom_rounding(scene); off > 0.0)
+        findings.push_back("values are rounded by up to " + three_figures(off) +
+                           " as DICOM stores them in 16 bits: a .nrrd or .nii.gz keeps them");
       voxel::write_dicom_series(scene, text.out, options);
     } else {
       voxel::write_scene(scene, text.out);

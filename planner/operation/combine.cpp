@@ -89,7 +89,8 @@ void bound(const Combine& combine, const BoundBench& bench, Object& made) {
   const std::vector<std::string> names = uses(combine);
   tell_idle_masks(names, bench, made);
   if (made.voxel.octree.is_empty())
-    made.findings.push_back("it is empty: no voxel is in '" + combine.expression + "'");
+    made.findings.push_back("no voxel is in '" + combine.expression +
+                            "': it is empty, or thinner than the voxels are apart");
   made.shown = shown_in_common(bench.objects, names);
   for (const std::string& name : names) inherit(bench.objects.at(name), made);
   made.witness = verify::witness_of_expression(

@@ -284,6 +284,20 @@ void need_no_slices(const fs::path& folder) {
            "exists already; choose another folder or empty it");
 }
 
+double dicom_rounding(const Scene& scene) {
+  const auto* samples = std::get_if<FloatSamples>(&scene.samples);
+  if (samples == nullptr) return 0.0;
+  const Rescale rescale = rescale_of(scene);
+  double most = 0.0;
+  for (const float sample : *samples) {
+    const auto value = static_cast<double>(sample);
+    if (value == scene.padding) continue;
+    const double stored = std::round((value - rescale.intercept) / rescale.slope);
+    most = std::max(most, std::abs(rescale.slope * stored + rescale.intercept - value));
+  }
+  return most;
+}
+
 void write_dicom_series(const Scene& scene, const fs::path& folder, const DicomOptions& options) {
   need_disk(folder, least_file_bytes(scene.lattice, sizeof(std::int16_t), folder));
   const SeriesWriter series(scene, options);

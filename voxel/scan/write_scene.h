@@ -66,4 +66,8 @@ void need_no_slices(const std::filesystem::path& folder);
 void write_dicom_series(const Scene& scene, const std::filesystem::path& folder,
                         const DicomOptions& options = {});
 
+/// By how much a sample changes at most where write_dicom_series() stores it in 16 bits; 0 where all keep
+/// their values. Throws std::invalid_argument if a sample is not finite.
+double dicom_rounding(const Scene& scene);
+
 }  // namespace octotomy::voxel

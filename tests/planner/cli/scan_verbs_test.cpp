@@ -110,6 +110,21 @@ TEST_F(ScanVerbs, ATissueIsAWindowOfHounsfieldUnitsEverywhere) {
     expect_refused(run(std::string(verb) + " " + at("raw.nrrd") + " --window bone"), "Hounsfield");
 }
 
+TEST_F(ScanVerbs, ConvertToDicomTellsWhoseSeriesItWritesAndWhatItRounds) {
+  const tests::CommandAnswer ball = run("convert " + at("ball.nrrd") + " --dicom -o " + at("ball_dicom"));
+  EXPECT_EQ(ball.status, 0) << ball.errors;
+  EXPECT_NE(ball.errors.find("'Anonymous', in a study of its own"), std::string::npos) << ball.errors;
+  EXPECT_EQ(ball.errors.find("rounded"), std::string::npos) << ball.errors;
+  voxel::Scene wide = tests::ball_scene(12.0, 32);
+  voxel::FloatSamples samples;
+  for (const std::int16_t sample : std::get<voxel::Int16Samples>(wide.samples))
+    samples.push_back(1000.25f * static_cast<float>(sample));
+  wide.samples = std::move(samples);
+  voxel::write_scene(wide, folder_ / "wide.nrrd");
+  const tests::CommandAnswer rounded = run("convert " + at("wide.nrrd") + " --dicom -o " + at("wide_dicom"));
+  EXPECT_NE(rounded.errors.find("values are rounded by up to"), std::string::npos) << rounded.errors;
+}
+
 TEST_F(ScanVerbs, VoxelsThatPassOverAThinObjectSayHowMuchTheyMiss) {
   voxel::Scene thin = tests::ball_scene(12.0, 32);
   thin.lattice = voxel::axis_aligned_lattice({32, 32, 32}, {0.001, 10, 10}, {0, 0, 0});
