@@ -93,7 +93,9 @@ class ModelPart {
       in_application_ = optional(attributes, "name", "") == "Application";
     } else if (element == "object") {
       const std::string type = optional(attributes, "type", "model");
-      object_ = &objects_[{path_, required(attributes, "id", "object")}];
+      const std::string id(required(attributes, "id", "object"));
+      if (objects_.contains({path_, id})) refuse_file("two objects have the id " + id);
+      object_ = &objects_[{path_, id}];
       object_->is_solid = type == "model" || type == "surface";
     } else if (element == "vertex" && object_ != nullptr) {
       object_->mesh.points_mm.emplace_back(coordinate(attributes, "x"), coordinate(attributes, "y"),

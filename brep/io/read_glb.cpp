@@ -9,6 +9,7 @@
 // is bounded by its length.
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_access.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
@@ -64,10 +65,23 @@ std::optional<std::array<double, Count>> numbers_of(const Json& object, const ch
 }
 
 /// Column-major, as the format has it, and GLM.
+/// By the extension KHR_node_visibility, or as some writers state it in the node itself.
+bool is_hidden(const Json& node) {
+  const auto states = [](const Json& where) {
+    return where.is_object() && where.contains("visible") && where["visible"] == false;
+  };
+  if (states(node)) return true;
+  if (!node.contains("extensions") || !node["extensions"].is_object()) return false;
+  const Json& extensions = node["extensions"];
+  return extensions.contains("KHR_node_visibility") && states(extensions["KHR_node_visibility"]);
+}
+
 glm::dmat4 matrix_of(const Json& node) {
   if (const auto m = numbers_of<16>(node, "matrix")) {
     glm::dmat4 made;
     for (std::size_t i = 0; i < 16; ++i) made[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = (*m)[i];
+    if (glm::row(made, 3) != glm::dvec4(0, 0, 0, 1))
+      refuse_file("a node's matrix does not end in the row 0 0 0 1: it is no motion, scale or shear");
     return made;
   }
   glm::dmat4 made(1.0);
@@ -136,6 +150,13 @@ class GlbReader {
       made_.says.add_writer(asset["generator"].get<std::string>());
     made_.scale = 1000.0;
     place_nodes();
+    if (hidden_ > 0)
+      made_.says.warn("file",
+                      std::to_string(hidden_) + " nodes are stated as invisible: they are read all the same");
+    if (overlaid_ > 0)
+      made_.says.warn(
+          "file", std::to_string(overlaid_) +
+                      " nodes state a matrix and also a translation, rotation or scale: the matrix is taken");
     if (moved_)
       made_.says.warn("file", "skins and morph targets are left out: the mesh is as it was before them");
     made_.polygons.faces = made_.triangles.faces.size();
@@ -304,6 +325,9 @@ class GlbReader {
       const glm::dmat4 matrix = placed.matrix * matrix_of(node);
       if (node.contains("mesh")) add_mesh(whole(node, "mesh", 0), matrix, points);
       moved_ = moved_ || node.contains("skin");
+      hidden_ += is_hidden(node);
+      overlaid_ += node.contains("matrix") &&
+                   (node.contains("translation") || node.contains("rotation") || node.contains("scale"));
       const Json& below = list_of(node, "children");
       for (auto child = below.rbegin(); child != below.rend(); ++child) {
         if (!child->is_number_unsigned()) refuse_file("a node's child is no number");
@@ -366,6 +390,8 @@ class GlbReader {
   std::vector<std::string> buffers_;
   std::size_t spent_ = 0;
   bool moved_ = false;
+  std::size_t hidden_ = 0,
+              overlaid_ = 0;  ///< nodes stated as invisible; those that state a matrix and parts of one
   MeshContent made_;
 };
 

@@ -371,6 +371,10 @@ TEST(MeshConventions, DamagedGlbAnd3mfFilesAreRefusedWithTheirReason) {
   EXPECT_NE(refusal({"", "a.glb", glb(in_file("LSA", 1), R"({"children":[1],"mesh":0},{"children":[0]})")})
                 .find("below two"),
             std::string::npos);
+  EXPECT_NE(refusal({"", "a.glb",
+                     glb(in_file("LSA", 1), R"({"mesh":0,"matrix":[1,0,0,0.5,0,1,0,0,0,0,1,0,0,0,0,1]})")})
+                .find("0 0 0 1"),
+            std::string::npos);
   std::string far = whole;
   far.replace(far.find("\"count\":36"), 10, "\"count\":99");
   EXPECT_NE(refusal({"", "a.glb", far}).find("beyond its view"), std::string::npos);
