@@ -233,16 +233,20 @@ void add_brain_case(const HeadPart& head, const HeadFrame& frame, FoundPlaces& f
 /// Takes out points of one side alone that were sought from points which turned out to be unknown: nothing
 /// else shows then that they are what they are called.
 void take_out_unfounded(std::vector<LandmarkGuess>& found, std::map<std::string, std::string>& missing) {
-  for (const auto& [name, from, other] : {std::array<std::string, 3>{"zygoma", "ans", "orbitale"},
-                                          std::array<std::string, 3>{"gonion", "menton", "ans"}})
-    for (const auto& [side, opposite] : {std::pair("_left", "_right"), {"_right", "_left"}}) {
-      if (!missing.contains(name + opposite)) continue;
-      for (const std::string& source : {from, other == "orbitale" ? other + side : other})
-        if (missing.contains(source) &&
-            std::erase_if(found, [&](const LandmarkGuess& at) { return at.name == name + side; }) > 0)
-          missing[name + side] =
-              "it is sought from " + source + ", which was not found, and the other side's is missing";
-    }
+  const auto take_out = [&](const std::string& name, const std::string& opposite,
+                            const std::vector<std::string>& sources) {
+    if (!missing.contains(opposite)) return;
+    for (const std::string& source : sources)
+      if (missing.contains(source) &&
+          std::erase_if(found, [&](const LandmarkGuess& at) { return at.name == name; }) > 0)
+        missing[name] =
+            "it is sought from " + source + ", which was not found, and the other side's is missing";
+  };
+  for (const auto& [side, opposite] :
+       {std::pair<std::string, std::string>("_left", "_right"), {"_right", "_left"}}) {
+    take_out("zygoma" + side, "zygoma" + opposite, {"ans", "orbitale" + side});
+    take_out("gonion" + side, "gonion" + opposite, {"menton", "ans"});
+  }
 }
 
 }  // namespace
@@ -333,7 +337,8 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   for (const auto& [one, other] :
        {std::pair("buttress_left", "buttress_right"), {"buttress_right", "buttress_left"}})
     if (missing.contains(other) &&
-        std::erase_if(guess.found, [&](const LandmarkGuess& at) { return at.name == one; }) > 0)
+        std::erase_if(guess.found,
+                      [name = std::string(one)](const LandmarkGuess& at) { return at.name == name; }) > 0)
       missing[one] = "the other side's was not found, which it must match";
   take_out_unfounded(guess.found, missing);
   guess.missing.assign(missing.begin(), missing.end());
