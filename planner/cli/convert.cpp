@@ -8,6 +8,7 @@
 #include "planner/file/label_table.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
 #include "planner/table/same_patient.h"
 #include "planner/verb/octree_out.h"
 #include "planner/verb/scan_in.h"
