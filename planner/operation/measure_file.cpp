@@ -313,7 +313,10 @@ verify::SizeIntervals recommended_of(const WindowShown& shown) {
 
 FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
   Timings& timings = bench.timings;
-  const auto [scene, grey] = read_to_octree(file, asked, bench);
+  const auto read = read_to_octree(file, asked, bench);
+  // References, which lambdas may capture.
+  const voxel::Scene& scene = read.scene;
+  const voxel::GreyOctree& grey = read.grey;
   const voxel::Window window = window_of(grey, file, asked);
   // Labels are names: a voxel has that of its nearest sample, and surfaces lie half-way between samples.
   const bool is_labels = scene.meaning == voxel::Meaning::Label;
