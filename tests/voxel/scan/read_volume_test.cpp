@@ -142,6 +142,17 @@ TEST(ReadVolume, NrrdFieldsThatContradictWhatIsTakenAreTold) {
   EXPECT_TRUE(nrrd_warnings(older + "spacings: 2 3 0.8\n").contains("spacing"));
 }
 
+TEST(ReadVolume, PlacesBeyondAnyScannersAreRefused) {
+  const tests::ScratchFolder folder;
+  for (const auto& [origin, is_read] :
+       {std::pair{"(-1e308,0,0)", false}, {"(0,2e9,0)", false}, {"(0,0,9e8)", true}}) {
+    write_bytes(folder / "a.nrrd",
+                nrrd(std::string("space: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: ") +
+                     origin + "\n"));
+    EXPECT_EQ(reason_to_refuse(folder / "a.nrrd") == "read", is_read) << origin;
+  }
+}
+
 TEST(ReadVolume, ANiftiPairIsReadByEitherName) {
   const tests::ScratchFolder folder;
   write_bytes(folder / "a.hdr", nifti(
