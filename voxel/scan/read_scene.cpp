@@ -86,6 +86,18 @@ Scene read_any(const fs::path& path, const ReadOptions& options) {
   }
 }
 
+/// Refuses places that no scanner has, in which later sums overflow.
+void need_near_places(const fs::path& path, const Lattice& lattice) {
+  constexpr double farthest_mm = 1e9;  // doubles still part places by 1e-7 mm there
+  const glm::dvec3 last = glm::dvec3(lattice.dims - 1);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p_mm = glm::abs(
+        lattice.lps_mm({corner & 1 ? last.x : 0.0, corner & 2 ? last.y : 0.0, corner & 4 ? last.z : 0.0}));
+    if (!(std::max({p_mm.x, p_mm.y, p_mm.z}) <= farthest_mm))
+      refuse(path, "the header places samples beyond 1e9 mm: correct its origin, its spacing or their unit");
+  }
+}
+
 /// Findings name files, whose names may hold control characters: terminals obey them and lists break.
 std::string on_one_line(std::string text) {
   std::replace_if(
@@ -135,6 +147,7 @@ Scene read_scene(const fs::path& path, const ReadOptions& options) {
   } catch (const std::invalid_argument& flaw) {
     refuse(path, std::string("the header's geometry is unusable: ") + flaw.what());
   }
+  need_near_places(path, scene.lattice);
   if (std::optional<Finding> size = size_finding(scene)) scene.audit.push_back(std::move(*size));
   options.progress.at(1.0);
   return scene;
