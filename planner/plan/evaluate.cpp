@@ -391,8 +391,7 @@ class Evaluator {
     const void* value = settled ? settled.get() : step.action.value();
     object.is_tool = operation.is_tool;
     object.definition = operation.definition(value, result_.objects);
-    object = operation.with_parts && options_.certify ? agreed_answer(step, value, object)
-                                                      : answer(step, value, object);
+    object = operation.with_parts ? agreed_answer(step, value, object) : answer(step, value, object);
     object.mesh.details.update(told);
     object.voxel.measures = voxel::measure(object.voxel.octree);
     const MadeOf made_of{step.action, result_.objects, scan_, result_.scans};
