@@ -25,7 +25,8 @@ void behind_key(std::string_view text, std::string_view key, const F& f) {
   const std::string folded = lower_case(text);
   for (std::size_t at = folded.find(key); at != std::string::npos; at = folded.find(key, at + 1)) {
     const std::size_t end = at + key.size();
-    if ((at > 0 && (is_word_letter(text[at - 1]) || text[at - 1] == '_')) || (end < text.size() && is_word_letter(text[end])))
+    if ((at > 0 && (is_word_letter(text[at - 1]) || text[at - 1] == '_')) ||
+        (end < text.size() && is_word_letter(text[end])))
       continue;
     std::size_t begin = text.find_first_not_of(" \t\"'", end);
     if (begin == std::string_view::npos) return;

@@ -64,7 +64,6 @@ std::optional<std::array<double, Count>> numbers_of(const Json& object, const ch
   return made;
 }
 
-/// Column-major, as the format has it, and GLM.
 /// By the extension KHR_node_visibility, or as some writers state it in the node itself.
 bool is_hidden(const Json& node) {
   const auto states = [](const Json& where) {
@@ -76,6 +75,7 @@ bool is_hidden(const Json& node) {
   return extensions.contains("KHR_node_visibility") && states(extensions["KHR_node_visibility"]);
 }
 
+/// Column-major, as the format has it, and GLM.
 glm::dmat4 matrix_of(const Json& node) {
   if (const auto m = numbers_of<16>(node, "matrix")) {
     glm::dmat4 made;
@@ -390,8 +390,8 @@ class GlbReader {
   std::vector<std::string> buffers_;
   std::size_t spent_ = 0;
   bool moved_ = false;
-  std::size_t hidden_ = 0,
-              overlaid_ = 0;  ///< nodes stated as invisible; those that state a matrix and parts of one
+  std::size_t hidden_ = 0;    ///< nodes that are stated as invisible
+  std::size_t overlaid_ = 0;  ///< nodes that state a matrix beside a translation, rotation or scale
   MeshContent made_;
 };
 

@@ -185,9 +185,8 @@ int convert(const Program& program, const ConvertText& text) {
       if (!options.source) {
         options.patient_name =
             scene.identity.patient_name.empty() ? "Anonymous" : scene.identity.patient_name;
-        findings.push_back(text.in.string() + " states no patient and study: the series is of '" +
-                           options.patient_name +
-                           "', in a study of its own; --source takes those of a series");
+        findings.push_back("no --source: the series is of '" + options.patient_name +
+                           "', in a study of its own, and refers to no images");
       }
       if (const double off = voxel::dicom_rounding(scene); off > 0.0)
         findings.push_back("values are rounded by up to " + three_figures(off) +

@@ -198,9 +198,7 @@ std::vector<Subject> subjects_of_folder(const fs::path& input, const Plan& plan)
 std::optional<std::vector<Subject>> folders_of_rows(const std::vector<std::vector<std::string>>& rows,
                                                     std::size_t id, const fs::path& input, const Plan& plan) {
   const std::vector<std::string>& header = rows.front();
-  const auto has = [&](const std::string& name) {
-    return std::find(header.begin(), header.end(), name) != header.end();
-  };
+  const auto has = [&](const std::string& name) { return column_of(header, name).has_value(); };
   if (has("scan") ||
       std::any_of(plan.scans.begin(), plan.scans.end(), [&](const auto& scan) { return has(scan.first); }))
     return std::nullopt;

@@ -24,13 +24,14 @@ AirLevel air_level_of_ct(const Scene& scene);
 /// is assumed.
 AirLevel air_level_of_unnamed(const Scene& scene);
 
-/// Takes as padding what only padding can be in a CT whose file names none. Many converters drop that
-/// statement and keep the samples: corners of -2000 or -3024 around a round field of view.
+/// Takes as padding what only padding can be in a CT and what its file does not name. Many converters drop
+/// that statement and keep the samples: corners of -2000 or -3024 around a round field of view.
 ///
-/// Taken is the least sample if it lies below -1100 HU, thus below air and its noise, if at least 64 samples
-/// and one in ten thousand hold it, and if the hundred units above it are empty but for one sample for each
-/// hundred of its own. The audit gains a WARN, since it is a guess; nothing happens otherwise. A
-/// scene that has padding keeps it. Precondition: samples in Hounsfield units. Two passes over the samples.
+/// Taken is the least sample that is no padding yet if it lies below -1100 HU, thus below air and its noise,
+/// if at least 64 samples and one in ten thousand hold it, and if the hundred units above it are empty but
+/// for one sample for each hundred of its own. The audit gains a WARN, since it is a guess; nothing happens
+/// otherwise. In a scene that has padding already the samples become that. Precondition: samples in
+/// Hounsfield units. Two passes over the samples.
 void take_unstated_padding(Scene& scene);
 
 }  // namespace octotomy::voxel
