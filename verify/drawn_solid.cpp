@@ -543,7 +543,8 @@ DrawnScan drawn_scan(Chance& chance) {
 }
 
 voxel::Scene scan_of(const DrawnSolid& solid, const DrawnScan& how, Chance& chance) {
-  const glm::ivec3 half(glm::ceil(solid.reach_mm / how.spacing_mm) + 7.0), dims = 2 * half + 1;
+  const glm::ivec3 half(glm::ceil(solid.reach_mm / how.spacing_mm) + (how.third_from_mm ? 10.0 : 7.0)),
+      dims = 2 * half + 1;
   const glm::ivec3 parts = cells_of(how.spacing_mm);
   Block cells{dims * parts, {}};
   cells.values.assign(cells.at({0, 0, cells.dims.z}), 0.0F);
@@ -554,9 +555,16 @@ voxel::Scene scan_of(const DrawnSolid& solid, const DrawnScan& how, Chance& chan
   scan.lattice = voxel::axis_aligned_lattice(dims, how.spacing_mm, -dvec3(half) * how.spacing_mm);
   scan.source = solid.group;
   voxel::Int16Samples samples;
-  for (const float share : cells.values) {
-    const double sample =
-        how.background + how.contrast * static_cast<double>(share) + how.noise * chance.normal();
+  const double edge_mm = std::sqrt(2.0 / 12.0 + 2.0 * how.blur_voxels * how.blur_voxels) * how.spacing_mm.x;
+  for (std::size_t i = 0; i < cells.values.size(); ++i) {
+    double sample = how.background + how.contrast * static_cast<double>(cells.values[i]);
+    if (how.third_from_mm) {
+      const glm::ivec3 at(static_cast<int>(i) % dims.x, static_cast<int>(i) / dims.x % dims.y,
+                          static_cast<int>(i) / (dims.x * dims.y));
+      const double beyond_mm = solid.signed_mm(dvec3(at - half) * how.spacing_mm) - *how.third_from_mm;
+      sample += (how.third - how.background) * 0.5 * std::erfc(-beyond_mm / edge_mm);
+    }
+    sample += how.noise * chance.normal();
     samples.push_back(static_cast<std::int16_t>(std::lround(std::clamp(sample, -32768.0, 32767.0))));
   }
   scan.samples = std::move(samples);

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,9 +41,12 @@ struct DrawnScan {
   double blur_voxels = 0.7;  ///< deviation of a Gaussian along each axis
   double noise = 30.0;       ///< deviation, in sample units
   double background = 0.0, contrast = 1000.0;
+  /// Surroundings of another density from this far off the solid, as air about tissue; none: nowhere.
+  std::optional<double> third_from_mm = {};
+  double third = 0.0;  ///< in sample units
   double half() const { return background + 0.5 * contrast; }
 };
-/// Spacing to 1:1:5, blur 0.3 to 1.2 voxels, noise 10 to 60, by chance.
+/// Spacing to 1:1:5, blur 0.3 to 1.2 voxels, noise 10 to 60, by chance. Of two densities.
 DrawnScan drawn_scan(Chance& chance);
 /// The mean over each voxel of the blurred solid, with noise; seven voxels or more about the solid.
 voxel::Scene scan_of(const DrawnSolid& solid, const DrawnScan& how, Chance& chance);

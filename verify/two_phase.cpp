@@ -17,14 +17,16 @@
 //          goes nearly as the variance.
 //        The value is between both; how far they differ and how far the fits differ is doubt.
 //
-// passes 1 Levels of the surroundings and of the core; no if there are more than two densities. 2 Samples
-// near the solid: those that rise above noise after a blur of one sample, and three samples about them.
-// 3 Sums. 4 Fits.
+// passes 1 Levels of the surroundings and of the core. 2 Samples of a third density below the surroundings,
+// as of air about tissue: where they keep away from the solid they are taken for surroundings; where they
+// meet it, and where there is a density between both, the scan is not of two. 3 Samples near the solid: those
+// that rise above noise after a blur of one sample, and three samples about them. 4 Sums. 5 Fits.
 #include "verify/two_phase.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <tbb/parallel_for.h>
@@ -125,10 +127,73 @@ void grow(const Grid& grid, Mask& mask, std::size_t reach) {
     });
 }
 
+/// The lowest, or highest, of the samples within so many along each axis.
+Values extremes(const Grid& grid, Values values, std::size_t reach, bool highest) {
+  for (int axis = 0; axis < 3; ++axis)
+    each_row(grid, axis, [&](std::size_t first, std::size_t stride, std::size_t length) {
+      thread_local std::vector<float> line;
+      line.resize(length);
+      for (std::size_t i = 0; i < length; ++i) line[i] = values[first + i * stride];
+      for (std::size_t i = 0; i < length; ++i) {
+        const auto from = line.begin() + static_cast<std::ptrdiff_t>(i - std::min(i, reach));
+        const auto end = line.begin() + static_cast<std::ptrdiff_t>(std::min(length, i + reach + 1));
+        values[first + i * stride] = highest ? *std::max_element(from, end) : *std::min_element(from, end);
+      }
+    });
+  return values;
+}
+
 double median_of(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return static_cast<double>(*middle);
+}
+
+/// A density and its noise, in sample units.
+struct Level {
+  double value = 0.0, noise = 0.0;
+};
+
+/// The density that most of the values lie close to: the middle of the narrowest quarter of them, and the
+/// spread of those. Precondition: eight values or more. Sorts them.
+Level densest(std::vector<float>& values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t quarter = values.size() / 4;
+  std::size_t narrowest = 0;
+  for (std::size_t i = 0; i + quarter < values.size(); ++i)
+    if (values[i + quarter] - values[i] < values[narrowest + quarter] - values[narrowest]) narrowest = i;
+  // A quarter of normal values lies within 0.319 deviations of their mean, and the narrowest of many within
+  // less.
+  return {static_cast<double>(values[narrowest + quarter / 2]),
+          1.5 / 0.637 * static_cast<double>(values[narrowest + quarter] - values[narrowest])};
+}
+
+/// The same density from all values close to it; its noise only falls, so that the next density stays out.
+Level refined(const std::vector<float>& values, Level level) {
+  for (int round = 0; round < 4; ++round) {
+    const double within = std::max(3.5 * level.noise, 1.0);
+    std::vector<float> about, off;
+    for (const float value : values)
+      if (std::abs(static_cast<double>(value) - level.value) <= within) about.push_back(value);
+    if (about.empty()) return level;
+    level.value = median_of(about);
+    for (const float value : about) off.push_back(std::abs(value - static_cast<float>(level.value)));
+    level.noise = std::min(level.noise, 1.4826 * median_of(off));
+  }
+  return level;
+}
+
+/// The middle of the values about the density that is nearest to this one.
+double nearest_mode(const std::vector<float>& values, Level level) {
+  for (int round = 0; round < 8; ++round) {
+    std::vector<float> about;
+    for (const float value : values)
+      if (std::abs(static_cast<double>(value) - level.value) <= std::max(1.5 * level.noise, 1.0))
+        about.push_back(value);
+    if (about.empty()) break;
+    level.value = median_of(about);
+  }
+  return level.value;
 }
 
 /// Half level's area of samples, in cells parted into six tetrahedra about a diagonal.
@@ -213,18 +278,37 @@ class Reading {
     grid_.spacing_mm = scan.lattice.spacing_mm();
   }
 
-  /// False: the scan is not of two densities.
+  /// False: the solid and what is about it are not of two densities.
   bool run(PhaseEvidence& found) {
     if (scan_.padding || glm::any(glm::lessThan(grid_.dims, glm::ivec3(8)))) return false;
-    if (grid_.size() > most_samples || !find_background()) return false;
+    if (grid_.size() > most_samples) return false;
+    const std::optional<Level> level = surroundings();
+    if (!level) return false;
+    background_ = level->value;
+    noise_ = level->noise;
+    contrast_ = 2.0 * (low_ - background_);
+    if (!(contrast_ > 0.0) || noise_ > 0.2 * contrast_ || !are_beside()) return false;
     std::visit([&](const auto& samples) { values_.assign(samples.begin(), samples.end()); }, scan_.samples);
+    filled_.assign(values_.size(), 0);
+    if (is_beside_ || has_others_) fill_lower();
     std::array<Values, 4> at_blur;
     at_blur[2] = blurred(grid_, values_, added_blur[2]);
-    if (!find_near(at_blur[2])) return false;
+    find_least_seen(at_blur[2]);
+    if (least_seen_ > std::min(5.0 * noise_ + 0.005 * contrast_, 0.3 * contrast_)) return false;  // they vary
+    const bool has_plateau = finds_plateau(at_blur[2]);
+    if ((is_beside_ && has_plateau) || !find_near(at_blur[2])) return false;
     find_core();
     Sums sums = summed(values_, true);
+    sums.odd += odd_in(at_blur[2]);
     // Samples that lie alone are noise; elsewhere they are a third density.
     if (sums.odd > sums.away_count / 500 + 2 || sums.border > 0 || sums.away_count < 100) return false;
+    const double mean = sums.away / static_cast<double>(sums.away_count);
+    // A third density that no one sample shows moves the mean.
+    if (std::abs(mean - background_) >
+        0.005 * contrast_ + 0.1 * noise_ + 4.0 * noise_ / std::sqrt(static_cast<double>(sums.away_count)))
+      return false;
+    background_ = mean;
+    contrast_ = 2.0 * (low_ - background_);
     if (sums.deep_count >= 30) {
       const double core = sums.deep / static_cast<double>(sums.deep_count) - background_;
       const double rounding = 4.0 * noise_ / std::sqrt(static_cast<double>(sums.deep_count));
@@ -232,8 +316,6 @@ class Reading {
       found.has_core = true;
       contrast_ = core;
     }
-    background_ = sums.away / static_cast<double>(sums.away_count);
-    contrast_ = found.has_core ? contrast_ : 2.0 * (low_ - background_);
     at_blur[1] = blurred(grid_, values_, added_blur[1]);
     at_blur[3] = blurred(grid_, at_blur[2], std::sqrt(1.6 * 1.6 - 1.0));
     at_blur[0] = std::move(values_);
@@ -255,56 +337,184 @@ class Reading {
       found.tail = shares.tail;
       found.noise = contrast_ * std::sqrt(away);
     }
+    const auto filled = std::count(filled_.begin(), filled_.end(), std::uint8_t{1});
+    found.has_third = static_cast<std::size_t>(filled) > filled_.size() / 500;  // fewer are noise
     found.background = background_;
     found.contrast = contrast_;
     found.least_seen = least_seen_ / contrast_;
-    found.is_ambiguous = !found.has_core && has_lower_plateau(at_blur[2], found.highest);
-    return found.highest < 1.25;
+    found.is_ambiguous = !found.has_core && (has_others_ || (!is_beside_ && has_plateau) ||
+                                             has_lower_plateau(at_blur[2], found.highest));
+    return found.highest < 1.25 && found.sum > 0.0;
   }
 
  private:
-  /// The middle of what is below the bound; noise from the middle distance to it.
-  bool find_background() {
-    std::vector<float> below;
-    const std::size_t size = grid_.size(), stride = 1 + size / 200000;
+  /// How far below or above the surroundings a sample is of another density.
+  double far() const { return std::max(6.0 * noise_, 0.02 * contrast_); }
+
+  /// The density that the solid lies in: that of samples three samples from it. Where too few samples reach
+  /// the bound, that of most of the scan; of two common ones the higher.
+  std::optional<Level> surroundings() {
+    std::vector<float> beside, below;
     std::visit(
         [&](const auto& samples) {
+          const std::size_t size = grid_.size(), stride = 1 + size / 200000;
           for (std::size_t i = 0; i < size; i += stride)
             if (static_cast<double>(samples[i]) < low_) below.push_back(static_cast<float>(samples[i]));
+          find_reaches(samples);
         },
         scan_.samples);
-    if (2 * below.size() * stride < size) return false;
-    background_ = median_of(below);
-    for (float& value : below) value = std::abs(value - static_cast<float>(background_));
-    noise_ = 1.4826 * median_of(below);
-    contrast_ = 2.0 * (low_ - background_);
-    if (!(contrast_ > 0.0) || noise_ > 0.2 * contrast_) return false;
-    // A third density shows at once: more than a tenth of what is below the bound, far from the background.
-    const auto far = static_cast<float>(std::max(6.0 * noise_, 0.02 * contrast_));
-    const auto odd = std::count_if(below.begin(), below.end(), [&](float off) { return off > far; });
-    return static_cast<std::size_t>(odd) <= below.size() / 4;
+    each_beside([&](double value) { beside.push_back(static_cast<float>(value)); });
+    is_beside_ = beside.size() >= 100;
+    if (below.size() < 100) return std::nullopt;
+    Level level = refined(below, densest(below));
+    if (is_beside_) {
+      // Blur widens what is beside the solid: noise is that of most of the scan, if that is of this density.
+      Level near = densest(beside);
+      if (std::abs(near.value - level.value) < 3.0 * near.noise)
+        near.noise = std::min(near.noise, level.noise);
+      level.value = nearest_mode(below, near);
+      level.noise = refined(below, {level.value, near.noise}).noise;
+      return level;
+    }
+    const double off = std::max(6.0 * level.noise, 0.04 * (low_ - level.value));
+    std::vector<float> others;
+    std::copy_if(below.begin(), below.end(), std::back_inserter(others),
+                 [&](float value) { return std::abs(static_cast<double>(value) - level.value) > off; });
+    has_others_ = others.size() > below.size() / 4;
+    if (!has_others_) return level;
+    const Level other = refined(others, densest(others));
+    return other.value > level.value ? other : level;
   }
 
-  bool find_near(const Values& at_one) {
-    std::vector<float> off;
+  /// Samples over the bound that have another beside them along x, y or z: one alone is noise.
+  template <typename Samples>
+  void find_reaches(const Samples& samples) {
+    reaches_.assign(samples.size(), 0);
+    const auto is_over = [&](std::size_t i) { return static_cast<double>(samples[i]) >= low_; };
+    for (int axis = 0; axis < 3; ++axis)
+      each_row(grid_, axis, [&](std::size_t first, std::size_t stride, std::size_t length) {
+        for (std::size_t i = 0; i + 1 < length; ++i)
+          if (is_over(first + i * stride) && is_over(first + (i + 1) * stride))
+            reaches_[first + i * stride] = reaches_[first + (i + 1) * stride] = 1;
+      });
+  }
+
+  /// Runs `visit(value)` for samples below the bound that lie three samples along an axis from one that
+  /// reaches it: of 200,000 such at most.
+  template <typename Visit>
+  void each_beside(const Visit& visit) const {
+    std::vector<std::size_t> over;
+    for (std::size_t i = 0; i < reaches_.size(); ++i)
+      if (reaches_[i] != 0) over.push_back(i);
+    const std::size_t every = 1 + over.size() / 200000;
+    std::visit(
+        [&](const auto& samples) {
+          for (std::size_t k = 0; k < over.size(); k += every)
+            for (int axis = 0; axis < 3; ++axis) {
+              const std::size_t away = 3 * grid_.stride(axis);
+              const int place =
+                  static_cast<int>(over[k] / grid_.stride(axis) % static_cast<std::size_t>(grid_.dims[axis]));
+              const auto look = [&](std::size_t at) {
+                if (static_cast<double>(samples[at]) < low_) visit(static_cast<double>(samples[at]));
+              };
+              if (place >= 3) look(over[k] - away);
+              if (place + 3 < grid_.dims[axis]) look(over[k] + away);
+            }
+        },
+        scan_.samples);
+  }
+
+  /// Whether samples beside the solid are of these surroundings, but for what blur and near walls add.
+  bool are_beside() const {
+    std::size_t all = 0, below = 0, lower = 0, higher = 0;
+    each_beside([&](double value) {
+      ++all;
+      below += value < background_ - 1.5 * noise_ ? 1 : 0;
+      lower += value < background_ - far() ? 1 : 0;
+      higher += value > background_ + 0.1 * contrast_ ? 1 : 0;
+    });
+    // One in fifteen normal values is 1.5 deviations below their mean.
+    return 5 * below <= all && 20 * lower <= all && 7 * higher <= 6 * all;
+  }
+
+  /// Takes samples below the surroundings, and those beside them, for surroundings.
+  void fill_lower() {
+    const auto bound = static_cast<float>(background_ - far());
+    for (std::size_t i = 0; i < values_.size(); ++i) filled_[i] = values_[i] < bound ? 1 : 0;
+    grow(grid_, filled_, 1);
+    fill();
+    const Values at_one = blurred(grid_, values_, added_blur[2]);
+    find_least_seen(at_one);
+    const auto faint = static_cast<float>(background_ - least_seen_);
+    for (std::size_t i = 0; i < values_.size(); ++i) filled_[i] |= at_one[i] < faint ? 1 : 0;
+    fill();
+  }
+
+  /// Whether samples between both densities are alike over five along each axis: those of a third density, or
+  /// of thin walls close together. No wall and no edge alone is, after a blur of one sample.
+  bool finds_plateau(const Values& at_one) const {
+    const Values lowest = extremes(grid_, at_one, 2, false), highest = extremes(grid_, at_one, 2, true);
+    const auto zero = static_cast<float>(background_), unit = static_cast<float>(contrast_);
+    const auto least = static_cast<float>(std::max(least_seen_ / contrast_, 0.03));
+    for (std::size_t i = 0; i < at_one.size(); ++i) {
+      const float low = (lowest[i] - zero) / unit, high = (highest[i] - zero) / unit;
+      if (low >= least && high < 0.7F && low >= 0.6F * high) return true;
+    }
+    return false;
+  }
+
+  void fill() {
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      if (filled_[i] != 0) values_[i] = static_cast<float>(background_);
+  }
+
+  void find_least_seen(const Values& at_one) {
+    std::vector<float> values;
     const std::size_t stride = 1 + at_one.size() / 200000;
     for (std::size_t i = 0; i < at_one.size(); i += stride)
-      off.push_back(std::abs(at_one[i] - static_cast<float>(background_)));
-    // Samples are whole numbers: where nothing varies, half a unit does.
-    least_seen_ = std::max(5.0 * 1.4826 * median_of(off), 0.005 * contrast_);
+      if (filled_[i] == 0 && std::abs(static_cast<double>(at_one[i]) - background_) <= 3.5 * noise_ + 1.0)
+        values.push_back(at_one[i]);
+    // A blur of one sample leaves a seventh of white noise, and more of one that hangs together. Samples are
+    // whole numbers: where nothing varies, half a unit does.
+    least_seen_ = 0.005 * contrast_;
+    if (values.size() >= 100)
+      least_seen_ = std::max(5.0 * refined(values, densest(values)).noise, least_seen_);
+  }
+
+  /// False: nothing rises above noise, or a third density meets what does.
+  bool find_near(const Values& at_one) {
     near_.resize(at_one.size());
-    const auto level = static_cast<float>(background_ + least_seen_);
-    bool any = false;
-    const auto quarter = static_cast<float>(background_ + 0.25 * contrast_);
     solid_.resize(at_one.size());
+    const auto level = static_cast<float>(background_ + least_seen_);
+    const auto quarter = static_cast<float>(background_ + 0.25 * contrast_);
+    std::size_t risen = 0;
     for (std::size_t i = 0; i < near_.size(); ++i) {
-      any |= (near_[i] = at_one[i] >= level ? 1 : 0) != 0;
+      risen += near_[i] = at_one[i] >= level ? 1 : 0;
       solid_[i] = at_one[i] >= std::max(level, quarter) ? 1 : 0;
     }
+    beyond_ = near_;
+    grow(grid_, beyond_, 1);
+    std::size_t met = 0;
+    for (std::size_t i = 0; i < near_.size(); ++i) met += beyond_[i] != 0 && filled_[i] != 0 ? 1 : 0;
     grow(grid_, near_, 3);
     beyond_ = near_;
     grow(grid_, beyond_, 2);
-    return any;
+    // A third density may leave no more surroundings than those just beyond.
+    std::size_t away = 0;
+    for (std::size_t i = 0; i < near_.size(); ++i) away += beyond_[i] == 0 && filled_[i] == 0 ? 1 : 0;
+    if (away < 1000) beyond_ = near_;
+    return risen > 0 && met <= risen / 500 + 2;
+  }
+
+  /// Samples of the surroundings that differ from them by more than noise after a blur of one sample.
+  std::size_t odd_in(const Values& at_one) const {
+    std::size_t odd = 0;
+    for (std::size_t i = 0; i < at_one.size(); ++i)
+      odd += near_[i] == 0 && filled_[i] == 0 &&
+                     std::abs(static_cast<double>(at_one[i]) - background_) > least_seen_
+                 ? 1
+                 : 0;
+    return odd;
   }
 
   void find_core() {
@@ -329,7 +539,6 @@ class Reading {
   /// In sample units, or as shares of the contrast; a sample deep in the solid counts as one.
   Sums summed(const Values& values, bool as_they_are) const {
     const double unit = as_they_are ? 1.0 : contrast_, zero = as_they_are ? 0.0 : background_;
-    const double far = std::max(6.0 * noise_, 0.02 * contrast_);
     return by_planes<Sums>(grid_, [&](int z, Sums& sums) {
       for (std::size_t i = grid_.at(0, 0, z), end = i + grid_.stride(2); i < end; ++i) {
         const double u = (static_cast<double>(values[i]) - zero) / unit;
@@ -344,6 +553,8 @@ class Reading {
           ++sums.band_count;
           sums.near += u;
           sums.near_square += u * u;
+        } else if (filled_[i] != 0) {
+          continue;
         } else if (beyond_[i] != 0) {
           ++sums.tail_count;
           sums.tail += u;
@@ -351,7 +562,7 @@ class Reading {
           ++sums.away_count;
           sums.away += u;
           sums.away_square += u * u;
-          if (as_they_are && std::abs(u - background_) > far) ++sums.odd;
+          if (as_they_are && std::abs(u - background_) > far()) ++sums.odd;
         }
       }
       // The scan's outermost samples.
@@ -367,7 +578,10 @@ class Reading {
   const voxel::Scene& scan_;
   Grid grid_;
   Values values_;
-  Mask solid_, near_, beyond_, deep_;
+  Mask reaches_, solid_, near_, beyond_, deep_;
+  Mask filled_;              ///< of a third density, taken for surroundings
+  bool has_others_ = false;  ///< no sample reaches the bound, and the scan has two densities below it
+  bool is_beside_ = false;   ///< the surroundings are those of samples over the bound
   double low_ = 0.0, background_ = 0.0, contrast_ = 0.0, noise_ = 0.0, least_seen_ = 0.0, white_ = 0.0;
 };
 
@@ -395,11 +609,14 @@ double ball_left(double ratio, double deviation) {
 /// Area per volume and the blur's deviation, in samples, by fits of sheets, rods and balls.
 struct Fitted {
   double log_ratio = 0.0, spread = 0.0, deviation = 0.0;
+  double misfit = 0.0;  ///< squared logarithms that the best fit leaves
 };
 Fitted fitted(const PhaseEvidence& found) {
   constexpr int deviations = 49, ratios = 241;
   constexpr std::array<double (*)(double, double), 3> shapes{sheet_left, rod_left, ball_left};
   std::array<double, 3> weights, log_ratios, blurs;
+  Fitted mean;
+  mean.misfit = std::numeric_limits<double>::infinity();
   for (std::size_t shape = 0; shape < 3; ++shape) {
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < deviations; ++i)
@@ -417,11 +634,11 @@ Fitted fitted(const PhaseEvidence& found) {
         log_ratios[shape] = log_ratio;
         blurs[shape] = deviation;
       }
+    mean.misfit = std::min(mean.misfit, least);
     // Even the right shape misses by about one per cent at each blur.
     weights[shape] = 1.0 / ((least + 2e-4) * (least + 2e-4));
   }
   const double all = weights[0] + weights[1] + weights[2];
-  Fitted mean;
   for (std::size_t i = 0; i < 3; ++i) {
     mean.log_ratio += weights[i] / all * log_ratios[i];
     mean.deviation += weights[i] / all * blurs[i];
@@ -432,8 +649,20 @@ Fitted fitted(const PhaseEvidence& found) {
   return mean;
 }
 
+/// Logarithms of an area's bounds.
+struct LogRange {
+  double low = 0.0, high = 0.0;
+};
+
 Interval from_logs(double middle, double half, const std::string& name, const std::string& formula) {
   const double value = std::exp(middle) * std::cosh(half), half_width = std::exp(middle) * std::sinh(half);
+  return {value, half_width, {{name, formula, half_width}}};
+}
+
+/// The likeliest value with the farther of both bounds.
+Interval from_best(double best, const LogRange& range, const std::string& name, const std::string& formula) {
+  const double value = std::exp(best);
+  const double half_width = std::max(std::exp(range.high) - value, value - std::exp(range.low));
   return {value, half_width, {{name, formula, half_width}}};
 }
 
@@ -447,18 +676,16 @@ Interval volume_of(const PhaseEvidence& found, double sample_mm3) {
   const double unseen = 0.3 * found.least_seen / std::max(found.highest, found.least_seen) * value;
   const double levels = 0.003 * value;
   const double tail = 0.6 * std::abs(found.tail) * sample_mm3;
+  const double third =
+      found.has_third ? 0.2 * found.least_seen * static_cast<double>(found.band) * sample_mm3 : 0.0;
   return {value,
-          std::hypot(noise, tail) + levels + unseen,
+          std::hypot(noise, tail) + levels + unseen + third,
           {{"noise", "2.8 sigma sqrt(samples near) of the contrast", noise},
            {"tail", "0.6 of the sum just beyond", tail},
            {"levels", "0.003 V", levels},
-           {"unseen", "0.3 V least seen / highest", unseen}}};
+           {"unseen", "0.3 V least seen / highest", unseen},
+           {"third density", "0.2 least seen, of all samples near", third}}};
 }
-
-/// Logarithms of an area's bounds.
-struct LogRange {
-  double low = 0.0, high = 0.0;
-};
 
 /// The half level's area at two added blurs, continued to none by the variance or by the deviation; none
 /// where the two do not follow from one another.
@@ -473,9 +700,8 @@ std::optional<LogRange> by_edges(const PhaseEvidence& found, const Fitted& fit) 
   return LogRange{middle - apart - 0.02, middle + apart + 0.02};
 }
 
-Interval area_of(const PhaseEvidence& found, const glm::dvec3& spacing_mm) {
+Interval area_of(const PhaseEvidence& found, const Fitted& fit, const glm::dvec3& spacing_mm) {
   const double sample_mm3 = spacing_mm.x * spacing_mm.y * spacing_mm.z;
-  const Fitted fit = fitted(found);
   const std::optional<LogRange> edges = by_edges(found, fit);
   // A half level that loses over half of its area to the next blur is about to vanish and follows no power of
   // the blur.
@@ -483,12 +709,12 @@ Interval area_of(const PhaseEvidence& found, const glm::dvec3& spacing_mm) {
     return from_logs(
         0.5 * (edges->low + edges->high), 0.5 * (edges->high - edges->low), "edges",
         "the half level's area at two blurs, continued to none by the variance or the deviation");
-  const double middle = std::log(found.sum * sample_mm3 / std::cbrt(sample_mm3)) + fit.log_ratio + 0.15;
-  const double half = 0.65 + fit.spread + 0.06 / std::max(found.highest, 0.03);
+  const double middle = std::log(found.sum * sample_mm3 / std::cbrt(sample_mm3)) + fit.log_ratio + 0.05;
+  const double half = 0.4 + fit.spread + 0.06 / std::max(found.highest, 0.03);
   LogRange range{middle - half, middle + half};
   if (edges) range = {std::min(range.low, edges->low), std::max(range.high, edges->high)};
-  return from_logs(
-      0.5 * (range.low + range.high), 0.5 * (range.high - range.low), "shape",
+  return from_best(
+      middle, range, "shape",
       "sheets, rods and balls that leave these sums of squares, and the half level while it lasts");
 }
 
@@ -500,7 +726,11 @@ std::optional<TwoPhase> two_phase(const voxel::Scene& scan, double low, const vo
   if (!Reading(scan, low).run(found.evidence)) return std::nullopt;
   const glm::dvec3 spacing_mm = scan.lattice.spacing_mm();
   found.volume_mm3 = volume_of(found.evidence, spacing_mm.x * spacing_mm.y * spacing_mm.z);
-  found.area_mm2 = area_of(found.evidence, spacing_mm);
+  const Fitted fit = fitted(found.evidence);
+  // Blurred solids of one density miss by less; samples of a third one do not fit.
+  constexpr double most_misfit = 0.1;
+  if (!(fit.misfit < most_misfit)) return std::nullopt;
+  found.area_mm2 = area_of(found.evidence, fit, spacing_mm);
   return found;
 }
 

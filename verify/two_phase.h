@@ -22,7 +22,8 @@ struct PhaseEvidence {
   /// Thin walls that blur lowers and a thick solid of a lower density both explain the samples: the numbers
   /// are what could be there, not what is.
   bool is_ambiguous = false;
-  bool has_core = false;  ///< the contrast was measured; else the window's bound is taken for the half level
+  bool has_third = false;  ///< samples of a third density, away from the solid, were taken for surroundings
+  bool has_core = false;   ///< the contrast was measured; else the window's bound is taken for the half level
   double least_seen = 0.0;            ///< share of the contrast that is told from noise
   double highest = 0.0;               ///< the highest share, after a blur of one sample
   double sum = 0.0;                   ///< of shares: the volume in samples
@@ -38,10 +39,11 @@ struct TwoPhase {
   PhaseEvidence evidence;
 };
 
-/// The solid whose half level is `low`. None where the scan is not of two densities: samples below `low`
-/// differ by more than noise away from the solid, those deep in it are not as far above `low` as the
-/// background is below, nothing rises above noise, the solid meets the
-/// scan's border, or parts of the scan were not measured (Scene::padding). Throws voxel::Stopped. Parallel;
+/// The solid whose half level is `low`. None where the solid and what is about it are not of two densities:
+/// samples near it differ by more than noise, those deep in it are not as far above `low` as the background
+/// is below, nothing rises above noise, the solid meets the scan's border or a third density, or parts of the
+/// scan were not measured (Scene::padding). Where the solid reaches `low`, the scan may have other densities
+/// away from it. Throws voxel::Stopped. Parallel;
 /// same bits on any thread count. Memory: four bytes a sample, five times. Cost: three blurs of the scan; a
 /// scan of many densities is left after one look at its samples.
 std::optional<TwoPhase> two_phase(const voxel::Scene& scan, double low, const voxel::Progress& progress = {});
