@@ -141,6 +141,8 @@ std::optional<double> number_behind(const std::string& text, const std::string& 
 struct StatedPicture {
   std::optional<double> pixel_mm, slice_mm;
   std::string further_axis;  ///< "7 times"
+  std::string calibration;   ///< of grey values, as ImageJ states it: "-1024 + 1 g, HU"
+  bool has_origin = false;
 };
 StatedPicture stated_by(const StoredImage& image) {
   const std::string& text = image.description;
@@ -165,6 +167,11 @@ StatedPicture stated_by(const StoredImage& image) {
     }
     add_axis("\nframes=", "times");
     add_axis("\nchannels=", "channels");
+    const auto start = number_behind(text, "\nc0="), slope = number_behind(text, "\nc1=");
+    if (slope && (start.value_or(0.0) != 0.0 || *slope != 1.0))
+      stated.calibration = print("%g + %g times the grey value", start.value_or(0.0), *slope);
+    for (const char* origin : {"\nxorigin=", "\nyorigin=", "\nzorigin="})
+      stated.has_origin |= number_behind(text, origin).value_or(0.0) != 0.0;
   } else if (text.find("<OME") != std::string::npos) {
     const double mm = unit_mm("PhysicalSizeXUnit=").value_or(1e-3);  // micrometres, by OME's definition
     if (const auto size = number_behind(text, "PhysicalSizeX=")) stated.pixel_mm = *size * mm;
@@ -213,6 +220,13 @@ class PictureAudit {
     if (!first_.further_axis.empty())
       warn("picture_axes",
            "the pictures state " + first_.further_axis + ", which are read as slices: export one volume");
+    if (!first_.calibration.empty())
+      warn("picture_values", "the pictures state that a value is " + first_.calibration +
+                                 ": their numbers are taken as stored, without it");
+    if (first_.has_origin)
+      warn("picture_origin",
+           "the pictures state an origin, in pixels of their own: it is not used, the volume's centre is the "
+           "origin");
     if (white_zero_ > 0)
       warn("polarity",
            print("%zu of %zu pictures state that 0 is white (WhiteIsZero): their numbers are taken as "

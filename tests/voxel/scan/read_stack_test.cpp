@@ -177,6 +177,10 @@ TEST(ReadImageStack, HoldsWhatPicturesStateAgainstHowTheyAreRead) {
   EXPECT_NE(lines_of_picture(ome + "SizeC=\"3\"/></OME>", 0.0f)["picture_axes"].find("3 channels"),
             std::string::npos);
   EXPECT_FALSE(lines_of_picture("a photograph", 0.0f).contains("picture_axes"));
+  EXPECT_NE(lines_of_picture(image_j + "c0=-32768\nc1=1\n", 0.0f)["picture_values"].find("-32768 + 1 times"),
+            std::string::npos);
+  EXPECT_FALSE(lines_of_picture(image_j + "c0=0\nc1=1\n", 0.0f).contains("picture_values"));
+  EXPECT_TRUE(lines_of_picture(image_j + "xorigin=12\n", 0.0f).contains("picture_origin"));
 }
 
 TEST(ReadImageStack, WarnsOfNumbersThatTheNamesSkip) {
@@ -248,6 +252,36 @@ TEST(ReadRaw, ReadsEveryTypeInEitherByteOrderAfterAnOffset) {
   check(std::uint32_t{}, SampleType::UInt32, 900);
   check(float{}, SampleType::Float, 0);
   check(double{}, SampleType::Double, 0);
+}
+
+TEST(ReadRaw, WarnsOfAByteOrderWhoseSwapIsFarSmoother) {
+  const ScratchFolder folder;
+  constexpr int side = 24;
+  const auto warns = [&](bool stored_big, bool stated_big, int noise) {
+    std::string bytes;
+    for (int z = 0; z < side; ++z)
+      for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+          const glm::ivec3 off = glm::ivec3(x, y, z) - side / 2;
+          const int level = off.x * off.x + off.y * off.y + off.z * off.z < 70 ? 300 : -1000;
+          const auto sample =
+              static_cast<std::uint16_t>(level + (x * 7919 + y * 104729 + z * 31) % (noise + 1));
+          const char low = static_cast<char>(sample & 0xFF), high = static_cast<char>(sample >> 8);
+          bytes += stored_big ? high : low;
+          bytes += stored_big ? low : high;
+        }
+    std::ofstream(folder / "scan.raw", std::ios::binary) << bytes;
+    ReadOptions options = spaced();
+    options.raw = RawLayout{glm::ivec3(side), SampleType::Int16, stated_big};
+    return tests::finding(read_scene(folder / "scan.raw", options), "byte_order") != nullptr;
+  };
+  for (const int noise : {20, 200}) {
+    EXPECT_TRUE(warns(true, false, noise)) << noise;
+    EXPECT_TRUE(warns(false, true, noise)) << noise;
+    EXPECT_FALSE(warns(true, true, noise)) << noise;
+    EXPECT_FALSE(warns(false, false, noise)) << noise;
+  }
+  EXPECT_FALSE(warns(false, false, 60000)) << "numbers by chance are alike in both orders";
 }
 
 TEST(ReadRaw, TakesDoublesBeyondSinglePrecisionAsPaddingAndSaysSo) {
