@@ -164,22 +164,30 @@ voxel::Octree pieces_apart(const voxel::Octree& set, const voxel::Octree& other)
                                                                set, common, voxel::Neighbours::Corners)));
 }
 
-/// Components of a solid by a corner of their first triangle, which choosing among them leaves as it is.
+/// Components of a solid by their least corner, which choosing among them leaves as it is.
 using Corner = std::array<double, 3>;
 Corner corner_of(const brep::Triangles& triangles, const brep::Component& component) {
-  const glm::dvec3& p = triangles.points_mm[triangles.faces[component.faces.front()][0]];
-  return {p.x, p.y, p.z};
+  Corner least{std::numeric_limits<double>::infinity()};
+  for (const std::uint32_t face : component.faces)
+    for (const std::uint32_t corner : triangles.faces[face]) {
+      const glm::dvec3& p = triangles.points_mm[corner];
+      least = std::min(least, Corner{p.x, p.y, p.z});
+    }
+  return least;
 }
 
-/// Components of a solid that hold a voxel of a set. Those of less than a quarter of its smallest part do not
-/// count.
+/// Components of a solid that hold a voxel of a set. Those of less than a quarter of its smallest part, or
+/// more than four of its largest one, do not count.
 std::vector<std::size_t> components_in(const brep::Solid& solid, const voxel::Octree& set) {
-  const double least_mm3 = 0.25 * set.universe().lattice().voxel_mm3() *
-                           static_cast<double>(voxel::components(set).voxel_counts.back());
+  if (set.is_empty()) return {};
+  const std::vector<std::uint64_t> counts = voxel::components(set).voxel_counts;
+  const double voxel_mm3 = set.universe().lattice().voxel_mm3();
+  const double least_mm3 = 0.25 * voxel_mm3 * static_cast<double>(counts.back());
+  const double most_mm3 = 4.0 * voxel_mm3 * static_cast<double>(counts.front());
   std::vector<std::size_t> found;
   const std::vector<brep::Component>& all = solid.components();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].volume_mm3 < least_mm3) continue;
+    if (all[i].volume_mm3 < least_mm3 || all[i].volume_mm3 > most_mm3) continue;
     const brep::Solid part =
         brep::trusted_solid(brep::part_of(solid, all[i].faces), brep::proof_of_part(solid.proof()));
     const voxel::Octree digitised = convert::voxelise(set.universe(), part.linked());
@@ -217,45 +225,75 @@ std::string size_and_place(const voxel::Octree& parts) {
   return voxel::rounded(measures.volume_mm3) + " mm\u00b3 about " + voxel::rounded(*measures.centroid_mm);
 }
 
+/// Parts that the kernels chose differently, each as voxels and as components of the whole mesh.
+struct Differing {
+  voxel::Octree by_voxels, passed_over;  ///< kept by the voxels alone, and by the mesh alone
+  std::vector<std::size_t> wanted, unwanted;
+};
+
+/// Whether each kernel chose rightly by its own measure: of the largest parts the larger ones, of those of at
+/// least a volume the ones that reach it. Components are in the order of their volumes.
+bool is_by_measure(const Differing& parts, const std::vector<brep::Component>& all,
+                   const std::optional<double>& least_mm3) {
+  const auto counts = [](const voxel::Octree& set) { return voxel::components(set).voxel_counts; };
+  if (!least_mm3)
+    return !parts.wanted.empty() && !parts.unwanted.empty() &&
+           counts(parts.by_voxels).back() >= counts(parts.passed_over).front() &&
+           all[parts.unwanted.back()].volume_mm3 >= all[parts.wanted.front()].volume_mm3;
+  const double voxel_mm3 = parts.by_voxels.universe().lattice().voxel_mm3();
+  return parts.wanted.empty() == parts.by_voxels.is_empty() &&
+         parts.unwanted.empty() == parts.passed_over.is_empty() &&
+         (parts.wanted.empty() || all[parts.wanted.front()].volume_mm3 < *least_mm3) &&
+         (parts.unwanted.empty() ||
+          (all[parts.unwanted.back()].volume_mm3 >= *least_mm3 &&
+           static_cast<double>(counts(parts.passed_over).front()) * voxel_mm3 < *least_mm3));
+}
+
+std::string doubt_of(const Differing& parts, const std::optional<double>& least_mm3) {
+  std::string kept, left;
+  if (!parts.by_voxels.is_empty()) kept = size_and_place(parts.by_voxels) + " is kept";
+  if (!parts.passed_over.is_empty()) left = size_and_place(parts.passed_over) + " is not";
+  if (!least_mm3)
+    return "Two parts are nearly as large as each other: " + kept + ", " + left +
+           ", which the mesh kernel finds larger. Name the one that is meant: 'parts' with 'at_mm'.";
+  return "The kernels find parts on different sides of 'at_least_mm3': " + kept +
+         (kept.empty() || left.empty() ? "" : ", ") + left +
+         ", as the voxels have it. Choose a volume that is not so close to a part's.";
+}
+
 }  // namespace
 
-void settle_choice(const WholeObject& whole, const voxel::Universe& universe, Object& made) {
+void settle_choice(const WholeObject& whole, const voxel::Universe& universe,
+                   const std::optional<double>& least_mm3, Object& made) {
   const voxel::Octree& chosen = made.voxel.octree;
   const voxel::Octree digitised = convert::voxelise(universe, made.mesh.whole->linked());
-  const voxel::Octree by_voxels = pieces_apart(chosen, digitised), by_mesh = pieces_apart(digitised, chosen);
-  if (by_voxels.is_empty() || by_mesh.is_empty()) return;
-  const voxel::Octree passed_over = voxel::components_that_meet(whole.voxels(), by_mesh);
-  if (passed_over.is_empty()) return;
+  const voxel::Octree by_mesh = pieces_apart(digitised, chosen);
+  Differing parts{pieces_apart(chosen, digitised), voxel::Octree::empty(universe), {}, {}};
+  if (parts.by_voxels.is_empty() && by_mesh.is_empty()) return;
+  if (!least_mm3 && (parts.by_voxels.is_empty() || by_mesh.is_empty())) return;
+  if (!by_mesh.is_empty()) parts.passed_over = voxel::components_that_meet(whole.voxels(), by_mesh);
+  if (!by_mesh.is_empty() && parts.passed_over.is_empty()) return;
   const brep::Solid solid = whole.mesh();
   const std::vector<brep::Component>& all = solid.components();
-  const std::vector<std::size_t> wanted = components_in(solid, by_voxels),
-                                 unwanted = components_in(solid, by_mesh);
-  if (wanted.empty() || unwanted.empty()) return;
-  // Components are in the order of their volumes. Each kernel must have kept what it finds larger.
-  if (voxel::components(by_voxels).voxel_counts.back() <
-          voxel::components(passed_over).voxel_counts.front() ||
-      all[unwanted.back()].volume_mm3 < all[wanted.front()].volume_mm3)
-    return;
-  const verify::Witness parts = verify::witness_of_parts(whole.witness);
-  if (!is_same(by_voxels, solid_of(solid, wanted), parts, made) ||
-      !is_same(passed_over, solid_of(solid, unwanted), parts, made))
+  parts.wanted = components_in(solid, parts.by_voxels);
+  parts.unwanted = components_in(solid, by_mesh);
+  if (!is_by_measure(parts, all, least_mm3)) return;
+  const verify::Witness reading = verify::witness_of_parts(whole.witness);
+  if ((!parts.wanted.empty() && !is_same(parts.by_voxels, solid_of(solid, parts.wanted), reading, made)) ||
+      (!parts.unwanted.empty() &&
+       !is_same(parts.passed_over, solid_of(solid, parts.unwanted), reading, made)))
     return;
   std::set<Corner> kept;
   for (const brep::Component& component : made.mesh.whole->components())
     kept.insert(corner_of(made.mesh.whole->triangles(), component));
-  for (const std::size_t i : unwanted) kept.erase(corner_of(solid.triangles(), all[i]));
-  for (const std::size_t i : wanted) kept.insert(corner_of(solid.triangles(), all[i]));
+  for (const std::size_t i : parts.unwanted) kept.erase(corner_of(solid.triangles(), all[i]));
+  for (const std::size_t i : parts.wanted) kept.insert(corner_of(solid.triangles(), all[i]));
   std::vector<std::size_t> inside, others;
   for (std::size_t i = 0; i < all.size(); ++i)
     (kept.contains(corner_of(solid.triangles(), all[i])) ? inside : others).push_back(i);
   made.mesh.whole = solid_of(solid, inside);
   if (made.mesh.parts_of) made.mesh.parts_of->second = solid_of(solid, others);
-  made.caveats.push_back(
-      {voxel::Verdict::Warn,
-       "Two parts are nearly as large as each other: " + size_and_place(by_voxels) + " is kept, " +
-           size_and_place(passed_over) +
-           " is not, which the mesh kernel finds larger. Name the one that is meant: 'parts' with 'at_mm'.",
-       false});
+  made.caveats.push_back({voxel::Verdict::Warn, doubt_of(parts, least_mm3), false});
   made.findings.push_back(made.caveats.back().reason);
 }
 
@@ -390,14 +428,14 @@ void bound(const Parts& parts, const BoundBench& bench, Object& made) {
   inherit(object, made);
   const BridgeDecisions bridges = bridges_of(parts);
   const verify::Witness whole = cut_bridges(object.witness, bridges);
-  if (parts.largest && made.mesh.whole)
+  if ((parts.largest || parts.at_least_mm3) && made.mesh.whole)
     settle_choice({[&] { return cut_bridges(object.voxel.octree, bridges); },
                    [&] {
                      double shift_mm = 0.0;
                      return cut_bridges(*object.mesh.whole, bridges, {}, shift_mm);
                    },
                    whole},
-                  bench.universe, made);
+                  bench.universe, parts.at_least_mm3, made);
   made.witness = made.mesh.whole ? verify::witness_of_parts(
                                        whole, {made.voxel.octree, *made.mesh.whole, bridges.decided_mm()})
                                  : verify::witness_of_parts(whole);

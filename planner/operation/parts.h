@@ -80,12 +80,14 @@ struct WholeObject {
   verify::Witness witness;
 };
 
-/// Of parts that are nearly as large as each other chance decides which each kernel finds larger. Where the
-/// kernels chose different parts, each the larger ones by its own measure, and hold each other's parts as
+/// Of parts that are nearly as large as each other chance decides which each kernel finds larger, and of
+/// those that are nearly as large as `least_mm3`, which parts reach it; none: the largest ones were chosen.
+/// Where the kernels chose different parts, each rightly by its own measure, and hold each other's parts as
 /// well (verify::certify_bounded), the mesh takes those of the voxels, with a caveat that names both. Where a
-/// kernel chose the smaller part, or lacks the other's, nothing changes: the certificate fails. Cost: that of
+/// kernel chose wrongly, or lacks the other's part, nothing changes: the certificate fails. Cost: that of
 /// digitising the mesh; where the choices differ, of two certificates as well. Throws as its functions.
-void settle_choice(const WholeObject& whole, const voxel::Universe& universe, Object& made);
+void settle_choice(const WholeObject& whole, const voxel::Universe& universe,
+                   const std::optional<double>& least_mm3, Object& made);
 
 /// What an object's symbol becomes where parts were chosen from its voxels: the samples about the parts still
 /// say where their surface lies within a voxel, so that a motion samples it there.

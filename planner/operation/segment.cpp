@@ -336,9 +336,9 @@ void triangles(const Segment& segment, const MeshBench& bench, MeshSide& made) {
   made.lineage = "isosurface of the scan's own samples";
 }
 
-/// Settles which of the largest parts are kept, as settle_choice().
-void settle_largest(const Segment& segment, const LoadedScan& scan, const voxel::Universe& universe,
-                    Object& made) {
+/// Settles which parts are kept, as settle_choice().
+void settle_parts(const Segment& segment, const LoadedScan& scan, const voxel::Universe& universe,
+                  Object& made) {
   const auto voxels = [&] {
     const voxel::Octree window =
         voxel::combine(universe, cut_bridges(voxel::Expression(window_on(scan.grey, *segment.window)) &
@@ -352,7 +352,7 @@ void settle_largest(const Segment& segment, const LoadedScan& scan, const voxel:
     return segment.fill ? filled(whole) : whole;
   };
   settle_choice({voxels, mesh, segment.fill ? verify::witness_of_filled(made.witness) : made.witness},
-                universe, made);
+                universe, segment.largest || segment.components ? std::nullopt : segment.at_least_mm3, made);
 }
 
 void bound(const Segment& segment, const BoundBench& bench, Object& made) {
@@ -373,8 +373,7 @@ void bound(const Segment& segment, const BoundBench& bench, Object& made) {
                                            segment.window->high_or_infinity(), bench.universe);
   const BridgeDecisions bridges = bridges_of(segment);
   made.witness = cut_bridges(std::move(made.witness), bridges);
-  if ((segment.largest || segment.components) && made.mesh.whole)
-    settle_largest(segment, scan, bench.universe, made);
+  if (chooses_parts(segment) && made.mesh.whole) settle_parts(segment, scan, bench.universe, made);
   if (chooses_parts(segment))
     made.witness = made.mesh.whole
                        ? verify::witness_of_parts(made.witness,

@@ -98,6 +98,30 @@ TEST(PartsStep, OfPartsNearlyAsLargeAsEachOtherBothKernelsKeepTheSameAndTheChoic
   EXPECT_GT(passes, 0);
 }
 
+TEST(PartsStep, OfAPartNearlyAsLargeAsTheBoundBothKernelsHoldTheSame) {
+  const ScratchFolder folder;
+  const std::string caps = caps_apart("0", 4.0, 4.3);
+  const Evaluation alone = evaluate(ball_plan(folder, caps));
+  const Object& one = alone.object("one_0");
+  const double voxels_mm3 = one.voxel.measures.volume_mm3, mesh_mm3 = one.mesh.within->size().volume_mm3;
+  ASSERT_GT(std::abs(voxels_mm3 - mesh_mm3), 0.1);
+  for (const auto& [least_mm3, is_between] :
+       {std::pair(0.5 * (voxels_mm3 + mesh_mm3), true), std::pair(voxels_mm3 - 1500.0, false),
+        std::pair(100.0, false)}) {
+    const Evaluation evaluation = evaluate(
+        ball_plan(folder, caps + R"(, {"id": "large", "do": "parts", "object": "caps_0", "at_least_mm3": )" +
+                              std::to_string(least_mm3) + "}"));
+    const Object& large = evaluation.object("large");
+    SCOPED_TRACE(testing::PrintToString(large.certificate->reasons));
+    EXPECT_NE(large.certificate->verdict, voxel::Verdict::Fail);
+    EXPECT_EQ(large.mesh.within->components().size(), voxel::component_count(large.voxel.octree));
+    EXPECT_EQ(large.caveats.empty(), !is_between);
+    if (!is_between) continue;
+    EXPECT_EQ(large.certificate->verdict, voxel::Verdict::Warn);
+    EXPECT_NE(large.caveats[0].reason.find("different sides of 'at_least_mm3'"), std::string::npos);
+  }
+}
+
 TEST(LargestParts, OfEqualPartsAreAsManyAsWanted) {
   const voxel::Universe universe = voxel::universe_around({{-16, -16, -16}, {16, 16, 16}}, 1.0);
   voxel::Expression all = voxel::Expression(voxel::Box{{-15, -15, -15}, {-5, -5, -5}});
@@ -125,7 +149,7 @@ TEST(PartsStep, AKernelThatKeepsTheSmallerPartOrSpoilsOneIsNotFollowed) {
     Object made = evaluation.object(mesh + "_" + of);
     made.voxel.octree = std::move(voxels);
     settle_choice({[&] { return caps.voxel.octree; }, [&] { return *caps.mesh.whole; }, caps.witness},
-                  evaluation.universe, made);
+                  evaluation.universe, {}, made);
     return made;
   };
   const auto is_high = [](const Object& made) { return made.mesh.whole->measures().centroid_mm->z > 0.0; };
