@@ -243,22 +243,56 @@ bool is_by_measure(const Differing& parts, const std::vector<brep::Component>& a
   const double voxel_mm3 = parts.by_voxels.universe().lattice().voxel_mm3();
   return parts.wanted.empty() == parts.by_voxels.is_empty() &&
          parts.unwanted.empty() == parts.passed_over.is_empty() &&
+         !(parts.wanted.empty() && parts.unwanted.empty()) &&
          (parts.wanted.empty() || all[parts.wanted.front()].volume_mm3 < *least_mm3) &&
          (parts.unwanted.empty() ||
           (all[parts.unwanted.back()].volume_mm3 >= *least_mm3 &&
            static_cast<double>(counts(parts.passed_over).front()) * voxel_mm3 < *least_mm3));
 }
 
-std::string doubt_of(const Differing& parts, const std::optional<double>& least_mm3) {
+std::string doubt_of(const std::vector<Differing>& settled, const std::optional<double>& least_mm3) {
   std::string kept, left;
-  if (!parts.by_voxels.is_empty()) kept = size_and_place(parts.by_voxels) + " is kept";
-  if (!parts.passed_over.is_empty()) left = size_and_place(parts.passed_over) + " is not";
+  for (const Differing& parts : settled) {
+    if (kept.empty() && !parts.by_voxels.is_empty()) kept = size_and_place(parts.by_voxels) + " is kept";
+    if (left.empty() && !parts.passed_over.is_empty()) left = size_and_place(parts.passed_over) + " is not";
+  }
   if (!least_mm3)
     return "Two parts are nearly as large as each other: " + kept + ", " + left +
            ", which the mesh kernel finds larger. Name the one that is meant: 'parts' with 'at_mm'.";
-  return "The kernels find parts on different sides of 'at_least_mm3': " + kept +
-         (kept.empty() || left.empty() ? "" : ", ") + left +
-         ", as the voxels have it. Choose a volume that is not so close to a part's.";
+  return "The kernels find " + std::to_string(settled.size()) + (settled.size() == 1 ? " part" : " parts") +
+         " on different sides of 'at_least_mm3': " + kept + (kept.empty() || left.empty() ? "" : ", ") +
+         left + ", as the voxels have it. Choose a volume that is not so close to a part's.";
+}
+
+/// The connected pieces of a set, each for itself; the set itself where they are many.
+std::vector<voxel::Octree> pieces_of(voxel::Octree set) {
+  constexpr std::size_t most = 32;
+  if (set.is_empty()) return {};
+  if (voxel::component_count(set) > most) return {std::move(set)};
+  std::vector<voxel::Octree> pieces;
+  while (!set.is_empty()) {
+    pieces.push_back(voxel::components(set).largest);
+    set = voxel::combine(set.universe(), voxel::Expression(set) - voxel::Expression(pieces.back()));
+  }
+  return pieces;
+}
+
+/// What is settled together: with a least volume each part for itself, else all of them.
+std::vector<Differing> differing(const WholeObject& whole, const brep::Solid& solid,
+                                 const voxel::Octree& by_voxels, const voxel::Octree& by_mesh, bool apart) {
+  const voxel::Octree none = voxel::Octree::empty(by_voxels.universe());
+  const voxel::Octree voxels = by_mesh.is_empty() ? none : whole.voxels();
+  const auto over = [&](const voxel::Octree& piece) { return voxel::components_that_meet(voxels, piece); };
+  if (!apart)
+    return {{by_voxels, over(by_mesh), components_in(solid, by_voxels), components_in(solid, by_mesh)}};
+  std::vector<Differing> all;
+  for (voxel::Octree& piece : pieces_of(by_voxels)) {
+    std::vector<std::size_t> wanted = components_in(solid, piece);
+    all.push_back({std::move(piece), none, std::move(wanted), {}});
+  }
+  for (const voxel::Octree& piece : pieces_of(by_mesh))
+    all.push_back({none, over(piece), {}, components_in(solid, piece)});
+  return all;
 }
 
 }  // namespace
@@ -267,33 +301,34 @@ void settle_choice(const WholeObject& whole, const voxel::Universe& universe,
                    const std::optional<double>& least_mm3, Object& made) {
   const voxel::Octree& chosen = made.voxel.octree;
   const voxel::Octree digitised = convert::voxelise(universe, made.mesh.whole->linked());
-  const voxel::Octree by_mesh = pieces_apart(digitised, chosen);
-  Differing parts{pieces_apart(chosen, digitised), voxel::Octree::empty(universe), {}, {}};
-  if (parts.by_voxels.is_empty() && by_mesh.is_empty()) return;
-  if (!least_mm3 && (parts.by_voxels.is_empty() || by_mesh.is_empty())) return;
-  if (!by_mesh.is_empty()) parts.passed_over = voxel::components_that_meet(whole.voxels(), by_mesh);
-  if (!by_mesh.is_empty() && parts.passed_over.is_empty()) return;
+  const voxel::Octree by_voxels = pieces_apart(chosen, digitised), by_mesh = pieces_apart(digitised, chosen);
+  if (least_mm3 ? by_voxels.is_empty() && by_mesh.is_empty() : by_voxels.is_empty() || by_mesh.is_empty())
+    return;
   const brep::Solid solid = whole.mesh();
   const std::vector<brep::Component>& all = solid.components();
-  parts.wanted = components_in(solid, parts.by_voxels);
-  parts.unwanted = components_in(solid, by_mesh);
-  if (!is_by_measure(parts, all, least_mm3)) return;
   const verify::Witness reading = verify::witness_of_parts(whole.witness);
-  if ((!parts.wanted.empty() && !is_same(parts.by_voxels, solid_of(solid, parts.wanted), reading, made)) ||
-      (!parts.unwanted.empty() &&
-       !is_same(parts.passed_over, solid_of(solid, parts.unwanted), reading, made)))
-    return;
+  const auto agrees = [&](const voxel::Octree& voxels, const std::vector<std::size_t>& components) {
+    return components.empty() || is_same(voxels, solid_of(solid, components), reading, made);
+  };
+  std::vector<Differing> settled = differing(whole, solid, by_voxels, by_mesh, least_mm3.has_value());
+  std::erase_if(settled, [&](const Differing& parts) {
+    return !is_by_measure(parts, all, least_mm3) || !agrees(parts.by_voxels, parts.wanted) ||
+           !agrees(parts.passed_over, parts.unwanted);
+  });
+  if (settled.empty()) return;
   std::set<Corner> kept;
   for (const brep::Component& component : made.mesh.whole->components())
     kept.insert(corner_of(made.mesh.whole->triangles(), component));
-  for (const std::size_t i : parts.unwanted) kept.erase(corner_of(solid.triangles(), all[i]));
-  for (const std::size_t i : parts.wanted) kept.insert(corner_of(solid.triangles(), all[i]));
+  for (const Differing& parts : settled) {
+    for (const std::size_t i : parts.unwanted) kept.erase(corner_of(solid.triangles(), all[i]));
+    for (const std::size_t i : parts.wanted) kept.insert(corner_of(solid.triangles(), all[i]));
+  }
   std::vector<std::size_t> inside, others;
   for (std::size_t i = 0; i < all.size(); ++i)
     (kept.contains(corner_of(solid.triangles(), all[i])) ? inside : others).push_back(i);
   made.mesh.whole = solid_of(solid, inside);
   if (made.mesh.parts_of) made.mesh.parts_of->second = solid_of(solid, others);
-  made.caveats.push_back({voxel::Verdict::Warn, doubt_of(parts, least_mm3), false});
+  made.caveats.push_back({voxel::Verdict::Warn, doubt_of(settled, least_mm3), false});
   made.findings.push_back(made.caveats.back().reason);
 }
 

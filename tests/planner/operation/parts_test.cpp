@@ -118,7 +118,7 @@ TEST(PartsStep, OfAPartNearlyAsLargeAsTheBoundBothKernelsHoldTheSame) {
     EXPECT_EQ(large.caveats.empty(), !is_between);
     if (!is_between) continue;
     EXPECT_EQ(large.certificate->verdict, voxel::Verdict::Warn);
-    EXPECT_NE(large.caveats[0].reason.find("different sides of 'at_least_mm3'"), std::string::npos);
+    EXPECT_NE(large.caveats[0].reason.find("on different sides of 'at_least_mm3'"), std::string::npos);
   }
 }
 
