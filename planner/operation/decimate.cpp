@@ -36,7 +36,8 @@ void triangles(const Decimate& decimate, const MeshBench& bench, MeshSide& made)
   made.lineage = "edges collapsed within an error";
 }
 
-void bound(const Decimate&, const BoundBench&, Object& made) {
+void bound(const Decimate& decimate, const BoundBench&, Object& made) {
+  made.bound.reshaped = {decimate.object.name};
   made.ends_with_universe = true;
 }
 

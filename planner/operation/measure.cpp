@@ -154,9 +154,8 @@ Recommended of_voxels_alone(const AnswerBench& bench, const Object& object, cons
   return found;
 }
 
-/// The recommended volume and area. The mesh's, where there is one: motions keep it and cuts are exact in it,
-/// so that a moved object has its still one's interval, and parts share the doubt of their whole's windows.
-Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
+/// As intervals_of(), of the object's own surface.
+Recommended own_intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
   const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
   if (!object.mesh.within || object.bound.spacing_mm == glm::dvec3(0.0))
     return of_voxels_alone(bench, object, digitised);
@@ -195,6 +194,29 @@ Recommended intervals_of(const AnswerBench& bench, const Object& object, const D
   take_phases(bench, object, found);
   take_thickness(bench, object, found);
   add_voxels(voxel_mm, object.mesh.within->size().area_mm2, found.intervals);
+  return found;
+}
+
+/// The recommended volume and area. The mesh's, where there is one: motions keep it and cuts are exact in it,
+/// so that a moved object has its still one's interval, and parts share the doubt of their whole's windows.
+/// What was made of another's surface is in doubt by as much as that surface may be off.
+Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
+  Recommended found = own_intervals_of(bench, object, digitised);
+  const std::set<std::string> reshaped(object.bound.reshaped.begin(), object.bound.reshaped.end());
+  for (const std::string& name : reshaped) {
+    const Object& operand = bench.objects.at(name);
+    const verify::SizeIntervals of = intervals_of(bench, operand, digitised_of(bench, operand)).intervals;
+    if (!(of.area_mm2.value > 0.0)) continue;
+    const auto add = [&](verify::Interval& interval, const char* formula, double half_width) {
+      interval.half_width += half_width;
+      interval.sources.push_back({"operand", formula, half_width, true});
+    };
+    const double share = found.intervals.area_mm2.value / of.area_mm2.value;
+    add(found.intervals.volume_mm3, "half-width of the operand's volume, by the share of its area",
+        share * of.volume_mm3.half_width);
+    add(found.intervals.area_mm2, "half-width of the operand's area, by the share of it",
+        share * of.area_mm2.half_width);
+  }
   return found;
 }
 

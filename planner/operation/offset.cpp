@@ -85,6 +85,7 @@ void triangles(const Offset& offset, const MeshBench& bench, MeshSide& made) {
 
 void bound(const Offset& offset, const BoundBench& bench, Object& made) {
   made.bound.spacing_mm = bench.objects.at(offset.object.name).bound.spacing_mm;
+  made.bound.reshaped = {offset.object.name};
   made.ends_with_universe = true;
 }
 

@@ -31,7 +31,8 @@ void triangles(const Smooth& smooth, const MeshBench& bench, MeshSide& made) {
   made.lineage = "steps in and out along the mesh (Taubin 1995)";
 }
 
-void bound(const Smooth&, const BoundBench&, Object& made) {
+void bound(const Smooth& smooth, const BoundBench&, Object& made) {
+  made.bound.reshaped = {smooth.object.name};
   made.ends_with_universe = true;
 }
 

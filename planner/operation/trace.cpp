@@ -78,6 +78,7 @@ void inherit(const Object& operand, Object& made) {
   to.spacing_mm = glm::max(to.spacing_mm, from.spacing_mm);
   to.shift_mm += from.shift_mm;
   to.windows.insert(to.windows.end(), from.windows.begin(), from.windows.end());
+  to.reshaped.insert(to.reshaped.end(), from.reshaped.begin(), from.reshaped.end());
   if (from.scan_box_mm) to.scan_box_mm = from.scan_box_mm;
 }
 
@@ -95,6 +96,7 @@ void carry(const Object& still, const glm::dmat4& moved_from_still, const voxel:
   for (Shown& window : made.bound.windows)
     window.moved_from_still = moved_from_still * window.moved_from_still;
   made.bound.shift_mm = still.bound.shift_mm;
+  made.bound.reshaped = still.bound.reshaped;
   if (still.bound.scan_box_mm) {
     const auto ends =
         ends_of(*still.bound.scan_box_mm, still.bound.spacing_mm, universe.lattice().spacing_mm());

@@ -75,6 +75,9 @@ struct BoundTerms {
   bool voxels_are_samples = false;
   double shift_mm = 0.0;       ///< how far Booleans on the way moved operands (brep::Booleans)
   std::vector<Shown> windows;  ///< of all that it was made of: their bounds decide where its surface lies
+  /// Objects whose surface was made anew on the way, by an offset, by smoothing or by fewer triangles: where
+  /// theirs is in doubt, so is this one's.
+  std::vector<std::string> reshaped;
 };
 
 /// A wall of an object that a mask cut, and the motion of all the steps that moved it since, LPS to LPS.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <gtest/gtest.h>
+#include <map>
+#include <nlohmann/json.hpp>
 
+#include "planner/plan/answers.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {
@@ -15,6 +18,39 @@ TEST(OffsetStep, ABallGrowsAndShrinksByTheDistance) {
       {"id": "smaller", "do": "offset", "object": "ball", "by_mm": -4})"));
   expect_of_mesh(evaluation.object("larger"), ball_mm3(ball_radius_mm + 4.0), 0.02);
   expect_of_mesh(evaluation.object("smaller"), ball_mm3(ball_radius_mm - 4.0), 0.03);
+}
+
+TEST(OffsetStep, HasItsOperandsDoubtByTheShareOfItsSurface) {
+  const ScratchFolder folder;
+  const auto size = [](const std::string& id) {
+    return R"({"id": "size_)" + id + R"(", "do": "measure", "object": ")" + id + R"("})";
+  };
+  const Plan plan = ball_plan(folder, R"(
+      {"id": "larger", "do": "offset", "object": "ball", "by_mm": 4},
+      {"id": "fewer", "do": "decimate", "object": "larger", "max_error_mm": 0.2},
+      {"id": "cap", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-40, 0], [40, 0], [40, 40], [-40, 40]]]}]},
+      {"id": "half", "do": "combine", "expression": "fewer & cap"},)" +
+                                          size("ball") + ", " + size("larger") + ", " + size("fewer") + ", " +
+                                          size("half"));
+  std::map<std::string, double> operands;
+  double of_ball = 0.0;
+  for (const auto& found : measurements_json(plan, evaluate(plan))) {
+    const auto& volume = found.at("volume");
+    if (found.at("object") == "ball") of_ball = volume.at("half_width");
+    for (const auto& source : volume.at("sources"))
+      if (source.at("name") == "operand")
+        operands[found.at("object")] += source.at("half_width").get<double>();
+  }
+  ASSERT_GT(of_ball, 0.0);
+  const auto operand = [&](const std::string& id) { return operands.contains(id) ? operands.at(id) : 0.0; };
+  EXPECT_EQ(operand("ball"), 0.0);
+  EXPECT_NEAR(operand("larger"), of_ball * std::pow((ball_radius_mm + 4.0) / ball_radius_mm, 2),
+              0.1 * of_ball);
+  EXPECT_GT(operand("fewer"), 0.9 * operand("larger"));
+  // Half of its surface and the cut.
+  EXPECT_GT(operand("half"), 0.6 * operand("fewer"));
+  EXPECT_LT(operand("half"), 0.9 * operand("fewer"));
 }
 
 TEST(OffsetStep, ByNothingIsRefused) {
