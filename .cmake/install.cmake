@@ -25,7 +25,7 @@ install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RE
 # The libraries, under the names Octotomy::voxel, Octotomy::voxel_tree and so on.
 set(octotomy_libraries octotomy_options octotomy_itk octotomy_voxel octotomy_brep octotomy_convert octotomy_verify
     octotomy_planner)
-foreach(folder voxel brep convert planner)
+foreach(folder voxel brep convert verify planner)
   get_target_property(rooms octotomy_${folder} INTERFACE_LINK_LIBRARIES)
   list(FILTER rooms INCLUDE REGEX "^octotomy_${folder}_")
   list(APPEND octotomy_libraries ${rooms})

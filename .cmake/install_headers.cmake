@@ -2,7 +2,7 @@
 # Set SOURCE_DIR and INCLUDE_DIR (with DESTDIR in front).
 cmake_policy(VERSION 3.25)
 file(GLOB pages RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/voxel/*/README.md ${SOURCE_DIR}/brep/*/README.md
-     ${SOURCE_DIR}/convert/*/README.md ${SOURCE_DIR}/verify/README.md ${SOURCE_DIR}/planner/*/README.md)
+     ${SOURCE_DIR}/convert/*/README.md ${SOURCE_DIR}/verify/*/README.md ${SOURCE_DIR}/planner/*/README.md)
 set(found)
 foreach(page ${pages})
   get_filename_component(room ${page} DIRECTORY)

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "planner/table/json.h"
-#include "verify/chance.h"
-#include "verify/size_interval.h"
+#include "verify/interval/size_interval.h"
+#include "verify/phantom/chance.h"
 
 namespace octotomy::planner {
 namespace {

@@ -10,7 +10,7 @@
 #include "planner/measure/result_json.h"
 #include "planner/table/json.h"
 #include "planner/table/operation.h"
-#include "verify/certificate.h"
+#include "verify/certificate/certificate.h"
 
 namespace octotomy::planner {
 namespace {

@@ -6,7 +6,7 @@
 #include "planner/flap/fields.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
-#include "verify/witness.h"
+#include "verify/witness/witness.h"
 
 namespace octotomy::planner {
 namespace {

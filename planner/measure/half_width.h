@@ -50,8 +50,8 @@ struct Digitised {
 };
 
 /// Half-width of a volume that was counted. 3 * 0.26 v sqrt(F), v a voxel's volume and F the boundary's area
-/// in voxel faces (Kendall 1948; verify/boundary_model.h), once for the voxels and once for the scan's
-/// samples, whose slices may be far apart; half a voxel's edge times the area of flat parts along the
+/// in voxel faces (Kendall 1948; verify/certificate/boundary_model.h), once for the voxels and once for the
+/// scan's samples, whose slices may be far apart; half a voxel's edge times the area of flat parts along the
 /// lattice, which are off all alike; and the boundary's area times its shift for ten sample units. Widened to
 /// what is seen.
 HalfWidth volume_half_width(const voxel::Measures& measures, const Digitised& digitised,
@@ -63,8 +63,8 @@ std::string too_coarse_finding(const glm::dvec3& voxel_mm, const std::string& se
                                const std::string& advice);
 
 /// Half-width of the area of an isosurface, in square millimetres: what marching cubes' ripple and the
-/// crossings' places on voxels' edges were shown to add or lose (verify/certificate.cpp), and twice the
-/// integral of mean curvature times the window's shift.
+/// crossings' places on voxels' edges were shown to add or lose (verify/certificate/certificate.cpp), and
+/// twice the integral of mean curvature times the window's shift.
 struct SurfaceSize {
   double area_mm2 = 0.0;
   double curvature_mm = 0.0;  ///< integral of mean curvature without sign

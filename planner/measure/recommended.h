@@ -12,8 +12,8 @@
 #include "planner/measure/counted_window.h"
 #include "planner/measure/half_width.h"
 #include "planner/measure/result_json.h"
-#include "verify/size_interval.h"
-#include "verify/two_phase.h"
+#include "verify/interval/size_interval.h"
+#include "verify/interval/two_phase.h"
 #include "voxel/space/scene.h"
 #include "voxel/tree/grey_octree.h"
 

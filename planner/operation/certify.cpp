@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "planner/operation/trace.h"
-#include "verify/certify_bounded.h"
-#include "verify/witness.h"
+#include "verify/certificate/certify_bounded.h"
+#include "verify/witness/witness.h"
 
 namespace octotomy::planner {
 

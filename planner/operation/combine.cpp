@@ -3,7 +3,7 @@
 
 #include "planner/operation/trace.h"
 #include "planner/table/operation.h"
-#include "verify/witness.h"
+#include "verify/witness/witness.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/expression.h"
 

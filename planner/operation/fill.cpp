@@ -6,7 +6,7 @@
 #include "planner/operation/parts.h"
 #include "planner/operation/trace.h"
 #include "planner/table/operation.h"
-#include "verify/witness.h"
+#include "verify/witness/witness.h"
 #include "voxel/filter/morphology.h"
 
 namespace octotomy::planner {

@@ -11,7 +11,7 @@
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "planner/table/same_patient.h"
-#include "verify/witness.h"
+#include "verify/witness/witness.h"
 #include "voxel/solid/region_mask.h"
 #include "voxel/space/view.h"
 

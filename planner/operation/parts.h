@@ -12,7 +12,7 @@
 #include "brep/mesh/solid.h"
 #include "planner/table/object.h"
 #include "planner/table/scope.h"
-#include "verify/reading.h"
+#include "verify/witness/reading.h"
 #include "voxel/filter/components.h"
 #include "voxel/solid/expression.h"
 #include "voxel/space/lattice.h"

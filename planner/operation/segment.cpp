@@ -20,7 +20,7 @@
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "planner/table/same_patient.h"
-#include "verify/witness.h"
+#include "verify/witness/witness.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/filter/morphology.h"

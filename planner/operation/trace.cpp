@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "verify/witness.h"
+#include "verify/witness/witness.h"
 
 namespace octotomy::planner {
 namespace {

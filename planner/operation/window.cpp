@@ -8,7 +8,7 @@
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
-#include "verify/witness.h"
+#include "verify/witness/witness.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
 

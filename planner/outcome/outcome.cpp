@@ -18,7 +18,7 @@
 #include "convert/surface/isosurface.h"
 #include "planner/anatomy/movement.h"
 #include "planner/measure/result_json.h"
-#include "verify/size_interval.h"
+#include "verify/interval/size_interval.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {

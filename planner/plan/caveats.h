@@ -6,7 +6,7 @@
 #include "planner/table/bench.h"
 #include "planner/table/object.h"
 #include "planner/table/operation.h"
-#include "verify/necks.h"
+#include "verify/certificate/necks.h"
 
 // What forbids an object's certificate a PASS however well both kernels agree: samples that nobody measured,
 // parts that left the universe, and doubts about the objects that it was made of.

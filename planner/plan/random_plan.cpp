@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "verify/head_phantom.h"
+#include "verify/phantom/head_phantom.h"
 #include "voxel/scan/write_scene.h"
 
 namespace octotomy::planner {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "planner/measure/result_json.h"
-#include "verify/expression_tree.h"
-#include "verify/random_expression.h"
+#include "verify/question/expression_tree.h"
+#include "verify/question/random_expression.h"
 
 // Random plans, for the bounded tier: windows on scans, masks, rigid motions and expressions of them.
 namespace octotomy::planner {

@@ -19,8 +19,8 @@
 #include "planner/operation/move.h"
 #include "planner/plan/dependence.h"
 #include "planner/table/json.h"
-#include "verify/chance.h"
-#include "verify/size_interval.h"
+#include "verify/interval/size_interval.h"
+#include "verify/phantom/chance.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "planner/report/scene_pictures.h"
-#include "verify/certificate.h"
+#include "verify/certificate/certificate.h"
 
 namespace octotomy::planner {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "planner/report/report.h"
-#include "verify/certificate.h"
+#include "verify/certificate/certificate.h"
 #include "voxel/solid/expression.h"
 
 namespace octotomy::planner {

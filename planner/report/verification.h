@@ -8,7 +8,7 @@
 
 #include "planner/measure/result_json.h"
 #include "planner/report/report.h"
-#include "verify/certificate.h"
+#include "verify/certificate/certificate.h"
 
 namespace octotomy::planner {
 

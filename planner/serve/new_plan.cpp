@@ -8,7 +8,7 @@
 #include "planner/serve/folders.h"
 #include "planner/serve/message.h"
 #include "planner/table/json_file.h"
-#include "verify/head_phantom.h"
+#include "verify/phantom/head_phantom.h"
 #include "voxel/filter/tissue.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/scan/write_scene.h"

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "planner/suite/suites.h"
-#include "verify/fault.h"
+#include "verify/suite/fault.h"
 #include "voxel/filter/histogram.h"
 #include "voxel/filter/otsu.h"
 #include "voxel/scan/read_scene.h"

@@ -4,8 +4,8 @@
 
 #include "planner/suite/suites.h"
 #include "planner/table/number_format.h"
-#include "verify/interval_suite.h"
-#include "verify/phantom_suite.h"
+#include "verify/suite/interval_suite.h"
+#include "verify/suite/phantom_suite.h"
 
 namespace octotomy::planner::cli {
 namespace {

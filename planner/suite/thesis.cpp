@@ -3,7 +3,7 @@
 #include <map>
 
 #include "planner/suite/suites.h"
-#include "verify/thesis_tables.h"
+#include "verify/suite/thesis_tables.h"
 
 namespace octotomy::planner::cli {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "planner/table/object.h"
 #include "planner/table/stopwatch.h"
-#include "verify/expression_on_meshes.h"
+#include "verify/question/expression_on_meshes.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"

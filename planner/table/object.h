@@ -13,8 +13,8 @@
 
 #include "brep/mesh/solid.h"
 #include "planner/table/field.h"
-#include "verify/certificate.h"
-#include "verify/reading.h"
+#include "verify/certificate/certificate.h"
+#include "verify/witness/reading.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/expression.h"
 #include "voxel/space/scene.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "verify/head_phantom.h"
+#include "verify/phantom/head_phantom.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::bench {

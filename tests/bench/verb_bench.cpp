@@ -32,7 +32,7 @@
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/subjects.h"
 #include "tests/bench/workspace.h"
-#include "verify/head_phantom.h"
+#include "verify/phantom/head_phantom.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
 #include "voxel/tree/build.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tests/bench/benchmarks.h"
-#include "verify/facet_count.h"
+#include "verify/certificate/facet_count.h"
 
 namespace octotomy::bench {
 namespace {

@@ -322,8 +322,9 @@ TEST(Rooms, AnOverfullOneIsSeen) {
 
 TEST(Rooms, EverySourceHasOneAndEveryRoomAPage) {
   EXPECT_EQ(homeless(house()), Offences{});
-  EXPECT_EQ(homeless({{"voxel/loose.h", {}}, {"brep/cellar/wine.h", {}}, {"verify/implicit_solid.h", {}}}),
-            (Offences{"brep/cellar/wine.h", "voxel/loose.h"}));
+  EXPECT_EQ(
+      homeless({{"voxel/loose.h", {}}, {"brep/cellar/wine.h", {}}, {"verify/phantom/implicit_solid.h", {}}}),
+      (Offences{"brep/cellar/wine.h", "voxel/loose.h"}));
   for (const auto& [room, may] : arrows().rooms) EXPECT_NE(page_of(room), "") << room;
   for (const auto& [folder, may] : arrows().folders) {
     if (arrows().has_rooms(folder)) continue;
@@ -352,10 +353,10 @@ TEST(Rooms, TestsMirrorThem) {
 }
 
 TEST(Rooms, AMisplacedTestIsSeen) {
-  const Sources sources{{"voxel/tree/octree.h", {}}, {"verify/implicit_solid.h", {}}};
+  const Sources sources{{"voxel/tree/octree.h", {}}, {"verify/phantom/implicit_solid.h", {}}};
   EXPECT_EQ(
       misplaced_tests({"voxel/solid/octree_test.cpp", "voxel/octree_test.cpp", "voxel/tree/octree_test.cpp",
-                       "voxel/solid/set_identities_test.cpp", "verify/implicit_solid_test.cpp"},
+                       "voxel/solid/set_identities_test.cpp", "verify/phantom/implicit_solid_test.cpp"},
                       sources),
       (Offences{"voxel/octree_test.cpp", "voxel/solid/octree_test.cpp"}));
 }

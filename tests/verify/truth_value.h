@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "verify/expression_tree.h"
+#include "verify/question/expression_tree.h"
 
 namespace octotomy::tests {
 

@@ -10,7 +10,7 @@
 #include "convert/surface/isosurface.h"
 #include "tests/bench/flat_scan.h"
 #include "tests/bench/vtk_contour.h"
-#include "verify/head_phantom.h"
+#include "verify/phantom/head_phantom.h"
 
 namespace octotomy::convert {
 namespace {

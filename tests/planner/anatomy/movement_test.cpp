@@ -5,7 +5,7 @@
 
 #include "planner/plan/evaluate.h"
 #include "tests/planner/ball_scan.h"
-#include "verify/head_phantom.h"
+#include "verify/phantom/head_phantom.h"
 #include "voxel/scan/write_scene.h"
 
 namespace octotomy::planner {

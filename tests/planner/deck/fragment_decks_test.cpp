@@ -11,7 +11,7 @@
 #include "tests/convert/surfaces.h"
 #include "tests/file_bytes.h"
 #include "tests/planner/ball_scan.h"
-#include "verify/head_phantom.h"
+#include "verify/phantom/head_phantom.h"
 
 namespace octotomy::planner {
 namespace {

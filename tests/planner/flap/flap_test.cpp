@@ -7,7 +7,7 @@
 #include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/planner/ct_scene.h"
-#include "verify/leg_phantom.h"
+#include "verify/phantom/leg_phantom.h"
 #include "voxel/scan/write_scene.h"
 
 namespace octotomy::planner {

@@ -9,7 +9,7 @@
 #include "convert/surface/isosurface.h"
 #include "planner/table/plan_universe.h"
 #include "tests/reference_data.h"
-#include "verify/head_phantom.h"
+#include "verify/phantom/head_phantom.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
 

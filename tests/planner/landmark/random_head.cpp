@@ -10,7 +10,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "verify/head_solids.h"
+#include "verify/phantom/head_solids.h"
 
 namespace octotomy::tests {
 

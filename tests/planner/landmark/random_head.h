@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "verify/chance.h"
+#include "verify/phantom/chance.h"
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 

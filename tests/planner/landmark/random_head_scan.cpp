@@ -12,7 +12,7 @@
 #include <tbb/parallel_for.h>
 
 #include "tests/planner/landmark/random_head.h"
-#include "verify/head_solids.h"
+#include "verify/phantom/head_solids.h"
 #include "voxel/space/shared_progress.h"
 
 namespace octotomy::tests {

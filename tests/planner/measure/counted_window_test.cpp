@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "tests/planner/ct_scene.h"
-#include "verify/chance.h"
-#include "verify/implicit_solid.h"
+#include "verify/phantom/chance.h"
+#include "verify/phantom/implicit_solid.h"
 
 namespace octotomy::planner {
 namespace {

@@ -12,8 +12,8 @@
 #include "planner/table/json.h"
 #include "tests/planner/ct_scene.h"
 #include "tests/voxel/scratch_folder.h"
-#include "verify/drawn_solid.h"
-#include "verify/interval_suite.h"
+#include "verify/phantom/drawn_solid.h"
+#include "verify/suite/interval_suite.h"
 #include "voxel/scan/write_scene.h"
 
 namespace octotomy::planner {

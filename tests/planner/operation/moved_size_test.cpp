@@ -7,7 +7,7 @@
 #include "planner/table/json.h"
 #include "tests/planner/ct_scene.h"
 #include "tests/planner/operation/ball_operation.h"
-#include "verify/chance.h"
+#include "verify/phantom/chance.h"
 
 namespace octotomy::planner {
 namespace {

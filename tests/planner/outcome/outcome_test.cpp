@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/planner/ball_scan.h"
-#include "verify/chance.h"
-#include "verify/head_phantom.h"
+#include "verify/phantom/chance.h"
+#include "verify/phantom/head_phantom.h"
 #include "voxel/scan/write_scene.h"
 
 namespace octotomy::planner {

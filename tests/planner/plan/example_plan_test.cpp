@@ -7,8 +7,8 @@
 
 #include "planner/plan/evaluate.h"
 #include "tests/planner/ball_scan.h"
-#include "verify/head_phantom.h"
-#include "verify/sample_volume.h"
+#include "verify/phantom/head_phantom.h"
+#include "verify/phantom/sample_volume.h"
 #include "voxel/solid/expression.h"
 #include "voxel/solid/region_mask.h"
 

@@ -6,7 +6,7 @@
 
 #include "planner/plan/plan.h"
 #include "tests/file_bytes.h"
-#include "verify/chance.h"
+#include "verify/phantom/chance.h"
 
 namespace octotomy::planner {
 namespace {

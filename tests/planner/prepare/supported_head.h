@@ -10,7 +10,7 @@
 #include <tbb/parallel_for.h>
 #include <vector>
 
-#include "verify/head_phantom.h"
+#include "verify/phantom/head_phantom.h"
 #include "voxel/space/scene.h"
 
 // The head phantom on a table, with the truth of every sample.

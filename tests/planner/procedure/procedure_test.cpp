@@ -7,7 +7,7 @@
 #include "planner/plan/evaluate.h"
 #include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
-#include "verify/head_phantom.h"
+#include "verify/phantom/head_phantom.h"
 #include "voxel/filter/components.h"
 #include "voxel/solid/combine.h"
 

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// What a certificate with a witness must not let pass: errors that both kernels make alike, parts that a mesh
+// has several times, totals that resampling loses.
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "brep/mesh/components.h"
+#include "brep/mesh/triangles.h"
+#include "convert/surface/isosurface.h"
+#include "convert/voxel/voxelise.h"
+#include "verify/certificate/certify_bounded.h"
+#include "verify/witness/witness.h"
+#include "voxel/filter/components.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::verify {
+namespace {
+
+constexpr double endless = std::numeric_limits<double>::infinity();
+
+/// A large and a small ball, samples a hundred times the depth below their surfaces; beside them air.
+std::shared_ptr<const voxel::Scene> two_balls(double floor) {
+  voxel::Scene scene;
+  scene.lattice = voxel::axis_aligned_lattice({64, 64, 64}, glm::dvec3(1.0), glm::dvec3(0.0));
+  voxel::Int16Samples samples(scene.lattice.sample_count());
+  std::size_t i = 0;
+  for (int z = 0; z < 64; ++z)
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x) {
+        const glm::dvec3 p(x, y, z);
+        const double depth =
+            std::max(16.3 - glm::distance(p, {24.2, 25.1, 24.4}), 5.4 - glm::distance(p, {52.3, 51.2, 50.8}));
+        samples[i++] = static_cast<std::int16_t>(std::lround(std::clamp(100.0 * depth, floor, 3000.0)));
+      }
+  scene.samples = std::move(samples);
+  return std::make_shared<const voxel::Scene>(std::move(scene));
+}
+
+class Witnessed : public testing::Test {
+ protected:
+  Witnessed() {
+    inputs_.scan_spacing_mm = glm::dvec3(1.0);
+    inputs_.witness = witness_of_window(scan_, 0.0, endless, universe_);
+  }
+  voxel::Octree octree() const {
+    return voxel::combine(
+        universe_, voxel::Expression(voxel::Window{voxel::grey_octree_of(universe_, *scan_, -1024), 0.0}));
+  }
+  brep::Triangles mesh() const { return convert::isosurface(*scan_, 0.0, endless); }
+  Certificate certified(const voxel::Octree& octree, const brep::Triangles& mesh) const {
+    return certify_bounded(octree, brep::trusted_solid(mesh, brep::Proof::Construction), inputs_);
+  }
+  /// The mesh with its smallest part so many times.
+  brep::Triangles with_small_part(int times) const {
+    const brep::Triangles all = mesh();
+    const brep::Solid solid = brep::trusted_solid(all, brep::Proof::Construction);
+    const std::vector<brep::Component>& parts = solid.components();
+    EXPECT_EQ(parts.size(), 2U);
+    brep::Triangles made;
+    const auto add = [&](const brep::Component& part) {
+      const auto first = static_cast<std::uint32_t>(made.points_mm.size());
+      made.points_mm.insert(made.points_mm.end(), all.points_mm.begin(), all.points_mm.end());
+      for (const std::uint32_t face : part.faces) {
+        made.faces.push_back(all.faces[face]);
+        for (std::uint32_t& corner : made.faces.back()) corner += first;
+      }
+    };
+    add(parts.front());
+    for (int i = 0; i < times; ++i) add(parts.back());
+    return made;
+  }
+
+  std::shared_ptr<const voxel::Scene> scan_ = two_balls(-1000.0);
+  voxel::Universe universe_ = [] {
+    voxel::Universe universe;
+    universe.depth = 6;
+    return universe;
+  }();
+  BoundInputs inputs_;
+};
+
+TEST_F(Witnessed, RightAnswersPassAndLinesFindTheSameVolume) {
+  const Certificate right = certified(octree(), mesh());
+  EXPECT_EQ(right.verdict, Verdict::Pass) << (right.reasons.empty() ? "" : right.reasons.front());
+  ASSERT_TRUE(right.third);
+  EXPECT_NEAR(right.third->volume_mm3, right.mesh.volume_mm3, 0.02 * right.mesh.volume_mm3);
+  EXPECT_LE(right.limit->volume_mm3, 64.0);
+}
+
+TEST_F(Witnessed, APartThatBothKernelsLostFails) {
+  const Certificate lost = certified(voxel::components(octree()).largest, with_small_part(0));
+  EXPECT_EQ(lost.verdict, Verdict::Fail);
+  ASSERT_TRUE(lost.worst);
+  EXPECT_NE(lost.worst->what.find("both kernels lack"), std::string::npos) << lost.worst->what;
+  EXPECT_LT(glm::distance(lost.worst->at_mm, {52.3, 51.2, 50.8}), 6.0);
+}
+
+TEST_F(Witnessed, TwoEmptyAnswersFailWhereTheScanHasAnObjectAndElseProveNothing) {
+  const voxel::Octree nothing = voxel::Octree::empty(universe_);
+  EXPECT_EQ(certified(nothing, {}).verdict, Verdict::Fail);
+  inputs_.witness = witness_of_window(scan_, 2500.0, endless, universe_);
+  const Certificate right = certified(nothing, {});
+  EXPECT_EQ(right.verdict, Verdict::Warn);
+  EXPECT_FALSE(right.resolved());
+  ASSERT_EQ(right.reasons.size(), 1U);
+  EXPECT_NE(right.reasons.front().find("8 mm3"), std::string::npos) << right.reasons.front();
+}
+
+TEST_F(Witnessed, APartThatTheMeshHasSeveralTimesFails) {
+  EXPECT_EQ(certified(octree(), with_small_part(1)).verdict, Verdict::Pass);
+  for (const int times : {2, 3, 5})
+    EXPECT_EQ(certified(octree(), with_small_part(times)).verdict, Verdict::Fail) << times;
+}
+
+TEST_F(Witnessed, ACapAtTheScansBorderThatIsShiftedFails) {
+  // The whole scan is inside, so that the surface is its border.
+  inputs_.witness = witness_of_window(scan_, -2000.0, endless, universe_);
+  const voxel::Octree full = voxel::combine(universe_, voxel::Expression(voxel::bounds(scan_->lattice)));
+  const brep::Triangles right = convert::isosurface(*scan_, -2000.0, endless);
+  inputs_.scan_box_mm = voxel::bounds(scan_->lattice);
+  const Certificate as_it_is = certified(full, right);
+  EXPECT_EQ(as_it_is.verdict, Verdict::Pass) << (as_it_is.reasons.empty() ? "" : as_it_is.reasons.front());
+  for (const double by_mm : {-0.45, -0.2, 0.2, 0.45}) {
+    brep::Triangles shifted = right;
+    for (glm::dvec3& p : shifted.points_mm)
+      if (p.z > 63.2) p.z += by_mm;
+    EXPECT_EQ(certified(full, shifted).verdict, Verdict::Fail) << by_mm;
+  }
+}
+
+TEST_F(Witnessed, WhatResamplingLosesIsADifferenceThatIsToldAndNoAllowance) {
+  // A rind that is thinner than the distance of samples: a mesh has no surface between neighbours below and
+  // above.
+  inputs_.witness = witness_of_window(scan_, -60.0, -20.0, universe_);
+  const voxel::Octree rind = voxel::combine(
+      universe_,
+      voxel::Expression(voxel::Window{voxel::grey_octree_of(universe_, *scan_, -1024), -60.0, -20.0}));
+  const Certificate told = certified(rind, convert::isosurface(*scan_, -60.0, -20.0));
+  ASSERT_GT(std::abs(told.difference_mm3), told.tolerance_mm3);
+  EXPECT_NE(told.verdict, Verdict::Pass);
+  bool is_told = false;
+  for (const std::string& reason : told.reasons)
+    is_told = is_told || reason.find("% of this tissue") != std::string::npos;
+  EXPECT_TRUE(is_told);
+}
+
+}  // namespace
+}  // namespace octotomy::verify

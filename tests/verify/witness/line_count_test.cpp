@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "verify/witness/line_count.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <map>
+#include <numbers>
+#include <tbb/global_control.h>
+
+#include "verify/phantom/chance.h"
+#include "voxel/space/scene.h"
+
+namespace octotomy::verify {
+namespace {
+
+constexpr double endless = std::numeric_limits<double>::infinity();
+
+/// Samples 100 times the depth below a ball's surface, in millimetres.
+std::shared_ptr<const voxel::Scene> ball(double radius_mm, const glm::dvec3& spacing_mm) {
+  const glm::ivec3 dims(glm::ceil(2.4 * radius_mm / spacing_mm));
+  voxel::Scene scene;
+  scene.lattice = voxel::axis_aligned_lattice(dims, spacing_mm, -0.5 * spacing_mm * glm::dvec3(dims - 1));
+  voxel::FloatSamples samples(scene.lattice.sample_count());
+  std::size_t i = 0;
+  for (int z = 0; z < dims.z; ++z)
+    for (int y = 0; y < dims.y; ++y)
+      for (int x = 0; x < dims.x; ++x)
+        samples[i++] = static_cast<float>(100.0 * (radius_mm - glm::length(scene.lattice.lps_mm({x, y, z}))));
+  scene.samples = std::move(samples);
+  return std::make_shared<const voxel::Scene>(std::move(scene));
+}
+
+double ball_mm3(double radius_mm) {
+  return 4.0 / 3.0 * std::numbers::pi * std::pow(radius_mm, 3.0);
+}
+
+TEST(LineCount, OfABallIsItsVolumeAndAreaWithinTheScatterThatItStates) {
+  for (const glm::dvec3& spacing_mm : {glm::dvec3(1.0), glm::dvec3(0.7, 1.1, 2.0)}) {
+    const LineReading reading = lines_in_window(ball(20.0, spacing_mm), 0.0, endless);
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      const LineCount count = count_along_lines(reading, {.seed = seed});
+      EXPECT_NEAR(count.volume_mm3, ball_mm3(20.0), 5.0 * count.deviation_mm3 + 0.004 * ball_mm3(20.0))
+          << seed;
+      EXPECT_LT(count.deviation_mm3, 0.01 * ball_mm3(20.0)) << seed;
+      EXPECT_NEAR(count.area_mm2, 4.0 * std::numbers::pi * 400.0, 0.03 * 4.0 * std::numbers::pi * 400.0)
+          << seed;
+      // A ball of a fortieth more is another one.
+      EXPECT_GT(std::abs(count.volume_mm3 - ball_mm3(20.5)), 5.0 * count.deviation_mm3) << seed;
+    }
+  }
+}
+
+TEST(LineCount, OfAShellCountsBothOfItsSurfaces) {
+  const LineCount count = count_along_lines(lines_in_window(ball(20.0, glm::dvec3(1.0)), 0.0, 500.0), {});
+  EXPECT_NEAR(count.volume_mm3, ball_mm3(20.0) - ball_mm3(15.0), 0.02 * ball_mm3(20.0));
+  EXPECT_NEAR(count.area_mm2, 4.0 * std::numbers::pi * (400.0 + 225.0),
+              0.04 * 4.0 * std::numbers::pi * 625.0);
+}
+
+TEST(LineCount, IsTheSameOnAnyNumberOfThreads) {
+  const LineReading reading = lines_in_window(ball(10.0, glm::dvec3(1.0)), 0.0, endless);
+  const LineCount all = count_along_lines(reading, {});
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const LineCount alone = count_along_lines(reading, {});
+  EXPECT_EQ(all.volume_mm3, alone.volume_mm3);
+  EXPECT_EQ(all.deviation_mm3, alone.deviation_mm3);
+  EXPECT_EQ(all.crossings, alone.crossings);
+}
+
+TEST(LineCount, MovesWithItsObjectBeyondAnyUniverse) {
+  const LineReading still = lines_in_window(ball(10.0, glm::dvec3(1.0)), 0.0, endless);
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  const glm::dmat4 motion(c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, 10000, -60, 7, 1);
+  const LineCount count =
+      count_along_lines(lines_moved(still, motion), {.world_mm = {glm::dvec3(-20), glm::dvec3(20)}});
+  EXPECT_NEAR(count.volume_mm3, ball_mm3(10.0), 0.02 * ball_mm3(10.0));
+}
+
+/// Whether each name holds, by Python's precedence, written out by hand for each text.
+using Truth = bool (*)(bool a, bool b, bool c);
+
+TEST(LineReading, ReadsExpressionsAsPointsDo) {
+  const voxel::Box a{{0, 0, 0}, {10, 10, 10}}, b{{4, -2, 3}, {14, 8, 7}}, c{{-3, 5, 5}, {6, 12, 20}};
+  const std::map<std::string, LineReading> boxes{
+      {"a", lines_in_box(a)}, {"b", lines_in_box(b)}, {"c", lines_in_box(c)}};
+  const std::vector<std::pair<const char*, Truth>> texts{
+      {"a & b | c", [](bool x, bool y, bool z) { return (x && y) || z; }},
+      {"a | b & c", [](bool x, bool y, bool z) { return x || (y && z); }},
+      {"a ^ b & c", [](bool x, bool y, bool z) { return x != (y && z); }},
+      {"a & b - c", [](bool x, bool y, bool z) { return x && y && !z; }},
+      {"a - b - c", [](bool x, bool y, bool z) { return x && !y && !z; }},
+      {"a - (b - c)", [](bool x, bool y, bool z) { return x && !(y && !z); }},
+      {"a & ~(b | c)", [](bool x, bool y, bool z) { return x && !(y || z); }},
+      {"~a & b ^ c", [](bool x, bool y, bool z) { return (!x && y) != z; }},
+      {"a ^ b ^ c", [](bool x, bool y, bool z) { return (x != y) != z; }}};
+  const auto in = [](const voxel::Box& box, const glm::dvec3& p) {
+    return glm::all(glm::greaterThanEqual(p, box.low_mm)) && glm::all(glm::lessThanEqual(p, box.high_mm));
+  };
+  for (const auto& [text, truth] : texts) {
+    const LineReading reading =
+        lines_in_expression(text, [&](const std::string& name) { return boxes.at(name); });
+    Chance chance(7);
+    int met = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const Line line{{chance.between(-5, 15), chance.between(-5, 15), -10.0},
+                      glm::normalize(glm::dvec3(chance.even(), chance.even(), 1.0))};
+      const Spans spans = reading.inside(line, {{0.0, 40.0}});
+      const double at_mm = chance.between(0.0, 40.0);
+      const glm::dvec3 p = line.from_mm + at_mm * line.along;
+      bool inside = false;
+      for (const Span& span : spans) inside = inside || (at_mm >= span.low_mm && at_mm <= span.high_mm);
+      EXPECT_EQ(inside, truth(in(a, p), in(b, p), in(c, p))) << text << ", line " << i;
+      met += inside ? 1 : 0;
+    }
+    EXPECT_GT(met, 5) << text;
+  }
+}
+
+TEST(LineReading, OfTooManyOperandsThereIsNone) {
+  const auto scan = ball(3.0, glm::dvec3(1.0));
+  const auto lookup = [&](const std::string&) { return lines_in_window(scan, 0.0, endless); };
+  const auto of = [&](int count) {
+    std::string text = "a";
+    for (int i = 1; i < count; ++i) text += " | a";
+    return static_cast<bool>(lines_in_expression(text, lookup));
+  };
+  EXPECT_TRUE(of(100));
+  EXPECT_FALSE(of(50000));
+  // Steps that double what they are made of.
+  LineReading twice = lookup("a");
+  for (int step = 0; step < 60; ++step) twice = lines_in_either(twice, twice);
+  EXPECT_FALSE(twice);
+  EXPECT_FALSE(lines_in_expression(std::string(100000, '~') + "a", lookup));
+}
+
+TEST(LineReading, RefusesTextThatIsNoExpression) {
+  for (const char* text : {"", "a b", "a &", "& a", "(a", "a)", "a + a", "a ~ a"})
+    EXPECT_THROW(lines_in_expression(text, [](const std::string&) { return lines_in_box({}); }),
+                 std::invalid_argument)
+        << text;
+}
+
+TEST(LineReading, OfARegionIsWhatItsPolygonEnclosesAtAnyDepth) {
+  const LineReading ring = lines_in_region(
+      {1, 0, 0}, {0, 0, 1}, {{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{4, 4}, {6, 4}, {6, 6}, {4, 6}}});
+  const Spans across = ring.inside({{-5, 1, 5}, {1, 0, 0}}, {{0, 100}});
+  ASSERT_EQ(across.size(), 2U);
+  EXPECT_NEAR(across[0].low_mm, 5.0, 1e-9);
+  EXPECT_NEAR(across[0].high_mm, 9.0, 1e-9);
+  EXPECT_NEAR(across[1].high_mm, 15.0, 1e-9);
+  EXPECT_EQ(ring.inside({{5, 0, 5}, {0, 1, 0}}, {{0, 100}}).size(), 0U);
+  EXPECT_EQ(ring.inside({{1, 0, 1}, {0, 1, 0}}, {{0, 100}}).size(), 1U);
+}
+
+TEST(LineReading, OfSamplesThatAreNoNumberIsOutside) {
+  voxel::Scene scene = *ball(6.0, glm::dvec3(1.0));
+  for (float& sample : std::get<voxel::FloatSamples>(scene.samples))
+    sample = std::numeric_limits<float>::quiet_NaN();
+  const auto scan = std::make_shared<const voxel::Scene>(std::move(scene));
+  EXPECT_EQ(count_along_lines(lines_in_window(scan, -endless, endless), {}).volume_mm3, 0.0);
+}
+
+}  // namespace
+}  // namespace octotomy::verify

@@ -1,0 +1,665 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// The effect of counting centres on a boundary, triangle by triangle, in voxels of the lattice ("index
+// space"):
+//
+// planes   A plane whose normal n is a vector of small integers errs coherently: centres lie on lattice
+//          planes 1 / |n| apart, and the digitised plane lies half-way between two of them. Where it lies is
+//          known, so the displacement is exact and has a sign, but for a plane through centres, which may go
+//          either way. Two planes displaced by a and b outward whose normals are an angle t apart gain
+//          (a b - (a^2 + b^2) / 2 cos t) / sin t along each unit of their common edge besides, or lose it
+//          where the edge is an inside corner.
+//
+// nearly   What blur or noise leaves of such a plane is curved, yet errs in step all the same: along a column
+//          of centres the count follows the surface to half a voxel's step, floor(z) + 1/2 - z. Its integral
+//          over the triangles within 15 degrees of an axis is exact up to the scatter of columns, which
+//          `count` has. A displaced part adds area past its rim: a displacement d times the integral of the
+//          curvature there (the first variation of area; do Carmo, Differential Geometry of Curves and
+//          Surfaces, section 3.5), which is d times the rim's length where the surface turns by a right
+//          angle. Parts are displaced independently, so that their areas add up as chance does.
+//
+// count    Elsewhere the error of a count is a sum over the reciprocal lattice (Poisson; Kendall, "On the
+//          number of lattice points inside a random oval", 1948): over all places of the lattice its variance
+//          is the sum over integer vectors k of the indicator's Fourier transform squared, and that is, where
+//          the boundary is curved, a(k) / (4 pi^2 |k|^4) for every point whose normal is along k, with a the
+//          area there per solid angle of normals (1 / Gaussian curvature). A sphere has 0.0666 S in all, a
+//          root mean square of 0.258 sqrt(S): the 0.20 to 0.32 that were measured. Of other solids a(k) is
+//          taken from the triangles whose normal is near k for the 13 nearest directions and their multiples,
+//          which have 65 % of the sum, and as if normals were spread evenly for the rest. So poles that an
+//          anisotropic lattice flattens, and facets nearly along it, count as the more that they err.
+//          Departure: near is within 15, 7 or 3.5 degrees, whichever gives most. The moments take pieces of
+//          equal area as equal and independent parts. Large flat facets are not curved, and those along the
+//          lattice err in step however far they run: their transform is summed instead (facet_count.h).
+//
+// bent     A polyhedron with its vertices on a surface lies within it where it is convex, and interpolation
+//          between samples a length d apart puts a point off by d^2 / 8 times the curvature along d. So what
+//          an isosurface loses is a constant times the integral of d(t)^2 curvature(t) over the tangent's
+//          directions t, and of a triangle mesh that integral is the sum over edges of length times angle
+//          times d^2 across the edge, d the spacing of samples in that direction (the curvature measure of
+//          Cohen-Steiner and Morvan, 2003). Marching cubes' triangles alternate about the surface: with its
+//          sign the sum levels that out; without, it is taken cell by cell of three samples and by the
+//          direction of the normal, so that the two sides of a thin plate do not cancel.
+// sharp    A line of voxels' centres, h apart, misses a chord of the length l < h with the chance 1 - l / h,
+// and
+//          with it two crossings. Across a wedge whose faces turn by t at an edge, chords a distance x from
+//          the edge have the length x / f, f = sin a sin(t - a) / sin t for a line at the angle a to one
+//          face: the loss is h f / 2 crossings twice along each unit of the edge. Over all directions, with
+//          the 13 directions' mean distance of 1.39 h, the area loses 2 / (3 pi) 1.39 h (1 - t cot t) = 0.295
+//          h (1 - t cot t) along each unit. Up to 75 degrees that is less than 0.3 of the mean curvature's
+//          0.5 t. The probability of chords: Santalo, Integral Geometry and Geometric Probability, 1976,
+//          chapter 4.
+// Long, as the terms of one model share its points and what moved.
+#include "verify/certificate/boundary_model.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "brep/mesh/dihedral_angle.h"
+#include "brep/mesh/disjoint_sets.h"
+#include "brep/mesh/triangles.h"
+#include "verify/certificate/facet_count.h"
+#include "verify/interval/cell_table.h"
+#include "verify/interval/in_order.h"
+
+namespace octotomy::verify {
+namespace {
+
+using std::numbers::pi;
+
+struct Triangle {
+  std::array<glm::dvec3, 3> p;
+  glm::dvec3 centre() const { return (p[0] + p[1] + p[2]) / 3.0; }
+  glm::dvec3 area_vector() const { return 0.5 * glm::cross(p[1] - p[0], p[2] - p[0]); }
+};
+
+/// A point and its share of a triangle.
+struct SharePoint {
+  glm::dvec3 p{0.0};
+  double share = 0.0;
+};
+
+/// Points that stand for a triangle: integrals of polynomials up to the fourth degree are exact (Dunavant,
+/// "High degree efficient symmetrical Gaussian quadrature rules for the triangle", 1985).
+std::array<SharePoint, 6> share_points_of(const Triangle& triangle) {
+  struct Orbit {
+    double share, corner, side;  // weights of one corner and of the two others
+  };
+  constexpr std::array<Orbit, 2> orbits{{{0.223381589678011, 0.108103018168070, 0.445948490915965},
+                                         {0.109951743655322, 0.816847572980459, 0.091576213509771}}};
+  std::array<SharePoint, 6> pieces;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Orbit& orbit = orbits[i / 3];
+    const glm::dvec3 sum = triangle.p[0] + triangle.p[1] + triangle.p[2];
+    pieces[i] = {orbit.side * sum + (orbit.corner - orbit.side) * triangle.p[i % 3], orbit.share};
+  }
+  return pieces;
+}
+
+/// A plane n . q = c of index space q whose normal has small integers.
+struct LatticePlane {
+  glm::ivec3 normal{0};
+  double offset = 0.0;
+};
+
+/// The largest distance, in voxels, of a lattice plane's points from it: a thousand times the rounding of
+/// coordinates in a universe of 4096 voxels.
+constexpr double flatness_voxels = 1000.0 * 4096.0 * std::numeric_limits<double>::epsilon();
+/// The largest integer of a normal: planes with larger normals err by less than h / 8 in each voxel, and not
+/// coherently.
+constexpr int largest_index = 3;
+
+std::optional<LatticePlane> lattice_plane(const std::array<glm::dvec3, 3>& q) {
+  const glm::dvec3 across = glm::cross(q[1] - q[0], q[2] - q[0]);
+  const double largest = std::max({std::abs(across.x), std::abs(across.y), std::abs(across.z)});
+  if (!(largest > 0.0)) return std::nullopt;
+  for (int index = 1; index <= largest_index; ++index) {
+    const glm::dvec3 normal = glm::round(across * (index / largest));
+    const std::array<double, 3> c{glm::dot(normal, q[0]), glm::dot(normal, q[1]), glm::dot(normal, q[2])};
+    const auto [low, high] = std::minmax({c[0], c[1], c[2]});
+    if (high - low < flatness_voxels * index) return LatticePlane{glm::ivec3(normal), 0.5 * (low + high)};
+  }
+  return std::nullopt;
+}
+
+constexpr std::array<std::array<int, 3>, 13> directions{{{1, 0, 0},
+                                                         {0, 1, 0},
+                                                         {0, 0, 1},
+                                                         {1, 1, 0},
+                                                         {1, -1, 0},
+                                                         {1, 0, 1},
+                                                         {1, 0, -1},
+                                                         {0, 1, 1},
+                                                         {0, 1, -1},
+                                                         {1, 1, 1},
+                                                         {1, 1, -1},
+                                                         {1, -1, 1},
+                                                         {1, -1, -1}}};
+
+std::array<glm::dvec3, 13> units(const glm::dmat3& from_index) {
+  std::array<glm::dvec3, 13> unit;
+  for (std::size_t d = 0; d < unit.size(); ++d)
+    unit[d] = glm::normalize(from_index * glm::dvec3(directions[d][0], directions[d][1], directions[d][2]));
+  return unit;
+}
+
+/// The share of directions of space nearest to each unit vector, by a Fibonacci lattice of 20 000 points on
+/// the sphere: a share's error is below one in a hundred.
+std::array<double, 13> shares_of_space(const std::array<glm::dvec3, 13>& unit) {
+  constexpr int points = 20000;
+  std::array<int, 13> count{};
+  for (int i = 0; i < points; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / points;
+    const double turn = 2.0 * pi * i / std::numbers::phi;
+    const double level = std::sqrt(1.0 - z * z);
+    const glm::dvec3 way(level * std::cos(turn), level * std::sin(turn), z);
+    std::size_t nearest = 0;
+    for (std::size_t d = 1; d < unit.size(); ++d)
+      if (std::abs(glm::dot(way, unit[d])) > std::abs(glm::dot(way, unit[nearest]))) nearest = d;
+    ++count[nearest];
+  }
+  std::array<double, 13> share{};
+  for (std::size_t d = 0; d < share.size(); ++d) share[d] = static_cast<double>(count[d]) / points;
+  return share;
+}
+
+/// The variance of a count by the boundary's normals, all in voxels.
+class CountVariance {
+ public:
+  CountVariance() : unit_(units(glm::dmat3(1.0))) {}
+  /// An area, and a bit for each cone that its normal is in.
+  struct Share {
+    double size = 0.0;
+    std::uint64_t cones = 0;
+  };
+  Share share_of(const glm::dvec3& area) const {
+    Share share{glm::length(area), 0};
+    for (std::size_t d = 0; d < unit_.size(); ++d)
+      for (std::size_t w = 0; w < cosines.size(); ++w)
+        if (std::abs(glm::dot(area, unit_[d])) > cosines[w] * share.size)
+          share.cones |= std::uint64_t{1} << (cosines.size() * d + w);
+    return share;
+  }
+  void add(const Share& share) {
+    area_ += share.size;
+    for (std::uint64_t left = share.cones; left != 0; left &= left - 1) {
+      const auto cone = static_cast<std::size_t>(std::countr_zero(left));
+      in_cone_[cone / cosines.size()][cone % cosines.size()] += share.size;
+    }
+  }
+  double sum() const {
+    // Sums over all integer vectors but zero of 1 / |k|^4, and over the multiples of one.
+    constexpr double epstein = 16.5323;
+    constexpr double multiples = pi * pi * pi * pi / 90.0;
+    double counted = 0.0, variance = 0.0;
+    for (std::size_t d = 0; d < unit_.size(); ++d) {
+      const auto& g = directions[d];
+      const double square = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
+      const double both = 2.0 * multiples / (square * square);
+      counted += both;
+      double most = 0.0;
+      for (std::size_t w = 0; w < cosines.size(); ++w) {
+        const double per_angle = in_cone_[d][w] / (2.0 * pi * (1.0 - cosines[w]));
+        // All in step the planes 1 / |g| apart cannot err by more than evenly over half of that.
+        const double in_step = in_cone_[d][w] * in_cone_[d][w] / (12.0 * square);
+        most = std::max(most, std::min(both / (4.0 * pi * pi) * per_angle, in_step));
+      }
+      variance += most;
+    }
+    // Points with normals along +k and -k: two of the even density S / 4 pi.
+    return variance + (epstein - counted) / (4.0 * pi * pi) * area_ / (2.0 * pi);
+  }
+
+ private:
+  /// 15, 7 and 3.5 degrees.
+  static constexpr std::array<double, 3> cosines{0.9659258262890683, 0.992546151641322, 0.9981347984218669};
+  std::array<glm::dvec3, 13> unit_;
+  std::array<std::array<double, 3>, 13> in_cone_{};
+  double area_ = 0.0;
+};
+
+/// Flat parts of a boundary are taken by themselves from here on, in voxel faces: smaller ones are many, and
+/// their errors independent.
+constexpr double large_facet = 16.0;
+
+/// The cosine of 15 degrees: such a part lies between two layers of centres over several voxels.
+constexpr double nearly_along = 0.9659258262890683;
+
+/// The model of one mesh in the making.
+class Modeller {
+ public:
+  Modeller(const brep::Solid& solid, const BoundaryFrame& frame)
+      : linked_(solid.linked()), frame_(frame), triangles_(linked_.triangles) {}
+
+  BoundaryModel run() {
+    const glm::dmat3 voxel_from_mm = glm::inverse(glm::dmat3(frame_.lattice.lps_from_voxel));
+    const glm::dvec3 first_mm(frame_.lattice.lps_from_voxel[3]);
+    points_voxel_.reserve(triangles_.points_mm.size());
+    for (const glm::dvec3& p_mm : triangles_.points_mm)
+      points_voxel_.push_back(voxel_from_mm * (p_mm - first_mm));
+    moved_.resize(triangles_.faces.size());
+    nearly_.resize(triangles_.faces.size());
+    add_faces();
+    add_counts();
+    add_edges();
+    return model_;
+  }
+
+ private:
+  glm::dvec3 normal_of(const Triangle& triangle) const {
+    const glm::dvec3 across = triangle.area_vector();
+    const double length = glm::length(across);
+    return length > 0.0 ? across / length : glm::dvec3(0.0);
+  }
+  Triangle triangle(std::size_t face) const {
+    const auto& corner = triangles_.faces[face];
+    return {
+        {triangles_.points_mm[corner[0]], triangles_.points_mm[corner[1]], triangles_.points_mm[corner[2]]}};
+  }
+
+  void add_faces() {
+    const glm::dmat3 edges(frame_.lattice.lps_from_voxel);
+    const std::array<glm::dvec3, 13> lines = units(edges);
+    const std::array<double, 13> share = shares_of_space(lines);
+    struct Face {
+      double area_mm2 = 0.0;
+      std::array<double, 13> seen_mm2{};
+      std::optional<LatticePlane> plane;
+    };
+    in_order<Face>(
+        triangles_.faces.size(),
+        [&](std::size_t face) {
+          const Triangle at_mm = triangle(face);
+          Face made{glm::length(at_mm.area_vector()), {}, lattice_plane(in_voxels(face).p)};
+          const glm::dvec3 normal = normal_of(at_mm);
+          for (std::size_t d = 0; d < lines.size(); ++d)
+            made.seen_mm2[d] = 2.0 * share[d] * std::abs(glm::dot(normal, lines[d])) * made.area_mm2;
+          return made;
+        },
+        [&](std::size_t face, const Face& made) {
+          model_.area_mm2 += made.area_mm2;
+          for (const double seen_mm2 : made.seen_mm2) model_.crofton13_mm2 += seen_mm2;
+          if (made.plane) moved_[face] = add_plane(*made.plane, triangle(face), made.area_mm2);
+        });
+  }
+  Triangle in_voxels(std::size_t face) const {
+    const auto& corner = triangles_.faces[face];
+    return {{points_voxel_[corner[0]], points_voxel_[corner[1]], points_voxel_[corner[2]]}};
+  }
+
+  /// A face's area, and of each of its pieces with the arm squared and to the fourth.
+  struct ArmsOfFace {
+    double mm2 = 0.0;
+    std::array<double, 6> mm4{}, mm6{};
+  };
+  ArmsOfFace arms_of(const Triangle& triangle) const {
+    ArmsOfFace made{glm::length(triangle.area_vector()), {}, {}};
+    const std::array<SharePoint, 6> pieces = share_points_of(triangle);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const glm::dvec3 arm_mm = pieces[i].p - frame_.about_mm;
+      const double square = glm::dot(arm_mm, arm_mm);
+      made.mm4[i] = pieces[i].share * made.mm2 * square;
+      made.mm6[i] = pieces[i].share * made.mm2 * square * square;
+    }
+    return made;
+  }
+
+  /// The boundary outside such planes: flat facets by their transforms, the rest by its normals.
+  void add_counts() {
+    const std::vector<std::uint32_t> set = flat_sets();
+    std::vector<double> area(set.size(), 0.0);
+    in_order<double>(
+        set.size(), [&](std::size_t face) { return glm::length(in_voxels(face).area_vector()); },
+        [&](std::size_t face, double size) {
+          if (!moved_[face]) area[set[face]] += size;
+        });
+    std::vector<Facet> facets;
+    std::vector<std::optional<std::size_t>> facet_of_set(set.size());
+    CountVariance curved;
+    Arms curved_arms, flat_arms;
+    struct Face {
+      glm::dvec3 across{0.0};
+      bool is_curved = false;
+      CountVariance::Share share;
+      NearlyPlane nearly;
+      ArmsOfFace arms;
+    };
+    in_order<Face>(
+        set.size(),
+        [&](std::size_t face) {
+          Face made;
+          if (moved_[face]) return made;
+          made.across = in_voxels(face).area_vector();
+          made.is_curved = area[set[face]] < large_facet;
+          made.arms = arms_of(triangle(face));
+          if (!made.is_curved) return made;
+          made.share = curved.share_of(made.across);
+          made.nearly = nearly_plane_of(face, made.across);
+          return made;
+        },
+        [&](std::size_t face, const Face& made) {
+          if (moved_[face]) return;
+          (made.is_curved ? curved_arms : flat_arms).add(made.arms);
+          if (made.is_curved) {
+            curved.add(made.share);
+            for (std::size_t i = 0; i < made.nearly.count; ++i)
+              model_.nearly_planes.add(made.nearly.mm3[i], made.nearly.arm_mm[i]);
+            nearly_[face] = made.nearly.displaced();
+            return;
+          }
+          std::optional<std::size_t>& number = facet_of_set[set[face]];
+          if (!number) {
+            number = facets.size();
+            facets.emplace_back();
+          }
+          facets[*number].area += made.across;
+          add_rims(facets[*number], static_cast<std::uint32_t>(face), set);
+        });
+    add_variance(curved.sum(), curved_arms);
+    add_variance(count_variance(facets), flat_arms);
+    add_nearly_rims();
+  }
+
+  /// A face nearly along the lattice: its axis from 1 on, negative where it looks back, and what it gains.
+  struct Displaced {
+    int way = 0;
+    double mm3 = 0.0;
+  };
+  /// What the pieces of such a face gain; none of another one.
+  struct NearlyPlane {
+    std::size_t count = 0;
+    int way = 0;
+    std::array<double, 6> mm3{};
+    std::array<glm::dvec3, 6> arm_mm{};
+
+    Displaced displaced() const { return {way, std::accumulate(mm3.begin(), mm3.end(), 0.0)}; }
+  };
+  /// Columns of centres along the axis that the face is nearly across count it to half a voxel's step.
+  NearlyPlane nearly_plane_of(std::size_t face, const glm::dvec3& across) const {
+    NearlyPlane made;
+    int axis = 0;
+    for (int i = 1; i < 3; ++i)
+      if (std::abs(across[i]) > std::abs(across[axis])) axis = i;
+    if (!(std::abs(across[axis]) > nearly_along * glm::length(across))) return made;
+    const Triangle at_mm = triangle(face), at_voxel = in_voxels(face);
+    const std::array<SharePoint, 6> places = share_points_of(at_voxel), points = share_points_of(at_mm);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const double step = std::floor(places[i].p[axis]) + 0.5 - places[i].p[axis];
+      made.mm3[i] = places[i].share * step * across[axis] * frame_.lattice.voxel_mm3();
+      made.arm_mm[i] = points[i].p - frame_.about_mm;
+    }
+    made.count = places.size();
+    made.way = across[axis] < 0.0 ? -(axis + 1) : axis + 1;
+    return made;
+  }
+
+  /// Connected parts of such faces of one way, and the area that each adds past its rim.
+  void add_nearly_rims() {
+    brep::DisjointSets sets(nearly_.size());
+    const auto each_side = [&](const auto& take) {
+      for (std::uint32_t side = 0; side < linked_.opposite.size(); ++side)
+        if (linked_.is_inner_edge(side) && nearly_[side / 3].way != 0)
+          take(side, side / 3, linked_.opposite[side] / 3);
+    };
+    each_side([&](std::uint32_t, std::uint32_t a, std::uint32_t b) {
+      if (nearly_[a].way == nearly_[b].way) sets.join(a, b);
+    });
+    struct Part {
+      double mm3 = 0.0, mm2 = 0.0, rim_mm = 0.0;
+    };
+    std::vector<Part> parts(nearly_.size());
+    for (std::uint32_t face = 0; face < nearly_.size(); ++face) {
+      if (nearly_[face].way == 0) continue;
+      Part& part = parts[sets.set_of(face)];
+      part.mm3 += nearly_[face].mm3;
+      part.mm2 += glm::length(triangle(face).area_vector());
+    }
+    each_side([&](std::uint32_t side, std::uint32_t a, std::uint32_t b) {
+      if (nearly_[a].way != nearly_[b].way)
+        parts[sets.set_of(a)].rim_mm += glm::length(to(side) - from(side));
+    });
+    double all_mm2 = 0.0, squares = 0.0;
+    for (const Part& part : parts) {
+      if (!(part.mm2 > 0.0)) continue;
+      const double mm2 = std::abs(part.mm3) / part.mm2 * part.rim_mm;
+      all_mm2 += mm2;
+      squares += mm2 * mm2;
+    }
+    constexpr double coverage = 3.0;
+    model_.rims_mm2 += std::min(all_mm2, coverage * std::sqrt(squares));
+  }
+
+  /// By face, the name of the set of coplanar faces it is in; faces in lattice planes are in none.
+  std::vector<std::uint32_t> flat_sets() const {
+    brep::DisjointSets sets(triangles_.faces.size());
+    struct Pair {
+      std::uint32_t a = 0, b = 0;
+      bool flat = false;
+    };
+    in_order<Pair>(
+        linked_.opposite.size(),
+        [&](std::size_t number) {
+          const auto side = static_cast<std::uint32_t>(number);
+          if (!linked_.is_inner_edge(side)) return Pair{};
+          const std::uint32_t a = side / 3, b = linked_.opposite[side] / 3;
+          if (moved_[a] || moved_[b]) return Pair{};
+          const glm::dvec3 from = in_voxels(a).area_vector(), to = in_voxels(b).area_vector();
+          const bool a_larger = glm::dot(from, from) >= glm::dot(to, to);
+          const Triangle large = in_voxels(a_larger ? a : b), small = in_voxels(a_larger ? b : a);
+          const double size = glm::length(large.area_vector());
+          if (!(size > 0.0) || glm::dot(from, to) < 0.0) return Pair{};
+          const glm::dvec3 normal = large.area_vector() / size;
+          const bool flat = std::all_of(small.p.begin(), small.p.end(), [&](const glm::dvec3& p) {
+            return std::abs(glm::dot(p - large.p[0], normal)) < flatness_voxels;
+          });
+          return Pair{a, b, flat};
+        },
+        [&](std::size_t, const Pair& pair) {
+          if (pair.flat) sets.join(pair.a, pair.b);
+        });
+    std::vector<std::uint32_t> set(triangles_.faces.size());
+    for (std::uint32_t face = 0; face < set.size(); ++face) set[face] = sets.set_of(face);
+    return set;
+  }
+
+  /// The sides of a face beyond which its facet ends.
+  void add_rims(Facet& facet, std::uint32_t face, const std::vector<std::uint32_t>& set) const {
+    for (std::uint32_t side = 3 * face; side != 3 * face + 3; ++side) {
+      const std::uint32_t beyond = linked_.opposite[side] / 3;
+      if (!moved_[beyond] && set[beyond] == set[face]) continue;
+      facet.sides.push_back({frame_.lattice.voxel(from(side)), frame_.lattice.voxel(to(side))});
+    }
+  }
+
+  /// Area with the squares of its arms.
+  struct Arms {
+    double mm2 = 0.0, mm4 = 0.0, mm6 = 0.0;
+    void add(const ArmsOfFace& face) {
+      mm2 += face.mm2;
+      for (std::size_t i = 0; i < face.mm4.size(); ++i) {
+        mm4 += face.mm4[i];
+        mm6 += face.mm6[i];
+      }
+    }
+  };
+
+  void add_variance(double voxels, const Arms& arms) {
+    if (!(arms.mm2 > 0.0)) return;
+    const double voxel_mm3 = frame_.lattice.voxel_mm3();
+    const double mm6 = voxels * voxel_mm3 * voxel_mm3;
+    model_.count_mm6 += mm6;
+    model_.count_mm8 += mm6 * arms.mm4 / arms.mm2;
+    model_.count_mm10 += mm6 * arms.mm6 / arms.mm2;
+  }
+
+  /// How far counting moves a plane outward.
+  struct Moved {
+    double mm = 0.0;
+    bool tied = false;  ///< it goes through voxel centres and may as well go the other way
+    glm::ivec3 normal{0};
+  };
+
+  Moved add_plane(const LatticePlane& plane, const Triangle& triangle, double area_mm2) {
+    // Moves of one in n . q are moves of 1 / |n'| millimetres, n' the normal in LPS.
+    const glm::dmat3 normal_from_voxel =
+        glm::transpose(glm::inverse(glm::dmat3(frame_.lattice.lps_from_voxel)));
+    const glm::dvec3 normal = normal_from_voxel * glm::dvec3(plane.normal);
+    const glm::ivec3 index = glm::abs(plane.normal);
+    model_.coherent_mm2 += area_mm2;
+    if (index.x + index.y + index.z == 1) model_.flat_mm2 += area_mm2 * glm::dvec3(index);
+    // Centres have whole n . q, so the digitised plane lies half-way between two of them.
+    const double shift = std::floor(plane.offset) + 0.5 - plane.offset;
+    const double outward = glm::dot(triangle.area_vector(), normal) < 0.0 ? -1.0 : 1.0;
+    const Moved moved{outward * shift / glm::length(normal),
+                      0.5 - std::abs(shift) < flatness_voxels * largest_index, plane.normal};
+    const double most_mm = moved.tied ? 0.5 / glm::length(normal) : std::abs(moved.mm);
+    for (const SharePoint& piece : share_points_of(triangle)) {
+      const double arm_mm = glm::distance(piece.p, frame_.about_mm);
+      if (moved.tied) model_.unsure.add(piece.share * most_mm * area_mm2, arm_mm);
+      model_.planes_without_sign.add(piece.share * most_mm * area_mm2, arm_mm);
+    }
+    if (moved.tied)
+      model_.tied_mm3 += most_mm * area_mm2;
+    else
+      model_.planes.add(moved.mm * area_mm2, triangle.centre() - frame_.about_mm);
+    return moved;
+  }
+
+  /// What an edge adds to its cell, or the sum of a cell, which stands where its last edge does.
+  struct Bend {
+    std::uint64_t cell = 0;  // of three samples a side, and the direction of the normal
+    double mm = 0.0;
+    double mm3 = 0.0;
+    glm::dvec3 arm_mm{0.0};
+
+    void add(const Bend& other) {
+      mm += other.mm;
+      mm3 += other.mm3;
+      arm_mm = other.arm_mm;
+    }
+  };
+
+  /// Of each unit of an edge whose faces turn by an angle, see `sharp` above. Wedges of less than 15 degrees
+  /// end before their loss is larger.
+  static double sharp_loss(double angle) {
+    constexpr double bluntest = 75.0 / 180.0 * pi, sharpest = 165.0 / 180.0 * pi;
+    const double turn = std::min(std::abs(angle), sharpest);
+    if (turn < bluntest) return 0.0;
+    return std::max(0.0, 0.295 * (1.0 - turn / std::tan(turn)) - 0.3 * 0.5 * turn);
+  }
+
+  /// An edge with its angle, and what it adds to its cell if it has any.
+  struct BentEdge {
+    double angle = 0.0, sharp_mm = 0.0;
+    bool is_inner = false, bends = false;
+    Bend bend;
+  };
+  /// Of the first side of an edge; nothing of the second.
+  BentEdge bent_edge(std::uint32_t side) const {
+    BentEdge made;
+    if (!linked_.is_inner_edge(side)) return made;
+    made.is_inner = true;
+    const Triangle a = triangle(side / 3), b = triangle(linked_.opposite[side] / 3);
+    const glm::dvec3 from = this->from(side), to = this->to(side);
+    const glm::dvec3 middle = 0.5 * (from + to);
+    made.angle = brep::dihedral_angle(a.area_vector(), b.area_vector(), to - from);
+    if (made.angle == 0.0) return made;
+    const glm::dvec3 normal = normal_of(a) + normal_of(b);
+    const glm::dvec3 across = glm::cross(normal, to - from);
+    const double length = glm::length(across);
+    if (!(length > 0.0)) return made;
+    const glm::dvec3 spacing_mm = frame_.sample_spacing_mm * across / length;
+    const double mm = 0.5 * glm::length(to - from) * made.angle;
+    made.bends = true;
+    made.sharp_mm = glm::length(to - from) * sharp_loss(made.angle);
+    made.bend = {cell_of(middle, normal), mm, mm * glm::dot(spacing_mm, spacing_mm),
+                 middle - frame_.about_mm};
+    return made;
+  }
+
+  void add_edges() {
+    CellTable<Bend> cells;
+    in_order<BentEdge>(
+        linked_.opposite.size(),
+        [&](std::size_t side) { return bent_edge(static_cast<std::uint32_t>(side)); },
+        [&](std::size_t side, const BentEdge& edge) {
+          if (edge.is_inner) add_displaced(static_cast<std::uint32_t>(side), edge.angle);
+          if (!edge.bends) return;
+          model_.bent.add(edge.bend.mm3, edge.bend.arm_mm);
+          model_.sharp_mm += edge.sharp_mm;
+          cells.at(edge.bend.cell).add(edge.bend);
+        });
+    cells.each([&](const Bend& cell) {
+      model_.bent_without_sign.add(std::abs(cell.mm3), glm::length(cell.arm_mm));
+      model_.curvature_mm += std::abs(cell.mm);
+    });
+  }
+  /// What displaced planes gain along an edge, on either side of it or beside one.
+  void add_displaced(std::uint32_t side, double angle) {
+    const std::uint32_t a = side / 3, b = linked_.opposite[side] / 3;
+    if (!moved_[a] && !moved_[b]) return;
+    const glm::dvec3 from = this->from(side), to = this->to(side);
+    const glm::dvec3 middle = 0.5 * (from + to);
+    if (moved_[a] && moved_[b])
+      return add_corner(*moved_[a], *moved_[b], angle, glm::length(to - from), middle - frame_.about_mm);
+    const double mm2 = std::abs(moved_[a] ? moved_[a]->mm : moved_[b]->mm) * glm::length(to - from);
+    model_.rims_mm2 += mm2;
+    model_.unsure.add(mm2 * longest_mm_, glm::length(middle - frame_.about_mm));
+  }
+  /// The volume that two displaced planes gain at their common edge beyond their own gains.
+  void add_corner(const Moved& a, const Moved& b, double angle, double length_mm, const glm::dvec3& arm_mm) {
+    // Triangles of parallel planes have no common edge but one that rounding bends, however they are moved.
+    if (a.normal == b.normal || a.normal == -b.normal || !(std::abs(std::sin(angle)) > flatness_voxels))
+      return;
+    const double mm2 = (a.mm * b.mm - 0.5 * (a.mm * a.mm + b.mm * b.mm) * std::cos(angle)) / std::sin(angle);
+    if (a.tied || b.tied)
+      model_.unsure.add(std::abs(mm2) * length_mm, glm::length(arm_mm));
+    else
+      model_.planes.add(mm2 * length_mm, arm_mm);
+    model_.planes_without_sign.add(std::abs(mm2) * length_mm, glm::length(arm_mm));
+  }
+  glm::dvec3 from(std::uint32_t side) const { return triangles_.points_mm[linked_.from(side)]; }
+  glm::dvec3 to(std::uint32_t side) const { return triangles_.points_mm[linked_.to(side)]; }
+  std::uint64_t cell_of(const glm::dvec3& p_mm, const glm::dvec3& normal) const {
+    int direction = 0;
+    for (int axis = 1; axis < 3; ++axis)
+      if (std::abs(normal[axis]) > std::abs(normal[direction])) direction = axis;
+    // 20 bits an axis hold three million samples about the origin.
+    constexpr std::int64_t middle = 1 << 19;
+    auto key = static_cast<std::uint64_t>(normal[direction] < 0.0 ? direction : direction + 3);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double cell = std::floor(p_mm[axis] / (3.0 * frame_.sample_spacing_mm[axis]));
+      // Where there are no samples, their spacing is zero and all edges are of one cell.
+      const std::int64_t number = std::abs(cell) < 0x1p62 ? static_cast<std::int64_t>(cell) : 0;
+      key = (key << 20) | (static_cast<std::uint64_t>(number + middle) & 0xFFFFFU);
+    }
+    return key;
+  }
+
+  const brep::Linked& linked_;
+  const BoundaryFrame& frame_;
+  const brep::Triangles& triangles_;
+  std::vector<glm::dvec3> points_voxel_;     ///< the points of the triangles
+  std::vector<std::optional<Moved>> moved_;  ///< of each face that is part of a lattice plane
+  std::vector<Displaced> nearly_;            ///< of each face
+  const double longest_mm_ =
+      std::max({frame_.sample_spacing_mm.x, frame_.sample_spacing_mm.y, frame_.sample_spacing_mm.z});
+  BoundaryModel model_;
+};
+
+}  // namespace
+
+BoundaryModel boundary_model(const brep::Solid& solid, const BoundaryFrame& frame) {
+  return Modeller(solid, frame).run();
+}
+
+}  // namespace octotomy::verify

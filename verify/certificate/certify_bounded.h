@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "brep/mesh/solid.h"
+#include "verify/certificate/certificate.h"
+#include "verify/witness/reading.h"
+#include "voxel/measure/measure.h"
+#include "voxel/space/progress.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::verify {
+
+/// Inputs of the bound beside the two objects.
+struct BoundInputs {
+  std::string operation;
+  std::string voxel_lineage;
+  std::string mesh_lineage;
+  std::optional<voxel::Measures> voxel_measures = {};  ///< of the octree, if they are known
+  glm::dvec3 scan_spacing_mm{1.0};                     ///< of the samples that the isosurface was made from
+  /// Area of flat cuts by direction of their normal (x, y, z). Counts only cuts along the universe's planes.
+  glm::dvec3 flat_cut_mm2{0.0};
+  /// The box that the scan's voxels fill, if the solid may end with the scan.
+  std::optional<voxel::Box> scan_box_mm = {};
+  /// Every voxel's centre is a sample and the object is one window of them: topology must agree too.
+  bool voxels_are_samples = false;
+  /// Judges the places at which the answers differ, and counts the object along lines. It ends with the
+  /// universe, as both answers do. Without one, totals and distances decide.
+  Witness witness = {};
+};
+
+/// Compares an octree with a solid of separate lineage (tier Bounded). The source derives the terms. A solid
+/// by Connection may be inside out or meet itself: the comparison shows it. Throws as convert::voxelise();
+/// voxel::Stopped. Cost: about that of making both objects.
+Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& solid, const BoundInputs& inputs,
+                            const voxel::Progress& progress = {});
+
+}  // namespace octotomy::verify

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "brep/boolean/boolean.h"
+#include "verify/certificate/certificate.h"
+#include "voxel/space/progress.h"
+
+namespace octotomy::verify {
+
+struct OperationAnswers {
+  std::optional<voxel::Octree> octree;
+  brep::Solid solid;
+  double shift_mm = 0.0;              ///< how far the corefinement moved an operand
+  std::vector<std::string> findings;  ///< of the corefinement
+  Certificate certificate;
+};
+
+struct MeshOperationOptions {
+  std::optional<double> voxel_mm;                ///< edge; none: 1/128 of the largest extent of both operands
+  std::optional<voxel::Universe> universe = {};  ///< to compare in; none: cubes of that edge around both
+  voxel::Progress progress{};
+};
+/// A Boolean of two solids in both kernels (tier Bounded): by corefinement, and by voxelising each operand
+/// (D3) and combining the octrees. Both kernels have the same surfaces, so no voxel's centre may be inside
+/// one answer and outside the other. Exempt are centres so near the surface that rounding, or the shift that
+/// corefinement reported, decides. Volumes are compared loosely, by the error of sampling at centres. Throws
+/// as brep::boolean() and convert::voxelise(), std::length_error if the voxels are too small for a universe,
+/// voxel::Stopped.
+OperationAnswers certify_operation(const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
+                                   const MeshOperationOptions& options = {});
+
+/// The operation in words: "a | b".
+std::string text_of(brep::Operation operation);
+
+/// An octree and a solid that have the same surfaces, at voxels' centres (tier Bounded). `shift_mm` and
+/// `findings` are those of the Boolean that made the solid.
+Certificate certify_at_centres(const voxel::Octree& octree, const brep::Solid& solid, double shift_mm,
+                               const std::vector<std::string>& findings);
+
+}  // namespace octotomy::verify

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "brep/mesh/triangles.h"
+#include "verify/certificate/certify_bounded.h"
+
+namespace octotomy::verify {
+
+/// certify_bounded() for any triangles. The certificate fails and says why if they are not a closed, oriented
+/// manifold surface; then it compares what it can. Cost: brep::health() without intersections in addition.
+Certificate certify_surface(const voxel::Octree& octree, const brep::Triangles& triangles,
+                            const BoundInputs& inputs, const voxel::Progress& progress = {});
+
+}  // namespace octotomy::verify

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "brep/mesh/mesh.h"
+#include "verify/certificate/certificate.h"
+#include "verify/certificate/general_position.h"
+#include "voxel/solid/expression.h"
+#include "voxel/space/progress.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::verify {
+
+/// Both kernels' answers to a Boolean expression of sets of voxels, on a refined lattice of unit voxels whose
+/// corner is the origin (GeneralPosition).
+struct ExactAnswers {
+  voxel::Octree octree;
+  /// The mesh kernel's answer: solids with disjoint insides. One unless the expression has an exclusive or,
+  /// which no manifold surface bounds.
+  std::vector<brep::Mesh> solids;
+  std::string operation;
+  double unit_mm3 = 1.0;              ///< volume of a refined voxel in the patient
+  glm::dmat4 lps_from_unit{1.0};      ///< to the patient's millimetres, to within a voxel
+  bool areas_add_up = true;           ///< no two of the solids share a face
+  double shift_mm = 0.0;              ///< how far the corefinements moved operands: zero if all is well
+  std::vector<std::string> findings;  ///< of the corefinements
+};
+
+/// Evaluates the expression in both kernels: in one walk over octrees, and by corefinement of cuberilles. Its
+/// leaves are octrees of one universe, moved at most by whole voxels; an octree that occurs twice counts as
+/// two sets. Parts outside the universe are cut off. Throws std::invalid_argument that names a leaf or motion
+/// of another kind; as general_position() and brep::boolean(); voxel::Stopped. Cost: see general_position();
+/// one corefinement for each operator, about 10 us a triangle.
+ExactAnswers exact_answers(const voxel::Expression& expression, const voxel::Progress& progress = {});
+
+/// Compares both answers with tolerance zero (tier Exact): six times the mesh's volume as an integer, its
+/// area, and its set of voxels. The mesh's surface must be closed and oriented. FAIL if anything differs.
+Certificate certify_exact(const ExactAnswers& answers);
+
+/// The volume of solids with corners on the unit lattice as an integer, in 64-bit integers for whole points.
+/// The other points are roundings of points on lines between whole ones; they change the sum by far less than
+/// a half (see source). None if the sum is not an integer.
+std::optional<std::int64_t> whole_volume(const std::vector<brep::Mesh>& solids);
+
+}  // namespace octotomy::verify

@@ -1,0 +1,600 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// 1 Voxels. A kernel's answer at a voxel's centre must be one that the witness allows it. Away from any
+//   surface, where the witness does not know the side, the kernels must agree.
+// 2 Triangles. A triangle's centroid must lie where the witness has a surface, each vertex where a surface
+//   has a vertex of its own or two surfaces cross.
+// 3 Inside. What both kernels lack, or have too much of, has no boundary that step 1 would compare. So every
+//   eighth voxel wherever the object may be is held against the witness: those with x + 2y + 4z a multiple of
+//   8, one in each block of two voxels a side.
+// 4 Groups. Voxels that fail, joined by faces, edges and corners; the largest is the worst place.
+// 5 Limit. Errors are made at random places of this object and judged as above: groups of voxels next to the
+//   boundary are removed and added, pieces of the mesh are lost, the whole is shifted along both directions
+//   of three axes. The limit is the smallest size from which every one of them is found.
+#include "verify/certificate/places.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <random>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <utility>
+#include <vector>
+
+#include "brep/mesh/components.h"
+#include "brep/mesh/distance.h"
+#include "brep/mesh/triangles.h"
+#include "convert/voxel/voxelise.h"
+#include "verify/certificate/necks.h"
+#include "voxel/measure/distance_map.h"
+#include "voxel/solid/combine.h"
+#include "voxel/tree/octree_node.h"
+#include "voxel/tree/voxel_boundary.h"
+
+namespace octotomy::verify {
+namespace {
+
+/// Which of the kernels is wrong at a voxel.
+enum class Fault : std::uint8_t { None, VoxelsLack, VoxelsHave, MeshLacks, MeshHas, Apart };
+
+/// Clauses of a WorstPlace, by Fault.
+constexpr std::array<const char*, 6> clauses{"",
+                                             "the scan has a part there that the voxels lack",
+                                             "the voxels have a part there that the scan lacks",
+                                             "the scan has a part there that the mesh lacks",
+                                             "the mesh has a part there that the scan lacks",
+                                             "only one kernel has a part there"};
+
+Fault fault_of(const Reading& reading, bool in_voxels, bool in_mesh) {
+  if (!reading.voxel.allows(in_voxels)) return in_voxels ? Fault::VoxelsHave : Fault::VoxelsLack;
+  if (!reading.mesh.allows(in_mesh)) return in_mesh ? Fault::MeshHas : Fault::MeshLacks;
+  const bool near = reading.voxel.near || reading.mesh.near;
+  // A kernel that keeps a certain word is right, whatever the other does: their interpolations part there.
+  const bool told = reading.voxel != untold || reading.mesh != untold;
+  return in_voxels == in_mesh || near || told ? Fault::None : Fault::Apart;
+}
+
+/// Where a part hangs on by less than a voxel, as thin bone does, chance decides whether a kernel takes it
+/// with the rest. So fewer voxels than a block of three a side are no fault where they are Apart and no face
+/// connects them with what the kernel that lacks them has.
+constexpr std::size_t chance_voxels = 27;
+
+struct FailedVoxel {
+  glm::ivec3 at{0};
+  Fault fault = Fault::None;
+};
+
+bool is_within(const glm::ivec3& voxel, const voxel::Octree& octree) {
+  return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) &&
+         glm::all(glm::lessThan(voxel, glm::ivec3(octree.universe().side())));
+}
+
+/// The voxels of a set, in the order of its blocks.
+void collect(const voxel::BlockRef& block, int height, const glm::ivec3& low,
+             std::vector<glm::ivec3>& voxels) {
+  if (block.is_empty()) return;
+  const int side = 1 << (2 * height);
+  if (block.is_full()) {
+    for (int z = 0; z < side; ++z)
+      for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) voxels.push_back(low + glm::ivec3(x, y, z));
+    return;
+  }
+  for (int child = 0; child < 64; ++child) {
+    const glm::ivec3 at = low + glm::ivec3(child & 3, (child >> 2) & 3, child >> 4) * (side / 4);
+    if (height > 2) {
+      collect(block.child(child), height - 1, at, voxels);
+      continue;
+    }
+    for (std::uint64_t word = block.word(child); word != 0; word &= word - 1) {
+      const int bit = std::countr_zero(word);
+      voxels.push_back(at + glm::ivec3(bit & 3, (bit >> 2) & 3, bit >> 4));
+    }
+  }
+}
+
+/// Sorts voxels of a universe and leaves each once: dealt out to their slices, these sorted by themselves.
+void sort_and_unify(std::vector<glm::ivec3>& voxels, int side) {
+  std::vector<std::size_t> end(static_cast<std::size_t>(side) + 1, 0);
+  for (const glm::ivec3& at : voxels) ++end[static_cast<std::size_t>(at.z) + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<std::size_t> next(end.begin(), end.end() - 1);
+  // Within a slice, rows of the universe one after the other.
+  std::vector<std::uint32_t> places(voxels.size());
+  for (const glm::ivec3& at : voxels)
+    places[next[static_cast<std::size_t>(at.z)]++] = static_cast<std::uint32_t>(at.y * side + at.x);
+  tbb::parallel_for(std::size_t{0}, next.size(), [&](std::size_t z) {
+    const auto begin = places.begin() + static_cast<std::ptrdiff_t>(end[z]);
+    std::sort(begin, places.begin() + static_cast<std::ptrdiff_t>(end[z + 1]));
+    next[z] = static_cast<std::size_t>(
+        std::unique(begin, places.begin() + static_cast<std::ptrdiff_t>(end[z + 1])) - places.begin());
+  });
+  voxels.clear();
+  for (std::size_t z = 0; z < next.size(); ++z)
+    for (std::size_t i = end[z]; i < next[z]; ++i) {
+      const auto place = static_cast<int>(places[i]);
+      voxels.emplace_back(place % side, place / side, static_cast<int>(z));
+    }
+}
+
+/// The voxels at which answers can be wrong and are compared: where the kernels differ, and beside the
+/// boundary.
+std::vector<glm::ivec3> compared_voxels(const voxel::Octree& octree, const voxel::Octree& digitised,
+                                        const std::vector<voxel::VoxelFace>& boundary) {
+  const voxel::Octree differing =
+      voxel::combine(octree.universe(), voxel::Expression(octree) ^ voxel::Expression(digitised));
+  std::vector<glm::ivec3> voxels;
+  collect(differing.root(), differing.root_height(), glm::ivec3(0), voxels);
+  const int side = octree.universe().side();
+  for (const voxel::VoxelFace& face : boundary) {
+    voxels.push_back(face.voxel);
+    glm::ivec3 beyond = face.voxel;
+    beyond[face.axis] += face.side;
+    if (beyond[face.axis] >= 0 && beyond[face.axis] < side) voxels.push_back(beyond);
+  }
+  sort_and_unify(voxels, side);
+  return voxels;
+}
+
+std::vector<FailedVoxel> failed_voxels(const voxel::Octree& octree, const voxel::Octree& digitised,
+                                       const std::vector<glm::ivec3>& voxels, const Witness& witness,
+                                       const voxel::Progress& progress) {
+  const glm::dmat4& lps_from_voxel = octree.universe().lps_from_voxel;
+  std::vector<Fault> faults(voxels.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, voxels.size(), 1024), [&](const auto& range) {
+    if (progress.stop.stop_requested()) return;
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const glm::dvec3 p_mm(lps_from_voxel * glm::dvec4(glm::dvec3(voxels[i]), 1.0));
+      faults[i] = fault_of(witness.words(p_mm), octree.contains(voxels[i]), digitised.contains(voxels[i]));
+    }
+  });
+  progress.at(0.5);
+  std::vector<FailedVoxel> failed;
+  for (std::size_t i = 0; i < voxels.size(); ++i)
+    if (faults[i] != Fault::None) failed.push_back({voxels[i], faults[i]});
+  return failed;
+}
+
+/// Voxels of step 3.
+constexpr int sampled_one_in = 8;
+constexpr bool is_sampled(int x, int y, int z) {
+  return ((x + 2 * y + 4 * z) & (sampled_one_in - 1)) == 0;
+}
+bool is_sampled(const glm::ivec3& voxel) {
+  return is_sampled(voxel.x, voxel.y, voxel.z);
+}
+/// The one of the block of two voxels a side that begins at a voxel.
+glm::ivec3 sampled_in_block(const glm::ivec3& first) {
+  glm::ivec3 at = first;
+  for (int i = 0; i < 8 && !is_sampled(at); ++i)
+    at = first + glm::ivec3((i + 1) & 1, ((i + 1) >> 1) & 1, (i + 1) >> 2);
+  return at;
+}
+
+/// A leaf's voxels, and of those the ones of step 3.
+constexpr int leaf_side = 4;
+std::uint64_t leaf_word(const voxel::Octree& octree, const glm::ivec3& low) {
+  const glm::ivec3 leaf = (low / leaf_side) % leaf_side;
+  return octree.leaf_block(low / 16).word(voxel::child_index(leaf.x, leaf.y, leaf.z));
+}
+std::uint64_t sampled_word(const glm::ivec3& low) {
+  constexpr auto at_even_and_odd_leaves = [] {
+    std::array<std::uint64_t, 2> words{};
+    for (int bit = 0; bit < 64; ++bit)
+      for (int odd = 0; odd < 2; ++odd)
+        if (is_sampled(leaf_side * odd + (bit & 3), (bit >> 2) & 3, bit >> 4))
+          words[static_cast<std::size_t>(odd)] |= std::uint64_t{1} << bit;
+    return words;
+  }();
+  return at_even_and_odd_leaves[static_cast<std::size_t>(low.x / leaf_side % 2)];
+}
+
+/// Blocks of the universe in which the object may be, by its reading along lines, or voxels are: their lowest
+/// voxels.
+constexpr int block_side = 8;
+std::vector<glm::ivec3> blocks_of(const voxel::Octree& octree, const LineReading& lines) {
+  const voxel::Lattice lattice = octree.universe().lattice();
+  glm::dvec3 low(octree.universe().side()), high(-1.0);
+  // A box with sides in infinity has no corners: it reaches over all.
+  const bool is_bounded = glm::all(glm::lessThan(glm::abs(lines.box_mm.low_mm), glm::dvec3(1e9))) &&
+                          glm::all(glm::lessThan(glm::abs(lines.box_mm.high_mm), glm::dvec3(1e9)));
+  const voxel::Box box = is_bounded ? lines.box_mm : voxel::bounds(lattice);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p_voxel =
+        lattice.voxel({corner & 1 ? box.high_mm.x : box.low_mm.x, corner & 2 ? box.high_mm.y : box.low_mm.y,
+                       corner & 4 ? box.high_mm.z : box.low_mm.z});
+    low = glm::min(low, p_voxel);
+    high = glm::max(high, p_voxel);
+  }
+  if (!octree.is_empty()) {
+    const voxel::VoxelRange range = voxel::range_of(octree);
+    low = glm::min(low, glm::dvec3(range.low));
+    high = glm::max(high, glm::dvec3(range.high));
+  }
+  const glm::ivec3 first(
+      glm::clamp(glm::floor(low), glm::dvec3(0.0), glm::dvec3(octree.universe().side() - 1))),
+      last(glm::clamp(glm::ceil(high), glm::dvec3(0.0), glm::dvec3(octree.universe().side() - 1)));
+  std::vector<glm::ivec3> blocks;
+  for (int z = first.z / block_side * block_side; z <= last.z; z += block_side)
+    for (int y = first.y / block_side * block_side; y <= last.y; y += block_side)
+      for (int x = first.x / block_side * block_side; x <= last.x; x += block_side)
+        blocks.emplace_back(x, y, z);
+  return blocks;
+}
+
+/// Sampled voxels on which both kernels agree and that the witness's word of the mesh contradicts, but for
+/// `compared` ones, which are sorted. Empty where the object has no reading along lines, which says where to
+/// look.
+std::vector<FailedVoxel> failed_inside(const voxel::Octree& octree, const voxel::Octree& digitised,
+                                       const std::vector<glm::ivec3>& compared, const Witness& witness,
+                                       const voxel::Progress& progress) {
+  if (!witness.lines()) return {};
+  const voxel::Lattice lattice = octree.universe().lattice();
+  const std::vector<glm::ivec3> blocks = blocks_of(octree, witness.lines());
+  std::vector<std::vector<FailedVoxel>> found(blocks.size());
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+    if (progress.stop.stop_requested()) return;
+    const glm::dvec3 a = lattice.lps_mm(glm::dvec3(blocks[i]) - 0.5),
+                     b = lattice.lps_mm(glm::dvec3(blocks[i] + block_side) - 0.5);
+    const bool may_meet = witness.lines().may_meet({glm::min(a, b), glm::max(a, b)});
+    for (int leaf = 0; leaf < 8; ++leaf) {
+      const glm::ivec3 low = blocks[i] + leaf_side * glm::ivec3(leaf & 1, (leaf >> 1) & 1, leaf >> 2);
+      const std::uint64_t voxels = leaf_word(octree, low);
+      std::uint64_t tried = sampled_word(low) & ~(voxels ^ leaf_word(digitised, low));
+      if (!may_meet) tried &= voxels;
+      for (; tried != 0; tried &= tried - 1) {
+        const int bit = std::countr_zero(tried);
+        const glm::ivec3 at = low + voxel::child_place(bit);
+        const bool inside = ((voxels >> bit) & 1) != 0;
+        // Its interpolation of the scan is enough: the voxels' own differs at surfaces alone.
+        if (!is_within(at, octree) || witness.mesh_word(lattice.lps_mm(glm::dvec3(at))).allows(inside) ||
+            std::binary_search(compared.begin(), compared.end(), at, before))
+          continue;
+        found[i].push_back({at, inside ? Fault::MeshHas : Fault::MeshLacks});
+      }
+    }
+  });
+  std::vector<FailedVoxel> failed;
+  for (const std::vector<FailedVoxel>& part : found) failed.insert(failed.end(), part.begin(), part.end());
+  return failed;
+}
+
+/// Each stands for its block.
+void add_inside(const std::vector<FailedVoxel>& failed, const voxel::Octree& octree, Places& places) {
+  if (failed.empty()) return;
+  const voxel::Lattice lattice = octree.universe().lattice();
+  const std::uint64_t count = failed.size() * static_cast<std::uint64_t>(sampled_one_in);
+  places.voxel_count += count;
+  if (count <= places.largest_count) return;
+  places.largest_count = count;
+  const double volume_mm3 = static_cast<double>(count) * lattice.voxel_mm3();
+  const FailedVoxel& middle = failed[failed.size() / 2];
+  const bool lacks = middle.fault == Fault::VoxelsLack || middle.fault == Fault::MeshLacks;
+  places.worst = WorstPlace{lattice.lps_mm(glm::dvec3(middle.at)), std::cbrt(volume_mm3),
+                            lacks ? "the scan has a part there that both kernels lack"
+                                  : "both kernels have a part there that the scan lacks",
+                            volume_mm3};
+}
+
+/// Whether no face connects a voxel that one kernel lacks with a part of which it might be. What certainly is
+/// there is another object's.
+bool hangs_on_no_face(const glm::ivec3& voxel, const voxel::Octree& octree, const voxel::Octree& digitised,
+                      const Witness& witness) {
+  const bool in_voxels = octree.contains(voxel);
+  const voxel::Octree& lacking = in_voxels ? digitised : octree;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int by : {-1, 1}) {
+      glm::ivec3 neighbour = voxel;
+      neighbour[axis] += by;
+      if (!is_within(neighbour, octree) || !lacking.contains(neighbour)) continue;
+      const Reading reading = witness.words(octree.universe().lattice().lps_mm(glm::dvec3(neighbour)));
+      if ((in_voxels ? reading.mesh : reading.voxel) == untold) return false;
+    }
+  return true;
+}
+
+/// The place of a group of failed voxels.
+WorstPlace place_of(const std::vector<FailedVoxel>& group, const voxel::Lattice& lattice) {
+  glm::dvec3 middle(0.0);
+  std::array<std::size_t, clauses.size()> votes{};
+  for (const FailedVoxel& voxel : group) {
+    middle += glm::dvec3(voxel.at) / static_cast<double>(group.size());
+    ++votes[static_cast<std::size_t>(voxel.fault)];
+  }
+  // The voxel of the group that is nearest to its middle, so that the place lies in it.
+  const auto nearest =
+      std::min_element(group.begin(), group.end(), [&](const FailedVoxel& a, const FailedVoxel& b) {
+        return glm::distance(glm::dvec3(a.at), middle) < glm::distance(glm::dvec3(b.at), middle);
+      });
+  const auto fault = std::max_element(votes.begin(), votes.end()) - votes.begin();
+  const double volume_mm3 = static_cast<double>(group.size()) * lattice.voxel_mm3();
+  return {lattice.lps_mm(glm::dvec3(nearest->at)), std::cbrt(volume_mm3),
+          clauses[static_cast<std::size_t>(fault)], volume_mm3};
+}
+
+/// Joins failed voxels, which are sorted, leaves out groups by chance and parts beyond thin necks, and keeps
+/// the largest group.
+void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& octree,
+                const voxel::Octree& digitised, const Witness& witness, Places& places) {
+  const Bridges bridges(octree, digitised, witness);
+  std::vector<glm::ivec3> voxels;
+  for (const FailedVoxel& voxel : failed) voxels.push_back(voxel.at);
+  for (std::vector<std::size_t>& members : groups_of(voxels)) {
+    std::sort(members.begin(), members.end());
+    std::vector<FailedVoxel> group;
+    for (const std::size_t i : members) group.push_back(failed[i]);
+    if (std::all_of(group.begin(), group.end(),
+                    [](const FailedVoxel& voxel) { return voxel.fault == Fault::Apart; })) {
+      if (group.size() < chance_voxels &&
+          std::all_of(group.begin(), group.end(), [&](const FailedVoxel& voxel) {
+            return hangs_on_no_face(voxel.at, octree, digitised, witness);
+          }))
+        continue;
+      std::vector<glm::ivec3> rest;
+      for (const FailedVoxel& voxel : group) rest.push_back(voxel.at);
+      for (OpenPart& part : bridges.take_from(rest)) places.open.push_back(std::move(part));
+      group.clear();
+      for (const glm::ivec3& at : rest) group.push_back({at, Fault::Apart});
+      if (group.empty()) continue;
+    }
+    places.voxel_count += group.size();
+    if (group.size() <= places.largest_count) continue;
+    places.largest_count = group.size();
+    places.worst = place_of(group, octree.universe().lattice());
+  }
+  std::stable_sort(places.open.begin(), places.open.end(), [](const OpenPart& a, const OpenPart& b) {
+    return a.bridge.volume_mm3 > b.bridge.volume_mm3;
+  });
+}
+
+/// A triangle's centroid and area.
+struct Facet {
+  glm::dvec3 centroid_mm{0.0};
+  double area_mm2 = 0.0;
+};
+Facet facet_of(const brep::Triangles& mesh, std::size_t face) {
+  const auto& [a, b, c] = mesh.faces[face];
+  const glm::dvec3 &p = mesh.points_mm[a], &q = mesh.points_mm[b], &r = mesh.points_mm[c];
+  return {(p + q + r) / 3.0, 0.5 * glm::length(glm::cross(q - p, r - p))};
+}
+
+void add_stray_triangles(const brep::Triangles& mesh, const Witness& witness, const voxel::Progress& progress,
+                         Places& places) {
+  const auto for_all = [&](std::size_t count, const auto& judge) {
+    std::vector<std::uint8_t> wrong(count, 0);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
+      if (progress.stop.stop_requested()) return;
+      for (std::size_t i = range.begin(); i != range.end(); ++i) wrong[i] = judge(i) ? 0 : 1;
+    });
+    return wrong;
+  };
+  const std::vector<std::uint8_t> stray_vertex = for_all(mesh.points_mm.size(), [&](std::size_t i) {
+    const Reading reading = witness.of_mesh(mesh.points_mm[i]);
+    return reading.mesh.near && reading.surfaces >= 2;
+  });
+  const std::vector<std::uint8_t> stray = for_all(mesh.faces.size(), [&](std::size_t i) {
+    const auto& face = mesh.faces[i];
+    return std::none_of(face.begin(), face.end(),
+                        [&](std::uint32_t vertex) { return stray_vertex[vertex] != 0; }) &&
+           witness.mesh_word(facet_of(mesh, i).centroid_mm).near;
+  });
+  progress.at(0.8);
+  double largest_mm2 = 0.0;
+  for (std::size_t i = 0; i < stray.size(); ++i) {
+    if (!stray[i]) continue;
+    const Facet facet = facet_of(mesh, i);
+    places.stray_mm2 += facet.area_mm2;
+    if (places.voxel_count > 0 || facet.area_mm2 <= largest_mm2) continue;
+    largest_mm2 = facet.area_mm2;
+    places.worst = WorstPlace{facet.centroid_mm, std::sqrt(facet.area_mm2),
+                              "the mesh has a surface there that the scan lacks", 0.0};
+  }
+}
+
+/// Steps from a voxel to its neighbours within six voxels, the nearest first.
+std::vector<glm::ivec3> steps_outward() {
+  std::vector<glm::ivec3> steps;
+  for (int z = -6; z <= 6; ++z)
+    for (int y = -6; y <= 6; ++y)
+      for (int x = -6; x <= 6; ++x)
+        if (x * x + y * y + z * z <= 36) steps.emplace_back(x, y, z);
+  std::stable_sort(steps.begin(), steps.end(), [](const glm::ivec3& a, const glm::ivec3& b) {
+    return a.x * a.x + a.y * a.y + a.z * a.z < b.x * b.x + b.y * b.y + b.z * b.z;
+  });
+  return steps;
+}
+
+/// The number of voxels of one state, outward from a voxel, until one of them would differ from the other
+/// kernel's and fail in the other state: a smaller error of that shape would pass there.
+std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digitised, const glm::ivec3& from,
+                          const std::vector<glm::ivec3>& steps, const Witness& witness) {
+  const bool inside = octree.contains(from);
+  std::size_t count = 0;
+  for (const glm::ivec3& step : steps) {
+    const glm::ivec3 at = from + step;
+    if (!is_within(at, octree) || octree.contains(at) != inside) continue;
+    ++count;
+    if (digitised.contains(at) != inside) continue;
+    const Reading reading = witness.words(octree.universe().lattice().lps_mm(glm::dvec3(at)));
+    if (fault_of(reading, !inside, inside) != Fault::None) return count;
+  }
+  return count;
+}
+
+/// Whether a voxel that is not in the mesh is compared: it is in the octree or beside its boundary.
+bool is_compared(const voxel::Octree& octree, const glm::ivec3& voxel) {
+  const auto has = [&](const glm::ivec3& at) { return is_within(at, octree) && octree.contains(at); };
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int by : {-1, 1}) {
+      glm::ivec3 neighbour = voxel;
+      neighbour[axis] += by;
+      if (has(neighbour)) return true;
+    }
+  return has(voxel);
+}
+
+/// Whether the loss of a piece would be seen, by the mesh alone and by both kernels: it holds a voxel's
+/// centre that is compared, and at which the mesh would fail without it, and a sampled one at which both
+/// would. Looked for beneath its triangles, up to two voxels deep.
+bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const voxel::Octree& octree,
+             const Witness& witness) {
+  constexpr std::size_t most_faces = 4096, most_tried = 64;
+  if (piece.faces.size() > most_faces) return true;
+  brep::Triangles own;
+  for (const std::uint32_t face : piece.faces) {
+    const auto first = static_cast<std::uint32_t>(own.points_mm.size());
+    for (const std::uint32_t corner : mesh.faces[face]) own.points_mm.push_back(mesh.points_mm[corner]);
+    own.faces.push_back({first, first + 1, first + 2});
+  }
+  const voxel::Lattice lattice = octree.universe().lattice();
+  const glm::dvec3 voxel_mm = lattice.spacing_mm();
+  const bool is_small = std::abs(piece.volume_mm3) < chance_voxels * lattice.voxel_mm3();
+  const std::size_t stride = 1 + own.faces.size() / most_tried;
+  bool seen_alone = false, seen_in_both = !witness.lines();
+  const auto is_lost = [&](const glm::ivec3& at, bool in_voxels) {
+    const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(at));
+    const Fault fault = fault_of(witness.words(centre), in_voxels, false);
+    return fault != Fault::None && !(fault == Fault::Apart && is_small) && brep::is_inside(centre, own);
+  };
+  const auto is_lost_in_both = [&](const glm::ivec3& at) {
+    const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(at));
+    return !witness.mesh_word(centre).allows(false) && brep::is_inside(centre, own);
+  };
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  for (const glm::dvec3& p : own.points_mm) {
+    low = glm::min(low, lattice.voxel(p));
+    high = glm::max(high, lattice.voxel(p));
+  }
+  for (std::size_t i = 0; i < own.faces.size(); i += stride)
+    for (const double voxels : {0.5, 1.0, 2.0}) {
+      const auto& [a, b, c] = own.faces[i];
+      const glm::dvec3 &p = own.points_mm[a], &q = own.points_mm[b], &r = own.points_mm[c];
+      const glm::dvec3 across = glm::cross(q - p, r - p);
+      const double length = glm::length(across);
+      if (!(length > 0.0)) continue;
+      const glm::dvec3 beneath = (p + q + r) / 3.0 - voxels / length * across * voxel_mm;
+      const glm::ivec3 voxel(glm::round(lattice.voxel(beneath)));
+      if (!seen_alone && is_compared(octree, voxel)) seen_alone = is_lost(voxel, octree.contains(voxel));
+      if (!seen_in_both) seen_in_both = is_lost_in_both(sampled_in_block(voxel));
+      if (seen_alone && seen_in_both) return true;
+    }
+  // A small piece has few sampled voxels: each is tried.
+  const glm::dvec3 box = glm::ceil(high) - glm::floor(low) + 1.0;
+  constexpr double most_voxels = 16384.0;
+  if (!seen_alone || box.x * box.y * box.z > most_voxels) return false;
+  for (int z = static_cast<int>(std::floor(low.z)); z <= high.z; ++z)
+    for (int y = static_cast<int>(std::floor(low.y)); y <= high.y; ++y)
+      for (int x = static_cast<int>(std::floor(low.x)); x <= high.x; ++x)
+        if (is_sampled({x, y, z}) && is_lost_in_both({x, y, z})) return true;
+  return false;
+}
+
+/// The largest piece of the mesh that could be lost unseen. A part that is lost or added otherwise leaves
+/// vertices where the witness has none.
+double piece_limit_mm3(const brep::Solid& solid, const brep::Triangles& mesh, const voxel::Octree& octree,
+                       const Witness& witness) {
+  const std::vector<brep::Component>& pieces = solid.components();
+  std::vector<double> lost_mm3(pieces.size(), 0.0);
+  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
+    if (!is_seen(mesh, pieces[i], octree, witness)) lost_mm3[i] = std::abs(pieces[i].volume_mm3);
+  });
+  return pieces.empty() ? 0.0 : *std::max_element(lost_mm3.begin(), lost_mm3.end());
+}
+
+/// Places of an object at which errors are tried.
+constexpr std::size_t tried_places = 1024;
+/// Triangles by which a shift is tried.
+constexpr std::size_t tried_triangles = 4096;
+
+double place_limit_mm3(const voxel::Octree& octree, const voxel::Octree& digitised,
+                       const std::vector<voxel::VoxelFace>& boundary, const Witness& witness) {
+  const std::vector<glm::ivec3> steps = steps_outward();
+  std::mt19937_64 random(1);
+  std::vector<glm::ivec3> from;
+  for (std::size_t i = 0; i < tried_places; ++i) {
+    const voxel::VoxelFace& face = boundary[random() % boundary.size()];
+    from.push_back(face.voxel);
+    // Every other error adds voxels.
+    if (i % 2 == 1) from.back()[face.axis] += face.side;
+  }
+  std::vector<std::size_t> counts(from.size(), 0);
+  tbb::parallel_for(std::size_t{0}, from.size(), [&](std::size_t i) {
+    counts[i] = unseen_voxels(octree, digitised, from[i], steps, witness);
+  });
+  const std::size_t most = std::max<std::size_t>(*std::max_element(counts.begin(), counts.end()), 1);
+  return static_cast<double>(std::bit_ceil(most)) * octree.universe().lattice().voxel_mm3();
+}
+
+/// The smallest tried shift that takes at least one triangle of a sample off the surface, in every direction.
+/// None: the largest tried does not.
+std::optional<double> shift_limit_mm(const brep::Triangles& mesh, double voxel_mm, const Witness& witness) {
+  std::mt19937_64 random(2);
+  std::vector<glm::dvec3> points_mm;
+  for (std::size_t i = 0; i < tried_triangles; ++i)
+    points_mm.push_back(facet_of(mesh, random() % mesh.faces.size()).centroid_mm);
+  for (const double voxels : {0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0}) {
+    bool seen_everywhere = true;
+    for (int direction = 0; direction < 6 && seen_everywhere; ++direction) {
+      glm::dvec3 by_mm(0.0);
+      by_mm[direction / 2] = (direction % 2 == 0 ? 1.0 : -1.0) * voxels * voxel_mm;
+      seen_everywhere = std::any_of(points_mm.begin(), points_mm.end(), [&](const glm::dvec3& p_mm) {
+        return !witness.mesh_word(p_mm + by_mm).near;
+      });
+    }
+    if (seen_everywhere) return voxels * voxel_mm;
+  }
+  return std::nullopt;
+}
+
+/// Without the limit.
+Places contradictions(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,
+                      const std::vector<voxel::VoxelFace>& boundary, const Witness& witness,
+                      const voxel::Progress& progress) {
+  Places places;
+  const std::vector<glm::ivec3> voxels = compared_voxels(octree, digitised, boundary);
+  progress.at(0.2);
+  add_groups(failed_voxels(octree, digitised, voxels, witness, progress), octree, digitised, witness, places);
+  add_inside(failed_inside(octree, digitised, voxels, witness, progress), octree, places);
+  add_stray_triangles(solid.triangles(), witness, progress, places);
+  return places;
+}
+
+}  // namespace
+
+Places contradicted_places(const voxel::Octree& octree, const voxel::Octree& digitised,
+                           const brep::Solid& solid, const Witness& witness) {
+  return contradictions(octree, digitised, solid, voxel::voxel_boundary(octree), witness, {});
+}
+
+std::vector<OpenPart> open_parts(const voxel::Octree& octree, const brep::Solid& solid,
+                                 const Witness& witness) {
+  if (!witness) return {};
+  const voxel::Octree digitised = convert::voxelise(octree.universe(), solid.linked());
+  Places places;
+  add_groups(failed_voxels(octree, digitised, compared_voxels(octree, digitised, {}), witness, {}), octree,
+             digitised, witness, places);
+  return std::move(places.open);
+}
+
+Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,
+                    const Witness& witness, const voxel::Progress& progress) {
+  const brep::Triangles& mesh = solid.triangles();
+  const std::vector<voxel::VoxelFace> boundary = voxel::voxel_boundary(octree);
+  Places places = contradictions(octree, digitised, solid, boundary, witness, progress);
+  const glm::dvec3 voxel_mm = octree.universe().lattice().spacing_mm();
+  places.limit.volume_mm3 = piece_limit_mm3(solid, mesh, octree, witness);
+  if (!boundary.empty())
+    places.limit.volume_mm3 =
+        std::max(places.limit.volume_mm3, place_limit_mm3(octree, digitised, boundary, witness));
+  if (!mesh.faces.empty())
+    places.limit.shift_mm = shift_limit_mm(mesh, std::max({voxel_mm.x, voxel_mm.y, voxel_mm.z}), witness);
+  progress.at(1.0);
+  return places;
+}
+
+}  // namespace octotomy::verify

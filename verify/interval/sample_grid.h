@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <tbb/parallel_for.h>
+#include <vector>
+
+// A scan's samples as an array in the order of x, y, z, and filters of all of them. Parallel; same bits on
+// any thread count. Cost: order n.
+namespace octotomy::verify {
+
+using SampleValues = std::vector<float>;
+using SampleMask = std::vector<std::uint8_t>;
+
+struct SampleGrid {
+  glm::ivec3 dims{0};
+  glm::dvec3 spacing_mm{1.0};
+  std::size_t size() const {
+    return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) *
+           static_cast<std::size_t>(dims.z);
+  }
+  std::size_t stride(int axis) const {
+    return axis == 0   ? 1
+           : axis == 1 ? static_cast<std::size_t>(dims.x)
+                       : static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
+  }
+  std::size_t at(int x, int y, int z) const {
+    return static_cast<std::size_t>(x) + stride(1) * static_cast<std::size_t>(y) +
+           stride(2) * static_cast<std::size_t>(z);
+  }
+};
+
+/// Sums in a fixed order whatever the threads: by planes of z, then over the planes.
+template <typename Sum, typename PerPlane>
+Sum by_planes(const SampleGrid& grid, const PerPlane& per_plane) {
+  std::vector<Sum> planes(static_cast<std::size_t>(grid.dims.z));
+  tbb::parallel_for(0, grid.dims.z, [&](int z) { per_plane(z, planes[static_cast<std::size_t>(z)]); });
+  Sum whole{};
+  for (const Sum& plane : planes) whole += plane;
+  return whole;
+}
+
+/// Rows along an axis: runs `along(first, stride, length)` for each, in parallel.
+template <typename Along>
+void each_row(const SampleGrid& grid, int axis, const Along& along) {
+  const int outer = axis == 2 ? grid.dims.y : grid.dims.z, inner = axis == 0 ? grid.dims.y : grid.dims.x;
+  tbb::parallel_for(0, outer, [&](int i) {
+    for (int j = 0; j < inner; ++j) {
+      const std::size_t first = axis == 0   ? grid.at(0, j, i)
+                                : axis == 1 ? grid.at(j, 0, i)
+                                            : grid.at(j, i, 0);
+      along(first, grid.stride(axis), static_cast<std::size_t>(grid.dims[axis]));
+    }
+  });
+}
+
+/// A Gaussian of so many samples along each axis; border samples go on outwards.
+SampleValues blurred(const SampleGrid& grid, SampleValues values, double deviation);
+
+/// The lowest, or highest, of the samples within so many along each axis.
+SampleValues extremes(const SampleGrid& grid, SampleValues values, std::size_t reach, bool highest);
+
+/// Sets all within so many samples along each axis of one that is set.
+void grow(const SampleGrid& grid, SampleMask& mask, std::size_t reach);
+
+/// The area of a level between samples, in cells parted into six tetrahedra about a diagonal.
+double level_mm2(const SampleGrid& grid, const SampleValues& values, float level);
+
+}  // namespace octotomy::verify

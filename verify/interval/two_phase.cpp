@@ -1,0 +1,387 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// passes 1 Levels of the surroundings and of the core. 2 Samples of a third density below the surroundings,
+// as of air about tissue: where they keep away from the solid they are taken for surroundings; where they
+// meet it, and where there is a density between both, the scan is not of two. 3 Samples near the solid: those
+// that rise above noise after a blur of one sample, and three samples about them. 4 Sums. 5 Fits.
+#include "verify/interval/two_phase.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+#include "verify/interval/phase_size.h"
+#include "verify/interval/sample_density.h"
+#include "verify/interval/sample_grid.h"
+
+namespace octotomy::verify {
+namespace {
+
+/// Two gigabytes of copies.
+constexpr std::size_t most_samples = std::size_t{1} << 27;
+
+/// Sums over the samples near the solid and those away from it.
+struct Sums {
+  double near = 0.0, near_square = 0.0, away = 0.0, away_square = 0.0, tail = 0.0;
+  std::size_t band_count = 0, deep_count = 0, away_count = 0, tail_count = 0, border = 0, odd = 0, above = 0;
+  double deep = 0.0;
+  float highest = 0.0F;
+  Sums& operator+=(const Sums& by) {
+    near += by.near;
+    near_square += by.near_square;
+    away += by.away;
+    away_square += by.away_square;
+    tail += by.tail;
+    band_count += by.band_count;
+    deep_count += by.deep_count;
+    away_count += by.away_count;
+    tail_count += by.tail_count;
+    border += by.border;
+    odd += by.odd;
+    above += by.above;
+    deep += by.deep;
+    highest = std::max(highest, by.highest);
+    return *this;
+  }
+};
+
+class Reading {
+ public:
+  Reading(const voxel::Scene& scan, double low) : scan_(scan), low_(low) {
+    grid_.dims = scan.lattice.dims;
+    grid_.spacing_mm = scan.lattice.spacing_mm();
+  }
+
+  /// False: the solid and what is about it are not of two densities.
+  bool run(PhaseEvidence& found) {
+    if (scan_.padding || glm::any(glm::lessThan(grid_.dims, glm::ivec3(8)))) return false;
+    if (grid_.size() > most_samples) return false;
+    const std::optional<SampleDensity> level = surroundings();
+    if (!level) return false;
+    background_ = level->value;
+    noise_ = level->noise;
+    contrast_ = 2.0 * (low_ - background_);
+    if (!(contrast_ > 0.0) || noise_ > 0.2 * contrast_ || !are_beside()) return false;
+    std::visit([&](const auto& samples) { values_.assign(samples.begin(), samples.end()); }, scan_.samples);
+    filled_.assign(values_.size(), 0);
+    if (is_beside_ || has_others_) fill_lower();
+    std::array<SampleValues, 4> at_blur;
+    at_blur[2] = blurred(grid_, values_, added_blur[2]);
+    find_least_seen(at_blur[2]);
+    if (least_seen_ > std::min(5.0 * noise_ + 0.005 * contrast_, 0.3 * contrast_)) return false;  // they vary
+    const bool has_plateau = finds_plateau(at_blur[2]);
+    if ((is_beside_ && has_plateau) || !find_near(at_blur[2])) return false;
+    find_core();
+    Sums sums = summed(values_, true);
+    sums.odd += odd_in(at_blur[2]);
+    // Samples that lie alone are noise; elsewhere they are a third density.
+    if (sums.odd > sums.away_count / 500 + 2 || sums.border > 0 || sums.away_count < 100) return false;
+    const double mean = sums.away / static_cast<double>(sums.away_count);
+    // A third density that no one sample shows moves the mean.
+    if (std::abs(mean - background_) >
+        0.005 * contrast_ + 0.1 * noise_ + 4.0 * noise_ / std::sqrt(static_cast<double>(sums.away_count)))
+      return false;
+    background_ = mean;
+    contrast_ = 2.0 * (low_ - background_);
+    if (sums.deep_count >= 30) {
+      const double core = sums.deep / static_cast<double>(sums.deep_count) - background_;
+      const double rounding = 4.0 * noise_ / std::sqrt(static_cast<double>(sums.deep_count));
+      if (std::abs(core - contrast_) > 0.06 * contrast_ + rounding) return false;
+      found.has_core = true;
+      contrast_ = core;
+    }
+    at_blur[1] = blurred(grid_, values_, added_blur[1]);
+    at_blur[3] = blurred(grid_, at_blur[2], std::sqrt(1.6 * 1.6 - 1.0));
+    at_blur[0] = std::move(values_);
+    const auto half = static_cast<float>(background_ + 0.5 * contrast_);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Sums shares = summed(at_blur[i], false);
+      const double away = shares.away_square / static_cast<double>(shares.away_count);
+      // White noise keeps one part in 44.5 of its variance after a blur of one sample.
+      if (i == 2) found.correlation = std::sqrt(std::max(1.0, 44.5 * away / std::max(white_, 1e-9)));
+      if (i == 0) white_ = away;
+      found.squares[i] = shares.near_square - static_cast<double>(shares.band_count) * away;
+      found.level_mm2[i] = level_mm2(grid_, at_blur[i], half);
+      if (i == 2) found.highest = static_cast<double>(shares.highest);
+      if (i > 0) continue;
+      found.sum = shares.near;
+      const glm::dvec3& spacing_mm = grid_.spacing_mm;
+      found.counted_mm3 = static_cast<double>(shares.above) * spacing_mm.x * spacing_mm.y * spacing_mm.z;
+      found.band = shares.band_count;
+      found.tail = shares.tail;
+      found.noise = contrast_ * std::sqrt(away);
+    }
+    const auto filled = std::count(filled_.begin(), filled_.end(), std::uint8_t{1});
+    found.has_third = static_cast<std::size_t>(filled) > filled_.size() / 500;  // fewer are noise
+    found.background = background_;
+    found.contrast = contrast_;
+    found.least_seen = least_seen_ / contrast_;
+    found.is_ambiguous = !found.has_core && (has_others_ || (!is_beside_ && has_plateau) ||
+                                             has_lower_plateau(at_blur[2], found.highest));
+    return found.highest < 1.25 && found.sum > 0.0;
+  }
+
+ private:
+  /// How far below or above the surroundings a sample is of another density.
+  double far() const { return std::max(6.0 * noise_, 0.02 * contrast_); }
+
+  /// The density that the solid lies in: that of samples three samples from it. Where too few samples reach
+  /// the bound, that of most of the scan; of two common ones the higher.
+  std::optional<SampleDensity> surroundings() {
+    std::vector<float> beside, below;
+    std::visit(
+        [&](const auto& samples) {
+          const std::size_t size = grid_.size(), stride = 1 + size / 200000;
+          for (std::size_t i = 0; i < size; i += stride)
+            if (static_cast<double>(samples[i]) < low_) below.push_back(static_cast<float>(samples[i]));
+          find_reaches(samples);
+        },
+        scan_.samples);
+    each_beside([&](double value) { beside.push_back(static_cast<float>(value)); });
+    is_beside_ = beside.size() >= 100;
+    if (below.size() < 100) return std::nullopt;
+    SampleDensity level = refined(below, densest(below));
+    if (is_beside_) {
+      // Blur widens what is beside the solid: noise is that of most of the scan, if that is of this density.
+      SampleDensity near = densest(beside);
+      if (std::abs(near.value - level.value) < 3.0 * near.noise)
+        near.noise = std::min(near.noise, level.noise);
+      level.value = nearest_mode(below, near);
+      level.noise = refined(below, {level.value, near.noise}).noise;
+      return level;
+    }
+    const double off = std::max(6.0 * level.noise, 0.04 * (low_ - level.value));
+    std::vector<float> others;
+    std::copy_if(below.begin(), below.end(), std::back_inserter(others),
+                 [&](float value) { return std::abs(static_cast<double>(value) - level.value) > off; });
+    has_others_ = others.size() > below.size() / 4;
+    if (!has_others_) return level;
+    const SampleDensity other = refined(others, densest(others));
+    return other.value > level.value ? other : level;
+  }
+
+  /// Samples over the bound that have another beside them along x, y or z: one alone is noise.
+  template <typename Samples>
+  void find_reaches(const Samples& samples) {
+    reaches_.assign(samples.size(), 0);
+    const auto is_over = [&](std::size_t i) { return static_cast<double>(samples[i]) >= low_; };
+    for (int axis = 0; axis < 3; ++axis)
+      each_row(grid_, axis, [&](std::size_t first, std::size_t stride, std::size_t length) {
+        for (std::size_t i = 0; i + 1 < length; ++i)
+          if (is_over(first + i * stride) && is_over(first + (i + 1) * stride))
+            reaches_[first + i * stride] = reaches_[first + (i + 1) * stride] = 1;
+      });
+  }
+
+  /// Runs `visit(value)` for samples below the bound that lie three samples along an axis from one that
+  /// reaches it: of 200,000 such at most.
+  template <typename Visit>
+  void each_beside(const Visit& visit) const {
+    std::vector<std::size_t> over;
+    for (std::size_t i = 0; i < reaches_.size(); ++i)
+      if (reaches_[i] != 0) over.push_back(i);
+    const std::size_t every = 1 + over.size() / 200000;
+    std::visit(
+        [&](const auto& samples) {
+          for (std::size_t k = 0; k < over.size(); k += every)
+            for (int axis = 0; axis < 3; ++axis) {
+              const std::size_t away = 3 * grid_.stride(axis);
+              const int place =
+                  static_cast<int>(over[k] / grid_.stride(axis) % static_cast<std::size_t>(grid_.dims[axis]));
+              const auto look = [&](std::size_t at) {
+                if (static_cast<double>(samples[at]) < low_) visit(static_cast<double>(samples[at]));
+              };
+              if (place >= 3) look(over[k] - away);
+              if (place + 3 < grid_.dims[axis]) look(over[k] + away);
+            }
+        },
+        scan_.samples);
+  }
+
+  /// Whether samples beside the solid are of these surroundings, but for what blur and near walls add.
+  bool are_beside() const {
+    std::size_t all = 0, below = 0, lower = 0, higher = 0;
+    each_beside([&](double value) {
+      ++all;
+      below += value < background_ - 1.5 * noise_ ? 1 : 0;
+      lower += value < background_ - far() ? 1 : 0;
+      higher += value > background_ + 0.1 * contrast_ ? 1 : 0;
+    });
+    // One in fifteen normal values is 1.5 deviations below their mean.
+    return 5 * below <= all && 20 * lower <= all && 7 * higher <= 6 * all;
+  }
+
+  /// Takes samples below the surroundings, and those beside them, for surroundings.
+  void fill_lower() {
+    const auto bound = static_cast<float>(background_ - far());
+    for (std::size_t i = 0; i < values_.size(); ++i) filled_[i] = values_[i] < bound ? 1 : 0;
+    grow(grid_, filled_, 1);
+    fill();
+    const SampleValues at_one = blurred(grid_, values_, added_blur[2]);
+    find_least_seen(at_one);
+    const auto faint = static_cast<float>(background_ - least_seen_);
+    for (std::size_t i = 0; i < values_.size(); ++i) filled_[i] |= at_one[i] < faint ? 1 : 0;
+    fill();
+  }
+
+  /// Whether samples between both densities are alike over five along each axis: those of a third density, or
+  /// of thin walls close together. No wall and no edge alone is, after a blur of one sample.
+  bool finds_plateau(const SampleValues& at_one) const {
+    const SampleValues lowest = extremes(grid_, at_one, 2, false), highest = extremes(grid_, at_one, 2, true);
+    const auto zero = static_cast<float>(background_), unit = static_cast<float>(contrast_);
+    const auto least = static_cast<float>(std::max(least_seen_ / contrast_, 0.03));
+    for (std::size_t i = 0; i < at_one.size(); ++i) {
+      const float low = (lowest[i] - zero) / unit, high = (highest[i] - zero) / unit;
+      if (low >= least && high < 0.7F && low >= 0.6F * high) return true;
+    }
+    return false;
+  }
+
+  void fill() {
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      if (filled_[i] != 0) values_[i] = static_cast<float>(background_);
+  }
+
+  void find_least_seen(const SampleValues& at_one) {
+    std::vector<float> values;
+    const std::size_t stride = 1 + at_one.size() / 200000;
+    for (std::size_t i = 0; i < at_one.size(); i += stride)
+      if (filled_[i] == 0 && std::abs(static_cast<double>(at_one[i]) - background_) <= 3.5 * noise_ + 1.0)
+        values.push_back(at_one[i]);
+    // A blur of one sample leaves a seventh of white noise, and more of one that hangs together. Samples are
+    // whole numbers: where nothing varies, half a unit does.
+    least_seen_ = 0.005 * contrast_;
+    if (values.size() >= 100)
+      least_seen_ = std::max(5.0 * refined(values, densest(values)).noise, least_seen_);
+  }
+
+  /// False: nothing rises above noise, or a third density meets what does.
+  bool find_near(const SampleValues& at_one) {
+    near_.resize(at_one.size());
+    solid_.resize(at_one.size());
+    const auto level = static_cast<float>(background_ + least_seen_);
+    const auto quarter = static_cast<float>(background_ + 0.25 * contrast_);
+    std::size_t risen = 0;
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+      risen += near_[i] = at_one[i] >= level ? 1 : 0;
+      solid_[i] = at_one[i] >= std::max(level, quarter) ? 1 : 0;
+    }
+    beyond_ = near_;
+    grow(grid_, beyond_, 1);
+    std::size_t met = 0;
+    for (std::size_t i = 0; i < near_.size(); ++i) met += beyond_[i] != 0 && filled_[i] != 0 ? 1 : 0;
+    grow(grid_, near_, 3);
+    beyond_ = near_;
+    grow(grid_, beyond_, 2);
+    // A third density may leave no more surroundings than those just beyond.
+    std::size_t away = 0;
+    for (std::size_t i = 0; i < near_.size(); ++i) away += beyond_[i] == 0 && filled_[i] == 0 ? 1 : 0;
+    if (away < 1000) beyond_ = near_;
+    return risen > 0 && met <= risen / 500 + 2;
+  }
+
+  /// Samples of the surroundings that differ from them by more than noise after a blur of one sample.
+  std::size_t odd_in(const SampleValues& at_one) const {
+    std::size_t odd = 0;
+    for (std::size_t i = 0; i < at_one.size(); ++i)
+      odd += near_[i] == 0 && filled_[i] == 0 &&
+                     std::abs(static_cast<double>(at_one[i]) - background_) > least_seen_
+                 ? 1
+                 : 0;
+    return odd;
+  }
+
+  void find_core() {
+    deep_.resize(values_.size());
+    for (std::size_t i = 0; i < deep_.size(); ++i) deep_[i] = static_cast<double>(values_[i]) < low_ ? 1 : 0;
+    grow(grid_, deep_, 3);
+    for (std::uint8_t& one : deep_) one = one == 0 ? 1 : 0;
+  }
+
+  /// Whether a solid without a core is too thick for its low samples: over half of the highest share, thin
+  /// walls blurred by up to 1.6 samples are five samples wide at most below a share of 0.45, and seven below
+  /// 0.7. The window's bound is not the half level then.
+  bool has_lower_plateau(const SampleValues& at_one, double highest) {
+    if (highest >= 0.7) return false;
+    const auto half = static_cast<float>(background_ + 0.5 * highest * contrast_);
+    SampleMask thin(at_one.size());
+    for (std::size_t i = 0; i < thin.size(); ++i) thin[i] = at_one[i] < half ? 1 : 0;
+    grow(grid_, thin, highest < 0.45 ? 2 : 3);
+    return std::count(thin.begin(), thin.end(), std::uint8_t{0}) > 4;
+  }
+
+  /// In sample units, or as shares of the contrast; a sample deep in the solid counts as one.
+  Sums summed(const SampleValues& values, bool as_they_are) const {
+    const double unit = as_they_are ? 1.0 : contrast_, zero = as_they_are ? 0.0 : background_;
+    return by_planes<Sums>(grid_, [&](int z, Sums& sums) {
+      for (std::size_t i = grid_.at(0, 0, z), end = i + grid_.stride(2); i < end; ++i) {
+        const double u = (static_cast<double>(values[i]) - zero) / unit;
+        sums.highest = std::max(sums.highest, static_cast<float>(u));
+        sums.above += u >= 0.5 ? 1 : 0;
+        if (deep_[i] != 0) {
+          ++sums.deep_count;
+          sums.deep += u;
+          sums.near += 1.0;
+          sums.near_square += 1.0;
+        } else if (near_[i] != 0) {
+          ++sums.band_count;
+          sums.near += u;
+          sums.near_square += u * u;
+        } else if (filled_[i] != 0) {
+          continue;
+        } else if (beyond_[i] != 0) {
+          ++sums.tail_count;
+          sums.tail += u;
+        } else {
+          ++sums.away_count;
+          sums.away += u;
+          sums.away_square += u * u;
+          if (as_they_are && std::abs(u - background_) > far()) ++sums.odd;
+        }
+      }
+      // The scan's outermost samples.
+      for (int y = 0; y < grid_.dims.y; ++y)
+        for (int x = 0; x < grid_.dims.x; ++x) {
+          const bool is_border = x == 0 || y == 0 || z == 0 || x + 1 == grid_.dims.x ||
+                                 y + 1 == grid_.dims.y || z + 1 == grid_.dims.z;
+          if (is_border && solid_[grid_.at(x, y, z)] != 0) ++sums.border;
+        }
+    });
+  }
+
+  const voxel::Scene& scan_;
+  SampleGrid grid_;
+  SampleValues values_;
+  SampleMask reaches_, solid_, near_, beyond_, deep_;
+  SampleMask filled_;        ///< of a third density, taken for surroundings
+  bool has_others_ = false;  ///< no sample reaches the bound, and the scan has two densities below it
+  bool is_beside_ = false;   ///< the surroundings are those of samples over the bound
+  double low_ = 0.0, background_ = 0.0, contrast_ = 0.0, noise_ = 0.0, least_seen_ = 0.0, white_ = 0.0;
+};
+
+}  // namespace
+
+std::optional<TwoPhase> two_phase(const voxel::Scene& scan, double low, const voxel::Progress& progress) {
+  progress.at(0.0);
+  TwoPhase found;
+  if (!Reading(scan, low).run(found.evidence)) return std::nullopt;
+  const glm::dvec3 spacing_mm = scan.lattice.spacing_mm();
+  found.volume_mm3 = phase_volume(found.evidence, spacing_mm.x * spacing_mm.y * spacing_mm.z);
+  const std::optional<Interval> area_mm2 = phase_area(found.evidence, spacing_mm);
+  if (!area_mm2) return std::nullopt;
+  found.area_mm2 = *area_mm2;
+  return found;
+}
+
+void widen_to(const Interval& ambiguous, Interval& by_surface) {
+  const double far = std::max(ambiguous.value + ambiguous.half_width - by_surface.value,
+                              by_surface.value - ambiguous.value + ambiguous.half_width);
+  if (far <= by_surface.half_width) return;
+  by_surface.sources.push_back({"faint",
+                                "what samples below the bound add up to: thin walls or a lower density",
+                                far - by_surface.half_width, true});
+  by_surface.half_width = far;
+}
+
+}  // namespace octotomy::verify

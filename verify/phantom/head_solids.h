@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "verify/phantom/implicit_solid.h"
+#include "voxel/space/lattice.h"
+
+namespace octotomy::verify {
+
+/// The solids of the head phantom. A point's tissue follows in this order: outside the skin headrest or air;
+/// then air within `air`, tooth within `tooth_core`, bone within `bone`, else soft. Bone keeps two
+/// millimetres or more from all air, and so does `tooth_core` from the surface of the teeth.
+struct HeadSolids {
+  ImplicitSolid skin, bone, mandible, teeth, tooth_core, air, headrest;
+};
+
+/// Built once. A modern adult's proportions (Frankfurt plane horizontal, at z = -6), symmetric except for an
+/// exostosis at the angle of the mandible on the patient's left.
+const HeadSolids& head_solids();
+
+/// Where a ball lies in a field with a value at the ball's centre: inside (1), outside (0), or undecided (-1)
+/// if the value does not exceed the radius by a millionth, which covers rounding.
+signed char place(double value, double radius_mm);
+
+/// The solids pruned to each of the bricks that fill head_bounds(), so that a point or a small block
+/// evaluates a handful of primitives instead of hundreds.
+class HeadBricks {
+ public:
+  enum Field { Skin, Bone, ToothCore, Air, Headrest, Mandible, Teeth, field_count };
+  using Fields = std::array<ImplicitSolid::Steps, field_count>;
+  /// place() of a ball in each field.
+  using Places = std::array<signed char, field_count>;
+  struct Brick {
+    Fields steps;
+    Places places;
+  };
+
+  /// Built once and kept.
+  static const HeadBricks& instance();
+  /// Steps and places valid in a ball: few steps if its radius is at most margin_mm and its centre within
+  /// head_bounds(); otherwise all, with nothing decided.
+  const Brick& at(const glm::dvec3& p_mm, double radius_mm = 0.0) const;
+  /// Edge of the cubic bricks.
+  static constexpr double edge_mm = 8.0;
+  /// The margin around a brick in which its steps are valid: enough for 4^3 voxels of 1 mm, or one of 4 mm,
+  /// about a point of the brick.
+  static constexpr double margin_mm = 3.5;
+
+ private:
+  HeadBricks();
+  glm::ivec3 dims_{0};
+  glm::dvec3 low_mm_{0.0};
+  Brick whole_;
+  std::vector<Brick> bricks_;
+};
+
+}  // namespace octotomy::verify

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "verify/certificate/certificate.h"
+#include "voxel/space/progress.h"
+
+// Both kernels on solids of known volume and area: do the certificates' bounds hold, and are they tight?
+namespace octotomy::verify {
+
+struct PhantomSuiteOptions {
+  int poses = 6;  ///< of each solid at each spacing and sampling, 1..1000; calibration uses as many others
+  std::uint64_t seed = 1;
+  std::optional<std::string> solid = {};  ///< this kind only: "sphere", "box, turned", ...
+  voxel::Progress progress = {};
+};
+
+/// One solid in one pose: the kernels against each other, and each against the truth.
+struct PhantomCase {
+  std::string solid, spacing, sampling;
+  std::uint64_t seed = 0;  ///< replays the pose and the noise
+  Certificate bounded, closed_form;
+};
+
+/// The bounded tolerances of the cases of one spacing and sampling, beside what was observed.
+struct Tightness {
+  std::string spacing, sampling;
+  int cases = 0;             ///< resolved ones: at least six voxels across
+  double worst_share = 0.0;  ///< the largest |difference| / tolerance; above 1 it is no PASS
+  double p99_share = 0.0;    ///< the 99th percentile; from 1/3 on, the tolerance is at most three times it
+};
+
+/// A constant of the tolerances, and the value that poses of other seeds than the cases' ask for.
+struct Calibration {
+  std::string constant;
+  double in_use = 0.0;
+  double p99 = 0.0;  ///< enough for 99 of 100 calibration poses
+  int poses = 0;
+};
+
+/// Errors over radii, in per cent of the truth (root mean square of poses), and the fitted order: error ~
+/// radius^-order.
+struct Convergence {
+  std::string quantity;
+  std::vector<double> radii_voxels, errors_percent;
+  double order = 0.0;
+  double least_order = 0.0;  ///< the order of theory less the scatter of a fit over few poses
+};
+
+/// A sentence that is true or not.
+struct SuiteCheck {
+  std::string statement;
+  double found = 0.0, allowed = 0.0;
+  bool held = false;
+};
+
+struct PhantomSuite {
+  std::vector<PhantomCase> cases;
+  std::vector<Tightness> tightness;
+  std::vector<Calibration> calibrations;
+  std::vector<Convergence> convergences;
+  std::vector<SuiteCheck> checks;
+  std::optional<Contested> worst;  ///< of the bounded certificates
+  /// The largest error of area on solids with edges at a radius of six voxels. Not judged: edges are cut off.
+  double area_with_edges_percent = 0.0;
+};
+
+/// Spheres, ellipsoids, tori, boxes along the lattice and turned, cylinders, plates of one to three voxels,
+/// lenses, cut spheres and shells in random poses, at spacings 1:1:1, 2:1:1 and 5:1:1. Voxels come from
+/// centres, from filled shares, and from a window on a blurred scan with noise; the mesh is the isosurface of
+/// the shares, or of that scan. Throws std::invalid_argument if an option is out of its range;
+/// voxel::Stopped. Same answer on any thread count. Cost: about 50 ms a case.
+PhantomSuite phantom_suite(const PhantomSuiteOptions& options = {});
+
+}  // namespace octotomy::verify

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <glm/glm.hpp>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "brep/mesh/solid.h"
+#include "verify/witness/reading.h"
+#include "voxel/space/lattice.h"
+#include "voxel/space/scene.h"
+#include "voxel/tree/octree.h"
+
+// Witnesses of windows, regions and what operations make of them. Each reads the scan and the plan by itself.
+namespace octotomy::verify {
+
+/// The window low..high of a scan, both bounds included. The mesh kernel's surface lies in the scan's own
+/// cells, with vertices where samples interpolated along edges reach a bound; the voxel kernel interpolates
+/// between the universe's voxels, each a sample interpolated from the scan and rounded to an integer. Shares
+/// the scan.
+Witness witness_of_window(std::shared_ptr<const voxel::Scene> scan, double low, double high,
+                          const voxel::Universe& universe);
+
+/// A region drawn in a view.
+struct DrawnRegion {
+  std::string view;                                  ///< "anterior", "35,15"
+  std::vector<std::vector<glm::dvec2>> polygons_mm;  ///< by the even-odd rule
+};
+/// The points whose projection lies inside of every region. Throws std::invalid_argument for an unknown view.
+Witness witness_of_regions(const std::vector<DrawnRegion>& regions);
+Witness witness_of_box(const voxel::Box& box);
+/// What a saw takes away along a line of straight pieces.
+struct DrawnBlade {
+  std::vector<glm::dvec3> line_mm;      ///< LPS
+  glm::dvec3 direction{0.0, 1.0, 0.0};  ///< in which the blade goes in; of any length
+  double depth_mm = 100.0;              ///< from that of the line's points which the blade meets first
+  double kerf_mm = 1.0;                 ///< half on either side of the line
+};
+/// Each piece by its half-spaces; pieces meet in the planes that halve their corners, the line's ends are
+/// square. Throws std::invalid_argument for a line without two points apart as seen along the direction.
+Witness witness_of_blade(const DrawnBlade& blade);
+/// Knows where the surface is and not which side is inside: for solids that come from no scan.
+Witness witness_of_surface(brep::Solid solid);
+
+Witness both(Witness a, Witness b);
+Witness without(Witness a, Witness b);
+/// The object under a rigid motion or reflection, LPS to LPS.
+Witness carried(Witness still, const glm::dmat4& moved_from_still);
+/// The object whose surfaces may lie `by_mm` elsewhere, as corefinement moves operands that touch.
+Witness loosened(Witness tight, double by_mm);
+/// Some of the object's connected parts: a point inside may belong to none of them.
+Witness witness_of_parts(Witness whole);
+/// What both kernels chose of the object's connected parts, and the places of necks that the plan keeps or
+/// cuts, LPS.
+struct ChosenParts {
+  voxel::Octree voxels;
+  brep::Solid mesh;
+  std::vector<glm::dvec3> decided_mm = {};
+};
+/// The same. Where the choices differ beyond a thin neck, so may all that is made of them.
+Witness witness_of_parts(Witness whole, ChosenParts chosen);
+/// The object with some of its cavities filled: a point outside may lie in one of them.
+Witness witness_of_filled(Witness hollow);
+/// The object that an expression makes. `lookup` answers a name; an empty answer leaves the whole without a
+/// witness. Throws std::invalid_argument as MeshExpressions::evaluate().
+Witness witness_of_expression(std::string_view text,
+                              const std::function<Witness(const std::string&)>& lookup);
+
+}  // namespace octotomy::verify
