@@ -204,12 +204,21 @@ class SeriesReader {
       if (kind != commonest->first) differing.insert(differing.end(), names.begin(), names.end());
     const auto half = named_if(
         [&](const DicomSlice& slice) { return slice.slope.has_value() != slice.intercept.has_value(); });
+    std::vector<std::string> half_differing;
+    for (const std::string& name : half)
+      if (std::find(differing.begin(), differing.end(), name) != differing.end())
+        half_differing.push_back(name);
     const auto without = named_if([](const DicomSlice& slice) { return !slice.slope && !slice.intercept; });
     if (!without.empty() && without.size() < stack.slices.size())
       find("rescale", Verdict::Fail,
            "RescaleSlope and RescaleIntercept are absent in " + slices(without.size()) +
                ", whose values are not rescaled as those of the others are: " + listed(without),
            without);
+    else if (!half_differing.empty())
+      find("rescale", Verdict::Fail,
+           "RescaleSlope or RescaleIntercept is absent in " + slices(half_differing.size()) +
+               ", where 1 or 0 is taken; the others have another: " + listed(half_differing),
+           half_differing);
     else if (!differing.empty())
       find("rescale", Verdict::Warn,
            "slope, intercept or unit change between slices (" + std::to_string(differing.size()) +

@@ -75,6 +75,8 @@ void place_without_frame(const fs::path& path, const glm::ivec3& dims, const Rea
   geometry.file_from_voxel[3] = glm::dvec4(-0.5 * glm::dvec3(dims - 1) * spacing_mm, 1.0);
   geometry.unit_says = "mm (--spacing)";
   scene.lattice = placed(geometry, options.frame, {}, scene.audit);
+  scene.audit.push_back(
+      {"origin", Verdict::Warn, "the file states no origin: the volume's centre is taken as the origin"});
 }
 
 Scene read_raw(const fs::path& path, const ReadOptions& options) {

@@ -252,11 +252,14 @@ void take_meaning(const VolumeHeader& header, const SmallNumbers& small, Scene& 
   if (!stated) air = header.modality == "CT" ? air_level_of_ct(scene) : air_level_of_unnamed(scene);
   if (is_mask(small) && (air.meaning == Meaning::Hounsfield || (!stated && header.modality == "CT"))) {
     const bool is_rescaled = header.samples.stored.is_rescaled();
-    air = {is_rescaled ? Meaning::Raw : Meaning::Label,
-           {"unit", Verdict::Warn,
-            "the stored numbers are few and small (" + listed_numbers(*small) +
-                "), as in a mask or label map whose header was copied from a CT: values are taken as " +
-                (is_rescaled ? "raw" : "labels") + ", not as Hounsfield units"}};
+    air = {
+        is_rescaled ? Meaning::Raw : Meaning::Label,
+        {"unit", Verdict::Warn,
+         "the stored numbers are few and small (" + listed_numbers(*small) +
+             "), as in a mask or label map whose header was copied from a CT: " +
+             (is_rescaled ? "the header's slope and intercept are applied, and values have no unit; if they "
+                            "are a mask, take slope and intercept out of the header"
+                          : "values are taken as labels, not as Hounsfield units")}};
   }
   scene.meaning = air.meaning;
   scene.audit.push_back(air.finding);

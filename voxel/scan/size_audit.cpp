@@ -19,6 +19,7 @@ constexpr double widest_field_mm = 1000.0, longest_field_mm = 2500.0;
 constexpr double coarsest_ct_mm = 5.0, finest_pixel_mm = 0.05;
 constexpr double smallest_field_mm = 10.0, smallest_fine_field_mm = 36.0;
 constexpr int fine_side_px = 64;
+constexpr double smallest_scan_mm = 1.0;
 constexpr double smallest_body_mm = 70.0;
 constexpr int fine_body_px = 60;
 
@@ -69,12 +70,13 @@ double factor_to(double width_mm, double pixel_mm) {
 
 std::optional<Finding> size_finding(const Scene& scene) {
   const bool is_ct = scene.modality == "CT" || scene.meaning == Meaning::Hounsfield;
-  if (scene.meaning == Meaning::Label || (scene.modality.empty() && !is_ct)) return std::nullopt;
   const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
   const glm::ivec3 dims = scene.lattice.dims;
   const glm::dvec3 field_mm = spacing_mm * glm::dvec3(dims);
   const double wide_mm = std::max(field_mm.x, field_mm.y), narrow_mm = std::min(field_mm.x, field_mm.y);
-  const std::optional<glm::ivec2> body = body_px(scene);
+  // What nothing is said of may be of any kind: only what no scanner makes is doubted.
+  const bool is_known = scene.meaning != Meaning::Label && (!scene.modality.empty() || is_ct);
+  const std::optional<glm::ivec2> body = is_known ? body_px(scene) : std::nullopt;
   std::string doubt;
   double measured_mm = wide_mm;
   if (wide_mm > longest_field_mm || narrow_mm > widest_field_mm) {
@@ -84,6 +86,11 @@ std::optional<Finding> size_finding(const Scene& scene) {
         "plausible_size", Verdict::Warn,
         print("the slices span %.3g mm, more than a person's length: check their distance of %.4g mm",
               field_mm.z, spacing_mm.z)};
+  } else if (std::max(wide_mm, field_mm.z) < smallest_scan_mm) {
+    doubt = print("the scan is %.3g x %.3g x %.3g mm, smaller than what scanners show of a person",
+                  field_mm.x, field_mm.y, field_mm.z);
+  } else if (!is_known) {
+    return std::nullopt;
   } else if (is_ct && std::min(spacing_mm.x, spacing_mm.y) > coarsest_ct_mm) {
     doubt = print("pixels of %.3g mm are coarser than any CT's", spacing_mm.x);
   } else if (wide_mm < smallest_field_mm ||

@@ -284,6 +284,20 @@ TEST(ReadRaw, WarnsOfAByteOrderWhoseSwapIsFarSmoother) {
   EXPECT_FALSE(warns(false, false, 60000)) << "numbers by chance are alike in both orders";
 }
 
+TEST(ReadRaw, DoubtsItsOriginAndASizeThatNoScannerMakes) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "scan.raw", std::ios::binary) << raw_bytes<std::int16_t>(false);
+  ReadOptions options = spaced();
+  options.raw = RawLayout{dims, SampleType::Int16};
+  const Scene scene = read_scene(folder / "scan.raw", options);
+  EXPECT_EQ(verdict(scene, "origin"), Verdict::Warn);
+  EXPECT_EQ(tests::finding(scene, "plausible_size"), nullptr);
+  for (const double mm : {1000.0, 0.01}) {
+    options.spacing_mm = glm::dvec3(mm);
+    EXPECT_EQ(verdict(read_scene(folder / "scan.raw", options), "plausible_size"), Verdict::Warn) << mm;
+  }
+}
+
 TEST(ReadRaw, TakesDoublesBeyondSinglePrecisionAsPaddingAndSaysSo) {
   const ScratchFolder folder;
   std::string bytes = raw_bytes<double>(false);

@@ -315,6 +315,12 @@ std::vector<SpoiledKind> of_values() {
            images[i].text(0x00201041, "DS", std::to_string(2 * i));
          }
        }},
+      {"intercept_absent_in_one",
+       "rescale",
+       fail,
+       "absent in 1 slice, where 1 or 0 is taken",
+       {"a07"},
+       without({0x00281052}, 7, 7)},
       {"rescale_half_there", "rescale", warn, "absent", {"a07"}, without({0x00281053}, 7, 7)},
       {"unit_not_hounsfield", "rescale", warn, "'US'", {}, text(0x00281054, "LO", "US")},
       {"unit_differs_in_one", "rescale", warn, "unit", {"a02"}, text(0x00281054, "LO", "US", 2, 2)},
