@@ -72,7 +72,7 @@ void need_disk_of_label_maps(const Plan& plan, const std::filesystem::path& out,
                                               const voxel::ReadOptions& how) {
     voxel::Scene scene = voxel::read_scene(path, how);
     if (!std::exchange(*is_first, false)) return scene;
-    const voxel::Lattice lattice = universe_of(scene.lattice, plan.voxel_mm).lattice();
+    const voxel::Lattice lattice = universe_of(scene, plan.voxel_mm).lattice();
     std::uint64_t least_bytes = 0;
     for (const Step& step : plan.steps)
       if (step.action.operation().name == "label_map")

@@ -70,6 +70,19 @@ voxel::Lattice covering(const voxel::Lattice& a, const voxel::Lattice& b) {
   return whole;
 }
 
+/// Whether two lattices have the same field and differ in the order or direction of their axes.
+bool is_stored_otherwise(const voxel::Lattice& a, const voxel::Lattice& b) {
+  constexpr double nearly = 1e-3;
+  if (a == b || a.sample_count() != b.sample_count()) return false;
+  for (const glm::dvec3& corner : {glm::dvec3(0.0), glm::dvec3(b.dims - 1)}) {
+    const glm::dvec3 at = a.voxel(b.lps_mm(corner));
+    if (glm::any(glm::lessThan(at, glm::dvec3(-nearly))) ||
+        glm::any(glm::greaterThan(at, glm::dvec3(a.dims - 1) + nearly)))
+      return false;
+  }
+  return true;
+}
+
 /// Sums over all labels that both maps have.
 struct Totals {
   double common_mm3 = 0.0, both_mm3 = 0.0;  ///< both_mm3 of all labels of either map
@@ -196,7 +209,12 @@ bool is_label_map(const fs::path& path) {
 FileAnswer compare_label_maps(const fs::path& path_a, const fs::path& path_b, bool other_identity,
                               const FileBench& bench) {
   FileAnswer answer;
-  const Side a = side_of(path_a, bench, answer.findings), b = side_of(path_b, bench, answer.findings);
+  const Side a = side_of(path_a, bench, answer.findings);
+  Side b = side_of(path_b, bench, answer.findings);
+  // The order in which samples are stored changes no object, though triangles of an octree follow its axes.
+  if (is_stored_otherwise(a.scene.lattice, b.scene.lattice))
+    if (std::optional<voxel::Scene> laid = voxel::laid_on(b.scene, a.scene.lattice))
+      b.scene = std::move(*laid);
   for (std::string& finding :
        need_same_patient({path_a.string(), a.scene.identity}, {path_b.string(), b.scene.identity},
                          other_identity, "--other-identity"))

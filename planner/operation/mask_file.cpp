@@ -69,7 +69,7 @@ Like like_file(const fs::path& path, const std::optional<double>& voxel_mm, cons
     return {voxel::universe(voxel::read_octree(path))};
   }
   const voxel::Scene scene = bench.read_scan(path);
-  return {universe_of(scene.lattice, voxel_mm), scene.identity, scene.lattice};
+  return {universe_of(scene, voxel_mm), scene.identity, scene.lattice};
 }
 
 /// The slices that cut the mask; refuses those of another patient than the scan.

@@ -277,8 +277,8 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
   });
   if (asked.window) need_hounsfield(*asked.window, scene);
   const Stopwatch watch(bench.timings, "octree");
-  if (!grey)
-    grey = voxel::grey_octree_of(universe_of(scene.lattice, asked.voxel_mm), scene, voxel::beyond_scan,
+  if (!grey || scene.meaning == voxel::Meaning::Label)
+    grey = voxel::grey_octree_of(universe_of(scene, asked.voxel_mm), scene, voxel::beyond_scan,
                                  bench.progress("octree"));
   return {std::move(scene), std::move(*grey)};
 }

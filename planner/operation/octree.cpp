@@ -91,7 +91,7 @@ voxel::OctreeFile from_scan(const FileBench& bench, const Build& asked) {
   const voxel::Scene scene = bench.read_scan(asked.in());
   if (window) need_hounsfield(*window, scene);
   const Stopwatch watch(bench.timings, "octree");
-  const voxel::Universe universe = universe_of(scene.lattice, asked.voxel_mm);
+  const voxel::Universe universe = universe_of(scene, asked.voxel_mm);
   const voxel::GreyOctree grey =
       voxel::grey_octree_of(universe, scene, voxel::beyond_scan, bench.progress("octree"));
   Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},

@@ -54,7 +54,7 @@ voxel::DrawnObject drawn_of_file(const std::filesystem::path& path, const Render
     const voxel::Scene scene = bench.read_scan(path);
     need_hounsfield(render.window, scene);
     const Stopwatch watch(timings, "octree");
-    const voxel::Universe where = universe ? *universe : universe_of(scene.lattice, render.voxel_mm);
+    const voxel::Universe where = universe ? *universe : universe_of(scene, render.voxel_mm);
     set_window(object, voxel::grey_octree_of(where, scene, voxel::beyond_scan, bench.progress("octree")),
                render.window);
     if (object.octree.is_empty()) {

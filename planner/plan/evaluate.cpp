@@ -166,7 +166,7 @@ class Evaluator {
       std::string sha256;
       if (take_cached_scan(name, source) || take_loaded_scan(name)) continue;
       voxel::Scene scene = read(name, source, sha256);
-      if (result_.scans.empty()) set_universe(scene.lattice);
+      if (result_.scans.empty()) set_universe(scene);
       result_.scans.push_back(record_of(name, source.path, scene));
       result_.scans.back().sha256 = std::move(sha256);
       load(name, std::move(scene));
@@ -206,7 +206,7 @@ class Evaluator {
     }
   }
 
-  void set_universe(const voxel::Lattice& first_scan) {
+  void set_universe(const voxel::Scene& first_scan) {
     result_.universe = universe_of(first_scan, plan_.voxel_mm);
     box_ = voxel::bounds(result_.universe.lattice());
     world_ = brep::solid_of(prism_of(box_));
@@ -265,7 +265,7 @@ class Evaluator {
   }
 
   void take_scan(const std::string& name, const LoadedScan& scan, const ScanRecord& record) {
-    if (result_.scans.empty()) set_universe(scan.scene().lattice);
+    if (result_.scans.empty()) set_universe(scan.scene());
     result_.scans.push_back(record);
     loaded_.insert_or_assign(name, scan);
   }

@@ -132,15 +132,13 @@ void add_scans(py::module_& module) {
       .def_property_readonly("audit", [](const Scene& scene) { return python_of(to_json(scene.audit)); })
       .def(
           "universe",
-          [](const Scene& scene, std::optional<double> voxel_mm) {
-            return universe_of(scene.lattice, voxel_mm);
-          },
+          [](const Scene& scene, std::optional<double> voxel_mm) { return universe_of(scene, voxel_mm); },
           py::arg("voxel_mm") = py::none(),
           "The universe of a plan on this scan; by default as fine as the scan, at most 512 voxels a side.")
       .def(
           "grey",
           [](const Scene& scene, const std::optional<voxel::Universe>& universe) {
-            const voxel::Universe where = universe ? *universe : universe_of(scene.lattice, std::nullopt);
+            const voxel::Universe where = universe ? *universe : universe_of(scene, std::nullopt);
             return without_lock([&](const std::stop_token&) { return voxel::grey_octree_of(where, scene); });
           },
           py::arg("universe") = py::none(), "The samples at the voxels of a universe.")

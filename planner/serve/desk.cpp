@@ -248,8 +248,8 @@ voxel::GreyOctree Desk::alone(const Snapshot& snapshot, const std::string& scan)
   const auto& [shared, grey] = *loaded->second;
   const std::lock_guard lock(alone_mutex_);
   if (!alone_ || alone_->first != shared)
-    alone_.emplace(shared, voxel::grey_octree_of(universe_of(shared->lattice, snapshot.plan->voxel_mm),
-                                                 *shared, grey.background()));
+    alone_.emplace(shared, voxel::grey_octree_of(universe_of(*shared, snapshot.plan->voxel_mm), *shared,
+                                                 grey.background()));
   return alone_->second;
 }
 

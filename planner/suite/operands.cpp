@@ -47,44 +47,6 @@ struct Question {
   std::optional<fs::path> answer;
 };
 
-/// The same labels on another lattice, of which each sample is one: as of a map that was cropped, or whose
-/// axes were turned or exchanged. None where samples lie between those of the lattice, or labels beyond it.
-std::optional<voxel::Scene> laid_on(const voxel::Scene& scene, const voxel::Lattice& lattice) {
-  constexpr double nearly = 1e-3;
-  const glm::dmat4 to = glm::inverse(lattice.lps_from_voxel) * scene.lattice.lps_from_voxel;
-  glm::dmat4 exact(1.0);
-  for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 3; ++row) {
-      exact[column][row] = std::round(to[column][row]);
-      if (std::abs(to[column][row] - exact[column][row]) > nearly) return std::nullopt;
-    }
-  if (std::abs(std::abs(glm::determinant(exact)) - 1.0) > nearly) return std::nullopt;
-  voxel::Scene laid = scene;
-  laid.lattice = lattice;
-  const glm::ivec3 from = scene.lattice.dims, dims = lattice.dims;
-  const bool fits = std::visit(
-      [&](auto& samples) {
-        const auto stored = samples;
-        samples.assign(lattice.sample_count(), 0);
-        std::size_t i = 0;
-        for (int z = 0; z < from.z; ++z)
-          for (int y = 0; y < from.y; ++y)
-            for (int x = 0; x < from.x; ++x, ++i) {
-              if (stored[i] == 0) continue;
-              const glm::ivec3 at(exact * glm::dvec4(x, y, z, 1.0));
-              if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, dims)))
-                return false;
-              samples[(static_cast<std::size_t>(at.z) * static_cast<std::size_t>(dims.y) +
-                       static_cast<std::size_t>(at.y)) *
-                          static_cast<std::size_t>(dims.x) +
-                      static_cast<std::size_t>(at.x)] = stored[i];
-            }
-        return true;
-      },
-      laid.samples);
-  return fits ? std::optional(std::move(laid)) : std::nullopt;
-}
-
 /// All voxels that have a label; on the lattice `onto` where that is given and has them.
 voxel::Octree labelled(const Program& program, const fs::path& path, Timings& timings,
                        voxel::Lattice& lattice, const voxel::Lattice* onto = nullptr,
@@ -93,7 +55,7 @@ voxel::Octree labelled(const Program& program, const fs::path& path, Timings& ti
   voxel::Scene scene = voxel::read_scene(path);
   program.note_scan(path, scene);
   if (onto != nullptr && !(scene.lattice == *onto))
-    if (std::optional<voxel::Scene> laid = laid_on(scene, *onto)) scene = std::move(*laid);
+    if (std::optional<voxel::Scene> laid = voxel::laid_on(scene, *onto)) scene = std::move(*laid);
   lattice = scene.lattice;
   const voxel::Universe universe = voxel::universe_on(scene.lattice);
   const std::vector<voxel::Label> labels = voxel::labels(scene);

@@ -9,8 +9,9 @@
 #include "voxel/space/memory_need.h"
 
 namespace octotomy::planner {
+namespace {
 
-voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm) {
+voxel::Universe universe_about(const voxel::Lattice& scan, std::optional<double> voxel_mm, bool by_cells) {
   const voxel::Box box = voxel::bounds(scan);
   const glm::dvec3 spacing_mm = scan.spacing_mm();
   const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
@@ -28,7 +29,9 @@ voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> vo
   }
   // A universe around an odd number of samples lies half a voxel off them, and resampling would blur what
   // need not be touched: put a voxel's centre on the first sample, where the box stays inside.
-  const glm::dvec3 first = universe.lattice().voxel(scan.lps_mm(glm::dvec3(0.0)));
+  glm::dvec3 first = universe.lattice().voxel(scan.lps_mm(glm::dvec3(0.0)));
+  // A cell's border, as far from a voxel's as the voxel's centre is from this.
+  if (by_cells) first += 0.5 - 0.5 * spacing_mm / edge_mm;
   const double spare_voxels = 0.5 * universe.side();
   for (int axis = 0; axis < 3; ++axis) {
     const double shift = first[axis] - std::floor(first[axis] + 0.5);
@@ -36,6 +39,16 @@ voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> vo
       universe.lps_from_voxel[3][axis] += shift * edge_mm;
   }
   return universe;
+}
+
+}  // namespace
+
+voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm) {
+  return universe_about(scan, voxel_mm, false);
+}
+
+voxel::Universe universe_of(const voxel::Scene& scan, std::optional<double> voxel_mm) {
+  return universe_about(scan.lattice, voxel_mm, scan.meaning == voxel::Meaning::Label);
 }
 
 }  // namespace octotomy::planner

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "voxel/space/lattice.h"
+#include "voxel/space/scene.h"
 
 namespace octotomy::planner {
 
@@ -13,5 +14,9 @@ namespace octotomy::planner {
 /// voxel::Error (Resource) with the figures where voxels finer than the samples may take more memory than is
 /// free.
 voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm);
+
+/// The same for a scan. Of a label map, whose samples are cells, voxels' borders lie on those of the first
+/// cell: a cell that is two voxels wide is two voxels, and not one of its own and one of chance.
+voxel::Universe universe_of(const voxel::Scene& scan, std::optional<double> voxel_mm);
 
 }  // namespace octotomy::planner

@@ -148,6 +148,42 @@ std::vector<Label> labels(const Scene& scene) {
   return all;
 }
 
+std::optional<Scene> laid_on(const Scene& scene, const Lattice& lattice) {
+  constexpr double nearly = 1e-3;
+  const glm::dmat4 to = glm::inverse(lattice.lps_from_voxel) * scene.lattice.lps_from_voxel;
+  glm::dmat4 exact(1.0);
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 3; ++row) {
+      exact[column][row] = std::round(to[column][row]);
+      if (std::abs(to[column][row] - exact[column][row]) > nearly) return std::nullopt;
+    }
+  if (std::abs(std::abs(glm::determinant(exact)) - 1.0) > nearly) return std::nullopt;
+  Scene laid = scene;
+  laid.lattice = lattice;
+  const glm::ivec3 from = scene.lattice.dims, dims = lattice.dims;
+  const bool fits = std::visit(
+      [&](auto& samples) {
+        const auto stored = samples;
+        samples.assign(lattice.sample_count(), 0);
+        std::size_t i = 0;
+        for (int z = 0; z < from.z; ++z)
+          for (int y = 0; y < from.y; ++y)
+            for (int x = 0; x < from.x; ++x, ++i) {
+              if (stored[i] == 0) continue;
+              const glm::ivec3 at(exact * glm::dvec4(x, y, z, 1.0));
+              if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, dims)))
+                return false;
+              samples[(static_cast<std::size_t>(at.z) * static_cast<std::size_t>(dims.y) +
+                       static_cast<std::size_t>(at.y)) *
+                          static_cast<std::size_t>(dims.x) +
+                      static_cast<std::size_t>(at.x)] = stored[i];
+            }
+        return true;
+      },
+      laid.samples);
+  return fits ? std::optional(std::move(laid)) : std::nullopt;
+}
+
 Octree octree_of_label(const Universe& universe, const Scene& scene, int label) {
   check(scene);
   const glm::ivec3 dims = scene.lattice.dims;

@@ -53,6 +53,10 @@ struct Label {
 };
 std::vector<Label> labels(const Scene& scene);
 
+/// The same labels on another lattice, of which each sample is one: as of a map that was cropped, or whose
+/// axes were turned or exchanged. None where samples lie between those of the lattice, or labels beyond it.
+std::optional<Scene> laid_on(const Scene& scene, const Lattice& lattice);
+
 /// The voxels of a universe whose nearest sample has that label; voxels beyond the scan are empty. Parallel
 /// over blocks.
 Octree octree_of_label(const Universe& universe, const Scene& scene, int label);

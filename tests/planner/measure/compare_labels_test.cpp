@@ -67,6 +67,35 @@ TEST_F(CompareLabels, EqualMapsOfAnotherLatticeAndNumbersAreStillEqualAndALabelO
   EXPECT_NE(findings.find("is only in"), std::string::npos) << findings;
 }
 
+TEST_F(CompareLabels, AMapThatIsStoredInAnotherOrderIsTheSame) {
+  voxel::Scene scene;
+  const glm::ivec3 dims(20, 18, 16);
+  scene.lattice = voxel::axis_aligned_lattice(dims, {0.7, 0.7, 1.2}, {-3, 2, 1});
+  scene.meaning = voxel::Meaning::Label;
+  const auto is_inside = [](const glm::ivec3& p) {
+    const glm::dvec3 off = (glm::dvec3(p) - glm::dvec3(9, 8, 7)) * glm::dvec3(0.7, 0.7, 1.2);
+    return glm::length(off) < 4.3 && off.x + 0.4 * off.y < 2.0;
+  };
+  voxel::Int16Samples samples, flipped;
+  for (int z = 0; z < dims.z; ++z)
+    for (int y = 0; y < dims.y; ++y)
+      for (int x = 0; x < dims.x; ++x) {
+        samples.push_back(is_inside({x, y, z}) ? 1 : 0);
+        flipped.push_back(is_inside({dims.x - 1 - x, y, dims.z - 1 - z}) ? 1 : 0);
+      }
+  scene.samples = samples;
+  voxel::write_scene(scene, folder_ / "a.nrrd");
+  scene.samples = flipped;
+  scene.lattice.lps_from_voxel[3] = glm::dvec4(scene.lattice.lps_mm({dims.x - 1, 0, dims.z - 1}), 1.0);
+  scene.lattice.lps_from_voxel[0] *= -1.0;
+  scene.lattice.lps_from_voxel[2] *= -1.0;
+  voxel::write_scene(scene, folder_ / "b.nrrd");
+  const SortedJson json = compared("a.nrrd", "b.nrrd");
+  EXPECT_EQ(json["labels"][0]["dice"], 1.0);
+  EXPECT_EQ(json["labels"][0]["hausdorff_mm"], 0.0) << json;
+  EXPECT_EQ(json["findings"].dump().find("different lattices"), std::string::npos) << json["findings"];
+}
+
 TEST_F(CompareLabels, LabelsArePairedByNameAndNumbersThatContradictNamesAreReported) {
   put("a.nrrd", 5, 3, true);
   put("b.nrrd", 5, 7, true);

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+#include "voxel/filter/label_map.h"
+#include "voxel/measure/measure.h"
 #include "voxel/space/error.h"
 #include "voxel/space/memory_need.h"
 
@@ -25,6 +27,24 @@ TEST(PlanUniverse, RefusesFinerVoxelsThanMemoryHoldsBeforeWork) {
         << error.what();
   }
   voxel::limit_memory(std::numeric_limits<std::uint64_t>::max());
+}
+
+TEST(PlanUniverse, VoxelsOfALabelMapFillItsCells) {
+  for (const double thick_mm : {1.0, 2.0, 3.0, 4.0}) {
+    voxel::Scene scene;
+    scene.lattice = voxel::axis_aligned_lattice({8, 8, 8}, {1.0, 1.0, thick_mm}, {3, -2, 5});
+    scene.meaning = voxel::Meaning::Label;
+    voxel::Int16Samples samples(512, 0);
+    for (int z = 2; z < 5; ++z)
+      for (int y = 3; y < 6; ++y) samples[static_cast<std::size_t>((z * 8 + y) * 8 + 4)] = 1;
+    scene.samples = std::move(samples);
+    const voxel::Universe universe = universe_of(scene, std::nullopt);
+    ASSERT_EQ(universe.lattice().spacing_mm(), glm::dvec3(1.0));
+    const voxel::Measures measures = voxel::measure(voxel::octree_of_label(universe, scene, 1));
+    EXPECT_NEAR(measures.volume_mm3, 9.0 * thick_mm, 1e-9);
+    const glm::dvec3 middle = scene.lattice.lps_mm({4, 4, 3});
+    EXPECT_LT(glm::distance(*measures.centroid_mm, middle), 1e-9) << thick_mm;
+  }
 }
 
 }  // namespace
