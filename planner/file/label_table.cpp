@@ -186,6 +186,26 @@ void add_rows(Names& table, const std::vector<std::vector<std::string>>& rows, c
   }
 }
 
+/// "left kidney" of "left kidney 255 0 0 255": the words before a colour of three or four numbers; without
+/// one those before the first number.
+std::string name_before_colour(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  std::size_t numbers = 0;
+  while (numbers < std::min(words.size(), std::size_t{4}) && whole(words[words.size() - 1 - numbers]))
+    ++numbers;
+  std::size_t end = words.size() - numbers;
+  if (numbers < 3)
+    end = static_cast<std::size_t>(
+        std::find_if(words.begin(), words.end(),
+                     [](const std::string& word) { return whole(word).has_value(); }) -
+        words.begin());
+  std::string name;
+  for (std::size_t i = 0; i < end; ++i) name += (i > 0 ? " " : "") + words[i];
+  return name;
+}
+
 /// "5 255 0 0 1 1 1 "liver"" of ITK-SNAP, "5 liver 255 0 0 255" of 3D Slicer and FreeSurfer.
 void add_lines(Names& table, std::istream& in, const std::string& where) {
   std::string line;
@@ -198,12 +218,11 @@ void add_lines(Names& table, std::istream& in, const std::string& where) {
       refuse(at, "begins with no label from 0 to " + std::to_string(voxel::most_label));
     const std::string rest = voxel::trimmed(text.substr(blank));
     const std::size_t quote = rest.find('"'), last = rest.rfind('"');
-    if (quote == last && whole(rest.substr(0, rest.find_first_of(" \t"))))
-      refuse(at, "has a number and no name behind its label");
-    table.add(
-        *label,
-        quote != last ? rest.substr(quote + 1, last - quote - 1) : rest.substr(0, rest.find_first_of(" \t")),
-        at);
+    std::string name = quote != last ? rest.substr(quote + 1, last - quote - 1) : name_before_colour(rest);
+    if (name.empty()) refuse(at, "has a number and no name behind its label");
+    // 3D Slicer writes blanks so.
+    if (where.ends_with(".ctbl")) std::replace(name.begin(), name.end(), '_', ' ');
+    table.add(*label, name, at);
   }
 }
 
@@ -326,7 +345,8 @@ int LabelTable::label(const std::string& name) const {
   for (const auto& [number, label] : names) known.push_back(label);
   if (known.empty())
     throw std::runtime_error("there is no label '" + name +
-                             "': neither the label map nor a table beside it has names; say its number");
+                             "': the label map has no names, and no table beside it that could be read has "
+                             "them; say its number, or see what info says of the table");
   throw std::runtime_error(file.string() + ": has no label '" + name + "'" + suggestion(name, known));
 }
 

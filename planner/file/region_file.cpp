@@ -65,11 +65,19 @@ constexpr double jitter_mm() {
   return 0.1;
 }
 
-/// Twice the contour's area, along its normal.
+/// The area that the triangles from a contour's first point cover together, along its normal: more than the
+/// contour's own where it is not convex, and above zero where it crosses itself and its parts cancel.
 glm::dvec3 area_of(const std::vector<glm::dvec3>& contour) {
-  glm::dvec3 area(0.0);
+  glm::dvec3 largest(0.0), area(0.0);
+  const auto triangle = [&](std::size_t i) {
+    return glm::cross(contour[i] - contour[0], contour[i + 1] - contour[0]);
+  };
   for (std::size_t i = 1; i + 1 < contour.size(); ++i)
-    area += glm::cross(contour[i] - contour[0], contour[i + 1] - contour[0]);
+    if (const glm::dvec3 one = triangle(i); glm::length(one) > glm::length(largest)) largest = one;
+  for (std::size_t i = 1; i + 1 < contour.size(); ++i) {
+    const glm::dvec3 one = triangle(i);
+    area += glm::dot(one, largest) < 0.0 ? -one : one;
+  }
   return area;
 }
 
@@ -161,7 +169,7 @@ Slices planes_of(const voxel::Structure& structure, const voxel::View& view, con
     voxel::SliceMask::Slice slice{span.middle_mm(), {{}}};
     for (const glm::dvec3& p : contour) slice.polygons_mm.back().push_back(view.project(p));
     // A line there and back encloses nothing.
-    if (std::abs(voxel::signed_area(slice.polygons_mm.back())) > 0.0) single.push_back(std::move(slice));
+    if (glm::length(area_of(contour)) > 0.0) single.push_back(std::move(slice));
   }
   if (worst_mm > off_plane_mm())
     findings.push_back(source + ": points lie up to " + three_figures(worst_mm) +

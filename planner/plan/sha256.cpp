@@ -43,7 +43,8 @@ class Digest {
 
 std::string sha256_of_file(const fs::path& path) {
   std::ifstream file = voxel::opened(path);
-  if (!file) throw std::runtime_error(path.string() + ": cannot be opened for its SHA-256");
+  if (!file)
+    throw std::runtime_error(path.string() + ": cannot be opened: check that it exists and may be read");
   Digest digest;
   std::vector<char> buffer(std::size_t{1} << 20);
   while (file.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || file.gcount() > 0)

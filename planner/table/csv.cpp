@@ -50,10 +50,15 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
     refuse(1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + zero, '\n')),
            "a byte 0: it is no text, or not UTF-8");
+  // Spreadsheets write semicolons where a comma stands in numbers.
+  const std::string_view heading = text.substr(0, text.find_first_of("\r\n"));
+  const bool has_semicolons =
+      heading.find(',') == std::string_view::npos && heading.find(';') != std::string_view::npos;
+  const char between = has_semicolons ? ';' : ',';
   std::size_t at = 0;
   while (at < text.size()) {
     const char symbol = text[at];
-    if (symbol == ',') {
+    if (symbol == between) {
       row.emplace_back();
       ++at;
     } else if (symbol == '\n' || symbol == '\r') {
@@ -72,7 +77,7 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
         }
       }
       ++at;
-      if (at < text.size() && std::string_view(",\r\n").find(text[at]) == std::string_view::npos)
+      if (at < text.size() && text[at] != between && text[at] != '\r' && text[at] != '\n')
         refuse(rows.size() + 1, "text follows a closed quote");
     } else {
       row.back() += symbol;

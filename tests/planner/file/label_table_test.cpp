@@ -34,6 +34,9 @@ TEST(LabelTable, EachProgramsTableGivesTheSameNames) {
            {"list.json", R"([{"label": 5, "name": "liver"}, {"label": 2, "name": "left kidney"}])"},
            {"plain.csv", "5,liver\n2,left kidney\n"},
            {"headed.csv", "Color,Name,LabelValue\nred,liver,5\nblue,\"left kidney\",2\n"},
+           {"semicolons.csv", "Label;Name\n5;liver\n2;left kidney\n"},
+           {"slicer.ctbl", "# Color table\n5 liver 9 9 9 255\n2 left_kidney 0 9 0 255\n"},
+           {"words.ctbl", "5 liver 9 9 9 255\n2 left kidney 0 9 0 255\n"},
            {"headed.tsv", "index\tname\n5\tliver\n2\tleft kidney\n"},
            {"snap.txt",
             "# ITK-SNAP\n    0     0    0    0        0  0  0    \"Clear Label\"\n"

@@ -80,6 +80,17 @@ TEST(RegionFile, AStructureOfWhichEveryContourIsDrawnAgainIsWhole) {
   EXPECT_HOLDS(findings[0], "5 contours");
 }
 
+TEST(RegionFile, ABowTieWhoseHalvesAreAlikeEnclosesBoth) {
+  const ScratchFolder folder;
+  Outlines contours;
+  for (const double z : {0.0, 2.0, 4.0})
+    contours.push_back({{-10, -10, z}, {10, 10, z}, {10, -10, z}, {-10, 10, z}});
+  std::vector<std::string> findings;
+  const voxel::SliceMask mask = read_slices(set_file(folder, {{"B", contours}}), "B", findings);
+  EXPECT_EQ(contour_counts(mask), (std::vector<std::size_t>{1, 1, 1}));
+  EXPECT_HOLDS(testing::PrintToString(findings), "cross");
+}
+
 TEST(RegionFile, ContoursThatCrossAreToldAndHolesAreNot) {
   const ScratchFolder folder;
   Outlines contours = square_block();
