@@ -35,8 +35,26 @@ struct Side {
   }
 };
 
-Side side_of(const fs::path& path, const FileBench& bench, std::vector<std::string>& findings) {
+/// Whether two lattices have the same field and differ in the order or direction of their axes.
+bool is_stored_otherwise(const voxel::Lattice& a, const voxel::Lattice& b) {
+  constexpr double nearly = 1e-3;
+  if (a == b || a.sample_count() != b.sample_count()) return false;
+  for (const glm::dvec3& corner : {glm::dvec3(0.0), glm::dvec3(b.dims - 1)}) {
+    const glm::dvec3 at = a.voxel(b.lps_mm(corner));
+    if (glm::any(glm::lessThan(at, glm::dvec3(-nearly))) ||
+        glm::any(glm::greaterThan(at, glm::dvec3(a.dims - 1) + nearly)))
+      return false;
+  }
+  return true;
+}
+
+/// `onto` has the order that samples are stored in: it changes no object, though triangles of an octree
+/// follow its axes.
+Side side_of(const fs::path& path, const FileBench& bench, std::vector<std::string>& findings,
+             const voxel::Lattice* onto = nullptr) {
   Side side{path, bench.read_scan(path), {}};
+  if (onto != nullptr && is_stored_otherwise(*onto, side.scene.lattice))
+    if (std::optional<voxel::Scene> laid = voxel::laid_on(side.scene, *onto)) side.scene = std::move(*laid);
   try {
     const std::vector<voxel::Label> labels = voxel::labels(side.scene);
     for (const voxel::Label& label : labels) side.samples[label.number] = label.samples;
@@ -68,19 +86,6 @@ voxel::Lattice covering(const voxel::Lattice& a, const voxel::Lattice& b) {
   voxel::Lattice whole{glm::ivec3(high - low) + 1, a.lps_from_voxel};
   whole.lps_from_voxel[3] = glm::dvec4(a.lps_mm(low), 1.0);
   return whole;
-}
-
-/// Whether two lattices have the same field and differ in the order or direction of their axes.
-bool is_stored_otherwise(const voxel::Lattice& a, const voxel::Lattice& b) {
-  constexpr double nearly = 1e-3;
-  if (a == b || a.sample_count() != b.sample_count()) return false;
-  for (const glm::dvec3& corner : {glm::dvec3(0.0), glm::dvec3(b.dims - 1)}) {
-    const glm::dvec3 at = a.voxel(b.lps_mm(corner));
-    if (glm::any(glm::lessThan(at, glm::dvec3(-nearly))) ||
-        glm::any(glm::greaterThan(at, glm::dvec3(a.dims - 1) + nearly)))
-      return false;
-  }
-  return true;
 }
 
 /// Sums over all labels that both maps have.
@@ -210,11 +215,7 @@ FileAnswer compare_label_maps(const fs::path& path_a, const fs::path& path_b, bo
                               const FileBench& bench) {
   FileAnswer answer;
   const Side a = side_of(path_a, bench, answer.findings);
-  Side b = side_of(path_b, bench, answer.findings);
-  // The order in which samples are stored changes no object, though triangles of an octree follow its axes.
-  if (is_stored_otherwise(a.scene.lattice, b.scene.lattice))
-    if (std::optional<voxel::Scene> laid = voxel::laid_on(b.scene, a.scene.lattice))
-      b.scene = std::move(*laid);
+  const Side b = side_of(path_b, bench, answer.findings, &a.scene.lattice);
   for (std::string& finding :
        need_same_patient({path_a.string(), a.scene.identity}, {path_b.string(), b.scene.identity},
                          other_identity, "--other-identity"))

@@ -8,6 +8,20 @@
 #include "voxel/solid/polygon.h"
 
 namespace octotomy::voxel {
+namespace {
+
+/// Twice the area that triangles from the first point cover, without signs: zero only where all points lie on
+/// a line.
+double covered_area(const std::vector<glm::dvec2>& polygon) {
+  double area = 0.0;
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+    const glm::dvec2 a = polygon[i] - polygon[0], b = polygon[i + 1] - polygon[0];
+    area += std::abs(a.x * b.y - a.y * b.x);
+  }
+  return area;
+}
+
+}  // namespace
 
 void check(const RegionMask& mask) {
   if (mask.regions.empty()) throw std::invalid_argument("a mask needs at least one region drawn in a view");
@@ -23,7 +37,8 @@ void check(const RegionMask& mask) {
       for (const glm::dvec2& point : polygon)
         if (!std::isfinite(point.x) || !std::isfinite(point.y))
           throw std::invalid_argument(which + " has a coordinate that is not a finite number");
-      if (signed_area(polygon) == 0.0) throw std::invalid_argument(which + " encloses no area");
+      // Halves of a polygon that crosses itself may cancel: it encloses both.
+      if (covered_area(polygon) == 0.0) throw std::invalid_argument(which + " encloses no area");
     }
   }
 }

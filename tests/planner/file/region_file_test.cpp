@@ -86,8 +86,8 @@ TEST(RegionFile, ABowTieWhoseHalvesAreAlikeEnclosesBoth) {
   for (const double z : {0.0, 2.0, 4.0})
     contours.push_back({{-10, -10, z}, {10, 10, z}, {10, -10, z}, {-10, 10, z}});
   std::vector<std::string> findings;
-  const voxel::SliceMask mask = read_slices(set_file(folder, {{"B", contours}}), "B", findings);
-  EXPECT_EQ(contour_counts(mask), (std::vector<std::size_t>{1, 1, 1}));
+  const voxel::SliceMask mask = read_slices(set_file(folder, {{1, "B", contours}}), "B", findings);
+  EXPECT_EQ(contour_counts(mask), (std::vector<std::size_t>{1, 1, 1, 0})) << "ends behind its last plane";
   EXPECT_HOLDS(testing::PrintToString(findings), "cross");
 }
 
