@@ -91,19 +91,14 @@ Fitted fitted(const PhaseEvidence& found) {
   return mean;
 }
 
-/// Logarithms of an area's bounds.
+/// Logarithms of an area's likeliest value and bounds.
 struct LogRange {
-  double low = 0.0, high = 0.0;
+  double best = 0.0, low = 0.0, high = 0.0;
 };
 
-Interval from_logs(double middle, double half, const std::string& name, const std::string& formula) {
-  const double value = std::exp(middle) * std::cosh(half), half_width = std::exp(middle) * std::sinh(half);
-  return {value, half_width, {{name, formula, half_width}}};
-}
-
 /// The likeliest value with the farther of both bounds.
-Interval from_best(double best, const LogRange& range, const std::string& name, const std::string& formula) {
-  const double value = std::exp(best);
+Interval interval_of(const LogRange& range, const std::string& name, const std::string& formula) {
+  const double value = std::exp(range.best);
   const double half_width = std::max(std::exp(range.high) - value, value - std::exp(range.low));
   return {value, half_width, {{name, formula, half_width}}};
 }
@@ -121,7 +116,9 @@ std::optional<LogRange> by_edges(const PhaseEvidence& found, const Fitted& fit) 
   const double step = std::max(std::log(level[1] / level[2]), 0.0);
   const double least = near * near / (far * far - near * near) * step, most = near / (far - near) * step;
   const double apart = std::min(most - least, 0.6), middle = std::log(level[1]) + least + 0.3 * apart;
-  return LogRange{middle - apart - 0.02, middle + apart + 0.02};
+  // Where the solid is nowhere thick, teeth and grooves as narrow as the blur may leave no half level.
+  const double lost = found.has_core ? 0.0 : 0.12;
+  return LogRange{middle, middle - apart - 0.02, middle + apart + 0.02 + lost};
 }
 
 }  // namespace
@@ -154,15 +151,17 @@ std::optional<Interval> phase_area(const PhaseEvidence& found, const glm::dvec3&
   // A half level that loses over half of its area to the next blur is about to vanish and follows no power of
   // the blur.
   if (edges && found.level_mm2[3] >= 0.5 * found.level_mm2[2])
-    return from_logs(
-        0.5 * (edges->low + edges->high), 0.5 * (edges->high - edges->low), "edges",
+    return interval_of(
+        *edges, "edges",
         "the half level's area at two blurs, continued to none by the variance or the deviation");
   const double middle = std::log(found.sum * sample_mm3 / std::cbrt(sample_mm3)) + fit.log_ratio + 0.05;
-  const double half = 0.4 + fit.spread + 0.06 / std::max(found.highest, 0.03);
-  LogRange range{middle - half, middle + half};
-  if (edges) range = {std::min(range.low, edges->low), std::max(range.high, edges->high)};
-  return from_best(
-      middle, range, "shape",
+  // Thin walls close together keep more of the sums than one wall does, and seem to have less surface.
+  const double least_half = found.is_ambiguous ? 0.75 : 0.4;
+  const double half = least_half + fit.spread + 0.06 / std::max(found.highest, 0.03);
+  LogRange range{middle, middle - half, middle + half};
+  if (edges) range = {middle, std::min(range.low, edges->low), std::max(range.high, edges->high)};
+  return interval_of(
+      range, "shape",
       "sheets, rods and balls that leave these sums of squares, and the half level while it lasts");
 }
 

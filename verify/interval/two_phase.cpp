@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// passes 1 Levels of the surroundings and of the core. 2 Samples of a third density below the surroundings,
-// as of air about tissue: where they keep away from the solid they are taken for surroundings; where they
-// meet it, and where there is a density between both, the scan is not of two. 3 Samples near the solid: those
-// that rise above noise after a blur of one sample, and three samples about them. 4 Sums. 5 Fits.
+// passes 1 Levels of most of the scan, of what lies beside the solid, and of the core. 2 Where both are
+// alike, the scan is read as one of two densities. Elsewhere, or where that fails, samples of a third density
+// below the surroundings, as of air about tissue, are taken for surroundings if they keep away from the
+// solid; where they meet it the scan is refused. A density between both is a doubt. 3 Samples near the solid:
+// those that rise above noise after a blur of one sample, and three samples about them. 4 Sums. 5 Fits.
 #include "verify/interval/two_phase.h"
 
 #include <algorithm>
@@ -56,31 +57,46 @@ class Reading {
   /// False: the solid and what is about it are not of two densities.
   bool run(PhaseEvidence& found) {
     if (scan_.padding || glm::any(glm::lessThan(grid_.dims, glm::ivec3(8)))) return false;
-    if (grid_.size() > most_samples) return false;
-    const std::optional<SampleDensity> level = surroundings();
-    if (!level) return false;
-    background_ = level->value;
-    noise_ = level->noise;
-    contrast_ = 2.0 * (low_ - background_);
-    if (!(contrast_ > 0.0) || noise_ > 0.2 * contrast_ || !are_beside()) return false;
+    if (grid_.size() > most_samples || !look_about()) return false;
+    // Gaps between near walls have a density of their own too: the scan as one of two densities comes last.
+    const bool may_be_of_two = is_of_two_;
+    const bool is_other = is_beside_ && std::abs(beside_.value - all_.value) > far();
+    if (may_be_of_two && !is_other && run_in(all_, found)) return true;
+    found = {};
+    is_of_two_ = false;
+    if (are_beside() && run_in(beside_, found)) return true;
+    found = {};
+    is_of_two_ = true;
+    if (!may_be_of_two || !is_other || !run_in(all_, found)) return false;
+    found.is_ambiguous = true;
+    return true;
+  }
+
+ private:
+  /// As run(), in surroundings of this density.
+  bool run_in(const SampleDensity& level, PhaseEvidence& found) {
+    take(level);
+    if (!(contrast_ > 0.0) || noise_ > 0.2 * contrast_) return false;
     std::visit([&](const auto& samples) { values_.assign(samples.begin(), samples.end()); }, scan_.samples);
     filled_.assign(values_.size(), 0);
-    if (is_beside_ || has_others_) fill_lower();
+    if (!is_of_two_) fill_lower();
     std::array<SampleValues, 4> at_blur;
     at_blur[2] = blurred(grid_, values_, added_blur[2]);
     find_least_seen(at_blur[2]);
-    if (least_seen_ > std::min(5.0 * noise_ + 0.005 * contrast_, 0.3 * contrast_)) return false;  // they vary
+    if (!is_of_two_ && least_seen_ > std::min(5.0 * noise_ + 0.005 * contrast_, 0.3 * contrast_))
+      return false;  // the surroundings vary
     const bool has_plateau = finds_plateau(at_blur[2]);
-    if ((is_beside_ && has_plateau) || !find_near(at_blur[2])) return false;
+    if (!find_near(at_blur[2])) return false;
     find_core();
     Sums sums = summed(values_, true);
-    sums.odd += odd_in(at_blur[2]);
+    if (!is_of_two_) sums.odd += odd_in(at_blur[2]);
     // Samples that lie alone are noise; elsewhere they are a third density.
     if (sums.odd > sums.away_count / 500 + 2 || sums.border > 0 || sums.away_count < 100) return false;
     const double mean = sums.away / static_cast<double>(sums.away_count);
     // A third density that no one sample shows moves the mean.
-    if (std::abs(mean - background_) >
-        0.005 * contrast_ + 0.1 * noise_ + 4.0 * noise_ / std::sqrt(static_cast<double>(sums.away_count)))
+    if (!is_of_two_ &&
+        std::abs(mean - background_) >
+            0.005 * contrast_ + 0.1 * noise_ + 4.0 * noise_ / std::sqrt(static_cast<double>(sums.away_count)))
       return false;
     background_ = mean;
     contrast_ = 2.0 * (low_ - background_);
@@ -112,95 +128,103 @@ class Reading {
       found.tail = shares.tail;
       found.noise = contrast_ * std::sqrt(away);
     }
-    const auto filled = std::count(filled_.begin(), filled_.end(), std::uint8_t{1});
-    found.has_third = static_cast<std::size_t>(filled) > filled_.size() / 500;  // fewer are noise
+    found.has_third = !is_of_two_;
     found.background = background_;
     found.contrast = contrast_;
     found.least_seen = least_seen_ / contrast_;
-    found.is_ambiguous = !found.has_core && (has_others_ || (!is_beside_ && has_plateau) ||
-                                             has_lower_plateau(at_blur[2], found.highest));
+    found.is_ambiguous =
+        has_plateau ||
+        (!found.has_core && ((!is_of_two_ && !is_beside_) || has_lower_plateau(at_blur[2], found.highest)));
     return found.highest < 1.25 && found.sum > 0.0;
   }
 
- private:
+  void take(const SampleDensity& level) {
+    background_ = level.value;
+    noise_ = level.noise;
+    contrast_ = 2.0 * (low_ - background_);
+  }
+
   /// How far below or above the surroundings a sample is of another density.
   double far() const { return std::max(6.0 * noise_, 0.02 * contrast_); }
 
-  /// The density that the solid lies in: that of samples three samples from it. Where too few samples reach
-  /// the bound, that of most of the scan; of two common ones the higher.
-  std::optional<SampleDensity> surroundings() {
-    std::vector<float> beside, below;
+  /// Finds the density of most of the scan below the bound, and that which the solid lies in: of samples
+  /// three samples from it. Where too few samples reach the bound, that is the higher of two common ones.
+  /// False: there is none.
+  bool look_about() {
+    std::vector<float> below, others, beside;
     std::visit(
         [&](const auto& samples) {
           const std::size_t size = grid_.size(), stride = 1 + size / 200000;
           for (std::size_t i = 0; i < size; i += stride)
             if (static_cast<double>(samples[i]) < low_) below.push_back(static_cast<float>(samples[i]));
-          find_reaches(samples);
+          find_over(samples);
         },
         scan_.samples);
+    if (below.size() < 100) return false;
+    all_ = beside_ = refined(below, densest(below));
+    take(all_);
+    std::copy_if(below.begin(), below.end(), std::back_inserter(others),
+                 [&](float value) { return std::abs(static_cast<double>(value) - all_.value) > far(); });
+    is_of_two_ = others.size() <= below.size() / 4;
     each_beside([&](double value) { beside.push_back(static_cast<float>(value)); });
     is_beside_ = beside.size() >= 100;
-    if (below.size() < 100) return std::nullopt;
-    SampleDensity level = refined(below, densest(below));
     if (is_beside_) {
       // Blur widens what is beside the solid: noise is that of most of the scan, if that is of this density.
-      SampleDensity near = densest(beside);
-      if (std::abs(near.value - level.value) < 3.0 * near.noise)
-        near.noise = std::min(near.noise, level.noise);
-      level.value = nearest_mode(below, near);
-      level.noise = refined(below, {level.value, near.noise}).noise;
-      return level;
+      beside_ = densest(beside);
+      if (std::abs(beside_.value - all_.value) < 3.0 * beside_.noise)
+        beside_.noise = std::min(beside_.noise, all_.noise);
+      beside_.value = nearest_mode(below, beside_);
+      beside_.noise = refined(below, beside_).noise;
+    } else if (others.size() >= 100) {
+      const SampleDensity other = refined(others, densest(others));
+      if (other.value > all_.value) beside_ = other;
     }
-    const double off = std::max(6.0 * level.noise, 0.04 * (low_ - level.value));
-    std::vector<float> others;
-    std::copy_if(below.begin(), below.end(), std::back_inserter(others),
-                 [&](float value) { return std::abs(static_cast<double>(value) - level.value) > off; });
-    has_others_ = others.size() > below.size() / 4;
-    if (!has_others_) return level;
-    const SampleDensity other = refined(others, densest(others));
-    return other.value > level.value ? other : level;
+    return true;
   }
 
-  /// Samples over the bound that have another beside them along x, y or z: one alone is noise.
+  /// Finds samples over the bound that have another beside them along x, y or z: one alone is noise. Of more
+  /// than 200,000 every so many.
   template <typename Samples>
-  void find_reaches(const Samples& samples) {
-    reaches_.assign(samples.size(), 0);
+  void find_over(const Samples& samples) {
     const auto is_over = [&](std::size_t i) { return static_cast<double>(samples[i]) >= low_; };
-    for (int axis = 0; axis < 3; ++axis)
-      each_row(grid_, axis, [&](std::size_t first, std::size_t stride, std::size_t length) {
-        for (std::size_t i = 0; i + 1 < length; ++i)
-          if (is_over(first + i * stride) && is_over(first + (i + 1) * stride))
-            reaches_[first + i * stride] = reaches_[first + (i + 1) * stride] = 1;
-      });
+    const glm::ivec3 last = grid_.dims - 1;
+    for (int z = 0; z <= last.z; ++z)
+      for (int y = 0; y <= last.y; ++y)
+        for (int x = 0; x <= last.x; ++x) {
+          const std::size_t i = grid_.at(x, y, z);
+          if (!is_over(i)) continue;
+          if ((x > 0 && is_over(i - 1)) || (x < last.x && is_over(i + 1)) ||
+              (y > 0 && is_over(i - grid_.stride(1))) || (y < last.y && is_over(i + grid_.stride(1))) ||
+              (z > 0 && is_over(i - grid_.stride(2))) || (z < last.z && is_over(i + grid_.stride(2))))
+            over_.emplace_back(x, y, z);
+        }
+    const std::size_t every = 1 + over_.size() / 200000;
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < over_.size(); k += every) over_[kept++] = over_[k];
+    over_.resize(kept);
   }
 
-  /// Runs `visit(value)` for samples below the bound that lie three samples along an axis from one that
-  /// reaches it: of 200,000 such at most.
+  /// Runs `visit(value)` for samples below the bound that lie three samples along an axis from one over it.
   template <typename Visit>
   void each_beside(const Visit& visit) const {
-    std::vector<std::size_t> over;
-    for (std::size_t i = 0; i < reaches_.size(); ++i)
-      if (reaches_[i] != 0) over.push_back(i);
-    const std::size_t every = 1 + over.size() / 200000;
     std::visit(
         [&](const auto& samples) {
-          for (std::size_t k = 0; k < over.size(); k += every)
-            for (int axis = 0; axis < 3; ++axis) {
-              const std::size_t away = 3 * grid_.stride(axis);
-              const int place =
-                  static_cast<int>(over[k] / grid_.stride(axis) % static_cast<std::size_t>(grid_.dims[axis]));
-              const auto look = [&](std::size_t at) {
-                if (static_cast<double>(samples[at]) < low_) visit(static_cast<double>(samples[at]));
-              };
-              if (place >= 3) look(over[k] - away);
-              if (place + 3 < grid_.dims[axis]) look(over[k] + away);
-            }
+          for (const glm::ivec3& at : over_)
+            for (int axis = 0; axis < 3; ++axis)
+              for (const int by : {-3, 3}) {
+                glm::ivec3 beside = at;
+                beside[axis] += by;
+                if (beside[axis] < 0 || beside[axis] >= grid_.dims[axis]) continue;
+                const auto value = static_cast<double>(samples[grid_.at(beside.x, beside.y, beside.z)]);
+                if (value < low_) visit(value);
+              }
         },
         scan_.samples);
   }
 
   /// Whether samples beside the solid are of these surroundings, but for what blur and near walls add.
-  bool are_beside() const {
+  bool are_beside() {
+    take(beside_);
     std::size_t all = 0, below = 0, lower = 0, higher = 0;
     each_beside([&](double value) {
       ++all;
@@ -274,10 +298,12 @@ class Reading {
     grow(grid_, near_, 3);
     beyond_ = near_;
     grow(grid_, beyond_, 2);
-    // A third density may leave no more surroundings than those just beyond.
-    std::size_t away = 0;
-    for (std::size_t i = 0; i < near_.size(); ++i) away += beyond_[i] == 0 && filled_[i] == 0 ? 1 : 0;
-    if (away < 1000) beyond_ = near_;
+    if (!is_of_two_) {
+      // A third density may leave no more surroundings than those just beyond.
+      std::size_t away = 0;
+      for (std::size_t i = 0; i < near_.size(); ++i) away += beyond_[i] == 0 && filled_[i] == 0 ? 1 : 0;
+      if (away < 1000) beyond_ = near_;
+    }
     return risen > 0 && met <= risen / 500 + 2;
   }
 
@@ -353,10 +379,12 @@ class Reading {
   const voxel::Scene& scan_;
   SampleGrid grid_;
   SampleValues values_;
-  SampleMask reaches_, solid_, near_, beyond_, deep_;
-  SampleMask filled_;        ///< of a third density, taken for surroundings
-  bool has_others_ = false;  ///< no sample reaches the bound, and the scan has two densities below it
-  bool is_beside_ = false;   ///< the surroundings are those of samples over the bound
+  std::vector<glm::ivec3> over_;  ///< samples over the bound
+  SampleMask solid_, near_, beyond_, deep_;
+  SampleMask filled_;           ///< of a third density, taken for surroundings
+  SampleDensity all_, beside_;  ///< of most of the scan, and of what lies beside the solid
+  bool is_of_two_ = false;      ///< no third density is looked for
+  bool is_beside_ = false;      ///< enough samples reach the bound for those beside them to be known
   double low_ = 0.0, background_ = 0.0, contrast_ = 0.0, noise_ = 0.0, least_seen_ = 0.0, white_ = 0.0;
 };
 

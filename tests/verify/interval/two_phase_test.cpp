@@ -94,7 +94,8 @@ TEST(TwoPhase, HoldsThinSolidsInTissueWithAirAboutIt) {
     how.third_from_mm = 1.5;
     // A wall that blur lowers shows no density of its own: with a thin coat it looks as a wall in air.
     if (thickness < 1.5) continue;
-    EXPECT_FALSE(two_phase(scan_of(solid, how, chance), how.half())) << "air at the solid";
+    const auto coated = two_phase(scan_of(solid, how, chance), how.half());
+    EXPECT_TRUE(!coated || coated->evidence.is_ambiguous) << "air at the solid";
   }
 }
 
