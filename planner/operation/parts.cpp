@@ -237,7 +237,7 @@ bool is_by_measure(const Differing& parts, const std::vector<brep::Component>& a
                    const std::optional<double>& least_mm3) {
   const auto counts = [](const voxel::Octree& set) { return voxel::components(set).voxel_counts; };
   if (!least_mm3)
-    return !parts.wanted.empty() && !parts.unwanted.empty() &&
+    return !parts.wanted.empty() && !parts.unwanted.empty() && !parts.passed_over.is_empty() &&
            counts(parts.by_voxels).back() >= counts(parts.passed_over).front() &&
            all[parts.unwanted.back()].volume_mm3 >= all[parts.wanted.front()].volume_mm3;
   const double voxel_mm3 = parts.by_voxels.universe().lattice().voxel_mm3();

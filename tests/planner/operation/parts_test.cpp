@@ -162,6 +162,13 @@ TEST(PartsStep, AKernelThatKeepsTheSmallerPartOrSpoilsOneIsNotFollowed) {
   };
   const voxel::Octree high = evaluation.object("high_near").voxel.octree,
                       low = evaluation.object("low_near").voxel.octree;
+  // Nor is a kernel whose part the other one lacks.
+  const Object& caps = evaluation.object("caps_near");
+  Object made = evaluation.object("high_near");
+  made.voxel.octree = low;
+  settle_choice({[&] { return low; }, [&] { return *caps.mesh.whole; }, caps.witness}, evaluation.universe,
+                {}, made);
+  EXPECT_TRUE(is_high(made) && made.caveats.empty());
   // Without a bite of 6 mm neither is.
   const auto bitten = [&](const voxel::Octree& cap, double z_mm) {
     return voxel::combine(
