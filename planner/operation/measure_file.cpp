@@ -277,9 +277,9 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
   });
   if (asked.window) need_hounsfield(*asked.window, scene);
   const Stopwatch watch(bench.timings, "octree");
-  if (!grey || scene.meaning == voxel::Meaning::Label)
-    grey = voxel::grey_octree_of(universe_of(scene, asked.voxel_mm), scene, voxel::beyond_scan,
-                                 bench.progress("octree"));
+  const voxel::Universe universe = universe_of(scene, asked.voxel_mm);
+  if (!grey || !(grey->universe() == universe))
+    grey = voxel::grey_octree_of(universe, scene, voxel::beyond_scan, bench.progress("octree"));
   return {std::move(scene), std::move(*grey)};
 }
 
