@@ -60,7 +60,7 @@ SampleWindow window_of(const std::string& text) {
 /// One set for both kinds of file: the octree's voxels choose the parts, a label map's samples are of them.
 std::vector<Named> segments_of(const Program& program, const SegmentText& text, Segment asked,
                                const voxel::Scene& scene, Timings& timings) {
-  const voxel::Universe universe = universe_of(scene, text.voxel_mm);
+  const voxel::Universe universe = universe_of(scene, text.voxel_mm, asked.label.has_value());
   const auto grey_in = [&](const voxel::Universe& where, std::optional<voxel::GreyOctree>& kept) {
     return [&]() -> const voxel::GreyOctree& {
       if (kept) return *kept;

@@ -47,8 +47,8 @@ voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> vo
   return universe_about(scan, voxel_mm, false);
 }
 
-voxel::Universe universe_of(const voxel::Scene& scan, std::optional<double> voxel_mm) {
-  return universe_about(scan.lattice, voxel_mm, scan.meaning == voxel::Meaning::Label);
+voxel::Universe universe_of(const voxel::Scene& scan, std::optional<double> voxel_mm, bool are_labels) {
+  return universe_about(scan.lattice, voxel_mm, are_labels || scan.meaning == voxel::Meaning::Label);
 }
 
 }  // namespace octotomy::planner

@@ -15,8 +15,10 @@ namespace octotomy::planner {
 /// free.
 voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm);
 
-/// The same for a scan. Of a label map, whose samples are cells, voxels' borders lie on those of the first
-/// cell: a cell that is two voxels wide is two voxels, and not one of its own and one of chance.
-voxel::Universe universe_of(const voxel::Scene& scan, std::optional<double> voxel_mm);
+/// The same for a scan. Samples of a label map are cells, also where the file does not say that it is one and
+/// a label of it is wanted, `are_labels`. There voxels' borders lie on those of the first cell: of voxels
+/// with their centres on cells' centres, those on a border between two cells would all fall to the same side.
+voxel::Universe universe_of(const voxel::Scene& scan, std::optional<double> voxel_mm,
+                            bool are_labels = false);
 
 }  // namespace octotomy::planner

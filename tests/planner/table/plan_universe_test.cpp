@@ -44,6 +44,9 @@ TEST(PlanUniverse, VoxelsOfALabelMapFillItsCells) {
     EXPECT_NEAR(measures.volume_mm3, 9.0 * thick_mm, 1e-9);
     const glm::dvec3 middle = scene.lattice.lps_mm({4, 4, 3});
     EXPECT_LT(glm::distance(*measures.centroid_mm, middle), 1e-9) << thick_mm;
+    scene.meaning = voxel::Meaning::Raw;
+    EXPECT_TRUE(universe_of(scene, std::nullopt, true) == universe);
+    EXPECT_TRUE(universe_of(scene, std::nullopt) == universe_of(scene.lattice, std::nullopt));
   }
 }
 
