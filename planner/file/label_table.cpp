@@ -189,20 +189,15 @@ void add_rows(Names& table, const std::vector<std::vector<std::string>>& rows, c
 /// "left kidney" of "left kidney 255 0 0 255": the words before a colour of three or four numbers; without
 /// one those before the first number.
 std::string name_before_colour(const std::string& text) {
+  const auto is_number = [](const std::string& word) { return whole(word) || is_decimal(word); };
   std::istringstream in(text);
   std::vector<std::string> words;
   for (std::string word; in >> word;) words.push_back(word);
-  std::size_t numbers = 0;
-  while (numbers < std::min(words.size(), std::size_t{4}) && whole(words[words.size() - 1 - numbers]))
-    ++numbers;
-  std::size_t end = words.size() - numbers;
-  if (numbers < 3)
-    end = static_cast<std::size_t>(
-        std::find_if(words.begin(), words.end(),
-                     [](const std::string& word) { return whole(word).has_value(); }) -
-        words.begin());
+  const auto most = std::min<std::ptrdiff_t>(std::ssize(words), 4);
+  const auto colour = std::find_if_not(words.rbegin(), words.rbegin() + most, is_number) - words.rbegin();
+  const auto end = colour >= 3 ? words.end() - colour : std::find_if(words.begin(), words.end(), is_number);
   std::string name;
-  for (std::size_t i = 0; i < end; ++i) name += (i > 0 ? " " : "") + words[i];
+  for (auto word = words.begin(); word != end; ++word) name += (name.empty() ? "" : " ") + *word;
   return name;
 }
 
@@ -218,9 +213,10 @@ void add_lines(Names& table, std::istream& in, const std::string& where) {
       refuse(at, "begins with no label from 0 to " + std::to_string(voxel::most_label));
     const std::string rest = voxel::trimmed(text.substr(blank));
     const std::size_t quote = rest.find('"'), last = rest.rfind('"');
-    std::string name = quote != last ? rest.substr(quote + 1, last - quote - 1) : name_before_colour(rest);
-    if (name.empty()) refuse(at, "has a number and no name behind its label");
-    // 3D Slicer writes blanks so.
+    const bool is_quoted = quote != last;
+    std::string name = is_quoted ? rest.substr(quote + 1, last - quote - 1) : name_before_colour(rest);
+    if (!is_quoted && name.empty()) refuse(at, "has a number and no name behind its label");
+    // 3D Slicer writes an underscore for each blank.
     if (where.ends_with(".ctbl")) std::replace(name.begin(), name.end(), '_', ' ');
     table.add(*label, name, at);
   }

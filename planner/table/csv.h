@@ -15,8 +15,9 @@ std::string csv_line(const std::vector<std::string>& cells);
 /// The shortest text that reads back to the same number; empty where there is none.
 std::string csv_number(const std::optional<double>& number);
 
-/// All rows. Lines may end as on any system; blank ones are passed over. Throws voxel::Error (Input) with the
-/// row's number where a quote is not closed, text follows a closed one, or a byte 0 shows that it is no text.
+/// All rows. Cells are parted by commas, or by semicolons where the first line has these alone. Lines may end
+/// as on any system; blank ones are passed over. Throws voxel::Error (Input) with the row's number where a
+/// quote is not closed, text follows a closed one, or a byte 0 shows that it is no text.
 std::vector<std::vector<std::string>> parse_csv(std::string_view text);
 
 /// All rows of a table whose cells tabs part, as BIDS has them: without blanks at cells' ends and quotes

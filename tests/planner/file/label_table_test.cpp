@@ -36,6 +36,7 @@ TEST(LabelTable, EachProgramsTableGivesTheSameNames) {
            {"headed.csv", "Color,Name,LabelValue\nred,liver,5\nblue,\"left kidney\",2\n"},
            {"semicolons.csv", "Label;Name\n5;liver\n2;left kidney\n"},
            {"slicer.ctbl", "# Color table\n5 liver 9 9 9 255\n2 left_kidney 0 9 0 255\n"},
+           {"shares.ctbl", "5 liver 0.9 0.9 0.9 1\n2 left kidney 0 .5 0 1.0\n"},
            {"words.ctbl", "5 liver 9 9 9 255\n2 left kidney 0 9 0 255\n"},
            {"headed.tsv", "index\tname\n5\tliver\n2\tleft kidney\n"},
            {"snap.txt",
