@@ -213,7 +213,7 @@ class WindowAlong {
 
   State state_of(const Range& range) const {
     const auto least = static_cast<double>(range.least), most = static_cast<double>(range.most);
-    if (!range.is_finite) return State::Mixed;
+    if (!range.is_finite || (scan_->padding && least == *scan_->padding && most >= low_)) return State::Mixed;
     return most < low_ || least > high_     ? State::Out
            : least >= low_ && most <= high_ ? State::In
                                             : State::Mixed;
@@ -248,6 +248,7 @@ class WindowAlong {
       part[axis] = at - first[axis];
     }
     const glm::ivec3 next = glm::min(first + 1, dims_ - 1);
+    if (scan_->padding && has_padding(first, next)) return nearest(first, part, next);
     const auto row = [&](int y, int z) {
       const auto a = static_cast<double>(*sample(first.x, y, z)),
                  b = static_cast<double>(*sample(next.x, y, z));
@@ -259,6 +260,21 @@ class WindowAlong {
     };
     const double a = slice(first.z), b = slice(next.z);
     return a + part.z * (b - a);
+  }
+
+  bool has_padding(const glm::ivec3& first, const glm::ivec3& next) const {
+    for (const int z : {first.z, next.z})
+      for (const int y : {first.y, next.y})
+        for (const int x : {first.x, next.x})
+          if (static_cast<double>(*sample(x, y, z)) == *scan_->padding) return true;
+    return false;
+  }
+
+  /// The nearest sample: nothing lies between a sample and padding. No number where that is padding.
+  double nearest(const glm::ivec3& first, const glm::dvec3& part, const glm::ivec3& next) const {
+    const auto value = static_cast<double>(*sample(
+        part.x < 0.5 ? first.x : next.x, part.y < 0.5 ? first.y : next.y, part.z < 0.5 ? first.z : next.z));
+    return value == *scan_->padding ? std::numeric_limits<double>::quiet_NaN() : value;
   }
 
   /// The part of a step whose values go from f0 to f1 that lies in the window.

@@ -67,6 +67,7 @@ class WindowWitness {
         dims_(scan_->lattice.dims),
         low_(low),
         high_(high),
+        padding_(scan_->padding.value_or(std::numeric_limits<double>::quiet_NaN())),
         scan_from_lps_(glm::inverse(scan_->lattice.lps_from_voxel)),
         universe_from_lps_(glm::inverse(universe.lps_from_voxel)),
         scan_from_universe_(glm::inverse(scan_->lattice.lps_from_voxel) * universe.lps_from_voxel),
@@ -191,7 +192,8 @@ class WindowWitness {
         rounding * (1.0 + static_cast<double>(std::max({dims_.x, dims_.y, dims_.z}))) + 3.0 * slack;
     if (past > 0.5 + near) return certainly_out;
     bool any_in = false, any_out = false;
-    for (const double v : own_corners(u, slack)) (v >= low_ && v <= high_ ? any_in : any_out) = true;
+    for (const double v : own_corners(u, slack))
+      (v != padding_ && v >= low_ && v <= high_ ? any_in : any_out) = true;
     if (!any_in) return certainly_out;
     return any_out || past > 0.5 - near ? on_surface : certainly_in;
   }
@@ -215,12 +217,21 @@ class WindowWitness {
     return samples;
   }
 
+  /// Padding is outside, and the surface closes half way to it from each sample inside.
+  Word word_at_padding(const Cell& at) const {
+    return std::any_of(at.v.begin(), at.v.end(),
+                       [&](double v) { return v != padding_ && v >= low_ && v <= high_; })
+               ? on_surface
+               : certainly_out;
+  }
+
   /// The mesh's answer, beyond the outermost samples as word_beyond() has it.
   Word mesh_word(const glm::dvec3& u, double slack) const {
     const double past = beyond(u);
     if (past >= 1.0) return certainly_out;
     if (past > rounding) return word_beyond(u, slack);
     const Cell at = cell(u);
+    if (at.low == padding_) return word_at_padding(at);
     if (const std::optional<Word> clear = clear_word(at, slack)) return *clear;
     const Stray stray = stray_of(at);
     // In a cell f changes by its samples' range a sample along each axis at most.
@@ -290,10 +301,7 @@ class WindowWitness {
     const double past = beyond(u);
     if (past > 0.5 + 1e-6) return {};
     const Cell made = cell(u);
-    bool any_padding = false;
-    if (scan_->padding)
-      for (std::size_t i = 0; i < 8; ++i) any_padding = any_padding || made.v[i] == *scan_->padding;
-    if (!any_padding) return {made.value(), past < 0.5 - 1e-6};
+    if (made.low != padding_) return {made.value(), past < 0.5 - 1e-6};
     return {std::nullopt,
             std::all_of(made.t.begin(), made.t.end(), [](double t) { return t > 1e-6 && t < 1.0 - 1e-6; })};
   }
@@ -302,6 +310,7 @@ class WindowWitness {
   const Sample* samples_;
   glm::ivec3 dims_;
   double low_, high_;
+  double padding_;  ///< below every measured sample; NaN without padding
   std::array<std::size_t, 3> strides_{};
   Affine scan_from_lps_, universe_from_lps_, scan_from_universe_;
   int side_;

@@ -89,6 +89,34 @@ TEST_F(Witnessed, RightAnswersPassAndLinesFindTheSameVolume) {
   EXPECT_LE(right.limit->volume_mm3, 64.0);
 }
 
+TEST_F(Witnessed, PaddingThatCutsTheObjectContradictsNothing) {
+  voxel::Scene scene = *scan_;
+  scene.padding = -1500.0;
+  auto& samples = std::get<voxel::Int16Samples>(scene.samples);
+  std::size_t i = 0;
+  for (int z = 0; z < 64; ++z)
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x, ++i)
+        if (x + 0.4 * y - 0.3 * z > 32.0) samples[i] = -1500;
+  const auto scan = std::make_shared<const voxel::Scene>(std::move(scene));
+  universe_.lps_from_voxel[3] = {0.3, 0.4, 0.2, 1.0};
+  const voxel::GreyOctree grey = voxel::grey_octree_of(universe_, *scan, -1500);
+  for (const auto& [low, high] :
+       {std::pair(0.0, endless), std::pair(-700.0, -200.0), std::pair(-2000.0, 0.0)}) {
+    inputs_.witness = witness_of_window(scan, low, high, universe_);
+    voxel::Window window{grey, std::max(low, -1499.0)};
+    if (high < endless) window.high = high;
+    const Certificate right = certified(voxel::combine(universe_, voxel::Expression(window)),
+                                        convert::isosurface(*scan, low, high));
+    for (const Comparison& each : right.comparisons)
+      if (each.quantity == "contradicted voxels" || each.quantity == "stray surface") {
+        EXPECT_EQ(each.difference, 0.0) << each.quantity << " of " << low;
+      }
+    ASSERT_TRUE(right.third);
+    EXPECT_NEAR(right.third->volume_mm3, right.mesh.volume_mm3, 0.02 * right.mesh.volume_mm3) << low;
+  }
+}
+
 TEST_F(Witnessed, APartThatBothKernelsLostFails) {
   const Certificate lost = certified(voxel::components(octree()).largest, with_small_part(0));
   EXPECT_EQ(lost.verdict, Verdict::Fail);
