@@ -37,7 +37,7 @@ std::map<int, std::string> of_dicom(const fs::path& path) {
 
 std::vector<SlicerSegment> slicer_segments(const fs::path& path) {
   std::map<int, SlicerSegment> listed;
-  bool has_layers = false;
+  bool has_layers = false, states_layers = false;
   std::ifstream in = opened(path);
   constexpr std::size_t most_lines = 100000;
   std::string line;
@@ -56,15 +56,22 @@ std::vector<SlicerSegment> slicer_segments(const fs::path& path) {
     if (key == "_Name") segment.name = value;
     if (key == "_LabelValue") whole(segment.value);
     if (key == "_Layer") whole(segment.layer);
+    states_layers = states_layers || key == "_Layer" || key == "_LabelValue";
   }
   std::vector<SlicerSegment> segments;
   int largest = 0;
   for (auto& [number, segment] : listed) {
     if (segment.name.empty()) continue;
+    if (!has_layers) {
+      segment.layer = 0;
+    } else if (!states_layers) {
+      // 3D Slicer 4 to 4.10 wrote a layer of zeros and ones for each segment.
+      segment.layer = number;
+      segment.value = 1;
+    }
     // Without a value the segments are numbered as they are listed.
     if (segment.value <= 0) segment.value = number + 1;
     largest = std::max(largest, segment.value);
-    if (!has_layers) segment.layer = 0;
     segments.push_back(std::move(segment));
   }
   std::set<int> taken;

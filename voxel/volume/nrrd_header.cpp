@@ -149,7 +149,7 @@ class NrrdReader {
   /// Whether 3D Slicer wrote its segments into the header.
   bool lists_segments() const {
     return std::any_of(text_.keys.begin(), text_.keys.end(), [](const auto& key) {
-      return key.first.starts_with("segment") && key.first.ends_with("_labelvalue");
+      return key.first.starts_with("segment") && key.first.ends_with("_name");
     });
   }
 

@@ -53,6 +53,20 @@ TEST(SlicerLayers, SegmentsThatOverlapKeepTheirSamplesUnderNumbersOfTheirOwn) {
   EXPECT_NE(warnings.find("7 in layer 0 (as number 4)"), std::string::npos) << warnings;
 }
 
+TEST(SlicerLayers, ALayerForEachSegmentThatStatesNoValueIsRead) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "old.seg.nrrd", std::ios::binary)
+      << "NRRD0004\ntype: uint8\ndimension: 4\nspace: left-posterior-superior\nsizes: 2 2 2 1\n"
+         "space directions: none (1,0,0) (0,1,0) (0,0,1)\nkinds: list domain domain domain\n"
+         "encoding: ascii\nSegment0_ID:=S1\nSegment0_Name:=Mandible\nSegment1_ID:=S2\n"
+         "Segment1_Name:=Skull\n\n1 0 0 1 1 1 0 0";
+  const Scene scene = read_scene(folder / "old.seg.nrrd");
+  EXPECT_EQ(label_names(folder / "old.seg.nrrd"),
+            (std::map<int, std::string>{{1, "Mandible"}, {2, "Skull"}}));
+  EXPECT_EQ(std::get<Int16Samples>(scene.samples), (Int16Samples{1, 2, 3, 0}));
+  EXPECT_EQ(scene.overlaps, (std::map<int, std::vector<int>>{{3, {1, 2}}}));
+}
+
 TEST(SlicerLayers, AValueThatSinglePrecisionMergesIsRefused) {
   const ScratchFolder folder;
   const auto path = folder / "s.seg.nrrd";
