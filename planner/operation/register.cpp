@@ -62,10 +62,23 @@ bool is_json(const std::filesystem::path& path) {
   return is_landmarks_file(path);
 }
 
+/// Why the landmarks may be mirrored; none where they are not. Three points have no sides.
+std::optional<std::string> mirrored(std::vector<brep::Landmark> moving,
+                                    const std::vector<brep::Landmark>& fixed, const brep::LandmarkFit& fit) {
+  constexpr double most_mm = 3.0;  // hands place landmarks so on a head
+  if (fit.rms_mm <= most_mm) return std::nullopt;
+  for (brep::Landmark& mark : moving) mark.p_mm.x = -mark.p_mm.x;
+  const double rms_mm = brep::register_landmarks(moving, fixed, brep::Motion::similarity).rms_mm;
+  if (rms_mm > 0.3 * fit.rms_mm) return std::nullopt;
+  return "the landmarks lie " + grouped(fit.rms_mm, 1) + " mm apart, and " + grouped(rms_mm, 1) +
+         " mm if one set is mirrored: left and right are exchanged in one of them, by its names or its frame";
+}
+
 Laid by_landmarks(const std::filesystem::path& moving, const std::filesystem::path& fixed,
                   const std::string& motion, Timings& timings) {
   const Stopwatch watch(timings, "landmarks");
-  const brep::LandmarkFit fit = brep::register_landmarks(read_landmarks(moving), read_landmarks(fixed),
+  const std::vector<brep::Landmark> from = read_landmarks(moving), to = read_landmarks(fixed);
+  const brep::LandmarkFit fit = brep::register_landmarks(from, to,
                                                          motion == "similarity" ? brep::Motion::similarity
                                                          : motion == "rigid"    ? brep::Motion::rigid
                                                                                 : brep::Motion::three_points);
@@ -80,6 +93,7 @@ Laid by_landmarks(const std::filesystem::path& moving, const std::filesystem::pa
                                {"left_out", fit.left_out}};
   for (const std::string& name : fit.left_out)
     laid.findings.push_back("landmark '" + name + "' is in one file only");
+  if (auto sides = mirrored(from, to, fit)) laid.findings.push_back(std::move(*sides));
   return laid;
 }
 

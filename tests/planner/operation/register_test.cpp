@@ -2,6 +2,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "tests/brep/told.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {
@@ -45,6 +46,24 @@ TEST(RegisterStep, LandmarksAloneGiveTheMotion) {
       "onto": "ball", "landmarks": ["here.json", "there.json"], "landmarks_only": true})"));
   EXPECT_NEAR(evaluation.object("up").mesh.within->measures().centroid_mm->z, 3.0, 1e-3);
   EXPECT_NEAR(evaluation.object("up").voxel.measures.centroid_mm->z, 3.0, 0.05);
+}
+
+TEST(RegisterStep, LandmarksThatFitMirroredAreTold) {
+  const ScratchFolder folder;
+  const auto write = [&](const char* name, int side) {
+    std::ofstream(folder / name) << R"({"landmarks": [{"name": "nasion", "point_mm": [0, -90, 30]},
+      {"name": "pogonion", "point_mm": [0, -85, -70]}, {"name": "left", "point_mm": [)"
+                                 << 50 * side << R"(, -20, 10]}, {"name": "right", "point_mm": [)"
+                                 << -55 * side << R"(, -22, 5]}]})";
+  };
+  write("here.json", 1);
+  for (const int side : {1, -1}) {
+    write("there.json", side);
+    const Evaluation evaluation =
+        evaluate(ball_plan(folder, R"({"id": "up", "do": "register", "object": "ball",
+      "onto": "ball", "landmarks": ["here.json", "there.json"], "landmarks_only": true})"));
+    EXPECT_EQ(told(evaluation.object("up").findings).find("mirrored") != std::string::npos, side < 0);
+  }
 }
 
 TEST(RegisterStep, AScaleIsRefused) {
