@@ -104,9 +104,9 @@ Compared compared(const Compare& asked, const brep::Linked& a, const brep::Linke
     made.dice = dice(a.triangles, b.triangles, made.findings);
   }
   if (made.difference.on_border_count > 0)
-    made.findings.push_back(std::to_string(made.difference.on_border_count) + " of " +
-                            std::to_string(made.difference.sample_count) +
-                            " samples are nearest to a border, where the sign is a guess");
+    made.findings.push_back(
+        "nearest to a border, where the sign is a guess: " + std::to_string(made.difference.on_border_count) +
+        " of " + std::to_string(made.difference.sample_count) + " samples");
   return made;
 }
 

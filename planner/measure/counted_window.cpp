@@ -10,6 +10,8 @@
 #include <tbb/parallel_reduce.h>
 #include <vector>
 
+#include "planner/table/number_format.h"
+
 namespace octotomy::planner {
 namespace {
 
@@ -46,11 +48,11 @@ voxel::Samples<Sample> averaged(const voxel::Samples<Sample>& samples, glm::ivec
   return made;
 }
 
-/// The volume of half a sample beyond the scan's outermost samples that are in the window.
-double border_mm3(const voxel::Scene& scan, double low, double high) {
+/// The numbers of a window's samples that are outermost along each axis.
+glm::dvec3 outermost(const voxel::Scene& scan, double low, double high) {
   low = voxel::above_padding(scan, low);
   const glm::ivec3 dims = scan.lattice.dims;
-  std::size_t count = 0;
+  glm::dvec3 counts(0.0);
   std::visit(
       [&](const auto& samples) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -64,12 +66,12 @@ double border_mm3(const voxel::Scene& scan, double low, double high) {
                     samples[static_cast<std::size_t>(at.x) +
                             static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(at.y) +
                             plane_of(dims) * static_cast<std::size_t>(at.z)]);
-                count += sample >= low && sample <= high ? 1 : 0;
+                counts[axis] += sample >= low && sample <= high ? 1.0 : 0.0;
               }
         }
       },
       scan.samples);
-  return 0.5 * static_cast<double>(count) * sample_mm3(scan);
+  return counts;
 }
 
 /// The number of faces across each axis between samples in a window and neighbours out of it.
@@ -221,12 +223,23 @@ voxel::Scene averaged_by_two(const voxel::Scene& scan) {
   return made;
 }
 
+double cut_mm2(const voxel::Scene& scan, double low, double high) {
+  return glm::dot(outermost(scan, low, high), sample_mm3(scan) / scan.lattice.spacing_mm());
+}
+
+std::optional<std::string> cut_finding(double cut_mm2, double area_mm2) {
+  if (!(cut_mm2 > 0.001 * area_mm2)) return std::nullopt;
+  return "the scan's border cuts the object off over " + three_figures(cut_mm2) +
+         " mm²: what lies beyond is in no number";
+}
+
 std::optional<Thickness> thickness_of(const voxel::Scene& scan, double low, double high) {
   const double counted_mm3 = static_cast<double>(count_in(scan, low, high)) * sample_mm3(scan);
   if (!(counted_mm3 > 0.0)) return std::nullopt;
   Thickness found;
   found.faces_mm2 = faces_mm2(scan, low, high);
-  found.border_mm3 = border_mm3(scan, low, high);
+  const glm::dvec3 counts = outermost(scan, low, high);
+  found.border_mm3 = 0.5 * (counts.x + counts.y + counts.z) * sample_mm3(scan);
   const voxel::Scene thick = averaged_by_two(scan);
   found.volume_change_mm3 = static_cast<double>(count_in(thick, low, high)) * sample_mm3(thick) - counted_mm3;
   found.area_change_share = found.faces_mm2 > 0.0 ? faces_mm2(thick, low, high) / found.faces_mm2 - 1.0 : 0.0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "voxel/space/scene.h"
 
@@ -32,6 +33,12 @@ voxel::Scene indicator_of(const voxel::Scene& scan, double low, double high);
 /// the last of an odd number stays alone. A mean holds no padding: of a pair with one padded sample it is the
 /// other. Precondition: the scene is not empty. Parallel; memory of half the scan at most.
 voxel::Scene averaged_by_two(const voxel::Scene& scan);
+
+/// The area over which a window's samples meet the scan's border; one pass over the outermost samples.
+double cut_mm2(const voxel::Scene& scan, double low, double high);
+/// What is reported of an object that the scan's border cuts off over such an area; none where that is less
+/// than a thousandth of its own.
+std::optional<std::string> cut_finding(double cut_mm2, double area_mm2);
 
 /// What nobody knows of a window's size because the scan's samples are as thick as they are.
 struct Thickness {

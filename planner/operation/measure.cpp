@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "planner/measure/counted_window.h"
 #include "planner/measure/digitised.h"
 #include "planner/measure/gap.h"
 #include "planner/measure/recommended.h"
@@ -220,6 +221,22 @@ Recommended intervals_of(const AnswerBench& bench, const Object& object, const D
   return found;
 }
 
+/// Where the object ends because the scan does: faces of its mesh on the scan's border. A motion keeps them.
+double cut_mm2_of(const AnswerBench& bench, const Object& object) {
+  if (object.moved) return cut_mm2_of(bench, bench.objects.at(object.moved->object));
+  if (!object.bound.scan_box_mm || !object.mesh.within) return 0.0;
+  std::vector<CutPlane> ends;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double at_mm :
+         {object.bound.scan_box_mm->low_mm[axis], object.bound.scan_box_mm->high_mm[axis]}) {
+      glm::dvec3 normal(0.0);
+      normal[axis] = 1.0;
+      ends.push_back({axis, normal, at_mm});
+    }
+  const glm::dvec3 cut = area_on_planes(object.mesh.within->triangles(), ends);
+  return cut.x + cut.y + cut.z;
+}
+
 Json points_json(const Measure& asked, const AnswerBench& bench) {
   const Digitised digitised = digitised_of(bench);
   std::vector<glm::dvec3> p;
@@ -290,6 +307,9 @@ Json size_json(const Measure& asked, const AnswerBench& bench) {
       {voxels_mm3, object.mesh.within ? std::optional(object.mesh.within->size().volume_mm3) : std::nullopt},
       {object.voxel.measures.area_crofton13_mm2,
        object.mesh.within ? std::optional(object.mesh.within->size().area_mm2) : std::nullopt});
+  if (object.mesh.within)
+    if (const auto cut = cut_finding(cut_mm2_of(bench, object), object.mesh.within->size().area_mm2))
+      findings.push_back(*cut);
   if (const auto finding = too_coarse_finding(object, width)) findings.insert(findings.begin(), *finding);
   if (!findings.empty()) {
     std::string all;

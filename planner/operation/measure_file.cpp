@@ -364,6 +364,8 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
            recommended, is_of_phases, is_of_phases && phases->evidence.has_core,
            {measures.volume_mm3, surface.volume_mm3}, {measures.area_crofton13_mm2, surface.area_mm2}))
     json["findings"].push_back(finding);
+  if (const auto cut = cut_finding(cut_mm2(scene, window.low, high), surface.area_mm2))
+    json["findings"].push_back(*cut);
   const HalfWidth width =
       area_half_width({recommended.triangles.area_mm2, recommended.triangles.curvature_mm}, digitised);
   json["area_half_width_mm2"] = width.value;

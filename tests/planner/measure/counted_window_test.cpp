@@ -139,6 +139,10 @@ TEST(CountedWindow, HalfASampleBeyondTheBorderIsNotKnown) {
   const auto found = thickness_of(scan, 500.0, open_end);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->border_mm3, 0.5 * 3.0 * 16.0);
+  EXPECT_EQ(cut_mm2(scan, 500.0, open_end), 16.0);
+  EXPECT_EQ(cut_mm2(scan, -500.0, 500.0), 2.0 * (24.0 + 24.0) * 8.0 + 2.0 * 64.0 - 16.0);
+  EXPECT_FALSE(cut_finding(0.1, 200.0));
+  EXPECT_NE(cut_finding(16.0, 200.0).value_or("").find("16.0 mm²"), std::string::npos);
 }
 
 }  // namespace
