@@ -85,6 +85,9 @@ MeshContent read_obj(std::string_view bytes) {
         // Negative numbers count back from the last point read.
         const long long given = integer_of(word.substr(0, word.find('/')));
         if (given == 0) scanner.fail("a face refers to point 0; OBJ counts from 1");
+        if (given > static_cast<long long>(triangles.points_mm.size()))
+          scanner.fail("a face refers to point " + std::to_string(given) + ", and " +
+                       std::to_string(triangles.points_mm.size()) + " stand before it");
         corners.push_back(given > 0 ? given - 1 : given + static_cast<long long>(triangles.points_mm.size()));
       }
       on_line(scanner, [&] { polygons.add(corners); });

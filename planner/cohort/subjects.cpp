@@ -158,8 +158,13 @@ std::vector<std::vector<std::string>> rows_of_table(const fs::path& input) {
   }
 }
 
+/// The column of this name; without one, that whose name differs by capitals only.
 std::optional<std::size_t> column_of(const std::vector<std::string>& header, const std::string& name) {
-  const auto found = std::find(header.begin(), header.end(), name);
+  auto found = std::find(header.begin(), header.end(), name);
+  if (found == header.end())
+    found = std::find_if(header.begin(), header.end(), [&](const std::string& other) {
+      return voxel::lower_case(other) == voxel::lower_case(name);
+    });
   return found == header.end() ? std::nullopt : std::optional<std::size_t>(found - header.begin());
 }
 
@@ -226,7 +231,11 @@ std::vector<Subject> subjects_of_table(const fs::path& input, const Plan& plan) 
   const auto column = [&](const std::string& name) { return column_of(header, name); };
   auto id = column("participant_id");
   if (!id) id = column("subject");
-  if (!id) refuse(input.string() + ": has no column participant_id");
+  if (!id) {
+    std::string row = csv_line(header);
+    row.pop_back();  // the line's end
+    refuse(input.string() + ": has no column participant_id; its first row is '" + row + "'");
+  }
   if (const auto folders = folders_of_rows(rows, *id, input, plan)) return *folders;
   std::map<std::string, std::size_t> scan_columns;
   for (const auto& [name, unused] : plan.scans) {

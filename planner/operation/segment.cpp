@@ -113,7 +113,7 @@ class Segmenter {
   std::string advice() const {
     if (made_.steps.size() > 1)
       return " after its " + std::to_string(made_.steps.size()) + " steps: leave some out";
-    if (source_.scene.meaning != voxel::Meaning::Label)
+    if (source_.scene.meaning != voxel::Meaning::Label && !segment_.label)
       return ": choose another window, or see what --otsu 3 suggests";
     for (const voxel::Finding& finding : source_.scene.audit)
       if (finding.check == "fractions") return ": " + finding.detail;

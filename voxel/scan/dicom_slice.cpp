@@ -222,7 +222,11 @@ std::optional<NoSlice> take_geometry(const Attributes& attributes, std::size_t f
       spacing = attributes.decimals(tag);
       slice.assumed_spacing = name;
     }
-  if (!spacing || spacing->size() != 2)
+  if (spacing && spacing->size() != 2)
+    return NoSlice{"an image whose PixelSpacing has " + std::to_string(spacing->size()) +
+                       " values: it needs two, the distance of rows and that of columns",
+                   unusable};
+  if (!spacing)
     return NoSlice{"an image without PixelSpacing: add it, or read the pixels by --raw with --spacing",
                    unusable};
   if (!are_within(*spacing, 1e-6, 1e6))  // no scanner's or microscope's

@@ -139,8 +139,11 @@ class NiftiReader {
 
   VolumeHeader read() {
     const auto axes = static_cast<std::size_t>(std::clamp(fields_.dim[0], 0.0, 8.0));
-    require(axes >= 2 && axes <= 7, "number of axes");
-    for (std::size_t axis = 1; axis <= axes; ++axis) require(fields_.dim[axis] >= 1.0, "dims");
+    require(axes >= 2 && axes <= 7,
+            print("dim[0] is %g, where the number of axes, 2 to 7, stands", fields_.dim[0]));
+    for (std::size_t axis = 1; axis <= axes; ++axis)
+      require(fields_.dim[axis] >= 1.0,
+              print("dim[%zu] is %g, and an axis has a sample at least", axis, fields_.dim[axis]));
     header_.geometry.dims = dims_of(
         path_, {fields_.dim.begin() + 1, fields_.dim.begin() + 1 + static_cast<std::ptrdiff_t>(axes)});
     take_unit();
@@ -209,7 +212,9 @@ class NiftiReader {
     if (!has_third) spacing.z = 1.0;
     const glm::dvec3 length = glm::abs(spacing);
     const double least = 1e-6 / header_.geometry.mm_per_unit.x;  // no voxel is smaller than a nanometre
-    require(are_lengths({length}) && length.x >= least && length.y >= least && length.z >= least, "spacing");
+    require(are_lengths({length}) && length.x >= least && length.y >= least && length.z >= least,
+            print("pixdim %g %g %g is no spacing: set it, or save the volume again", spacing.x, spacing.y,
+                  spacing.z));
     if (spacing != length)
       header_.audit.push_back(
           {"spacing", Verdict::Warn,
@@ -222,7 +227,8 @@ class NiftiReader {
 
   glm::dmat4 qform(std::size_t axes) {
     const glm::dvec3 length = spacing(axes);
-    require(are_lengths({fields_.quaternion, fields_.qoffset}), "quaternion");
+    require(are_lengths({fields_.quaternion, fields_.qoffset}),
+            "its qform has a number that is not finite or beyond all lengths");
     const double squared = glm::dot(fields_.quaternion, fields_.quaternion);
     constexpr double rounding = 8.0 * static_cast<double>(std::numeric_limits<float>::epsilon());
     if (squared > 1.0 + rounding)
@@ -254,7 +260,7 @@ class NiftiReader {
       return std::isfinite(column.x) && std::isfinite(column.y) && std::isfinite(column.z);
     };
     if (!is_finite(s[0]) || !is_finite(s[1]) || !is_finite(s[2]) || !is_finite(s[3])) return false;
-    require(are_lengths({s[0], s[1], s[2], s[3]}), "affine");
+    require(are_lengths({s[0], s[1], s[2], s[3]}), "its sform has a number beyond all lengths");
     third_is_missing_ = axes < 3 && glm::dvec3(s[2]) == glm::dvec3(0.0);
     const glm::dvec3 third =
         third_is_missing_ ? glm::cross(glm::dvec3(s[0]), glm::dvec3(s[1])) : glm::dvec3(s[2]);
@@ -424,7 +430,8 @@ class NiftiReader {
     const auto type = types.find(fields_.datatype);
     if (type == types.end()) refuse_type();
     require(static_cast<std::size_t>(std::max(0, fields_.bitpix)) == 8 * bytes_of(type->second),
-            "bits of a sample");
+            print("bitpix is %d, but samples of its datatype %d have %zu bits", fields_.bitpix,
+                  fields_.datatype, 8 * bytes_of(type->second)));
     SampleFiles& samples = header_.samples;
     samples.stored.type = type->second;
     samples.stored.big_endian = fields_.is_swapped == (std::endian::native == std::endian::little);
@@ -437,7 +444,7 @@ class NiftiReader {
       offset = least;
     }
     require(offset >= (pair_ ? 0.0 : static_cast<double>(header_bytes_)) && offset <= 1e9,
-            "offset of the samples");
+            print("vox_offset is %g, which is no place of its samples", offset));
     const bool is_packed = is_gzip(samples.files.front());
     samples.encoding = is_packed ? SampleFiles::Encoding::Deflated : SampleFiles::Encoding::Raw;
     samples.byte_skip = static_cast<std::uintmax_t>(offset);
@@ -473,7 +480,7 @@ class NiftiReader {
                                                   {DT_RGBA32, "colours"},
                                                   {DT_FLOAT128, "numbers of 128 bits"}};
     const auto name = names.find(fields_.datatype);
-    if (name == names.end()) require(false, "type of samples");
+    if (name == names.end()) require(false, print("datatype %d is no type of samples", fields_.datatype));
     refuse(path_, std::string("its samples are ") + name->second +
                       "; a scan has one number of at most 64 bits a sample: convert it first");
   }
@@ -500,8 +507,8 @@ class NiftiReader {
     }
   }
 
-  void require(bool holds, const char* what) const {
-    if (!holds) refuse(path_, std::string("its NIfTI header is damaged: ") + what);
+  void require(bool holds, const std::string& otherwise) const {
+    if (!holds) refuse(path_, "its NIfTI header is damaged: " + otherwise);
   }
 
   std::optional<NiftiPair> pair_;

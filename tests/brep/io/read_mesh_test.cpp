@@ -152,7 +152,9 @@ TEST(ReadMesh, WhatIsBadIsToldWithPathAndPlace) {
       std::string::npos);
   EXPECT_NE(refusal_of("x.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n").find("refers to point 3 of 3"),
             std::string::npos);
-  EXPECT_NE(refusal_of("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n").find("line 4"), std::string::npos);
+  EXPECT_NE(refusal_of("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n")
+                .find("line 4: a face refers to point 4, and 3 stand before it"),
+            std::string::npos);
   EXPECT_NE(refusal_of("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n").find("polygon of 2"),
             std::string::npos);
   EXPECT_NE(refusal_of("x.obj", "v 0 0 nan\n").find("number"), std::string::npos);

@@ -36,6 +36,19 @@ TEST(Subjects, ADeviceBehindALinkIsNoTable) {
             (folder / "scans.csv").string() + ": is a pipe or device: copy it into a file first");
 }
 
+TEST(Subjects, AColumnIsKnownWhateverItsCapitalsAndARowWithoutOneIsShown) {
+  const tests::ScratchFolder folder;
+  std::ofstream(folder / "scans.csv") << "Participant_ID,Scan\na,a.nrrd\n";
+  Plan plan;
+  plan.scans["ct"].path = "head.nrrd";
+  const std::vector<Subject> subjects = find_subjects(folder / "scans.csv", plan);
+  ASSERT_EQ(subjects.size(), 1U);
+  EXPECT_EQ(subjects[0].label, "a");
+  std::ofstream(folder / "names.csv") << "name,scan\na,a.nrrd\n";
+  EXPECT_NE(table_refusal(folder / "names.csv").find("participant_id; its first row is 'name,scan'"),
+            std::string::npos);
+}
+
 class BidsSubjects : public testing::Test {
  protected:
   void put(const std::string& name, const std::string& text = "") {
