@@ -176,6 +176,17 @@ Corner corner_of(const brep::Triangles& triangles, const brep::Component& compon
   return least;
 }
 
+voxel::Octree common_of(const voxel::Octree& a, const voxel::Octree& b) {
+  return voxel::combine(a.universe(), voxel::Expression(a) & voxel::Expression(b));
+}
+
+voxel::Octree digitised_part(const brep::Solid& solid, const brep::Component& component,
+                             const voxel::Universe& universe) {
+  return convert::voxelise(
+      universe, brep::trusted_solid(brep::part_of(solid, component.faces), brep::proof_of_part(solid.proof()))
+                    .linked());
+}
+
 /// Components of a solid that hold a voxel of a set. Those of less than a quarter of its smallest part, or
 /// more than four of its largest one, do not count.
 std::vector<std::size_t> components_in(const brep::Solid& solid, const voxel::Octree& set) {
@@ -188,11 +199,7 @@ std::vector<std::size_t> components_in(const brep::Solid& solid, const voxel::Oc
   const std::vector<brep::Component>& all = solid.components();
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].volume_mm3 < least_mm3 || all[i].volume_mm3 > most_mm3) continue;
-    const brep::Solid part =
-        brep::trusted_solid(brep::part_of(solid, all[i].faces), brep::proof_of_part(solid.proof()));
-    const voxel::Octree digitised = convert::voxelise(set.universe(), part.linked());
-    if (!voxel::combine(set.universe(), voxel::Expression(digitised) & voxel::Expression(set)).is_empty())
-      found.push_back(i);
+    if (!common_of(digitised_part(solid, all[i], set.universe()), set).is_empty()) found.push_back(i);
   }
   return found;
 }
@@ -279,19 +286,28 @@ std::vector<voxel::Octree> pieces_of(voxel::Octree set) {
 
 /// What is settled together: with a least volume each part for itself, else all of them.
 std::vector<Differing> differing(const WholeObject& whole, const brep::Solid& solid,
-                                 const voxel::Octree& by_voxels, const voxel::Octree& by_mesh, bool apart) {
+                                 const voxel::Octree& by_voxels, const voxel::Octree& by_mesh,
+                                 const std::optional<double>& least_mm3) {
   const voxel::Octree none = voxel::Octree::empty(by_voxels.universe());
   const voxel::Octree voxels = by_mesh.is_empty() ? none : whole.voxels();
   const auto over = [&](const voxel::Octree& piece) { return voxel::components_that_meet(voxels, piece); };
-  if (!apart)
+  if (!least_mm3)
     return {{by_voxels, over(by_mesh), components_in(solid, by_voxels), components_in(solid, by_mesh)}};
   std::vector<Differing> all;
   for (voxel::Octree& piece : pieces_of(by_voxels)) {
     std::vector<std::size_t> wanted = components_in(solid, piece);
     all.push_back({std::move(piece), none, std::move(wanted), {}});
   }
-  for (const voxel::Octree& piece : pieces_of(by_mesh))
-    all.push_back({none, over(piece), {}, components_in(solid, piece)});
+  // A thin part of the mesh may be several of voxels, each of which is too small. Components are in the order
+  // of their volumes.
+  const double most_mm3 =
+      4.0 * by_mesh.universe().lattice().voxel_mm3() * static_cast<double>(by_mesh.voxel_count());
+  const std::vector<brep::Component>& components = solid.components();
+  for (std::size_t i = 0; i < components.size() && components[i].volume_mm3 >= *least_mm3; ++i) {
+    if (components[i].volume_mm3 > most_mm3) continue;
+    const voxel::Octree own = common_of(digitised_part(solid, components[i], by_mesh.universe()), by_mesh);
+    if (!own.is_empty()) all.push_back({none, over(own), {}, {i}});
+  }
   return all;
 }
 
@@ -310,7 +326,7 @@ void settle_choice(const WholeObject& whole, const voxel::Universe& universe,
   const auto agrees = [&](const voxel::Octree& voxels, const std::vector<std::size_t>& components) {
     return components.empty() || is_same(voxels, solid_of(solid, components), reading, made);
   };
-  std::vector<Differing> settled = differing(whole, solid, by_voxels, by_mesh, least_mm3.has_value());
+  std::vector<Differing> settled = differing(whole, solid, by_voxels, by_mesh, least_mm3);
   std::erase_if(settled, [&](const Differing& parts) {
     return !is_by_measure(parts, all, least_mm3) || !agrees(parts.by_voxels, parts.wanted) ||
            !agrees(parts.passed_over, parts.unwanted);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/planner/ct_scene.h"
 #include "tests/planner/operation/ball_operation.h"
 #include "voxel/solid/combine.h"
 
@@ -120,6 +121,33 @@ TEST(PartsStep, OfAPartNearlyAsLargeAsTheBoundBothKernelsHoldTheSame) {
     EXPECT_EQ(large.certificate->verdict, voxel::Verdict::Warn);
     EXPECT_NE(large.caveats[0].reason.find("on different sides of 'at_least_mm3'"), std::string::npos);
   }
+}
+
+TEST(PartsStep, APlateThatVoxelsBreakIntoSmallPartsIsADoubt) {
+  const ScratchFolder folder;
+  const auto depth_mm = [](const glm::dvec3& p) {
+    const double plate =
+        std::min({0.75 - std::abs(p.z - 20.0 - 0.12 * p.x), 28.0 - std::abs(p.x), 20.0 - std::abs(p.y)});
+    return std::max(plate, 16.0 - glm::length(p));
+  };
+  voxel::write_scene(
+      ct_scene({64, 48, 56}, glm::dvec3(1.0), {-32.0, -24.0, -20.0},
+               [&](auto, const glm::dvec3& p) { return std::clamp(1000.0 * depth_mm(p), -1000.0, 1000.0); }),
+      folder / "plate.nrrd");
+  const Evaluation evaluation = evaluate(parse_plan(
+      R"({"octotomy_plan": 1, "name": "plate", "scans": {"ct": {"path": "plate.nrrd"}},
+      "universe": {"voxel_mm": 2.5}, "steps": [{"id": "all", "do": "window", "scan": "ct", "low": 0},
+      {"id": "large", "do": "parts", "object": "all", "at_least_mm3": 2000}]})",
+      folder.path()));
+  const Object &all = evaluation.object("all"), &large = evaluation.object("large");
+  ASSERT_EQ(all.mesh.within->components().size(), 2U);
+  ASSERT_GT(all.mesh.within->components().back().volume_mm3, 2000.0);
+  ASSERT_GT(voxel::component_count(all.voxel.octree), 2U);
+  EXPECT_EQ(large.mesh.within->components().size(), 1U);
+  EXPECT_EQ(large.certificate->verdict, voxel::Verdict::Warn)
+      << testing::PrintToString(large.certificate->reasons);
+  ASSERT_FALSE(large.caveats.empty());
+  EXPECT_NE(large.caveats[0].reason.find("on different sides of 'at_least_mm3'"), std::string::npos);
 }
 
 TEST(LargestParts, OfEqualPartsAreAsManyAsWanted) {
