@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+
+namespace octotomy::verify {
+
+/// An affine map, without the products that a matrix of four rows has beyond it.
+struct Affine {
+  glm::dvec3 x, y, z, at;
+
+  explicit Affine(const glm::dmat4& map) : x(map[0]), y(map[1]), z(map[2]), at(map[3]) {}
+  glm::dvec3 operator()(const glm::dvec3& p) const { return p.x * x + p.y * y + p.z * z + at; }
+};
+
+}  // namespace octotomy::verify

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "verify/witness/reading.h"
+
+// Readings of several operands as one.
+namespace octotomy::verify {
+
+inline Word negated(const Word& a) {
+  return {a.out, a.in, a.near};
+}
+
+inline Word conjunction(const Word& a, const Word& b) {
+  const Word word{a.in && b.in, a.out || b.out, false};
+  return {word.in, word.out, word.in && word.out && ((a.near && b.in) || (b.near && a.in))};
+}
+
+/// A surface is met where one operand's surface is and the other does not decide.
+inline Word exclusive(const Word& a, const Word& b) {
+  return {(a.in && b.out) || (a.out && b.in), (a.in && b.in) || (a.out && b.out), a.near || b.near};
+}
+
+inline Reading negated(const Reading& a) {
+  return {negated(a.voxel), negated(a.mesh), a.surfaces};
+}
+
+inline Reading conjunction(const Reading& a, const Reading& b) {
+  return {conjunction(a.voxel, b.voxel), conjunction(a.mesh, b.mesh), a.surfaces + b.surfaces};
+}
+inline Reading exclusive(const Reading& a, const Reading& b) {
+  return {exclusive(a.voxel, b.voxel), exclusive(a.mesh, b.mesh), a.surfaces + b.surfaces};
+}
+
+}  // namespace octotomy::verify

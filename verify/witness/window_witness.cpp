@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// How far a triangulated surface may stray from the trilinear interpolant f of the samples it is made from:
+// in each cell the part that the mesh calls outside is a polyhedron whose corners are outside samples (f <=
+// t) and crossings of edges (f = t). Each of its points p is a mean of those corners, so the mean of f over
+// them is at most t, and f(p) differs from that mean by the terms of f that are not linear: with f = a +
+// linear terms + b_xy xy + b_yz yz + b_zx zx + b_xyz xyz in the cell's unit coordinates,
+//   f(p) - mean f = -sum of b (mean of the product - product of the means).
+// The mean of xy over points of mean x and y lies between max(0, x + y - 1) and min(x, y), that of xyz
+// between max(0, x + y + z - 2) and min(x, y, z) (Frechet's bounds). The part that it calls inside strays
+// likewise to the other side. No triangulation of the cell between its crossings can break this, whatever it
+// does with ambiguous faces; at samples and on edges nothing strays.
+//
+// The voxel kernel's value at p is a weighted mean of at most eight voxels' samples, each f at the voxel's
+// centre, rounded: it is computed here from f itself.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "verify/witness/affine.h"
+#include "verify/witness/witness.h"
+
+namespace octotomy::verify {
+namespace {
+
+/// Rounding of numbers and of a few sums of them: a share of the largest magnitude.
+constexpr double rounding = 1e-9;
+
+/// The vertices of an isosurface keep a thousandth of an edge from its ends (convert/surface/isosurface.h).
+constexpr double kept_from_samples = 1e-3;
+
+/// A voxel's sample is rounded to an integer, and so is a window's bound.
+constexpr double rounded_samples = 1.0;
+
+/// How far f may exceed a bound where the mesh is outside, and fall short of it where the mesh is inside.
+struct Stray {
+  double above = 0.0, below = 0.0;
+};
+
+template <typename Sample>
+class WindowWitness {
+ public:
+  WindowWitness(std::shared_ptr<const voxel::Scene> scan, double low, double high,
+                const voxel::Universe& universe)
+      : scan_(std::move(scan)),
+        samples_(std::get<voxel::Samples<Sample>>(scan_->samples).data()),
+        dims_(scan_->lattice.dims),
+        low_(low),
+        high_(high),
+        padding_(scan_->padding.value_or(std::numeric_limits<double>::quiet_NaN())),
+        scan_from_lps_(glm::inverse(scan_->lattice.lps_from_voxel)),
+        universe_from_lps_(glm::inverse(universe.lps_from_voxel)),
+        scan_from_universe_(glm::inverse(scan_->lattice.lps_from_voxel) * universe.lps_from_voxel),
+        side_(universe.side()) {
+    const glm::dvec3 spacing_mm = scan_->lattice.spacing_mm();
+    finest_mm_ = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+    std::size_t stride = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      strides_[static_cast<std::size_t>(axis)] = stride;
+      stride *= static_cast<std::size_t>(dims_[axis]);
+    }
+  }
+
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked) const {
+    const glm::dvec3 u = scan_from_lps_(p_mm);
+    const double slack = slack_mm / finest_mm_;
+    const Word mesh = mesh_word(u, slack);
+    return {needs_voxels(asked) ? voxel_word(universe_from_lps_(p_mm)) : Word{}, mesh,
+            mesh.near && needs_surfaces(asked) ? surfaces(u, slack) : 0};
+  }
+
+ private:
+  /// The samples about a position, and where it lies between them.
+  struct Cell {
+    std::array<double, 8> v{};
+    std::array<double, 3> t{};
+    double low = 0.0, high = 0.0;  ///< of the samples
+
+    double value() const {
+      const auto between = [&](std::size_t i) { return v[i] + t[0] * (v[i + 1] - v[i]); };
+      const double a = between(0), b = between(2), c = between(4), d = between(6);
+      const double below = a + t[1] * (b - a), above = c + t[1] * (d - c);
+      return below + t[2] * (above - below);
+    }
+  };
+
+  /// Positions beyond the outermost samples take the nearest value.
+  Cell cell(const glm::dvec3& u) const {
+    Cell made;
+    const Sample* corner = samples_;
+    std::array<std::size_t, 3> step{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int last = dims_[static_cast<int>(i)] - 1;
+      const double at = std::clamp(u[static_cast<int>(i)], 0.0, static_cast<double>(last));
+      const int first = std::min(static_cast<int>(at), std::max(last - 1, 0));
+      made.t[i] = at - first;
+      corner += static_cast<std::size_t>(first) * strides_[i];
+      step[i] = last > 0 ? strides_[i] : 0;
+    }
+    Sample low = *corner, high = low;
+    for (std::size_t i = 0; i < 8; ++i) {
+      const Sample sample = corner[(i & 1) * step[0] + ((i >> 1) & 1) * step[1] + (i >> 2) * step[2]];
+      made.v[i] = static_cast<double>(sample);
+      low = std::min(low, sample);
+      high = std::max(high, sample);
+    }
+    made.low = static_cast<double>(low);
+    made.high = static_cast<double>(high);
+    return made;
+  }
+
+  static Stray stray_of(const Cell& at) {
+    const auto& v = at.v;
+    const auto& t = at.t;
+    Stray found;
+    const auto stray = [&](double b, double product, double most_mean, double least_mean) {
+      const double up = -b * (least_mean - product), down = -b * (most_mean - product);
+      found.above += std::max(up, down);
+      found.below += std::max(-up, -down);
+    };
+    const auto stray_of_two = [&](double b, double x, double y) {
+      stray(b, x * y, std::min(x, y), std::max(0.0, x + y - 1.0));
+    };
+    stray_of_two(v[0] - v[1] - v[2] + v[3], t[0], t[1]);
+    stray_of_two(v[0] - v[1] - v[4] + v[5], t[0], t[2]);
+    stray_of_two(v[0] - v[2] - v[4] + v[6], t[1], t[2]);
+    stray(-v[0] + v[1] + v[2] - v[3] + v[4] - v[5] - v[6] + v[7], t[0] * t[1] * t[2],
+          std::min({t[0], t[1], t[2]}), std::max(0.0, t[0] + t[1] + t[2] - 2.0));
+    const double moved =
+        kept_from_samples * (at.high - at.low) + rounding * std::max(std::abs(at.low), std::abs(at.high));
+    found.above += moved;
+    found.below += moved;
+    return found;
+  }
+
+  /// Where f exceeds the lower bound by more than `above` the mesh cannot call it outside, where it is short
+  /// of it by more than `below` not inside; mirrored for the upper bound. A value that is no number allows
+  /// both answers.
+  Word word(double value, double above, double below) const {
+    const bool surely_in = value >= low_ + above && value <= high_ - below;
+    const bool surely_out = value < low_ - below || value > high_ + above;
+    return surely_in ? certainly_in : surely_out ? certainly_out : on_surface;
+  }
+
+  /// The word of a cell whose samples are so far from the window's bounds that no stray reaches them: of the
+  /// four terms of stray_of() three are at most half the samples' range each, the last 1.6 times it.
+  std::optional<Word> clear_word(const Cell& at, double slack) const {
+    const double reach =
+        (3.2 + 3.0 * slack) * (at.high - at.low) + rounding * std::max(std::abs(at.low), std::abs(at.high));
+    if (at.high + reach < low_ || at.low - reach > high_) return certainly_out;
+    if (at.low - reach >= low_ && at.high + reach <= high_) return certainly_in;
+    return std::nullopt;
+  }
+
+  /// How far a position lies beyond the outermost samples, in samples.
+  double beyond(const glm::dvec3& u) const {
+    double most = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+      most = std::max({most, -u[axis], u[axis] - static_cast<double>(dims_[axis] - 1)});
+    return most;
+  }
+
+  /// Beyond the outermost samples the mesh ends half a sample away from each that is inside. In a cell there,
+  /// with p_i the distances beyond along the axes in samples, that is the plane where they add up to a half:
+  /// the surface where all of the cell's own samples are inside, and the farthest that it reaches where some
+  /// are.
+  Word word_beyond(const glm::dvec3& u, double slack) const {
+    double past = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+      past += std::max({0.0, -u[axis], u[axis] - static_cast<double>(dims_[axis] - 1)});
+    const double near =
+        rounding * (1.0 + static_cast<double>(std::max({dims_.x, dims_.y, dims_.z}))) + 3.0 * slack;
+    if (past > 0.5 + near) return certainly_out;
+    bool any_in = false, any_out = false;
+    for (const double v : own_corners(u, slack))
+      (v != padding_ && v >= low_ && v <= high_ ? any_in : any_out) = true;
+    if (!any_in) return certainly_out;
+    return any_out || past > 0.5 - near ? on_surface : certainly_in;
+  }
+
+  /// The samples of the cell that holds a position beyond the outermost ones, each maybe several times; of
+  /// its neighbours, too, where the position lies within `slack` of them.
+  std::vector<double> own_corners(const glm::dvec3& u, double slack) const {
+    const double by = std::max(slack, 1e-6);
+    const Cell low = cell(u - by), high = cell(u + by);
+    std::vector<double> samples;
+    for (const Cell* at : {&low, &high})
+      for (std::size_t i = 0; i < 8; ++i) {
+        // A corner without weight belongs to the cell on the other side of the position.
+        double weight = 1.0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const double t = at->t[axis];
+          weight *= ((i >> axis) & 1) != 0 ? t : 1.0 - t;
+        }
+        if (weight > 0.0) samples.push_back(at->v[i]);
+      }
+    return samples;
+  }
+
+  /// Padding is outside, and the surface closes half way to it from each sample inside.
+  Word word_at_padding(const Cell& at) const {
+    return std::any_of(at.v.begin(), at.v.end(),
+                       [&](double v) { return v != padding_ && v >= low_ && v <= high_; })
+               ? on_surface
+               : certainly_out;
+  }
+
+  /// The mesh's answer, beyond the outermost samples as word_beyond() has it.
+  Word mesh_word(const glm::dvec3& u, double slack) const {
+    const double past = beyond(u);
+    if (past >= 1.0) return certainly_out;
+    if (past > rounding) return word_beyond(u, slack);
+    const Cell at = cell(u);
+    if (at.low == padding_) return word_at_padding(at);
+    if (const std::optional<Word> clear = clear_word(at, slack)) return *clear;
+    const Stray stray = stray_of(at);
+    // In a cell f changes by its samples' range a sample along each axis at most.
+    const double moved = 3.0 * slack * (at.high - at.low);
+    Word answer = word(at.value(), stray.above + moved, stray.below + moved);
+    // A cell with samples below and above the window has outside parts that are no mean of like corners.
+    if (answer == certainly_in && at.low < low_ && at.high > high_) answer = on_surface;
+    return answer;
+  }
+
+  /// Where it is near, the surface has vertices on the edges between samples alone.
+  int surfaces(const glm::dvec3& u, double slack) const {
+    const double on_edge = 1e-6 + slack;
+    int whole = 0;
+    for (int axis = 0; axis < 3; ++axis) whole += std::abs(u[axis] - std::round(u[axis])) < on_edge ? 1 : 0;
+    return whole >= 2 ? 2 : 1;
+  }
+
+  Word voxel_word(const glm::dvec3& q) const {
+    const glm::dvec3 nearest = glm::round(q);
+    // A voxel's own centre has its own sample.
+    const glm::dvec3 at = glm::dvec3(glm::abs(q.x - nearest.x) < 1e-7 ? nearest.x : q.x,
+                                     glm::abs(q.y - nearest.y) < 1e-7 ? nearest.y : q.y,
+                                     glm::abs(q.z - nearest.z) < 1e-7 ? nearest.z : q.z);
+    const glm::dvec3 first = glm::floor(at), t = at - first;
+    if (t == glm::dvec3(0.0)) {
+      const Measured own = measured_at(at);
+      if (!own.sure) return on_surface;
+      return own.value ? word(*own.value, rounded_samples, rounded_samples) : certainly_out;
+    }
+    double value = 0.0, weights = 0.0;
+    bool unsure = false;
+    for (int i = 0; i < 8; ++i) {
+      const glm::dvec3 corner(i & 1, (i >> 1) & 1, i >> 2);
+      const glm::dvec3 share = glm::mix(1.0 - t, t, corner);
+      const double weight = share.x * share.y * share.z;
+      if (weight == 0.0) continue;
+      const Measured measured = measured_at(first + corner);
+      unsure = unsure || !measured.sure;
+      if (!measured.value) continue;
+      value += weight * *measured.value;
+      weights += weight;
+    }
+    if (weights == 0.0 && !unsure) return certainly_out;
+    // Where some of the voxels have no sample of the scan's, the others stand for them as far as the voxel
+    // that holds the position is the scan's.
+    if (weights < 1.0 - 1e-9 || unsure) {
+      const Measured own = measured_at(glm::floor(at + 0.5));
+      const glm::dvec3 halves = glm::abs(t - 0.5);
+      if (unsure || std::min({halves.x, halves.y, halves.z}) < 1e-6) return on_surface;
+      if (!own.value) return certainly_out;
+    }
+    return word(value / weights, rounded_samples, rounded_samples);
+  }
+
+  /// A voxel's sample, none where the scan has none for it, and whether that is sure.
+  struct Measured {
+    std::optional<double> value;
+    bool sure = true;
+  };
+  Measured measured_at(const glm::dvec3& voxel) const {
+    if (glm::any(glm::lessThan(voxel, glm::dvec3(0.0))) ||
+        glm::any(glm::greaterThanEqual(voxel, glm::dvec3(side_))))
+      return {};
+    const glm::dvec3 u = scan_from_universe_(voxel);
+    // A scan's voxels reach half a sample beyond their centres.
+    const double past = beyond(u);
+    if (past > 0.5 + 1e-6) return {};
+    const Cell made = cell(u);
+    if (made.low != padding_) return {made.value(), past < 0.5 - 1e-6};
+    return {std::nullopt,
+            std::all_of(made.t.begin(), made.t.end(), [](double t) { return t > 1e-6 && t < 1.0 - 1e-6; })};
+  }
+
+  std::shared_ptr<const voxel::Scene> scan_;
+  const Sample* samples_;
+  glm::ivec3 dims_;
+  double low_, high_;
+  double padding_;  ///< below every measured sample; NaN without padding
+  std::array<std::size_t, 3> strides_{};
+  Affine scan_from_lps_, universe_from_lps_, scan_from_universe_;
+  int side_;
+  double finest_mm_ = 1.0;
+};
+
+}  // namespace
+
+Witness witness_of_window(std::shared_ptr<const voxel::Scene> scan, double low, double high,
+                          const voxel::Universe& universe) {
+  LineReading lines = lines_in_window(scan, low, high);
+  Witness made;
+  if (std::holds_alternative<voxel::Int16Samples>(scan->samples))
+    made = WindowWitness<std::int16_t>(std::move(scan), low, high, universe);
+  else
+    made = WindowWitness<float>(std::move(scan), low, high, universe);
+  return std::move(made).with_lines(std::move(lines));
+}
+
+}  // namespace octotomy::verify
