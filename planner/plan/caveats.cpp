@@ -206,7 +206,7 @@ void add_kept_parts(std::vector<verify::OpenPart> kept, const std::vector<verify
   const std::string text =
       std::to_string(kept.size()) + (kept.size() == 1 ? " part of " : " parts of ") +
       voxel::rounded(all_mm3) + " mm\u00b3 " + (kept.size() == 1 ? "hangs on a neck" : "hang on necks") +
-      " thinner than " + std::to_string(verify::bridge_voxels) + " voxels, the largest near " +
+      " thinner than " + verify::thin_neck + ", the largest near " +
       voxel::rounded(kept.front().bridge.at_mm) +
       ": both kernels keep what one of them joins; 'cut_bridges_mm' of the step cuts a neck";
   made.findings.push_back(text);

@@ -350,8 +350,8 @@ void judge_bridges(Certificate& certificate, const Places& places) {
     lower(certificate, Verdict::Warn,
           "An ambiguous bridge near " + voxel::rounded(bridge.at_mm) + ": " + bridge.what + ", " +
               voxel::rounded(bridge.volume_mm3) +
-              " mm3, that the other one cuts off. The neck is thinner than " + std::to_string(bridge_voxels) +
-              " voxels: decide it by 'keep_bridges_mm' or 'cut_bridges_mm' of the step that chooses parts, "
+              " mm3, that the other one cuts off. The neck is thinner than " + thin_neck +
+              ": decide it by 'keep_bridges_mm' or 'cut_bridges_mm' of the step that chooses parts, "
               "or take smaller voxels.");
   }
   if (certificate.bridges.size() > most_told)

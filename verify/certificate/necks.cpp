@@ -49,11 +49,13 @@ voxel::Octree connected(const voxel::Octree& set, const voxel::Octree& common) {
 Necks::Necks(voxel::Octree octree, voxel::Octree digitised, Witness whole)
     : octree_(std::move(octree)), whole_(std::move(whole)), digitised_(std::move(digitised)) {}
 
-Necks::Necks(voxel::Octree octree, brep::Solid solid, Witness whole, std::vector<glm::dvec3> decided_mm)
+Necks::Necks(voxel::Octree octree, brep::Solid solid, Witness whole, std::vector<glm::dvec3> decided_mm,
+             const glm::dvec3& sample_mm)
     : octree_(std::move(octree)),
       solid_(std::move(solid)),
       whole_(std::move(whole)),
-      decided_mm_(std::move(decided_mm)) {}
+      decided_mm_(std::move(decided_mm)),
+      sample_mm_(sample_mm) {}
 
 void Necks::prepare() const {
   if (common_) return;
@@ -78,8 +80,9 @@ Necks::Side* Necks::side_near(const glm::ivec3& at) const {
 bool Necks::is_thick(Side& side, const std::vector<glm::ivec3>& part) const {
   if (!side.eroded) {
     const glm::dvec3 voxel_mm = octree_.universe().lattice().spacing_mm();
-    constexpr double past_one_voxel = 1.01;
-    const double radius_mm = past_one_voxel * std::max({voxel_mm.x, voxel_mm.y, voxel_mm.z});
+    // Past one voxel, or half a sample.
+    const glm::dvec3 past_mm = 1.01 * glm::max(voxel_mm, 0.5 * sample_mm_);
+    const double radius_mm = std::max({past_mm.x, past_mm.y, past_mm.z});
     side.eroded = connected(voxel::erode(*side.set, radius_mm), *common_);
   }
   return std::any_of(part.begin(), part.end(), [&](const glm::ivec3& at) { return has(*side.eroded, at); });
@@ -248,7 +251,7 @@ Witness witness_of_parts(Witness whole) {
 Witness witness_of_parts(Witness whole, ChosenParts chosen) {
   if (!whole) return {};
   const auto necks = std::make_shared<const Necks>(std::move(chosen.voxels), std::move(chosen.mesh), whole,
-                                                   std::move(chosen.decided_mm));
+                                                   std::move(chosen.decided_mm), chosen.sample_mm);
   Witness parts = witness_of_parts(std::move(whole));
   std::vector<PartChoice> choices = parts.choices();
   choices.back().necks = necks;

@@ -15,8 +15,11 @@
 namespace octotomy::verify {
 
 /// A neck of fewer voxels across may be there or not: on the scan it is a matter of noise and of the voxels'
-/// place.
+/// place. So may one that is thinner than the scan's samples are apart: between them the kernels interpolate
+/// in ways of their own.
 inline constexpr int bridge_voxels = 3;
+inline constexpr const char* thin_neck = "3 voxels or a sample";
+static_assert(bridge_voxels == 3);
 
 /// What two answers that chose connected parts of one object leave open: how parts that one of them alone has
 /// hold to what both have. Safe to call from several threads.
@@ -26,11 +29,12 @@ class Necks {
   /// which they chose parts.
   Necks(voxel::Octree octree, voxel::Octree digitised, Witness whole);
   /// The same; the mesh is digitised when it is needed first. `decided_mm` are the places of necks that the
-  /// plan keeps or cuts, LPS: none of them is open.
-  Necks(voxel::Octree octree, brep::Solid solid, Witness whole, std::vector<glm::dvec3> decided_mm);
+  /// plan keeps or cuts, LPS: none of them is open. `sample_mm` is the spacing of the scan's samples.
+  Necks(voxel::Octree octree, brep::Solid solid, Witness whole, std::vector<glm::dvec3> decided_mm,
+        const glm::dvec3& sample_mm);
 
   /// Where the part hangs on whose points are given, LPS, all of one answer alone. None: the answers do not
-  /// differ about each of these points; a neck of bridge_voxels or more holds one of them; no path through
+  /// differ about each of these points; a neck that is no thin_neck holds one of them; no path through
   /// what the reading may have inside leads from the first one to what both answers have; or the plan has
   /// decided. Cost: of the first call a labelling and an erosion of the set.
   std::optional<glm::dvec3> neck_mm(const std::vector<glm::dvec3>& part_mm) const;
@@ -53,6 +57,7 @@ class Necks {
   std::optional<brep::Solid> solid_;
   Witness whole_;
   std::vector<glm::dvec3> decided_mm_;
+  glm::dvec3 sample_mm_{0.0};
   mutable std::mutex mutex_;
   mutable std::optional<voxel::Octree> digitised_, common_;
   mutable Side by_voxels_, by_mesh_;

@@ -21,7 +21,7 @@ struct Places {
   double stray_mm2 = 0.0;           ///< area of triangles where the witness has no surface
   /// The largest such group of voxels, otherwise the largest such triangle.
   std::optional<WorstPlace> worst;
-  /// Parts that one kernel joins to the object by a neck thinner than bridge_voxels and the other cuts there,
+  /// Parts that one kernel joins to the object by a thin_neck and the other cuts there,
   /// the largest first. No error of either: on the scan the neck may be there or not.
   std::vector<OpenPart> open;
   DetectionLimit limit;

@@ -204,12 +204,20 @@ class WindowWitness {
     return samples;
   }
 
-  /// Padding is outside, and the surface closes half way to it from each sample inside.
-  Word word_at_padding(const Cell& at) const {
-    return std::any_of(at.v.begin(), at.v.end(),
-                       [&](double v) { return v != padding_ && v >= low_ && v <= high_; })
-               ? on_surface
-               : certainly_out;
+  /// Padding is outside, and the surface closes half way to it from each sample inside: in any way in a cell
+  /// that has both, and within `slack` of one. None: no padding is near.
+  std::optional<Word> word_at_padding(const Cell& at, const glm::dvec3& u, double slack) const {
+    bool is_near = false, any_in = false;
+    const auto add = [&](const Cell& near) {
+      is_near = is_near || near.low == padding_;
+      for (const double v : near.v) any_in = any_in || (v != padding_ && v >= low_ && v <= high_);
+    };
+    add(at);
+    if (slack > 0.0)
+      for (int i = 0; i < 8; ++i)
+        add(cell(u + slack * glm::dvec3((i & 1) * 2 - 1, (i & 2) - 1, (i >> 2) * 2 - 1)));
+    if (!is_near) return std::nullopt;
+    return any_in ? on_surface : certainly_out;
   }
 
   /// The mesh's answer, beyond the outermost samples as word_beyond() has it.
@@ -218,7 +226,8 @@ class WindowWitness {
     if (past >= 1.0) return certainly_out;
     if (past > rounding) return word_beyond(u, slack);
     const Cell at = cell(u);
-    if (at.low == padding_) return word_at_padding(at);
+    if (scan_->padding)
+      if (const std::optional<Word> word = word_at_padding(at, u, slack)) return *word;
     if (const std::optional<Word> clear = clear_word(at, slack)) return *clear;
     const Stray stray = stray_of(at);
     // In a cell f changes by its samples' range a sample along each axis at most.

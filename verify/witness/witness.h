@@ -53,12 +53,13 @@ Witness carried(Witness still, const glm::dmat4& moved_from_still);
 Witness loosened(Witness tight, double by_mm);
 /// Some of the object's connected parts: a point inside may belong to none of them.
 Witness witness_of_parts(Witness whole);
-/// What both kernels chose of the object's connected parts, and the places of necks that the plan keeps or
-/// cuts, LPS.
+/// What both kernels chose of the object's connected parts, the places of necks that the plan keeps or cuts,
+/// LPS, and the spacing of the scan's samples.
 struct ChosenParts {
   voxel::Octree voxels;
   brep::Solid mesh;
   std::vector<glm::dvec3> decided_mm = {};
+  glm::dvec3 sample_mm{0.0};
 };
 /// The same. Where the choices differ beyond a thin neck, so may all that is made of them.
 Witness witness_of_parts(Witness whole, ChosenParts chosen);
