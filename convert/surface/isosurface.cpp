@@ -250,7 +250,7 @@ brep::Triangles isosurface(const voxel::Scene& scene, double low, double high,
 brep::Triangles isosurface(const voxel::GreyOctree& grey, double low, double high,
                            const voxel::Progress& progress) {
   check_bounds(low, high);
-  return surface_of(GreySamples(grey), low, high, progress);
+  return surface_of(GreySamples(grey), grey.in_steps(low), grey.in_steps(high), progress);
 }
 
 bool stays_apart(const voxel::Lattice& lattice) {

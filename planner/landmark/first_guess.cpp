@@ -186,7 +186,7 @@ std::optional<voxel::DrawnObject> with_higher_threshold(const voxel::DrawnObject
   constexpr double zero = -150.0;
   voxel::DrawnObject other = bone;
   other.threshold = zero + threshold_share * (bone.threshold - zero);
-  voxel::Expression window(voxel::Window{*bone.grey, other.threshold, unbounded});
+  voxel::Expression window(voxel::window_of(*bone.grey, other.threshold));
   if (bone.moved_from_still) window = moved(window, *bone.moved_from_still);
   other.octree = voxel::combine(bone.octree.universe(), voxel::Expression(bone.octree) & window);
   return other;

@@ -83,7 +83,8 @@ class Cells {
         // The scan's own end is no surface.
         if (!bone_.grey->scan().contains(glm::ivec3(glm::round(sample)))) continue;
         outside += 1.0;
-        if (voxel::interpolate(*bone_.grey, sample, voxel::Interpolation::Nearest) >= tissue_hu)
+        if (bone_.grey->step() * voxel::interpolate(*bone_.grey, sample, voxel::Interpolation::Nearest) >=
+            tissue_hu)
           covered += 1.0;
       }
     }

@@ -31,7 +31,7 @@ Digitised digitised_of(const AnswerBench& bench, const Object& object) {
     // The whole window's surface, which a part's is a piece of.
     const std::optional<double> shift_mm =
         window.samples ? window_shift_mm(*window.samples, window.threshold, window.high)
-                       : window_shift_mm({window.grey, window.threshold});
+                       : window_shift_mm(voxel::window_of(window.grey, window.threshold));
     if (shift_mm) digitised.shift_mm = std::max(digitised.shift_mm.value_or(0.0), *shift_mm);
   }
   return digitised;

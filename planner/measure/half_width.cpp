@@ -147,7 +147,8 @@ std::optional<double> window_shift_mm(const voxel::Window& window) {
   };
   const double area_mm2 = voxel::measure(voxel::combine(universe, window)).area_crofton13_mm2;
   if (!(area_mm2 > 0.0)) return std::nullopt;
-  const double voxels = 0.5 * (count(window.low - window_units) - count(window.low + window_units));
+  const double steps = window_units / window.grey.step();
+  const double voxels = 0.5 * (count(window.low - steps) - count(window.low + steps));
   return voxels * universe.lattice().voxel_mm3() / area_mm2;
 }
 

@@ -43,8 +43,11 @@ void add(const voxel::GreyOctree& grey, Json& json) {
   json["fields"] = "grey";
   json["levels"] = levels_of(counts);
   json["voxels"] = one_value ? std::uint64_t{1} << (3 * depth) : voxels_of(counts, depth);
-  json["range"] = {range.low, range.high};
-  json["background"] = grey.background();
+  const auto value = [&](std::int16_t sample) {
+    return grey.step() == 1.0 ? Json(sample) : Json(sample * grey.step());
+  };
+  json["range"] = {value(range.low), value(range.high)};
+  json["background"] = value(grey.background());
   json["bytes_memory"] = grey.bytes_memory();
 }
 

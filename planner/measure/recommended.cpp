@@ -33,7 +33,7 @@ std::function<double(const glm::dvec3&)> sampler_of(const voxel::GreyOctree& gre
       value +=
           weights.x * weights.y * weights.z * static_cast<double>(grey.sample(glm::ivec3(first + corner)));
     }
-    return value;
+    return value * grey.step();
   };
 }
 

@@ -261,12 +261,17 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
                              const FileBench& bench) {
   std::optional<voxel::GreyOctreeBuild> build;
   std::optional<voxel::GreyOctree> grey;
+  std::optional<double> padding;  // as far as it was known to the build
   bool has_failed = false;
   voxel::Scene scene = bench.read_scan(file, [&](const voxel::Scene& read, int count) {
     if (count == 0) return build.reset();
     if (has_failed || asked.voxel_mm) return;  // finer voxels take long, which is told below
+    if (!std::holds_alternative<voxel::Int16Samples>(read.samples)) return;  // their step is not known yet
     try {
-      if (!build) build.emplace(universe_of(read.lattice, asked.voxel_mm), read);
+      if (!build) {
+        build.emplace(universe_of(read.lattice, asked.voxel_mm), read);
+        padding = read.padding;
+      }
       build->add(count);
       if (count == read.lattice.dims.z) grey = build->finished();
     } catch (...) {
@@ -278,7 +283,7 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
   if (asked.window) need_hounsfield(*asked.window, scene);
   const Stopwatch watch(bench.timings, "octree");
   const voxel::Universe universe = universe_of(scene, asked.voxel_mm);
-  if (!grey || !(grey->universe() == universe))
+  if (!grey || !(grey->universe() == universe) || padding != scene.padding)
     grey = voxel::grey_octree_of(universe, scene, voxel::beyond_scan, bench.progress("octree"));
   return {std::move(scene), std::move(*grey)};
 }
@@ -318,11 +323,12 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   const voxel::Scene& scene = read.scene;
   const voxel::GreyOctree& grey = read.grey;
   const voxel::Window window = window_of(grey, file, asked);
+  const double low = asked.window->low;
   // Labels are names: a voxel has that of its nearest sample, and surfaces lie half-way between samples.
   const bool is_labels = scene.meaning == voxel::Meaning::Label;
   const double high = asked.window->high_or_infinity();
   const std::optional<voxel::Scene> labelled =
-      is_labels ? std::optional(indicator_of(scene, window.low, high)) : std::nullopt;
+      is_labels ? std::optional(indicator_of(scene, low, high)) : std::nullopt;
   const voxel::Octree inside = labelled ? voxel::octree_of_label(grey.universe(), *labelled, 1)
                                         : voxel::combine(grey.universe(), window);
   voxel::Measures measures;
@@ -340,31 +346,30 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
     const Stopwatch watch(timings, "isosurface");
     brep::Triangles triangles =
         labelled ? convert::isosurface(*labelled, 0.5, std::numeric_limits<double>::infinity())
-                 : convert::isosurface(scene, window.low, high);
+                 : convert::isosurface(scene, low, high);
     // Both have parts that take one thread alone.
     tbb::parallel_invoke(
         [&] { isosurface = brep::trusted_solid(std::move(triangles), brep::Proof::Construction); },
         [&] {
-          if (!is_labels && !asked.window->high) phases = verify::two_phase(scene, window.low);
+          if (!is_labels && !asked.window->high) phases = verify::two_phase(scene, low);
           digitised.flat_mm2 = voxel::flat_parts_mm2(inside);
         });
   }
   const Stopwatch watch(timings, "intervals");
   const brep::Size& surface = isosurface.size();
-  if (!is_labels) digitised.shift_mm = window_shift_mm(scene, window.low, high);
+  if (!is_labels) digitised.shift_mm = window_shift_mm(scene, low, high);
   add_half_width(measures, digitised, grey.universe().lattice(),
                  Seen{{"isosurface", surface.volume_mm3, surface.area_mm2},
                       "the isosurface of the samples encloses",
                       "take smaller ones, --voxel"},
                  json);
   const bool is_of_phases = phases && !phases->evidence.is_ambiguous;
-  const verify::SizeIntervals recommended =
-      recommended_of({scene, window.low, high, isosurface, phases, digitised});
+  const verify::SizeIntervals recommended = recommended_of({scene, low, high, isosurface, phases, digitised});
   for (const std::string& finding : findings_of(
            recommended, is_of_phases, is_of_phases && phases->evidence.has_core,
            {measures.volume_mm3, surface.volume_mm3}, {measures.area_crofton13_mm2, surface.area_mm2}))
     json["findings"].push_back(finding);
-  if (const auto cut = cut_finding(cut_mm2(scene, window.low, high), surface.area_mm2))
+  if (const auto cut = cut_finding(cut_mm2(scene, low, high), surface.area_mm2))
     json["findings"].push_back(*cut);
   const HalfWidth width =
       area_half_width({recommended.triangles.area_mm2, recommended.triangles.curvature_mm}, digitised);
@@ -379,7 +384,7 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   json["euler"] = brep::euler_number(isosurface.triangles());
   json["euler_of"] = "the isosurface: V - E + F";
   Json whole{{"kind", "scan"}};
-  whole["window"] = {window.low, asked.window->high ? Json(window.high) : Json(nullptr)};
+  whole["window"] = {low, asked.window->high ? Json(high) : Json(nullptr)};
   whole.update(json);
   whole["audit"] = to_json(scene.audit);
   return said(std::move(whole));

@@ -369,8 +369,8 @@ void bound(const Segment& segment, const BoundBench& bench, Object& made) {
                          .samples = scan.shared,
                          .high = segment.window->high_or_infinity()}};
   if (!segment.window->high) made.shown = made.bound.windows.front();
-  made.witness = verify::witness_of_window(scan.shared, segment.window->low,
-                                           segment.window->high_or_infinity(), bench.universe);
+  made.witness = verify::witness_of_window(
+      scan.shared, segment.window->low, segment.window->high_or_infinity(), bench.universe, scan.grey.step());
   const BridgeDecisions bridges = bridges_of(segment);
   made.witness = cut_bridges(std::move(made.witness), bridges);
   if (chooses_parts(segment) && made.mesh.whole) settle_parts(segment, scan, bench.universe, made);

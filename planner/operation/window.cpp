@@ -82,8 +82,9 @@ void bound(const Window& window, const BoundBench& bench, Object& made) {
   made.bound.scan_box_mm = voxel::bounds(lattice);
   made.bound.voxels_are_samples = on_samples(lattice, bench.universe.lattice());
   // Depth is interpolated where samples pass the lower bound; an upper bound inside the object breaks that.
-  made.witness = verify::witness_of_window(
-      scan.shared, window.low, window.high.value_or(std::numeric_limits<double>::infinity()), bench.universe);
+  made.witness = verify::witness_of_window(scan.shared, window.low,
+                                           window.high.value_or(std::numeric_limits<double>::infinity()),
+                                           bench.universe, scan.grey.step());
   made.bound.windows = {{.grey = scan.grey,
                          .threshold = window.low,
                          .scan = window.scan.name,

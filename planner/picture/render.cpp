@@ -268,7 +268,7 @@ voxel::CutTones cut_tones_of(const Render& render, const std::vector<voxel::Draw
   const voxel::GreyOctree& grey = *with_samples->grey;
   if (render.tones.empty()) {
     const voxel::MinMax range = grey.range(std::max(2, voxel::root_height(grey.universe().depth)), {0, 0, 0});
-    return {grey, static_cast<double>(range.low), std::max<double>(range.high, range.low + 1.0)};
+    return {grey, range.low * grey.step(), std::max<double>(range.high, range.low + 1.0) * grey.step()};
   }
   const auto colon = render.tones.find(':');
   std::string numbers = render.tones;

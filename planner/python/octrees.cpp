@@ -153,8 +153,8 @@ void add_octrees(py::module_& module) {
       "window",
       [](const voxel::GreyOctree& grey, double low, double high) {
         constexpr double infinite = std::numeric_limits<double>::infinity();
-        return Expression(voxel::Window{grey, number_from(low, -infinite, infinite, "low"),
-                                        number_from(high, -infinite, infinite, "high")});
+        return Expression(voxel::window_of(grey, number_from(low, -infinite, infinite, "low"),
+                                           number_from(high, -infinite, infinite, "high")));
       },
       py::arg("grey"), py::arg("low"), py::arg("high") = 32767.0,
       "The samples from low to high, both included.");

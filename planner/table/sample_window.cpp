@@ -52,9 +52,7 @@ std::string to_string(const SampleWindow& window) {
 }
 
 voxel::Window window_on(const voxel::GreyOctree& grey, const SampleWindow& window) {
-  voxel::Window leaf{grey, window.low};
-  if (window.high) leaf.high = *window.high;
-  return leaf;
+  return voxel::window_of(grey, window.low, window.high);
 }
 
 void need_hounsfield(const SampleWindow& window, const voxel::Scene& scene) {

@@ -69,7 +69,7 @@ extern "C" {
 [[clang::export_name("choose_window")]] const double* choose_window(double low, double high) {
   Desk& the = desk();
   the.low = low;
-  the.object = combine(the.grey->universe(), Window{*the.grey, low, high});
+  the.object = combine(the.grey->universe(), window_of(*the.grey, low, high));
   const Measures measures = measure(the.object);
   const glm::dvec3 centre = measures.centroid_mm.value_or(glm::dvec3(0.0));
   the.numbers = {static_cast<double>(measures.voxel_count),

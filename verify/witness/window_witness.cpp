@@ -36,9 +36,6 @@ constexpr double rounding = 1e-9;
 /// The vertices of an isosurface keep a thousandth of an edge from its ends (convert/surface/isosurface.h).
 constexpr double kept_from_samples = 1e-3;
 
-/// A voxel's sample is rounded to an integer, and so is a window's bound.
-constexpr double rounded_samples = 1.0;
-
 /// How far f may exceed a bound where the mesh is outside, and fall short of it where the mesh is inside.
 struct Stray {
   double above = 0.0, below = 0.0;
@@ -48,12 +45,13 @@ template <typename Sample>
 class WindowWitness {
  public:
   WindowWitness(std::shared_ptr<const voxel::Scene> scan, double low, double high,
-                const voxel::Universe& universe)
+                const voxel::Universe& universe, double step)
       : scan_(std::move(scan)),
         samples_(std::get<voxel::Samples<Sample>>(scan_->samples).data()),
         dims_(scan_->lattice.dims),
         low_(low),
         high_(high),
+        rounded_(step),
         padding_(scan_->padding.value_or(std::numeric_limits<double>::quiet_NaN())),
         scan_from_lps_(glm::inverse(scan_->lattice.lps_from_voxel)),
         universe_from_lps_(glm::inverse(universe.lps_from_voxel)),
@@ -256,7 +254,7 @@ class WindowWitness {
     if (t == glm::dvec3(0.0)) {
       const Measured own = measured_at(at);
       if (!own.sure) return on_surface;
-      return own.value ? word(*own.value, rounded_samples, rounded_samples) : certainly_out;
+      return own.value ? word(*own.value, rounded_, rounded_) : certainly_out;
     }
     double value = 0.0, weights = 0.0;
     bool unsure = false;
@@ -280,7 +278,7 @@ class WindowWitness {
       if (unsure || std::min({halves.x, halves.y, halves.z}) < 1e-6) return on_surface;
       if (!own.value) return certainly_out;
     }
-    return word(value / weights, rounded_samples, rounded_samples);
+    return word(value / weights, rounded_, rounded_);
   }
 
   /// A voxel's sample, none where the scan has none for it, and whether that is sure.
@@ -306,6 +304,7 @@ class WindowWitness {
   const Sample* samples_;
   glm::ivec3 dims_;
   double low_, high_;
+  double rounded_;  ///< a voxel's sample is rounded to a step, and so is a window's bound
   double padding_;  ///< below every measured sample; NaN without padding
   std::array<std::size_t, 3> strides_{};
   Affine scan_from_lps_, universe_from_lps_, scan_from_universe_;
@@ -316,13 +315,13 @@ class WindowWitness {
 }  // namespace
 
 Witness witness_of_window(std::shared_ptr<const voxel::Scene> scan, double low, double high,
-                          const voxel::Universe& universe) {
+                          const voxel::Universe& universe, double step) {
   LineReading lines = lines_in_window(scan, low, high);
   Witness made;
   if (std::holds_alternative<voxel::Int16Samples>(scan->samples))
-    made = WindowWitness<std::int16_t>(std::move(scan), low, high, universe);
+    made = WindowWitness<std::int16_t>(std::move(scan), low, high, universe, step);
   else
-    made = WindowWitness<float>(std::move(scan), low, high, universe);
+    made = WindowWitness<float>(std::move(scan), low, high, universe, step);
   return std::move(made).with_lines(std::move(lines));
 }
 

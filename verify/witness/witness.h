@@ -19,10 +19,10 @@ namespace octotomy::verify {
 
 /// The window low..high of a scan, both bounds included. The mesh kernel's surface lies in the scan's own
 /// cells, with vertices where samples interpolated along edges reach a bound; the voxel kernel interpolates
-/// between the universe's voxels, each a sample interpolated from the scan and rounded to an integer. Shares
-/// the scan.
+/// between the universe's voxels, each a sample interpolated from the scan and rounded to a multiple of
+/// `step`. Shares the scan.
 Witness witness_of_window(std::shared_ptr<const voxel::Scene> scan, double low, double high,
-                          const voxel::Universe& universe);
+                          const voxel::Universe& universe, double step = 1.0);
 
 /// A region drawn in a view.
 struct DrawnRegion {

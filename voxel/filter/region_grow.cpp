@@ -30,8 +30,8 @@ Octree grow_region(const GreyOctree& grey, const GrowOptions& options) {
     low = std::min(low, static_cast<double>(grey.sample(seed)));
     high = std::max(high, static_cast<double>(grey.sample(seed)));
   }
-  const Octree window =
-      combine(grey.universe(), Window{grey, low - options.tolerance, high + options.tolerance});
+  const double tolerance = options.tolerance / grey.step();
+  const Octree window = combine(grey.universe(), Window{grey, low - tolerance, high + tolerance});
   return components_at(window, options.seeds, options.neighbours);
 }
 

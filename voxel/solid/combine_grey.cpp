@@ -123,7 +123,14 @@ GreyOctree combine_grey(const Universe& universe, const Expression& expression, 
   blocks.reserve(held.size());
   for (const BlockWords& block : held) blocks.push_back(block.block);
 
-  const Sampler sample(sources_of(universe, expression), options);
+  std::vector<Source> sources = sources_of(universe, expression);
+  const double step = sources.empty() ? 1.0 : sources.front().window->grey.step();
+  for (const Source& source : sources)
+    if (source.window->grey.step() != step)
+      throw std::invalid_argument("grey octrees whose samples count in steps of " + std::to_string(step) +
+                                  " and " + std::to_string(source.window->grey.step()) +
+                                  " cannot be one: make both of whole numbers");
+  const Sampler sample(std::move(sources), options);
   const auto fill = [&](std::size_t i, GreyBrick& brick) {
     for (int leaf = 0; leaf < 64; ++leaf) {
       const glm::ivec3 origin = 16 * held[i].block + 4 * child_place(leaf);
@@ -133,7 +140,7 @@ GreyOctree combine_grey(const Universe& universe, const Expression& expression, 
             (word >> bit) & 1 ? sample(origin + child_place(bit)) : options.background;
     }
   };
-  return grey_octree_of_bricks(universe, options.background, blocks, fill, voxels);
+  return grey_octree_of_bricks(universe, options.background, blocks, fill, voxels, step);
 }
 
 }  // namespace octotomy::voxel

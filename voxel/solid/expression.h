@@ -19,12 +19,19 @@
 
 namespace octotomy::voxel {
 
-/// The samples of a grey octree from low to high, both included.
+/// The samples of a grey octree from low to high, both included; in steps of its samples.
 struct Window {
   GreyOctree grey;
   double low = 0.0;
   double high = 32767.0;
 };
+/// The samples of a scan from one value to another, in the scan's unit.
+inline Window window_of(const GreyOctree& grey, double low,
+                        const std::optional<double>& high = std::nullopt) {
+  Window window{grey, grey.in_steps(low)};
+  if (high) window.high = grey.in_steps(*high);
+  return window;
+}
 
 /// A Boolean expression of objects under rigid motions: pure data, cheap to copy. combine(), digitise() and
 /// renderers evaluate it.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <tbb/parallel_for.h>
@@ -78,10 +79,26 @@ std::uint64_t GreyOctree::bytes_memory() const {
   return bytes + octotomy::voxel::bytes_memory(scan());
 }
 
+double grey_step(const Scene& scene) {
+  const auto* samples = std::get_if<FloatSamples>(&scene.samples);
+  if (samples == nullptr) return 1.0;
+  bool are_whole = true;
+  double most = 0.0;
+  for (const float sample : *samples) {
+    const auto value = static_cast<double>(sample);
+    if (!std::isfinite(value) || (scene.padding && value == *scene.padding)) continue;
+    are_whole = are_whole && value == std::floor(value);
+    most = std::max(most, std::abs(value));
+  }
+  if (most == 0.0 || (are_whole && most <= std::numeric_limits<std::int16_t>::max())) return 1.0;
+  constexpr double most_steps = 32000.0;
+  return std::exp2(std::ceil(std::log2(most / most_steps)));
+}
+
 GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background,
                           const Progress& progress) {
   check(scene);
-  GreyOctreeBuild build(universe, scene, background);
+  GreyOctreeBuild build(universe, scene, background, grey_step(scene));
   // Threads wait for each other at each report, so they are no more than a percentage shows.
   const int slices = scene.lattice.dims.z, reports = progress.report ? std::min(slices, 50) : 1;
   for (int i = 1; i <= reports; ++i) {
@@ -94,10 +111,11 @@ GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int
 GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t background,
                                  std::span<const glm::ivec3> blocks,
                                  const std::function<void(std::size_t number, GreyBrick& brick)>& fill,
-                                 std::optional<Octree> scan) {
+                                 std::optional<Octree> scan, double step) {
   if (scan && !(scan->universe() == universe))
     throw std::invalid_argument("the scan's voxels are of another universe than its bricks");
   auto storage = std::make_shared<GreyOctree::Storage>(universe, background, blocks.size());
+  storage->step = step;
   GreyOctree::Level& bottom = storage->bottom();
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const glm::ivec3& block = blocks[i];

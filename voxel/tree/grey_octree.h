@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -54,12 +55,17 @@ struct GreyBrick {
 
 /// A min-max octree of int16 samples over dense leaves (thesis 3.3.2, the hybrid tree of A.6). A window
 /// chosen later makes an object of it. Voxels beyond the scan have the background as their sample and belong
-/// to no window. Immutable; copies share.
+/// to no window. A sample counts steps of step(), which is one in the scan's own unit where its samples are
+/// whole numbers of 16 bits. Immutable; copies share.
 class GreyOctree {
  public:
   const Universe& universe() const { return storage_->universe; }
   /// Value of voxels beyond the scan.
   std::int16_t background() const { return storage_->background; }
+  /// What a step of the samples is in the scan's unit: a power of two.
+  double step() const { return storage_->step; }
+  /// A value in the scan's unit as samples count: rounded as they are, where they are.
+  double in_steps(double value) const { return step() == 1.0 ? value : std::floor(value / step() + 0.5); }
   /// The voxels whose sample is the scan's own.
   const Octree& scan() const { return storage_->scan; }
   /// Whether voxels beyond the scan have samples in low..high. If so, samples alone do not tell the window's
@@ -88,7 +94,7 @@ class GreyOctree {
   friend class GreyOctreeBuild;
   friend GreyOctree grey_octree_of_bricks(const Universe&, std::int16_t, std::span<const glm::ivec3>,
                                           const std::function<void(std::size_t, GreyBrick&)>&,
-                                          std::optional<Octree>);
+                                          std::optional<Octree>, double);
   struct Level {
     int side = 1;  ///< blocks along an axis
     std::vector<MinMax> ranges;
@@ -109,6 +115,7 @@ class GreyOctree {
 
     Universe universe;
     std::int16_t background;
+    double step = 1.0;
     Octree scan = Octree::empty({});
     std::vector<Level> levels;                  ///< heights 2, 3, ... up to the root's
     std::vector<std::uint32_t> brick_of_block;  ///< brick 0 is all background
@@ -123,13 +130,18 @@ class GreyOctree {
 /// What voxels outside of a scan hold by default: below any CT sample.
 inline constexpr std::int16_t beyond_scan = -1024;
 
+/// The step in which a grey octree holds a scan's samples: 1 where they are whole numbers of 16 bits, else
+/// the least power of two of which the largest measured sample is at most 32,000. Cost: of float samples one
+/// pass.
+double grey_step(const Scene& scene);
+
 /// Samples the scene at the universe's voxel centres: exactly if the lattices coincide, otherwise by
-/// trilinear interpolation rounded to the nearest integer, halves upward. Voxels whose centre lies outside
-/// the scene's bounds, or whose sample would be made of the scene's padding, become `background` and are no
-/// part of scan(): no window holds them. Throws std::invalid_argument if float samples leave the int16
-/// range; Stopped. Parallel; same bits on any thread count. GreyOctreeBuild (grey_octree_build.h) makes it
-/// while the scan is read. Memory: the samples within the scan's bounds and three per cent, without blocks of
-/// 16 x 16 x 16 voxels that have one value, as air beside a head has.
+/// trilinear interpolation; rounded to the nearest grey_step(), halves upward. Voxels whose centre lies
+/// outside the scene's bounds, or whose sample would be made of the scene's padding, become `background`, in
+/// the scan's unit, and are no part of scan(): no window holds them. Throws Stopped. Parallel; same bits on
+/// any thread count. GreyOctreeBuild (grey_octree_build.h) makes it while the scan is read. Memory: the
+/// samples within the scan's bounds and three per cent, without blocks of 16 x 16 x 16 voxels that have one
+/// value, as air beside a head has.
 GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background = beyond_scan,
                           const Progress& progress = {});
 
@@ -142,7 +154,7 @@ GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int
 GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t background,
                                  std::span<const glm::ivec3> blocks,
                                  const std::function<void(std::size_t number, GreyBrick& brick)>& fill,
-                                 std::optional<Octree> scan = std::nullopt);
+                                 std::optional<Octree> scan = std::nullopt, double step = 1.0);
 
 /// The smallest box that holds every sample other than the background: the scan's voxels as far as samples
 /// tell. Cost: the ranges of blocks, and the samples of those that the box's faces cut.

@@ -120,13 +120,14 @@ void copy_block(const std::int16_t* first, const RowSteps& steps, GreyBrick& bri
 
 class GreyOctreeBuild::Work {
  public:
-  Work(const Universe& universe, const Scene& scene, std::int16_t background)
+  Work(const Universe& universe, const Scene& scene, std::int16_t background, double step)
       : reached_(universe, scene.lattice),
-        rows_(universe, scene, background),
+        rows_(universe, scene, background, step),
         storage_(std::make_shared<GreyOctree::Storage>(universe, background,
                                                        reached_.number({0, 0, reached_.count.z}))),
         scan_(reached_.number({0, 0, reached_.count.z})),
         shared_(static_cast<std::size_t>(reached_.count.z)) {
+    storage_->step = step;
     for (int z = 0; z < reached_.count.z; ++z) {
       const int first = 16 * (reached_.first.z + z);
       layers_.emplace_back(rows_.slices_read(first, first + 15), z);
@@ -312,8 +313,11 @@ void GreyOctreeBuild::Work::add(int count) {
       tasks_.run([this, y, z = layers_.back().second] { Row(*this, y, z).fill(); });
 }
 
-GreyOctreeBuild::GreyOctreeBuild(const Universe& universe, const Scene& scene, std::int16_t background)
-    : work_(std::make_unique<Work>(universe, scene, background)) {}
+GreyOctreeBuild::GreyOctreeBuild(const Universe& universe, const Scene& scene, std::int16_t background,
+                                 double step)
+    : work_(std::make_unique<Work>(
+          universe, scene,
+          static_cast<std::int16_t>(std::clamp(std::floor(background / step), -32768.0, 32767.0)), step)) {}
 
 GreyOctreeBuild::~GreyOctreeBuild() = default;
 

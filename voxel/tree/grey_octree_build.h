@@ -13,8 +13,10 @@ namespace octotomy::voxel {
 /// other threads and takes up no other work meanwhile.
 class GreyOctreeBuild {
  public:
-  /// Preconditions: the scene passes check(); its samples need no values yet, but their place.
-  GreyOctreeBuild(const Universe& universe, const Scene& scene, std::int16_t background = beyond_scan);
+  /// Preconditions: the scene passes check(); its samples need no values yet, but their place; `step` is
+  /// their grey_step(), which of whole numbers of 16 bits is 1.
+  GreyOctreeBuild(const Universe& universe, const Scene& scene, std::int16_t background = beyond_scan,
+                  double step = 1.0);
   ~GreyOctreeBuild();
   GreyOctreeBuild(const GreyOctreeBuild&) = delete;
   GreyOctreeBuild& operator=(const GreyOctreeBuild&) = delete;

@@ -35,7 +35,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::array<std::uint8_t, 8> magic{0x89, 'O', 'C', 'T', 'R', 'E', 'E', '\n'};
 /// Version 2 has the section SCAN, which a tree may need.
 constexpr std::uint32_t first_version = 1;
-constexpr std::uint32_t last_version = 2;
+constexpr std::uint32_t last_version = 3;
 constexpr std::size_t header_bytes = 32;
 constexpr std::size_t section_header_bytes = 16;
 constexpr std::size_t largest_raw = std::size_t{1} << 20;
@@ -182,7 +182,12 @@ void cut_grey(const GreyOctree& grey, std::vector<Piece>& pieces) {
                         return brick_bytes(grey, std::span(*blocks).subspan(from, count));
                       }});
   }
-  if (!(grey.scan() == scan_box(grey))) cut("SCAN", packed_treecode(grey.scan()), pieces);
+  if (grey.step() != 1.0 || !(grey.scan() == scan_box(grey)))
+    cut("SCAN", packed_treecode(grey.scan()), pieces);
+  if (grey.step() == 1.0) return;
+  Bytes step(8);
+  put(std::bit_cast<std::uint64_t>(grey.step()), step.data());
+  cut("STEP", std::move(step), pieces);
 }
 
 void cut_partial(const PartialOctree& partial, std::vector<Piece>& pieces) {
@@ -433,13 +438,24 @@ class Reader {
     if (blocks.size() != bits) refuse("section GRID has bits beyond the universe");
     std::optional<Octree> scan;
     if (version_ > first_version) scan = octree_of_packed_treecode(universe, take_needed("SCAN"));
+    const double step = version_ == last_version ? read_step() : 1.0;
     return grey_octree_of_bricks(
         universe, background_, blocks,
         [&](std::size_t i, GreyBrick& brick) {
           read_brick(sections_[first + i / bricks_per_section].raw, i % bricks_per_section, background_,
                      brick);
         },
-        std::move(scan));
+        std::move(scan), step);
+  }
+
+  double read_step() {
+    const Bytes raw = take_needed("STEP");
+    if (raw.size() != 8) refuse("section STEP has " + std::to_string(raw.size()) + " bytes, not 8");
+    const auto step = std::bit_cast<double>(get<std::uint64_t>(raw.data()));
+    int exponent = 0;
+    if (!(step > 0.0) || !std::isfinite(step) || std::frexp(step, &exponent) != 0.5)
+      refuse("section STEP: the step of its samples is no power of two");
+    return step;
   }
 
   void expect_end() const {
@@ -475,8 +491,9 @@ std::vector<std::uint8_t> octree_file_bytes(const OctreeFile& file) {
   Bytes bytes(header_bytes);
   bytes.reserve(size);
   std::copy(magic.begin(), magic.end(), bytes.begin());
-  const bool has_scan = !pieces.empty() && std::string_view(pieces.back().name) == "SCAN";
-  put(has_scan ? last_version : first_version, bytes.data() + 8);
+  const std::string_view last = pieces.empty() ? "" : pieces.back().name;
+  const std::uint32_t version = last == "STEP" ? last_version : last == "SCAN" ? 2 : first_version;
+  put(version, bytes.data() + 8);
   put(static_cast<std::uint32_t>(file.tree.index() + 1), bytes.data() + 12);
   put(static_cast<std::uint64_t>(size), bytes.data() + 16);
   put(static_cast<std::uint32_t>(sections.size()), bytes.data() + 24);

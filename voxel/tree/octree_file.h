@@ -12,7 +12,7 @@
 #include "voxel/tree/octree.h"
 #include "voxel/tree/partial_octree.h"
 
-// The .octree format, versions 1 and 2. Numbers are little-endian.
+// The .octree format, versions 1 to 3. Numbers are little-endian.
 //
 //   header    32 bytes: magic 89 4f 43 54 52 45 45 0a ("\x89OCTREE\n"), u32 version, u32 kind (1 binary,
 //             2 grey, 3 partial), u64 bytes of the file, u32 number of sections, u32 checksum of the 28 bytes
@@ -40,9 +40,11 @@
 //         row's start from the row before, at a layer's from the layer before, at a leaf's from the first
 //         of the leaf before, at a brick's from the background. Differences 0, -1, 1, -2, ... are written
 //         0, 1, 2, 3, ...
-//   SCAN  grey, version 2 only: the packed treecode of the voxels whose samples are the scan's. Without it
+//   SCAN  grey, from version 2 on: the packed treecode of the voxels whose samples are the scan's. Without it
 //         they are the smallest box that holds all samples other than the background, and a file that
 //         needs no SCAN is of version 1
+//   STEP  grey, version 3 only: a double, what a step of the samples is in the scan's unit, a power of two
+//         other than 1
 
 namespace octotomy::voxel {
 

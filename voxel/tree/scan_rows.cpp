@@ -44,10 +44,11 @@ OCTOTOMY_VECTOR_CLONES void interpolate_row(const std::int16_t* const (&rows)[4]
 
 }  // namespace
 
-ScanRows::ScanRows(const Universe& universe, const Scene& scene, std::int16_t background)
+ScanRows::ScanRows(const Universe& universe, const Scene& scene, std::int16_t background, double step)
     : scene_(scene),
       dims_(scene.lattice.dims),
       background_(background),
+      step_(step),
       scan_from_universe_(glm::inverse(scene.lattice.lps_from_voxel) * universe.lps_from_voxel),
       offset_(whole_voxel_offset(scan_from_universe_)) {
   if (offset_ || !is_diagonal()) return;
@@ -102,7 +103,7 @@ std::size_t ScanRows::index(int y, int z) const {
 }
 
 std::int16_t ScanRows::rounded(double value) const {
-  const double nearest = std::floor(value + 0.5);
+  const double nearest = std::floor(value / step_ + 0.5);
   if (!(nearest >= std::numeric_limits<std::int16_t>::min() &&
         nearest <= std::numeric_limits<std::int16_t>::max()))
     throw std::invalid_argument(scene_.source + ": the sample " + std::to_string(value) +

@@ -18,14 +18,14 @@ struct RowSteps {
 };
 
 /// A scan's samples at the voxel centres of a universe, read along the universe's rows, 16 voxels at a time:
-/// the scan's own if the lattices coincide, otherwise by trilinear interpolation rounded to the nearest
-/// integer, halves upward. Refers to the scene.
+/// the scan's own if the lattices coincide, otherwise by trilinear interpolation; in steps of `step`, rounded
+/// to the nearest, halves upward. Refers to the scene.
 class ScanRows {
  public:
   static constexpr int length = 16;
   /// Voxels whose centre lies outside the scene's bounds, or whose sample would be made of the scene's
   /// padding, have the sample `background` and do not lie in the scan.
-  ScanRows(const Universe& universe, const Scene& scene, std::int16_t background);
+  ScanRows(const Universe& universe, const Scene& scene, std::int16_t background, double step);
 
   /// How many of the scan's slices, from the first on, hold all samples that the universe's slices
   /// first..last are made of.
@@ -67,6 +67,7 @@ class ScanRows {
   const Scene& scene_;
   glm::ivec3 dims_;
   std::int16_t background_;
+  double step_;
   glm::dmat4 scan_from_universe_;
   std::optional<glm::ivec3> offset_;         ///< of the scan's samples, if the two lattices coincide
   std::array<std::vector<Place>, 3> along_;  ///< per axis and voxel, if the lattices' axes are parallel

@@ -114,9 +114,10 @@ Seen ColumnSurface::seen(const glm::ivec2& column, int before) const {
   if (!object_.grey || before == 0) return seen;
   const double inside = object_.grey->sample(voxel(column, before));
   const double outside = object_.grey->sample(voxel(column, before - 1));
-  if (outside < object_.threshold && object_.threshold <= inside) {
+  const double threshold = object_.grey->in_steps(object_.threshold);
+  if (outside < threshold && threshold <= inside) {
     // Voxel centres are half a voxel behind their front faces.
-    const double depth_voxels = before - 0.5 + (object_.threshold - outside) / (inside - outside);
+    const double depth_voxels = before - 0.5 + (threshold - outside) / (inside - outside);
     seen = {static_cast<float>(depth_voxels * spacing_mm_), 0, false};
   }
   return seen;

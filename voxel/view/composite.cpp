@@ -183,7 +183,7 @@ class March {
       : grey_(grey),
         plane_(plane),
         options_(options),
-        table_(options.transfer, root_range(grey)),
+        table_(in_steps(options.transfer, grey), root_range(grey)),
         visible_(grey, table_),
         background_shows_(table_.visible({grey.background(), grey.background()})),
         voxel_from_lps_(glm::inverse(grey.universe().lps_from_voxel)),
@@ -215,6 +215,12 @@ class March {
 
  private:
   static constexpr float nothing = std::numeric_limits<float>::infinity();
+
+  /// The samples of the function's points as those of the octree count.
+  static TransferFunction in_steps(TransferFunction transfer, const GreyOctree& grey) {
+    for (TransferPoint& point : transfer.points) point.sample /= grey.step();
+    return transfer;
+  }
 
   static MinMax root_range(const GreyOctree& grey) {
     MinMax range = grey.range(std::max(2, root_height(grey.universe().depth)), glm::ivec3(0));

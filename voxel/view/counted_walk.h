@@ -40,9 +40,10 @@ void walk_object(const DrawnObject& object, std::uint64_t pixel_count, Visits* v
     walk(LogicalNode::root(object.octree), none);
     return;
   }
-  const auto window =
-      window16(object.threshold, static_cast<double>(std::numeric_limits<std::int16_t>::max()));
-  if (object.counted_in_grey && object.grey && window) {
+  const auto window = object.grey ? window16(object.grey->in_steps(object.threshold),
+                                             static_cast<double>(std::numeric_limits<std::int16_t>::max()))
+                                  : std::nullopt;
+  if (object.counted_in_grey && window) {
     VisitCounter counter(level_counts(*object.grey, *window), pixel_count);
     walk(GreyNode::root(*object.grey, *window), counter);
     visits->add(counter.visits());

@@ -162,7 +162,7 @@ Paint paint_of(const DepthImage& image, const std::vector<DrawnObject>& objects,
       const glm::dvec3 p_voxel(voxel_from_lps * glm::dvec4(p_mm, 1.0));
       if (on_cut) {
         const CutTones& tones = *options.cut_tones;
-        const double sample = interpolate(tones.grey, p_voxel, Interpolation::Linear);
+        const double sample = tones.grey.step() * interpolate(tones.grey, p_voxel, Interpolation::Linear);
         paint.kinds[pixel] = Paint::Kind::Tone;
         paint.colours[pixel] = glm::vec3(
             static_cast<float>(std::clamp((sample - tones.black) / (tones.white - tones.black), 0.0, 1.0)));

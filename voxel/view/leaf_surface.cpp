@@ -445,7 +445,7 @@ LeafSurface::LeafSurface(const DrawnObject& object, const glm::dvec3& per_mm, co
       still_from_voxel_(object.still_from_voxel()),
       per_mm_(still_from_voxel_ ? glm::dmat3(*still_from_voxel_) * per_mm : per_mm),
       half_voxel_mm_(static_cast<float>(0.5 / glm::length(per_mm_))),
-      threshold_(static_cast<float>(object.threshold)),
+      threshold_(static_cast<float>(object.grey->in_steps(object.threshold))),
       universe_side_(object.grey->universe().side()) {
   // In front of the leaf is above it along a flipped axis.
   for (int axis = 0; axis < 3; ++axis) {

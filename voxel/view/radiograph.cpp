@@ -77,7 +77,8 @@ Steps steps_of(const DepthSpan& span, const glm::dvec3& per_mm) {
 }  // namespace
 
 RayImage maximum_intensity(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress) {
-  return along_rays(grey, plane, grey.background(), progress,
+  const auto missing = static_cast<float>(grey.background() * grey.step());
+  return along_rays(grey, plane, missing, progress,
                     [&](const glm::dvec3& start, const glm::dvec3& per_mm, const DepthSpan& span) {
                       const Steps steps = steps_of(span, per_mm);
                       double most = grey.background();
@@ -85,7 +86,7 @@ RayImage maximum_intensity(const GreyOctree& grey, const ImagePlane& plane, cons
                         const glm::dvec3 p = start + (span.near_mm + i * steps.length_mm) * per_mm;
                         if (range_about(grey, p).high > most) most = std::max(most, trilinear(grey, p));
                       }
-                      return most;
+                      return most * grey.step();
                     });
 }
 
@@ -97,8 +98,9 @@ RayImage radiograph(const GreyOctree& grey, const ImagePlane& plane, const Progr
                       for (int i = 0; i <= steps.count; ++i) {
                         const glm::dvec3 p = start + (span.near_mm + i * steps.length_mm) * per_mm;
                         const MinMax range = range_about(grey, p);
-                        if (range.high <= -1000) continue;
-                        const double per_water = std::max(0.0, 1.0 + trilinear(grey, p) / 1000.0);
+                        if (range.high * grey.step() <= -1000.0) continue;
+                        const double per_water =
+                            std::max(0.0, 1.0 + trilinear(grey, p) * grey.step() / 1000.0);
                         sum += (i == 0 || i == steps.count ? 0.5 : 1.0) * per_water;
                       }
                       return water_per_mm * steps.length_mm * sum;

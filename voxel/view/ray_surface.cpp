@@ -171,7 +171,7 @@ float half_voxel_mm(const VoxelRay& ray) {
 
 GreySurface::GreySurface(const DrawnObject& object)
     : grey_(*object.grey),
-      threshold_(static_cast<float>(object.threshold)),
+      threshold_(static_cast<float>(object.grey->in_steps(object.threshold))),
       side_(object.octree.universe().side()),
       still_from_voxel_(object.still_from_voxel()) {}
 
