@@ -101,6 +101,29 @@ void add_contour_findings(voxel::SliceMask& mask, const std::string& where,
   tell_crossings(mask, where, findings);
 }
 
+std::vector<std::string> findings_of(const voxel::Region& region) {
+  const auto& polygons = region.polygons_mm;
+  const auto place_of = [](const glm::dvec2& p) {
+    const auto number = [](double value) { return plain(std::round(100.0 * value) / 100.0 + 0.0); };
+    return "[" + number(p.x) + ", " + number(p.y) + "] mm of the view";
+  };
+  const auto count_of = [](std::size_t count) {
+    return std::to_string(count) + (count == 1 ? " polygon" : " polygons");
+  };
+  std::vector<std::string> findings;
+  const std::vector<std::size_t> again = voxel::repeated_polygons(polygons, off_plane_mm());
+  if (!again.empty())
+    findings.push_back(count_of(again.size()) + " drawn twice: nothing is left of both, first at " +
+                       place_of(polygons[again.front()].front()));
+  const voxel::CrossingPolygons crossing = voxel::crossing_polygons(polygons, off_plane_mm());
+  if (!crossing.all.empty())
+    findings.push_back(count_of(crossing.all.size()) +
+                       " cross another or themselves, so that parts enclosed twice are left out, first at " +
+                       place_of(crossing.all.front().at_mm) +
+                       ": join them where the parts belong to the region");
+  return findings;
+}
+
 std::optional<std::string> beyond_scan(const voxel::SliceMask& mask, const voxel::Lattice& scan,
                                        const std::string& where) {
   std::size_t planes = 0, drawn = 0;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "voxel/solid/region_mask.h"
 #include "voxel/solid/slice_mask.h"
 #include "voxel/space/lattice.h"
 
@@ -20,6 +21,10 @@ constexpr double off_plane_mm() {
 /// line on these, and one on contours that cross another of their plane or themselves.
 void add_contour_findings(voxel::SliceMask& mask, const std::string& where,
                           std::vector<std::string>& findings);
+
+/// Lines on polygons of a region that repeat or cross another, of which the even-odd rule makes something
+/// else than painting them would.
+std::vector<std::string> findings_of(const voxel::Region& region);
 
 /// A line on contours that reach beyond a scan's samples: in how many planes, how far and where; none where
 /// all lie within. `where` begins the line.

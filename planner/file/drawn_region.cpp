@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include "planner/file/contour_findings.h"
 #include "planner/file/landmarks_file.h"
 #include "planner/file/picture_frame.h"
 #include "planner/file/region_file.h"
@@ -81,6 +82,26 @@ glm::dmat3 pixel_from_user(const SvgPicture& picture, const glm::ivec2& size_px)
   return glm::inverse(picture.user_from_shown * shown_from_pixel);
 }
 
+/// The number of polygons whose first point lies within an odd number of others.
+std::size_t holes_among(const std::vector<Polygon>& polygons) {
+  const auto encloses = [](const Polygon& polygon, const glm::dvec2& p) {
+    bool inside = false;
+    for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++) {
+      const glm::dvec2 &a = polygon[last], &b = polygon[i];
+      if ((a.y <= p.y) != (b.y <= p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
+        inside = !inside;
+    }
+    return inside;
+  };
+  return static_cast<std::size_t>(std::count_if(polygons.begin(), polygons.end(), [&](const Polygon& inner) {
+    return std::count_if(
+               polygons.begin(), polygons.end(),
+               [&](const Polygon& outer) { return &outer != &inner && encloses(outer, inner.front()); }) %
+               2 ==
+           1;
+  }));
+}
+
 DrawnRegion of_svg(const std::optional<voxel::View>& view, const fs::path& path) {
   std::optional<voxel::View> seen = view;
   const SvgOutlines found = read_svg_outlines(
@@ -100,6 +121,10 @@ DrawnRegion of_svg(const std::optional<voxel::View>& view, const fs::path& path)
   DrawnRegion made = drawn_in(*seen, found.polygons_mm);
   for (const std::string& finding : found.findings)
     made.findings.push_back(path.filename().string() + ": " + finding);
+  if (const std::size_t holes = holes_among(made.region.polygons_mm); holes > 0)
+    made.findings.push_back(path.filename().string() + ": " + std::to_string(holes) +
+                            (holes == 1 ? " outline lies" : " outlines lie") +
+                            " within another: holes, whatever their fill is");
   return made;
 }
 
@@ -200,6 +225,8 @@ DrawnRegion read_drawn_region(const std::string& text) {
   else
     drawn = {name_of(*view), read_region(*view, path), {}};
   check_drawn(drawn, path.string());
+  for (const std::string& finding : findings_of(drawn.region))
+    drawn.findings.push_back(path.filename().string() + ": " + finding);
   return drawn;
 }
 

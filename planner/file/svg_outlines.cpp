@@ -41,6 +41,11 @@ class Drawing {
       }
       if (open.empty() && element.name != "svg")
         elements.refuse_at(element.line, "is no SVG file: its root is <" + element.name + ">");
+      if (const auto style = element.attributes.find("style");
+          style != element.attributes.end() && style->second.find("transform") != std::string::npos)
+        elements.refuse_at(element.line,
+                           "moves a shape by its style, which is not read: flatten transforms before saving");
+      has_classes_ = has_classes_ || element.attributes.contains("class");
       const glm::dmat3 map = (open.empty() ? glm::dmat3(1.0) : open.back()) *
                              (open.empty() ? glm::dmat3(1.0) : transform_of(elements, element));
       if (open.empty())
@@ -54,6 +59,8 @@ class Drawing {
 
   double mm_per_unit() const { return mm_per_unit_; }
   bool has_length() const { return has_length_; }
+  /// Whether elements have classes, whose style sheet may hide them.
+  bool has_classes() const { return has_classes_; }
 
  private:
   static constexpr std::size_t none = ~std::size_t{0};
@@ -70,7 +77,8 @@ class Drawing {
       std::erase(value, ' ');
       return value.find(what) != std::string::npos;
     };
-    return says("display", "none") || says("style", "display:none");
+    return says("display", "none") || says("style", "display:none") || says("visibility", "hidden") ||
+           says("visibility", "collapse") || says("style", "visibility:hidden");
   }
 
   void read_root(const XmlTags& elements, const XmlTag& root) {
@@ -102,7 +110,7 @@ class Drawing {
   }
 
   XmlTags elements_;
-  bool has_length_ = false;
+  bool has_length_ = false, has_classes_ = false;
   double mm_per_unit_ = mm_per_css_pixel;
 };
 
@@ -166,6 +174,10 @@ SvgOutlines read_svg_outlines(const std::filesystem::path& path, const SvgPlacem
     refuse(path.string(), "has no outline: draw a path, polygon, polyline, rect, circle or ellipse");
   for (const auto& [name, count] : left_out)
     made.findings.push_back(std::to_string(count) + " <" + name + "> left out: it encloses nothing");
+  if (drawing.has_classes())
+    made.findings.push_back(
+        "its style sheet is not read: outlines of classes that it hides are taken, too; delete hidden "
+        "layers");
   if (!picture && !drawing.has_length())
     made.findings.push_back("the drawing has no width in millimetres: a unit is taken as 1/96 inch, " +
                             three_figures(drawing.mm_per_unit()) + " mm");

@@ -97,6 +97,21 @@ TEST_F(DrawnRegionFile, ADrawingInAViewIsInMillimetresWithYUp) {
   expect_polygon(read_drawn_region("anterior:" + file), "anterior", {{-20, -10}, {30, -10}, {30, 5}});
 }
 
+TEST_F(DrawnRegionFile, OutlinesThatTheEvenOddRuleReadsOtherwiseAreTold) {
+  const auto findings = [&](const std::string& shapes) {
+    const std::string file =
+        write("a.svg", R"(<svg width="10cm" viewBox="-50 -50 100 100">)" + shapes + "</svg>");
+    return testing::PrintToString(read_drawn_region("anterior:" + file).findings);
+  };
+  const std::string one = R"(<rect x="-10" y="-10" width="20" height="20"/>)";
+  EXPECT_EQ(findings(one), "{}");
+  EXPECT_NE(findings(one + R"(<rect x="0" y="-5" width="20" height="10"/>)").find("2 polygons cross"),
+            std::string::npos);
+  EXPECT_NE(findings(one + one).find("drawn twice"), std::string::npos);
+  EXPECT_NE(findings(one + R"(<rect x="-5" y="-5" width="5" height="5"/>)").find("1 outline lies within"),
+            std::string::npos);
+}
+
 TEST_F(DrawnRegionFile, ClosedCurvesOfSlicerAreProjected) {
   const auto curve = [](const std::string& system, const std::string& points) {
     return R"({"@schema": "markups-schema-v1.0.3.json#",

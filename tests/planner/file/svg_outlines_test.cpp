@@ -116,6 +116,15 @@ TEST_F(SvgOutlinesFile, HidesWhatIsNotDisplayedAndTellsWhatIsLeftOut) {
   EXPECT_EQ(found.findings.size(), 2u);
 }
 
+TEST_F(SvgOutlinesFile, WhatAStyleHidesOrMovesIsLeftOutToldOrRefused) {
+  const SvgOutlines found = read(R"(<rect visibility="hidden" width="5" height="5"/>
+      <g style="visibility:hidden"><rect width="5" height="5"/></g><rect class="st0" width="7" height="7"/>)");
+  ASSERT_EQ(found.polygons_mm.size(), 1u);
+  EXPECT_NE(testing::PrintToString(found.findings).find("style sheet is not read"), std::string::npos);
+  EXPECT_THROW(read(R"svg(<rect style="transform:translate(5px,-3px)" width="5" height="5"/>)svg"),
+               std::runtime_error);
+}
+
 TEST_F(SvgOutlinesFile, UnitsAreTheRootsAndToldWhereTheyAreNone) {
   const auto side_mm = [&](const std::string& root, const std::string& side = "10") {
     const SvgOutlines found = read("<rect width=\"" + side + "\" height=\"" + side + "\"/>", root);
