@@ -429,11 +429,15 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
   drawn.mask.view = view_across(normal);
   const PlaneDistances distances = distances_of_planes(set.structures, drawn.mask.view);
   Slices planes = planes_of(found, drawn.mask.view, distances, where, drawn.findings);
-  if (!std::isfinite(distances.nearest_mm))
+  const bool is_slab = !std::isfinite(distances.nearest_mm) && found.slab_mm > 0.0;
+  if (is_slab)
+    drawn.findings.push_back(where + ": lies in one plane, and is as thick as it states, " +
+                             plain(found.slab_mm) + " mm");
+  else if (!std::isfinite(distances.nearest_mm))
     refuse(where,
-           "lies in one plane, as the whole set does: how thick it is cannot be told; draw it on the next "
-           "plane, too");
-  if (!std::isfinite(distances.least_mm))
+           "lies in one plane, as the whole set does, and states no ContourSlabThickness: how thick it is "
+           "cannot be told; draw it on the next plane, too");
+  if (!is_slab && !std::isfinite(distances.least_mm))
     refuse(where, "lies in planes, as the whole set does, that are " + too_near(distances.nearest_mm));
   drawn.mask.slices = std::move(planes);
   add_contour_findings(drawn.mask, where, drawn.findings);
@@ -441,8 +445,9 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
   const double bridge_mm = bridge_of(found, options.bridge_mm);
   const std::vector<Slices> parts = parts_of(planes);
   if (!are_interleaved(parts)) {
-    tell_gaps(planes, distances.least_mm, bridge_mm, where, drawn.findings);
-    drawn.mask.slices = with_empty(planes, distances.least_mm, bridge_mm);
+    const double apart_mm = is_slab ? found.slab_mm : distances.least_mm;
+    tell_gaps(planes, apart_mm, bridge_mm, where, drawn.findings);
+    drawn.mask.slices = with_empty(planes, apart_mm, bridge_mm);
   } else {
     for (const Slices& part : parts)
       tell_gaps(part, usual_distance_mm(part), bridge_mm, where, drawn.findings);

@@ -112,6 +112,24 @@ TEST(MaskStep, AStructureThatIsNotThereIsRefusedWithTheOnesThatAre) {
   EXPECT_NE(refusal("A").find("how thick it is"), std::string::npos) << refusal("A");
 }
 
+TEST(MaskStep, AStructureOfOnePlaneIsAsThickAsItStates) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "rs.dcm", std::ios::binary) << structure_set(
+      {{.number = 1, .name = "A", .contours_mm = {rectangle({-6, -6}, {6, 6}, 0)}, .slab_mm = 4.0}});
+  const Evaluation evaluation =
+      evaluate(ball_plan(folder, R"({"id": "a", "do": "mask", "slices": "rs.dcm", "structure": "A"})"));
+  EXPECT_NEAR(evaluation.object("a").voxel.measures.volume_mm3, 4.0 * 144.0, 60.0);
+  EXPECT_NE(evaluation.object("a").findings.at(0).find("as thick as it states, 4 mm"), std::string::npos);
+}
+
+TEST(MaskStep, RegionsThatCrossAreTold) {
+  const ScratchFolder folder;
+  const Evaluation evaluation = evaluate(ball_plan(folder, R"({"id": "a", "do": "mask", "regions": [
+      {"view": "anterior", "polygons_mm": [[[-9, -9], [3, -9], [3, 9], [-9, 9]], [[0, -5], [9, -5], [9, 5], [0, 5]]]}]})"));
+  EXPECT_NE(evaluation.object("a").findings.at(0).find("parts enclosed twice are left out"),
+            std::string::npos);
+}
+
 TEST(MaskStep, AStructureOnTiltedPlanesKeepsItsPlace) {
   const ScratchFolder folder;
   // Planes of a tilted gantry, 20 degrees about x.
