@@ -40,7 +40,8 @@ void check_label(const std::string& label, const std::string& where) {
            "' is no label of a subject: use at most 100 letters, digits, _ and -");
 }
 
-std::string without_prefix(const std::string& label) {
+std::string without_prefix(const std::string& said) {
+  const std::string label = voxel::trimmed(said);
   return label.starts_with("sub-") ? label.substr(4) : label;
 }
 

@@ -25,8 +25,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A label; "3.0" as tables of floats have it, too.
 std::optional<int> whole(const std::string& text) {
-  const std::string digits = voxel::trimmed(text);
+  std::string digits = voxel::trimmed(text);
+  if (digits.ends_with(".0")) digits.resize(digits.size() - 2);
   int number = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (error != std::errc() || end != digits.data() + digits.size() || number < 0 ||

@@ -41,7 +41,7 @@ std::vector<brep::Landmark> own_landmarks(const SortedJson& list) {
     if (!entry.is_object() || !entry.contains("name") || !entry["name"].is_string())
       throw std::runtime_error(number + " has no name");
     brep::Landmark landmark;
-    landmark.name = entry["name"].get<std::string>();
+    landmark.name = voxel::trimmed(entry["name"].get<std::string>());
     for (const auto& [key, value] : entry.items())
       if (std::find(known.begin(), known.end(), key) == known.end())
         throw std::runtime_error("'" + landmark.name + "' has an unknown key '" + key + "'" +
@@ -111,7 +111,7 @@ std::vector<brep::Landmark> slicer_landmarks(const SortedJson& markups, Audit& a
     for (const SortedJson& entry : list.value("controlPoints", SortedJson::array())) {
       if (entry.value("positionStatus", "defined") != "defined") continue;
       brep::Landmark landmark;
-      landmark.name = entry.value("label", "");
+      landmark.name = voxel::trimmed(entry.value("label", ""));
       if (landmark.name.empty())
         throw std::runtime_error("control point " + std::to_string(landmarks.size()) + " has no label");
       landmark.p_mm = lps_mm * position_of(entry.value("position", SortedJson()), landmark.name);
