@@ -73,6 +73,15 @@ std::vector<voxel::Label> labels_or_none(const voxel::Scene& scene) {
   }
 }
 
+/// Samples further than a hundredth from a whole number: no label stores them.
+std::size_t samples_between_labels(const voxel::Scene& scene) {
+  const auto* samples = std::get_if<voxel::FloatSamples>(&scene.samples);
+  if (samples == nullptr) return 0;
+  return static_cast<std::size_t>(std::count_if(samples->begin(), samples->end(), [](float sample) {
+    return std::isfinite(sample) && std::abs(sample - std::round(sample)) > 0.01F;
+  }));
+}
+
 /// One object on its way.
 class Segmenter {
  public:
@@ -136,6 +145,10 @@ class Segmenter {
     if (segment_.label) {
       for (const voxel::Label& label : labels_or_none(source_.scene))
         if (label.number == *segment_.label) made_.findings = findings_of_labels({label});
+      if (const std::size_t between = samples_between_labels(source_.scene); between > 0)
+        made_.findings.push_back(std::to_string(between) + (between == 1 ? " sample lies" : " samples lie") +
+                                 " between labels and belong to none, as where a label map was resampled by "
+                                 "interpolation: resample it by the nearest sample");
       return become(voxel::octree_of_label(source_.universe, source_.scene, *segment_.label),
                     {{"do", "label"}, {"label", *segment_.label}});
     }
