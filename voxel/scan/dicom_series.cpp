@@ -477,6 +477,10 @@ class SeriesAssembler {
     if (!stack.first().assumed_spacing.empty())
       find("pixel_spacing", Verdict::Warn,
            "PixelSpacing is absent; " + stack.first().assumed_spacing + " replaces it");
+    if (!stack.first().pixels.states_sign)
+      find("pixel_representation", Verdict::Warn,
+           "PixelRepresentation is absent: samples are taken as unsigned; where values below 0 stand beyond "
+           "32767, the attribute should be 1");
     return stack;
   }
 
@@ -533,7 +537,8 @@ class SeriesAssembler {
           print("ImageOrientationPatient is not two perpendicular unit vectors: they are %.4g and %.4g long "
                 "and lean by %.3g degrees; correct the attribute",
                 row, column,
-                std::asin(std::clamp(lean / row / column, -1.0, 1.0)) * 180.0 / 3.14159265358979323846));
+                std::asin(std::clamp(lean / std::max(row * column, 1e-12), -1.0, 1.0)) * 180.0 /
+                    3.14159265358979323846));
     if (length_error >= two_decimals_error())
       find("orientation_length", Verdict::Warn,
            print("the vectors of ImageOrientationPatient are %.4g and %.4g long, not 1: their directions are "

@@ -118,7 +118,9 @@ DicomPixels pixels_of(const DicomFile& file) {
   // One of both states the other, as values end at the lowest bit.
   pixels.stored = stored ? *stored : high ? *high + 1u : pixels.allocated;
   pixels.high = high ? *high : pixels.stored - 1;
-  pixels.is_signed = file.unsigned_short(0x00280103).value_or(0) == 1;
+  const auto representation = file.unsigned_short(0x00280103);
+  pixels.is_signed = representation == 1;
+  pixels.states_sign = representation.has_value();
   for (DicomTag group = 0x60000000; group < 0x60200000; group += 0x00020000)
     pixels.holds_overlay = pixels.holds_overlay || (file.unsigned_short(group + 0x0102).value_or(0) != 0 &&
                                                     !file.length(group + 0x3000));

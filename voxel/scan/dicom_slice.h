@@ -30,6 +30,7 @@ struct DicomPixels {
   unsigned stored = 16;
   unsigned high = 15;
   bool is_signed = false;
+  bool states_sign = true;     ///< else PixelRepresentation is absent
   bool holds_overlay = false;  ///< bits outside of the stored ones are an overlay's (until DICOM 2004)
 };
 
