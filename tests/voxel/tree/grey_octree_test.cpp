@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/tree/grey_octree.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <stdexcept>
 #include <tbb/global_control.h>
 
+#include "voxel/solid/combine.h"
 #include "voxel/tree/build.h"
 #include "voxel/tree/grey_node.h"
 #include "voxel/tree/octree_node.h"
@@ -166,14 +168,33 @@ TEST(GreyNode, BeyondTheScanIsEmptyInAWindowThatHoldsTheBackground) {
     EXPECT_NE(GreyNode::root(grey, Window16{-1024, -1024}).child(child).status(), Status::Full);
 }
 
-TEST(GreyOctree, RefusesFloatsBeyondSixteenBits) {
+TEST(GreyOctree, HoldsSamplesThatAreNoWholeNumbersOrBeyondSixteenBitsInSteps) {
   const Universe universe{4, glm::dmat4(1.0)};
   Scene scene;
   scene.lattice = universe.lattice();
-  voxel::FloatSamples samples(4096, 0.0F);
-  samples[100] = 40000.0F;
-  scene.samples = samples;
-  EXPECT_THROW(grey_octree_of(universe, scene), std::invalid_argument);
+  for (const double most : {1e-4, 0.95, 5.0, 3071.5, 45000.0, 1e9}) {
+    voxel::FloatSamples samples(4096);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      samples[i] = static_cast<float>(most * (static_cast<double>(i) / 4095.0 - 0.2) / 0.8);
+    scene.samples = samples;
+    const GreyOctree grey = grey_octree_of(universe, scene);
+    int exponent = 0;
+    EXPECT_EQ(std::frexp(grey.step(), &exponent), 0.5) << "a power of two";
+    EXPECT_LE(grey.step(), most / 16000.0);
+    for (int i = 0; i < 4096; i += 7)
+      ASSERT_NEAR(grey.sample({i % 16, i / 16 % 16, i / 256}) * grey.step(),
+                  static_cast<double>(samples[static_cast<std::size_t>(i)]), 0.5 * grey.step())
+          << most;
+    for (const double share : {0.25, 0.5, 0.7}) {
+      const double low = share * most;
+      const auto in = std::count_if(samples.begin(), samples.end(),
+                                    [&](float sample) { return static_cast<double>(sample) >= low; });
+      const Octree window = combine(universe, Expression(window_of(grey, low)));
+      EXPECT_NEAR(static_cast<double>(window.voxel_count()), static_cast<double>(in), 1.0) << low;
+    }
+  }
+  scene.samples = voxel::FloatSamples(4096, 40.0F);
+  EXPECT_EQ(grey_octree_of(universe, scene).step(), 1.0) << "whole numbers stay as they are";
 }
 
 TEST(GreyOctree, TakesLittleMoreMemoryThanItsSamples) {

@@ -134,6 +134,22 @@ TEST(OctreeFile, HoldsTheScanOfAGreyOctreeWhereSamplesDoNotTellIt) {
   EXPECT_NE(damage(spoiled).find("SCAN"), std::string::npos);
 }
 
+TEST(OctreeFile, HoldsTheStepOfSamplesThatAreNoWholeNumbers) {
+  Universe universe;
+  universe.depth = 4;
+  Scene scene;
+  scene.lattice = universe.lattice();
+  FloatSamples samples(4096);
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<float>(i) / 4096.0F;
+  scene.samples = samples;
+  const GreyOctree grey = grey_octree_of(universe, scene);
+  ASSERT_LT(grey.step(), 1e-4);
+  const OctreeFile file = decoded(octree_file_bytes({grey, "", ""}));
+  EXPECT_EQ(std::get<GreyOctree>(file.tree).step(), grey.step());
+  EXPECT_TRUE(same_samples(std::get<GreyOctree>(file.tree), grey));
+  EXPECT_TRUE(std::get<GreyOctree>(file.tree).scan() == grey.scan());
+}
+
 TEST(OctreeFile, OfVersionOneHasTheBoxOfItsSamplesAsItsScan) {
   const Universe universe = universe_of(5);
   Scene scene;
