@@ -25,7 +25,7 @@ GreyOctree grey_ball() {
       }));
 }
 
-DrawnObject window_of(const GreyOctree& grey, double low) {
+DrawnObject drawn_from(const GreyOctree& grey, double low) {
   DrawnObject object{"window", combine(grey.universe(), Expression(Window{grey, low}))};
   object.grey = grey;
   object.threshold = low;
@@ -65,7 +65,7 @@ std::string change(std::mt19937& random, const GreyOctree& grey, std::vector<Dra
       return "move";
     case 3: {
       const float opacity = objects[0].opacity;
-      objects[0] = window_of(grey, 50.0 * below(6));
+      objects[0] = drawn_from(grey, 50.0 * below(6));
       objects[0].opacity = opacity;
       return "window";
     }
@@ -95,7 +95,7 @@ TEST(Renderer, FramesThatReuseAreTheSameBitsAsFramesFromNothing) {
   std::uint64_t kept = 0, drawn = 0, same = 0, different = 0;
   for (unsigned seed = 0; seed < 6; ++seed) {
     std::mt19937 random(seed);
-    std::vector<DrawnObject> objects{window_of(grey, 0.0),
+    std::vector<DrawnObject> objects{drawn_from(grey, 0.0),
                                      {"piece", ball({0, -15, 0}, 8.0), {0.8f, 0.4f, 0.1f}},
                                      {"other", ball({15, 0, 5}, 7.0), {0.1f, 0.4f, 0.8f}}};
     RenderOptions options = options_for("anterior");
@@ -149,7 +149,7 @@ TEST(Renderer, ColoursAreShadedAnewOverLayersThatStay) {
 }
 
 TEST(Renderer, ShowsWhatRenderShows) {
-  const std::vector<DrawnObject> objects{window_of(grey_ball(), 0.0),
+  const std::vector<DrawnObject> objects{drawn_from(grey_ball(), 0.0),
                                          {"piece", ball({4, -15, 3}, 8.0), {0.8f, 0.4f, 0.1f}}};
   for (const char* view : {"40,25", "-100,-30"})
     expect_same(Renderer().frame(objects, options_for(view)), render(objects, options_for(view)), view);
