@@ -155,11 +155,34 @@ Recommended of_voxels_alone(const AnswerBench& bench, const Object& object, cons
   return found;
 }
 
+/// The motion of an object since it was made, LPS to LPS.
+glm::dmat4 motion_of(const Objects& objects, const Object& object) {
+  return object.moved ? object.moved->motion * motion_of(objects, objects.at(object.moved->object))
+                      : glm::dmat4(1.0);
+}
+
+/// A mesh that comes from no scan is what it is, but for the rounding of its points.
+Recommended of_mesh_alone(const brep::Solid& mesh) {
+  constexpr double rounding = 1e-6;  // points of single precision, as files have them
+  const brep::Size& size = mesh.size();
+  const auto exact = [](double value) {
+    return verify::Interval{
+        value, rounding * value, {{"points", "1e-6 of it, by rounding", rounding * value}}};
+  };
+  Recommended found;
+  found.intervals.volume_mm3 = exact(size.volume_mm3);
+  found.intervals.area_mm2 = exact(size.area_mm2);
+  found.intervals.triangles.area_mm2 = size.area_mm2;
+  return found;
+}
+
 /// As intervals_of(), of the object's own surface.
 Recommended own_intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
   const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
-  if (!object.mesh.within || object.bound.spacing_mm == glm::dvec3(0.0))
-    return of_voxels_alone(bench, object, digitised);
+  if (!object.mesh.within) return of_voxels_alone(bench, object, digitised);
+  if (object.bound.spacing_mm == glm::dvec3(0.0) && !object.mesh.within->empty())
+    return of_mesh_alone(*object.mesh.within);
+  if (object.bound.spacing_mm == glm::dvec3(0.0)) return of_voxels_alone(bench, object, digitised);
   if (object.mesh.within->empty())
     return {verify::nothing_found(glm::max(object.bound.spacing_mm, voxel_mm))};
   std::vector<SurfaceSamples> sources;
@@ -185,6 +208,7 @@ Recommended own_intervals_of(const AnswerBench& bench, const Object& object, con
   if (sources.empty()) {
     SurfaceSamples samples;
     for (int axis = 0; axis < 3; ++axis) samples.lps_from_scan[axis] *= object.bound.spacing_mm[axis];
+    samples.moved_from_still = motion_of(bench.objects, object);
     samples.window_shift_mm = digitised.shift_mm;
     sources.push_back(std::move(samples));
   }

@@ -119,17 +119,20 @@ void add_unmeasured(const MadeOf& from, Object& made) {
                                      [&](const ScanRecord& scan) { return scan.name == name; });
     const voxel::Scene& scene = from.scan(name).scene();
     const bool has_nonfinite = !scene.padding && std::holds_alternative<voxel::FloatSamples>(scene.samples);
-    // Padding that a scanner states lies around what it measured.
-    if (!has_nonfinite &&
-        unmeasured_finding(record == from.records.end() ? scene.audit : record->audit) == nullptr)
-      continue;
+    const bool are_nonfinite =
+        has_nonfinite ||
+        unmeasured_finding(record == from.records.end() ? scene.audit : record->audit) != nullptr;
+    if (!are_nonfinite && !scene.padding) continue;
     const std::uint64_t count = unmeasured_samples(scene);
-    if (count == 0 && has_nonfinite) continue;
+    if (count == 0 && (has_nonfinite || !are_nonfinite)) continue;
     std::uint64_t enclosed = 0;
     for (const Shown& window : made.bound.windows)
       if (window.scan == name) enclosed = std::max(enclosed, enclosed_samples(scene, window));
-    std::string reason = (count == 0 ? "Some" : std::to_string(count)) + " samples of '" + name +
-                         "' are no finite numbers, and both kernels leave out what lies there";
+    // Padding that a scanner states lies around what it measured.
+    if (!are_nonfinite && enclosed == 0) continue;
+    std::string reason = (count == 0 ? "Some" : std::to_string(count)) + " samples of '" + name + "' are " +
+                         (are_nonfinite ? "no finite numbers" : "padding") +
+                         ", and both kernels leave out what lies there";
     if (enclosed > 0)
       reason += ": " + std::to_string(enclosed) + " of them lie between samples of this object, where " +
                 three_figures(static_cast<double>(enclosed) * scene.lattice.voxel_mm3()) +

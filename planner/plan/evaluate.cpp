@@ -39,6 +39,9 @@
 namespace octotomy::planner {
 namespace {
 
+/// The lineage of voxels that are those of the mesh.
+constexpr const char* voxels_of_mesh = "the mesh kernel's answer, voxelised";
+
 brep::Prism prism_of(const voxel::Box& box) {
   const glm::dvec3 a = box.low_mm, b = box.high_mm;
   return {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {{{a.x, a.z}, {b.x, a.z}, {b.x, b.z}, {a.x, b.z}}}, a.y, b.y};
@@ -347,6 +350,9 @@ class Evaluator {
     if (with_mesh_.contains(step.id)) make_mesh(step, value, object);
     if (!operation.voxel) voxelise(object);
     operation.bound(value, {result_.universe, result_.objects, scan_}, object);
+    if (object.moved && object.mesh.whole &&
+        result_.object(object.moved->object).voxel.lineage == voxels_of_mesh)
+      digitise(object);
     object.bound.shift_mm += object.mesh.shift_mm;
     take_within(object);
     return object;
@@ -463,12 +469,18 @@ class Evaluator {
     if (!object.mesh.whole)
       throw std::runtime_error(object.findings.empty() ? "there is no mesh to make voxels of"
                                                        : object.findings.front());
+    digitise(object);
+    object.witness = verify::witness_of_surface(*object.mesh.whole);
+    object.findings.emplace_back(mesh_alone);
+  }
+
+  /// The mesh's voxels. Of a mesh that is moved they are made anew: voxels that are moved are off by up to a
+  /// half, and the mesh is not.
+  void digitise(Object& object) {
     const Stopwatch watch(result_.timings, "voxelise");
     object.voxel.octree = convert::voxelise(result_.universe, object.mesh.whole->linked());
     object.voxel.symbol = voxel::Expression(object.voxel.octree);
-    object.voxel.lineage = "the mesh kernel's answer, voxelised";
-    object.witness = verify::witness_of_surface(*object.mesh.whole);
-    object.findings.emplace_back(mesh_alone);
+    object.voxel.lineage = voxels_of_mesh;
   }
 
   /// The mesh kernel's answer; a finding where it has none.

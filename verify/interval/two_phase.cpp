@@ -56,7 +56,7 @@ class Reading {
 
   /// False: the solid and what is about it are not of two densities.
   bool run(PhaseEvidence& found) {
-    if (scan_.padding || glm::any(glm::lessThan(grid_.dims, glm::ivec3(8)))) return false;
+    if (scan_.padding || glm::any(glm::lessThan(grid_.dims, glm::ivec3(8))) || is_sheared()) return false;
     if (grid_.size() > most_samples || !look_about()) return false;
     // Gaps between near walls have a density of their own too: the scan as one of two densities comes last.
     const bool may_be_of_two = is_of_two_;
@@ -122,8 +122,7 @@ class Reading {
       if (i == 2) found.highest = static_cast<double>(shares.highest);
       if (i > 0) continue;
       found.sum = shares.near;
-      const glm::dvec3& spacing_mm = grid_.spacing_mm;
-      found.counted_mm3 = static_cast<double>(shares.above) * spacing_mm.x * spacing_mm.y * spacing_mm.z;
+      found.counted_mm3 = static_cast<double>(shares.above) * sample_mm3();
       found.band = shares.band_count;
       found.tail = shares.tail;
       found.noise = contrast_ * std::sqrt(away);
@@ -132,10 +131,25 @@ class Reading {
     found.background = background_;
     found.contrast = contrast_;
     found.least_seen = least_seen_ / contrast_;
+    // Blur lowers walls that are thin everywhere. Where samples over the half level are a small part of the
+    // sum and some are hardly lowered, the rest is rather of a third density; beside a core it surely is.
+    const bool is_much_more = found.highest > 0.8 && found.sum * sample_mm3() > 1.6 * found.counted_mm3;
+    if (is_much_more && found.has_core) return false;
     found.is_ambiguous =
-        has_plateau ||
+        has_plateau || is_much_more ||
         (!found.has_core && ((!is_of_two_ && !is_beside_) || has_lower_plateau(at_blur[2], found.highest)));
     return found.highest < 1.25 && found.sum > 0.0;
+  }
+
+  double sample_mm3() const { return grid_.spacing_mm.x * grid_.spacing_mm.y * grid_.spacing_mm.z; }
+
+  /// Whether the scan's axes are not at right angles, as blurs and areas by spacing have them.
+  bool is_sheared() const {
+    const glm::dmat3 axes(scan_.lattice.lps_from_voxel);
+    const auto cosine = [&](int a, int b) {
+      return std::abs(glm::dot(glm::normalize(axes[a]), glm::normalize(axes[b])));
+    };
+    return std::max({cosine(0, 1), cosine(1, 2), cosine(2, 0)}) > 1e-3;
   }
 
   void take(const SampleDensity& level) {

@@ -44,11 +44,12 @@ struct TwoPhase {
 
 /// The solid whose half level is `low`. None where the solid and what is about it are not of two densities:
 /// samples near it differ by more than noise, those deep in it are not as far above `low` as the background
-/// is below, nothing rises above noise, the solid meets the scan's border or a third density, or parts of the
-/// scan were not measured (Scene::padding). Where the solid reaches `low`, the scan may have other densities
-/// away from it. Throws voxel::Stopped. Parallel; same bits on any thread count. Memory: four bytes a sample,
-/// five times. Cost: three blurs of the scan, and six where the first reading of it as two densities fails; a
-/// scan of many densities is left after one look at its samples.
+/// is below, nothing rises above noise, the solid meets the scan's border or a third density, the
+/// scan's axes are not at right angles, or parts of it were not measured (Scene::padding). Where the solid
+/// reaches `low`, the scan may have other densities away from it. Throws voxel::Stopped. Parallel; same bits
+/// on any thread count. Memory: four bytes a sample, five times. Cost: three blurs of the scan, and six where
+/// the first reading of it as two densities fails; a scan of many densities is left after one look at its
+/// samples.
 std::optional<TwoPhase> two_phase(const voxel::Scene& scan, double low, const voxel::Progress& progress = {});
 
 /// Widens a surface's interval to hold the whole of an ambiguous one, by a source "faint".

@@ -4,6 +4,8 @@
 
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/triangles.h"
+#include "planner/plan/answers.h"
+#include "planner/table/json.h"
 #include "tests/brep/shapes.h"
 #include "tests/brep/told.h"
 #include "tests/planner/operation/ball_operation.h"
@@ -73,6 +75,27 @@ TEST(ImportStep, AFileThatIsNotThereIsNamed) {
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("none.stl"), std::string::npos) << error.what();
   }
+}
+
+TEST(ImportStep, AMovedMeshIsVoxelisedAnewAndIsWhatItIs) {
+  const ScratchFolder folder;
+  brep::write_mesh(brep::mesh_of(brep::shapes::box({-5, -5, -5}, {3.3, 3.3, 3.3})), folder / "cube.stl");
+  const Plan plan = ball_plan(folder, R"(
+      {"id": "cube", "do": "import", "path": "cube.stl"},
+      {"id": "turned", "do": "move", "object": "cube", "rotate": {"degrees": 33, "axis": [1, 2, 0.5]}},
+      {"id": "rest", "do": "combine", "expression": "ball - turned"},
+      {"id": "size", "do": "measure", "object": "turned"})");
+  const Evaluation evaluation = evaluate(plan);
+  for (const char* id : {"turned", "rest"}) {
+    const auto& certificate = evaluation.object(id).certificate;
+    ASSERT_TRUE(certificate) << id;
+    EXPECT_NE(certificate->verdict, voxel::Verdict::Fail)
+        << id << testing::PrintToString(certificate->reasons);
+  }
+  const Json size = measurements_json(plan, evaluation).at(0);
+  EXPECT_NEAR(size.at("volume").at("value").get<double>(), 8.3 * 8.3 * 8.3, 0.01);
+  EXPECT_NEAR(size.at("area").at("value").get<double>(), 6.0 * 8.3 * 8.3, 0.01);
+  EXPECT_LT(size.at("volume").at("half_width").get<double>(), 0.01);
 }
 
 }  // namespace

@@ -107,6 +107,23 @@ TEST_F(Caveats, SamplesThatAreNoNumbersAmongAnObjectsOwnAreAHoleInIt) {
   EXPECT_NE(evaluation.object("cap").certificate->verdict, Verdict::Pass);
 }
 
+TEST_F(Caveats, ASliceOfPaddingThroughAnObjectIsAHoleInItAndPaddingBesideItIsNone) {
+  for (const bool is_through : {true, false}) {
+    voxel::Scene scene = tests::ball_scene(20.0);
+    auto& samples = std::get<voxel::Int16Samples>(scene.samples);
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x)
+        for (int z = is_through ? 30 : 0; z < (is_through ? 31 : 3); ++z)
+          samples[static_cast<std::size_t>((z * 64 + y) * 64 + x)] = -3024;
+    scene.padding = -3024.0;
+    voxel::write_scene(scene, folder_ / "ball.nrrd");
+    const Evaluation evaluation = evaluated();
+    const Object& ball = evaluation.object("ball");
+    EXPECT_EQ(ball.certificate->verdict, is_through ? Verdict::Fail : Verdict::Pass) << reasons(ball);
+    EXPECT_EQ(reasons(ball).find("are padding") != std::string::npos, is_through) << reasons(ball);
+  }
+}
+
 /// Copies of samples, too, have what no scanner measured.
 TEST_F(Caveats, SamplesThatAreNoNumbersAreKnownInScansThatStepsMake) {
   write_without_numbers({{2, 2, 2}});

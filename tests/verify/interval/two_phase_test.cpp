@@ -99,6 +99,31 @@ TEST(TwoPhase, HoldsThinSolidsInTissueWithAirAboutIt) {
   }
 }
 
+TEST(TwoPhase, LeavesShearedScansAndNeighboursOfAThirdDensityToTheSurface) {
+  Chance chance(8);
+  DrawnScan how;
+  how.blur_voxels = 0.6;
+  const DrawnSolid solid = plate(6.0);
+  voxel::Scene scan = scan_of(solid, how, chance);
+  ASSERT_TRUE(two_phase(scan, how.half()));
+  voxel::Scene sheared = scan;
+  sheared.lattice.lps_from_voxel[2].y += 0.4;
+  EXPECT_FALSE(two_phase(sheared, how.half()));
+  // A block of a fifth of the density that touches the plate from below.
+  auto& samples = std::get<voxel::Int16Samples>(scan.samples);
+  const glm::ivec3 dims = scan.lattice.dims;
+  std::size_t i = 0;
+  for (int z = 0; z < dims.z; ++z)
+    for (int y = 0; y < dims.y; ++y)
+      for (int x = 0; x < dims.x; ++x, ++i) {
+        const glm::dvec3 p = scan.lattice.lps_mm({x, y, z});
+        if (std::abs(p.x) < 7.0 && std::abs(p.y) < 8.0 && p.z < -3.0 && p.z > -8.0)
+          samples[i] = static_cast<std::int16_t>(std::max<int>(samples[i], 200));
+      }
+  const auto beside = two_phase(scan, how.half());
+  EXPECT_TRUE(!beside || beside->evidence.is_ambiguous);
+}
+
 // Blurred walls that nowhere reach the bound look like one solid of a lower density.
 TEST(TwoPhase, NothingFoundReachesToThinWallsThatAreEverywhere) {
   Chance chance(7);
