@@ -113,8 +113,6 @@ std::vector<std::string> findings_of_slices(const Mask& mask, const DrawnSlices&
 }
 
 void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
-  for (const voxel::Region& region : mask_of(mask).regions)
-    for (std::string& finding : findings_of(region)) made.findings.push_back(std::move(finding));
   if (!mask.regions.empty()) made.symbol = voxel::Expression(mask_of(mask));
   if (const auto turned = held(mask, bench.objects); turned && made.symbol)
     made.symbol = moved(*made.symbol, *turned);

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "convert/voxel/voxelise.h"
 #include "planner/file/mesh_file.h"
 #include "planner/measure/result_json.h"
 #include "planner/operation/fit_rows.h"
@@ -114,7 +115,15 @@ std::string definition(const Mirror& mirror, const Objects&) {
 }
 
 void voxels(const Mirror& mirror, const VoxelBench& bench, VoxelSide& made) {
-  made.symbol = reflected(*bench.object(mirror.object.name).symbol, reflection_of(mirror));
+  const Object& still = bench.objects.at(mirror.object.name);
+  if (still.voxel.lineage == voxels_of_mesh && still.mesh.whole) {
+    made.octree =
+        convert::voxelise(bench.universe, brep::mirrored(*still.mesh.whole, plane_of(mirror)).linked());
+    made.symbol = voxel::Expression(made.octree);
+    made.lineage = voxels_of_mesh;
+    return;
+  }
+  made.symbol = reflected(*still.voxel.symbol, reflection_of(mirror));
   made.octree = bench.combined(*made.symbol);
   made.lineage = "the object's own definition under a reflection, windows on interpolated samples";
 }

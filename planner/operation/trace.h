@@ -12,6 +12,10 @@
 // of masks, and the samples that show its surface.
 namespace octotomy::planner {
 
+/// The lineage of voxels that are those of the object's mesh. Where such an object is moved or mirrored they
+/// are made anew: voxels that are moved are off by up to a half, and the mesh is not.
+inline constexpr const char* voxels_of_mesh = "the mesh kernel's answer, voxelised";
+
 /// Whether every voxel's centre within the scan is one of its samples, but for rounding.
 bool on_samples(const voxel::Lattice& scan, const voxel::Lattice& universe);
 

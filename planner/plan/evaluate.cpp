@@ -39,9 +39,6 @@
 namespace octotomy::planner {
 namespace {
 
-/// The lineage of voxels that are those of the mesh.
-constexpr const char* voxels_of_mesh = "the mesh kernel's answer, voxelised";
-
 brep::Prism prism_of(const voxel::Box& box) {
   const glm::dvec3 a = box.low_mm, b = box.high_mm;
   return {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {{{a.x, a.z}, {b.x, a.z}, {b.x, b.z}, {a.x, b.z}}}, a.y, b.y};
@@ -474,8 +471,6 @@ class Evaluator {
     object.findings.emplace_back(mesh_alone);
   }
 
-  /// The mesh's voxels. Of a mesh that is moved they are made anew: voxels that are moved are off by up to a
-  /// half, and the mesh is not.
   void digitise(Object& object) {
     const Stopwatch watch(result_.timings, "voxelise");
     object.voxel.octree = convert::voxelise(result_.universe, object.mesh.whole->linked());

@@ -83,10 +83,11 @@ TEST(ImportStep, AMovedMeshIsVoxelisedAnewAndIsWhatItIs) {
   const Plan plan = ball_plan(folder, R"(
       {"id": "cube", "do": "import", "path": "cube.stl"},
       {"id": "turned", "do": "move", "object": "cube", "rotate": {"degrees": 33, "axis": [1, 2, 0.5]}},
+      {"id": "mirrored", "do": "mirror", "object": "cube", "normal": [1, 0.2, 0.3]},
       {"id": "rest", "do": "combine", "expression": "ball - turned"},
       {"id": "size", "do": "measure", "object": "turned"})");
   const Evaluation evaluation = evaluate(plan);
-  for (const char* id : {"turned", "rest"}) {
+  for (const char* id : {"turned", "mirrored", "rest"}) {
     const auto& certificate = evaluation.object(id).certificate;
     ASSERT_TRUE(certificate) << id;
     EXPECT_NE(certificate->verdict, voxel::Verdict::Fail)

@@ -329,9 +329,9 @@ TEST(OctreeFile, ThatIsNoneSaysSo) {
   EXPECT_THROW(read_octree(scratch / "absent.octree"), std::runtime_error);
   EXPECT_THROW(read_octree(scratch.path()), std::runtime_error);
   Bytes later = small_files()[0];
-  later[8] = 3;
+  later[8] = 4;
   forge(later);
-  EXPECT_NE(damage(later).find("version 3"), std::string::npos);
+  EXPECT_NE(damage(later).find("version 4"), std::string::npos);
 }
 
 TEST(OctreeFile, ThatCannotBeWrittenLeavesWhatWasThere) {
