@@ -73,6 +73,37 @@ TEST_F(MeasureStep, VoxelsThatPassOverAnImportedPlateSayHowMuchTheyMiss) {
       << named(all, "touch");
 }
 
+TEST(FloatScans, AMapOfSharesIsCutAtItsOwnValuesInBothKernels) {
+  const ScratchFolder folder;
+  voxel::Scene scene;
+  scene.lattice = voxel::axis_aligned_lattice({24, 24, 24}, glm::dvec3(1.0), glm::dvec3(0.0));
+  voxel::FloatSamples samples;
+  const auto share = [](const glm::ivec3& v) {
+    const glm::ivec3 off = glm::abs(2 * v - 23);
+    const int most = std::max({off.x, off.y, off.z});
+    return most < 4 ? 0.95F : most < 8 ? 0.7F : most < 12 ? 0.3F : 0.0F;
+  };
+  for (int z = 0; z < 24; ++z)
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 24; ++x) samples.push_back(share({x, y, z}));
+  scene.samples = std::move(samples);
+  voxel::write_scene(scene, folder / "map.nrrd");
+  const Evaluation evaluation = evaluate(parse_plan(
+      R"({"octotomy_plan": 1, "name": "map", "scans": {"ct": {"path": "map.nrrd"}}, "steps": [
+      {"id": "some", "do": "window", "scan": "ct", "low": 0.3},
+      {"id": "most", "do": "window", "scan": "ct", "low": 0.7},
+      {"id": "all", "do": "window", "scan": "ct", "low": 0.9},
+      {"id": "between", "do": "window", "scan": "ct", "low": 0.25, "high": 0.5}]})",
+      folder.path()));
+  for (const auto& [id, voxels] : {std::pair("some", 1728U), std::pair("most", 512U), std::pair("all", 64U),
+                                   std::pair("between", 1728U - 512U)}) {
+    const Object& object = evaluation.object(id);
+    EXPECT_EQ(object.voxel.measures.voxel_count, voxels) << id;
+    EXPECT_NE(object.certificate->verdict, voxel::Verdict::Fail)
+        << id << testing::PrintToString(object.certificate->reasons);
+  }
+}
+
 /// A scan of 1 x 1 x 0.1 mm with a plate of two samples between the planes of the universe's voxel centres,
 /// and perhaps a block beside it.
 Plan plan_of_thin_scan(const ScratchFolder& folder, bool has_block) {
