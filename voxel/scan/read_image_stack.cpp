@@ -143,6 +143,7 @@ struct StatedPicture {
   std::string further_axis;  ///< "7 times"
   std::string calibration;   ///< of grey values, as ImageJ states it: "-1024 + 1 g, HU"
   bool has_origin = false;
+  double images = 1.0;  ///< in the file
 };
 StatedPicture stated_by(const StoredImage& image) {
   const std::string& text = image.description;
@@ -165,6 +166,7 @@ StatedPicture stated_by(const StoredImage& image) {
       if (image.pixels_per_unit > 0.0) stated.pixel_mm = *mm / image.pixels_per_unit;
       if (const auto spacing = number_behind(text, "\nspacing=")) stated.slice_mm = *mm * *spacing;
     }
+    stated.images = number_behind(text, "\nimages=").value_or(1.0);
     add_axis("\nframes=", "times");
     add_axis("\nchannels=", "channels");
     const auto start = number_behind(text, "\nc0="), slope = number_behind(text, "\nc1=");
@@ -207,6 +209,13 @@ class PictureAudit {
       scene.audit.push_back({check, Verdict::Warn, std::move(text)});
     };
     const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
+    if (first_.images > static_cast<double>(count_))
+      scene.audit.push_back(
+          {"picture_count", Verdict::Fail,
+           print(
+               "the file states %g images and %zu were found: ImageJ writes stacks over 4 GB as one picture "
+               "with the others behind it; save it as NIfTI or NRRD, or a picture a slice",
+               first_.images, count_)});
     if (first_.pixel_mm && !is_near(*first_.pixel_mm, spacing_mm.x))
       warn("picture_spacing",
            print("the pictures state pixels of %.6g mm, and %.6g mm is taken as --spacing gives it",

@@ -156,7 +156,7 @@ std::map<std::string, std::string> lines_of_picture(const std::string& descripti
   EXPECT_TRUE(out->write_image(OIIO::TypeDesc::INT16, page<std::int16_t>(0, 0).data()) && out->close());
   std::map<std::string, std::string> found;
   for (const Finding& line : read_scene(folder / "a.tif", spaced()).audit)
-    if (line.verdict == Verdict::Warn) found[line.check] += line.detail;
+    if (line.verdict != Verdict::Pass) found[line.check] += line.detail;
   return found;
 }
 
@@ -181,6 +181,10 @@ TEST(ReadImageStack, HoldsWhatPicturesStateAgainstHowTheyAreRead) {
             std::string::npos);
   EXPECT_FALSE(lines_of_picture(image_j + "c0=0\nc1=1\n", 0.0f).contains("picture_values"));
   EXPECT_TRUE(lines_of_picture(image_j + "xorigin=12\n", 0.0f).contains("picture_origin"));
+  EXPECT_FALSE(lines_of_picture(image_j, 0.0f).contains("picture_count"));
+  EXPECT_NE(
+      lines_of_picture("ImageJ=1.53t\nimages=8\n", 0.0f)["picture_count"].find("8 images and 1 were found"),
+      std::string::npos);
 }
 
 TEST(ReadImageStack, WarnsOfNumbersThatTheNamesSkip) {
