@@ -59,8 +59,9 @@ std::int16_t rounded(double value) {
 
 class Sampler {
  public:
-  Sampler(std::vector<Source> sources, const GreyResult& options)
-      : sources_(std::move(sources)), options_(options) {}
+  // `filled` is what no source fills, as samples count.
+  Sampler(std::vector<Source> sources, const GreyResult& options, std::int16_t filled)
+      : sources_(std::move(sources)), options_(options), filled_(filled) {}
 
   // The sample of a voxel that the expression holds.
   std::int16_t operator()(const glm::ivec3& voxel) const {
@@ -72,7 +73,7 @@ class Sampler {
       if (source.positive && holds) return rounded(value);
       if (!source.positive && !holds && std::isnan(complement)) complement = value;
     }
-    return std::isnan(complement) ? options_.filled : rounded(complement);
+    return std::isnan(complement) ? filled_ : rounded(complement);
   }
 
  private:
@@ -94,6 +95,7 @@ class Sampler {
 
   std::vector<Source> sources_;
   const GreyResult& options_;
+  std::int16_t filled_;
 };
 
 // Leaf words of one block of height 2.
@@ -130,17 +132,18 @@ GreyOctree combine_grey(const Universe& universe, const Expression& expression, 
       throw std::invalid_argument("grey octrees whose samples count in steps of " + std::to_string(step) +
                                   " and " + std::to_string(source.window->grey.step()) +
                                   " cannot be one: make both of whole numbers");
-  const Sampler sample(std::move(sources), options);
+  const std::int16_t background = rounded(options.background / step);
+  const Sampler sample(std::move(sources), options, rounded(options.filled / step));
   const auto fill = [&](std::size_t i, GreyBrick& brick) {
     for (int leaf = 0; leaf < 64; ++leaf) {
       const glm::ivec3 origin = 16 * held[i].block + 4 * child_place(leaf);
       const std::uint64_t word = held[i].words.word(leaf);
       for (int bit = 0; bit < 64; ++bit)
         brick.samples[static_cast<std::size_t>(leaf)][static_cast<std::size_t>(bit)] =
-            (word >> bit) & 1 ? sample(origin + child_place(bit)) : options.background;
+            (word >> bit) & 1 ? sample(origin + child_place(bit)) : background;
     }
   };
-  return grey_octree_of_bricks(universe, options.background, blocks, fill, voxels, step);
+  return grey_octree_of_bricks(universe, background, blocks, fill, voxels, step);
 }
 
 }  // namespace octotomy::voxel

@@ -82,15 +82,16 @@ std::uint64_t GreyOctree::bytes_memory() const {
 double grey_step(const Scene& scene) {
   const auto* samples = std::get_if<FloatSamples>(&scene.samples);
   if (samples == nullptr) return 1.0;
-  bool are_whole = true;
+  bool fit = true;  // whole numbers of 16 bits
   double most = 0.0;
   for (const float sample : *samples) {
     const auto value = static_cast<double>(sample);
     if (!std::isfinite(value) || (scene.padding && value == *scene.padding)) continue;
-    are_whole = are_whole && value == std::floor(value);
+    fit = fit && value == std::floor(value) && value >= std::numeric_limits<std::int16_t>::min() &&
+          value <= std::numeric_limits<std::int16_t>::max();
     most = std::max(most, std::abs(value));
   }
-  if (most == 0.0 || (are_whole && most <= std::numeric_limits<std::int16_t>::max())) return 1.0;
+  if (fit) return 1.0;
   constexpr double most_steps = 32000.0;
   return std::exp2(std::ceil(std::log2(most / most_steps)));
 }

@@ -285,7 +285,7 @@ class March {
     const double slope = glm::length(outward);
     if (!(slope > 0.0)) return light;
     const glm::dvec3 normal = outward / slope;
-    const double surface = std::min(1.0, slope / options_.transfer.surface_per_mm);
+    const double surface = std::min(1.0, slope / options_.transfer.surface_per_mm * grey_.step());
     const double seen = facing(glm::dot(normal, plane_.view.look) > 0.0 ? -normal : normal);
     return light * static_cast<float>(1.0 + surface * (seen - 1.0));
   }

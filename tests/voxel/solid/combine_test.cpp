@@ -384,5 +384,23 @@ TEST(Combine, GivesTheSameTreeOnOneThreadAndOnTwo) {
   EXPECT_TRUE(on(1) == on(2));
 }
 
+TEST(CombineGrey, FilledVoxelsOfSamplesInStepsHaveTheirValueInTheScansUnit) {
+  const Universe universe = unit_universe(4);
+  Scene scene;
+  scene.lattice = universe.lattice();
+  scene.samples = FloatSamples(4096, 9000.5F);
+  const GreyOctree grey = grey_octree_of(universe, scene);
+  ASSERT_NE(grey.step(), 1.0);
+  std::get<FloatSamples>(scene.samples)[0] = 1.0F;
+  const GreyOctree low = grey_octree_of(universe, scene);
+  ASSERT_EQ(low.step(), grey.step());
+  const Expression all = Expression(window_of(low, 5000.0)) | Expression(Octree::full(universe));
+  const GreyOctree made = combine_grey(universe, all);
+  EXPECT_NEAR(made.sample({0, 0, 0}) * made.step(), 3071.0, made.step()) << "filled";
+  EXPECT_NEAR(made.sample({1, 0, 0}) * made.step(), 9000.5, made.step());
+  const GreyOctree other = grey_octree_of_bricks(universe, -1024, {}, [](std::size_t, GreyBrick&) {});
+  EXPECT_THROW(combine_grey(universe, all | Expression(window_of(other, 0.0))), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace octotomy::voxel

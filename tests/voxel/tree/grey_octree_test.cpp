@@ -195,6 +195,8 @@ TEST(GreyOctree, HoldsSamplesThatAreNoWholeNumbersOrBeyondSixteenBitsInSteps) {
   }
   scene.samples = voxel::FloatSamples(4096, 40.0F);
   EXPECT_EQ(grey_octree_of(universe, scene).step(), 1.0) << "whole numbers stay as they are";
+  scene.samples = voxel::FloatSamples(4096, -32768.0F);
+  EXPECT_EQ(grey_octree_of(universe, scene).step(), 1.0) << "down to the least of 16 bits";
 }
 
 TEST(GreyOctree, TakesLittleMoreMemoryThanItsSamples) {
