@@ -155,12 +155,6 @@ Recommended of_voxels_alone(const AnswerBench& bench, const Object& object, cons
   return found;
 }
 
-/// The motion of an object since it was made, LPS to LPS.
-glm::dmat4 motion_of(const Objects& objects, const Object& object) {
-  return object.moved ? object.moved->motion * motion_of(objects, objects.at(object.moved->object))
-                      : glm::dmat4(1.0);
-}
-
 /// A mesh that comes from no scan is what it is, but for the rounding of its points.
 Recommended of_mesh_alone(const brep::Solid& mesh) {
   constexpr double rounding = 1e-6;  // points of single precision, as files have them
@@ -179,10 +173,10 @@ Recommended of_mesh_alone(const brep::Solid& mesh) {
 /// As intervals_of(), of the object's own surface.
 Recommended own_intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
   const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
-  if (!object.mesh.within) return of_voxels_alone(bench, object, digitised);
-  if (object.bound.spacing_mm == glm::dvec3(0.0) && !object.mesh.within->empty())
-    return of_mesh_alone(*object.mesh.within);
-  if (object.bound.spacing_mm == glm::dvec3(0.0)) return of_voxels_alone(bench, object, digitised);
+  const bool is_of_scan = object.bound.spacing_mm != glm::dvec3(0.0);
+  if (!object.mesh.within || (!is_of_scan && object.mesh.within->empty()))
+    return of_voxels_alone(bench, object, digitised);
+  if (!is_of_scan) return of_mesh_alone(*object.mesh.within);
   if (object.mesh.within->empty())
     return {verify::nothing_found(glm::max(object.bound.spacing_mm, voxel_mm))};
   std::vector<SurfaceSamples> sources;
@@ -208,7 +202,6 @@ Recommended own_intervals_of(const AnswerBench& bench, const Object& object, con
   if (sources.empty()) {
     SurfaceSamples samples;
     for (int axis = 0; axis < 3; ++axis) samples.lps_from_scan[axis] *= object.bound.spacing_mm[axis];
-    samples.moved_from_still = motion_of(bench.objects, object);
     samples.window_shift_mm = digitised.shift_mm;
     sources.push_back(std::move(samples));
   }
@@ -249,15 +242,8 @@ Recommended intervals_of(const AnswerBench& bench, const Object& object, const D
 double cut_mm2_of(const AnswerBench& bench, const Object& object) {
   if (object.moved) return cut_mm2_of(bench, bench.objects.at(object.moved->object));
   if (!object.bound.scan_box_mm || !object.mesh.within) return 0.0;
-  std::vector<CutPlane> ends;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double at_mm :
-         {object.bound.scan_box_mm->low_mm[axis], object.bound.scan_box_mm->high_mm[axis]}) {
-      glm::dvec3 normal(0.0);
-      normal[axis] = 1.0;
-      ends.push_back({axis, normal, at_mm});
-    }
-  const glm::dvec3 cut = area_on_planes(object.mesh.within->triangles(), ends);
+  const glm::dvec3 cut = area_on_planes(object.mesh.within->triangles(),
+                                        ends_of(*object.bound.scan_box_mm, glm::dvec3(1.0), glm::dvec3(1.0)));
   return cut.x + cut.y + cut.z;
 }
 

@@ -5,7 +5,6 @@
 
 #include <array>
 
-#include "convert/voxel/voxelise.h"
 #include "planner/file/mesh_file.h"
 #include "planner/measure/result_json.h"
 #include "planner/operation/fit_rows.h"
@@ -116,13 +115,8 @@ std::string definition(const Mirror& mirror, const Objects&) {
 
 void voxels(const Mirror& mirror, const VoxelBench& bench, VoxelSide& made) {
   const Object& still = bench.objects.at(mirror.object.name);
-  if (still.voxel.lineage == voxels_of_mesh && still.mesh.whole) {
-    made.octree =
-        convert::voxelise(bench.universe, brep::mirrored(*still.mesh.whole, plane_of(mirror)).linked());
-    made.symbol = voxel::Expression(made.octree);
-    made.lineage = voxels_of_mesh;
-    return;
-  }
+  if (is_voxelised(still))
+    return voxelise(brep::mirrored(*still.mesh.whole, plane_of(mirror)), bench.universe, made);
   made.symbol = reflected(*still.voxel.symbol, reflection_of(mirror));
   made.octree = bench.combined(*made.symbol);
   made.lineage = "the object's own definition under a reflection, windows on interpolated samples";

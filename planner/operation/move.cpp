@@ -280,6 +280,9 @@ std::optional<glm::dmat4> motion_of(const Action& action, const MarkPlaces& plac
 
 void move_voxels(const std::string& object, const glm::dmat4& moved_from_still, const VoxelBench& bench,
                  VoxelSide& made) {
+  const Object& still = bench.objects.at(object);
+  if (is_voxelised(still))
+    return voxelise(brep::moved(*still.mesh.whole, moved_from_still), bench.universe, made);
   made.symbol = moved(*bench.object(object).symbol, moved_from_still);
   made.octree = bench.combined(*made.symbol);
   made.lineage = "the object's own definition under a rigid motion, windows on interpolated samples";

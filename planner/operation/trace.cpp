@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "convert/voxel/voxelise.h"
 #include "verify/witness/witness.h"
 
 namespace octotomy::planner {
@@ -16,7 +17,29 @@ double on_plane_mm(double reach_mm) {
   return 64.0 * std::numeric_limits<double>::epsilon() * reach_mm;
 }
 
-/// The planes of a scan's ends: there mesh and voxels end up to half a sample apart, not half a voxel.
+std::vector<CutPlane> moved_planes(std::vector<CutPlane> planes, const glm::dmat4& moved_from_still) {
+  for (CutPlane& plane : planes) {
+    const glm::dvec3 point = glm::dvec3(moved_from_still * glm::dvec4(plane.normal * plane.offset_mm, 1.0));
+    plane.normal = glm::dmat3(moved_from_still) * plane.normal;
+    plane.offset_mm = glm::dot(plane.normal, point);
+  }
+  return planes;
+}
+
+constexpr const char* voxelised_lineage = "the mesh kernel's answer, voxelised";
+
+}  // namespace
+
+bool is_voxelised(const Object& object) {
+  return object.voxel.lineage == voxelised_lineage && object.mesh.whole;
+}
+
+void voxelise(const brep::Solid& mesh, const voxel::Universe& universe, VoxelSide& made) {
+  made.octree = convert::voxelise(universe, mesh.linked());
+  made.symbol = voxel::Expression(made.octree);
+  made.lineage = voxelised_lineage;
+}
+
 std::vector<CutPlane> ends_of(const voxel::Box& scan, const glm::dvec3& sample_mm,
                               const glm::dvec3& voxel_mm) {
   std::vector<CutPlane> planes;
@@ -28,17 +51,6 @@ std::vector<CutPlane> ends_of(const voxel::Box& scan, const glm::dvec3& sample_m
     }
   return planes;
 }
-
-std::vector<CutPlane> moved_planes(std::vector<CutPlane> planes, const glm::dmat4& moved_from_still) {
-  for (CutPlane& plane : planes) {
-    const glm::dvec3 point = glm::dvec3(moved_from_still * glm::dvec4(plane.normal * plane.offset_mm, 1.0));
-    plane.normal = glm::dmat3(moved_from_still) * plane.normal;
-    plane.offset_mm = glm::dot(plane.normal, point);
-  }
-  return planes;
-}
-
-}  // namespace
 
 bool on_samples(const voxel::Lattice& scan, const voxel::Lattice& universe) {
   const glm::dvec3 first = scan.voxel(universe.lps_mm(glm::dvec3(0.0)));

@@ -12,9 +12,15 @@
 // of masks, and the samples that show its surface.
 namespace octotomy::planner {
 
-/// The lineage of voxels that are those of the object's mesh. Where such an object is moved or mirrored they
-/// are made anew: voxels that are moved are off by up to a half, and the mesh is not.
-inline constexpr const char* voxels_of_mesh = "the mesh kernel's answer, voxelised";
+/// Whether an object's voxels are those of its mesh. Where such an object is moved or mirrored they are made
+/// anew: voxels that are moved are off by up to a half, and the mesh is not.
+bool is_voxelised(const Object& object);
+/// Makes the voxels of a mesh an object's own.
+void voxelise(const brep::Solid& mesh, const voxel::Universe& universe, VoxelSide& made);
+
+/// The planes of a scan's ends: there mesh and voxels end up to half a sample apart, not half a voxel.
+std::vector<CutPlane> ends_of(const voxel::Box& scan, const glm::dvec3& sample_mm,
+                              const glm::dvec3& voxel_mm);
 
 /// Whether every voxel's centre within the scan is one of its samples, but for rounding.
 bool on_samples(const voxel::Lattice& scan, const voxel::Lattice& universe);

@@ -347,9 +347,6 @@ class Evaluator {
     if (with_mesh_.contains(step.id)) make_mesh(step, value, object);
     if (!operation.voxel) voxelise(object);
     operation.bound(value, {result_.universe, result_.objects, scan_}, object);
-    if (object.moved && object.mesh.whole &&
-        result_.object(object.moved->object).voxel.lineage == voxels_of_mesh)
-      digitise(object);
     object.bound.shift_mm += object.mesh.shift_mm;
     take_within(object);
     return object;
@@ -466,16 +463,10 @@ class Evaluator {
     if (!object.mesh.whole)
       throw std::runtime_error(object.findings.empty() ? "there is no mesh to make voxels of"
                                                        : object.findings.front());
-    digitise(object);
+    const Stopwatch watch(result_.timings, "voxelise");
+    planner::voxelise(*object.mesh.whole, result_.universe, object.voxel);
     object.witness = verify::witness_of_surface(*object.mesh.whole);
     object.findings.emplace_back(mesh_alone);
-  }
-
-  void digitise(Object& object) {
-    const Stopwatch watch(result_.timings, "voxelise");
-    object.voxel.octree = convert::voxelise(result_.universe, object.mesh.whole->linked());
-    object.voxel.symbol = voxel::Expression(object.voxel.octree);
-    object.voxel.lineage = voxels_of_mesh;
   }
 
   /// The mesh kernel's answer; a finding where it has none.
