@@ -36,10 +36,14 @@ glm::dvec3 on_plane(const voxel::View& view, const glm::dvec2& p, double positio
   return p.x * view.right + p.y * view.up + position_mm * view.look;
 }
 
+/// A coordinate to a hundredth of a millimetre.
+std::string hundredths(double mm) {
+  return plain(std::round(100.0 * mm) / 100.0 + 0.0);
+}
+
 std::string place(const voxel::View& view, const glm::dvec2& p, double position_mm) {
   const glm::dvec3 at = on_plane(view, p, position_mm);
-  const auto number = [](double value) { return plain(std::round(100.0 * value) / 100.0 + 0.0); };
-  return "near (" + number(at.x) + ", " + number(at.y) + ", " + number(at.z) + ") mm";
+  return "near (" + hundredths(at.x) + ", " + hundredths(at.y) + ", " + hundredths(at.z) + ") mm";
 }
 
 /// Takes contours that are drawn again in their plane once: by the even-odd rule they would delete each
@@ -104,8 +108,7 @@ void add_contour_findings(voxel::SliceMask& mask, const std::string& where,
 std::vector<std::string> findings_of(const voxel::Region& region) {
   const auto& polygons = region.polygons_mm;
   const auto place_of = [](const glm::dvec2& p) {
-    const auto number = [](double value) { return plain(std::round(100.0 * value) / 100.0 + 0.0); };
-    return "[" + number(p.x) + ", " + number(p.y) + "] mm of the view";
+    return "[" + hundredths(p.x) + ", " + hundredths(p.y) + "] mm of the view";
   };
   const auto count_of = [](std::size_t count) {
     return std::to_string(count) + (count == 1 ? " polygon" : " polygons");
@@ -118,7 +121,8 @@ std::vector<std::string> findings_of(const voxel::Region& region) {
   const voxel::CrossingPolygons crossing = voxel::crossing_polygons(polygons, off_plane_mm());
   if (!crossing.all.empty())
     findings.push_back(count_of(crossing.all.size()) +
-                       " cross another or themselves, so that parts enclosed twice are left out, first at " +
+                       (crossing.all.size() == 1 ? " crosses itself" : " cross another or themselves") +
+                       ", so that parts enclosed twice are left out, first at " +
                        place_of(crossing.all.front().at_mm) +
                        ": join them where the parts belong to the region");
   return findings;

@@ -84,22 +84,13 @@ glm::dmat3 pixel_from_user(const SvgPicture& picture, const glm::ivec2& size_px)
 
 /// The number of polygons whose first point lies within an odd number of others.
 std::size_t holes_among(const std::vector<Polygon>& polygons) {
-  const auto encloses = [](const Polygon& polygon, const glm::dvec2& p) {
-    bool inside = false;
-    for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++) {
-      const glm::dvec2 &a = polygon[last], &b = polygon[i];
-      if ((a.y <= p.y) != (b.y <= p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
-        inside = !inside;
-    }
-    return inside;
-  };
-  return static_cast<std::size_t>(std::count_if(polygons.begin(), polygons.end(), [&](const Polygon& inner) {
-    return std::count_if(
-               polygons.begin(), polygons.end(),
-               [&](const Polygon& outer) { return &outer != &inner && encloses(outer, inner.front()); }) %
-               2 ==
-           1;
-  }));
+  std::size_t holes = 0;
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    std::vector<Polygon> others = polygons;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    holes += voxel::contains(others, polygons[i].front()) ? 1 : 0;
+  }
+  return holes;
 }
 
 DrawnRegion of_svg(const std::optional<voxel::View>& view, const fs::path& path) {
@@ -124,7 +115,7 @@ DrawnRegion of_svg(const std::optional<voxel::View>& view, const fs::path& path)
   if (const std::size_t holes = holes_among(made.region.polygons_mm); holes > 0)
     made.findings.push_back(path.filename().string() + ": " + std::to_string(holes) +
                             (holes == 1 ? " outline lies" : " outlines lie") +
-                            " within another: holes, whatever their fill is");
+                            " within another and count as holes, whatever their fill is");
   return made;
 }
 

@@ -73,12 +73,12 @@ std::vector<voxel::Label> labels_or_none(const voxel::Scene& scene) {
   }
 }
 
-/// Samples further than a hundredth from a whole number: no label stores them.
+/// Samples that are no whole number, as label_of() has it.
 std::size_t samples_between_labels(const voxel::Scene& scene) {
   const auto* samples = std::get_if<voxel::FloatSamples>(&scene.samples);
   if (samples == nullptr) return 0;
   return static_cast<std::size_t>(std::count_if(samples->begin(), samples->end(), [](float sample) {
-    return std::isfinite(sample) && std::abs(sample - std::round(sample)) > 0.01F;
+    return std::isfinite(sample) && !voxel::label_of(std::abs(static_cast<double>(sample)));
   }));
 }
 
