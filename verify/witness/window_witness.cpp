@@ -205,6 +205,7 @@ class WindowWitness {
   /// Padding is outside, and the surface closes half way to it from each sample inside: in any way in a cell
   /// that has both, and within `slack` of one. None: no padding is near.
   std::optional<Word> word_at_padding(const Cell& at, const glm::dvec3& u, double slack) const {
+    if (slack == 0.0 && at.low != padding_) return std::nullopt;
     bool is_near = false, any_in = false;
     const auto add = [&](const Cell& near) {
       is_near = is_near || near.low == padding_;

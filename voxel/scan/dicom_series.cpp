@@ -479,8 +479,8 @@ class SeriesAssembler {
            "PixelSpacing is absent; " + stack.first().assumed_spacing + " replaces it");
     if (!stack.first().pixels.states_sign)
       find("pixel_representation", Verdict::Warn,
-           "PixelRepresentation is absent: samples are taken as unsigned; where values below 0 stand beyond "
-           "32767, the attribute should be 1");
+           "PixelRepresentation is absent: samples are taken as unsigned. If samples below 0 show as values "
+           "over 32767, set the attribute to 1");
     return stack;
   }
 
