@@ -301,8 +301,8 @@ class Evaluator {
         {options_.stop, [&](double share) {
            report("octree of " + name + ", " + std::to_string(std::lround(100.0 * share)) + " %", told_);
          }});
-    loaded_.insert_or_assign(
-        name, LoadedScan{std::make_shared<const voxel::Scene>(std::move(scene)), std::move(grey)});
+    const auto shared = std::make_shared<const voxel::Scene>(std::move(scene));
+    loaded_.insert_or_assign(name, LoadedScan{shared, grey.with_scan(shared)});
   }
 
   /// Makes a scan of another one. The universe stays that of the first scan that was read.

@@ -137,9 +137,11 @@ void add_scans(py::module_& module) {
           "The universe of a plan on this scan; by default as fine as the scan, at most 512 voxels a side.")
       .def(
           "grey",
-          [](const Scene& scene, const std::optional<voxel::Universe>& universe) {
-            const voxel::Universe where = universe ? *universe : universe_of(scene, std::nullopt);
-            return without_lock([&](const std::stop_token&) { return voxel::grey_octree_of(where, scene); });
+          [](const std::shared_ptr<Scene>& scene, const std::optional<voxel::Universe>& universe) {
+            const voxel::Universe where = universe ? *universe : universe_of(*scene, std::nullopt);
+            return without_lock([&](const std::stop_token&) {
+              return voxel::grey_octree_of(where, *scene).with_scan(scene);
+            });
           },
           py::arg("universe") = py::none(), "The samples at the voxels of a universe.")
       .def(

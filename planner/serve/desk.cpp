@@ -249,7 +249,8 @@ voxel::GreyOctree Desk::alone(const Snapshot& snapshot, const std::string& scan)
   const std::lock_guard lock(alone_mutex_);
   if (!alone_ || alone_->first != shared)
     alone_.emplace(shared, voxel::grey_octree_of(universe_of(*shared, snapshot.plan->voxel_mm), *shared,
-                                                 grey.background()));
+                                                 grey.background())
+                               .with_scan(shared));
   return alone_->second;
 }
 

@@ -140,7 +140,8 @@ double edge_mm(const Subject& subject) {
 }
 
 voxel::Octree voxel_answer(const Subject& subject, const Making& making) {
-  const voxel::GreyOctree grey = voxel::grey_octree_of(subject.universe, scan_of(subject, making));
+  const auto scan = std::make_shared<const voxel::Scene>(scan_of(subject, making));
+  const voxel::GreyOctree grey = voxel::grey_octree_of(subject.universe, *scan).with_scan(scan);
   const Expression window = voxel::Window{grey, making.low};
   const Expression box =
       voxel::Box{subject.box.low_mm + making.box_shift_mm, subject.box.high_mm + making.box_shift_mm};

@@ -11,8 +11,8 @@
 // likewise to the other side. No triangulation of the cell between its crossings can break this, whatever it
 // does with ambiguous faces; at samples and on edges nothing strays.
 //
-// The voxel kernel's value at p is a weighted mean of at most eight voxels' samples, each f at the voxel's
-// centre, rounded: it is computed here from f itself.
+// The voxel kernel's value is f, rounded at the centres of voxels: it is computed here from the samples
+// again.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -70,7 +70,7 @@ class WindowWitness {
     const glm::dvec3 u = scan_from_lps_(p_mm);
     const double slack = slack_mm / finest_mm_;
     const Word mesh = mesh_word(u, slack);
-    return {needs_voxels(asked) ? voxel_word(universe_from_lps_(p_mm)) : Word{}, mesh,
+    return {needs_voxels(asked) ? voxel_word(universe_from_lps_(p_mm), u) : Word{}, mesh,
             mesh.near && needs_surfaces(asked) ? surfaces(u, slack) : 0};
   }
 
@@ -245,41 +245,44 @@ class WindowWitness {
     return whole >= 2 ? 2 : 1;
   }
 
-  Word voxel_word(const glm::dvec3& q) const {
-    const glm::dvec3 nearest = glm::round(q);
-    // A voxel's own centre has its own sample.
-    const glm::dvec3 at = glm::dvec3(glm::abs(q.x - nearest.x) < 1e-7 ? nearest.x : q.x,
-                                     glm::abs(q.y - nearest.y) < 1e-7 ? nearest.y : q.y,
-                                     glm::abs(q.z - nearest.z) < 1e-7 ? nearest.z : q.z);
-    const glm::dvec3 first = glm::floor(at), t = at - first;
-    if (t == glm::dvec3(0.0)) {
-      const Measured own = measured_at(at);
+  /// At a voxel's centre, the voxel's own sample; elsewhere the scan's samples about the position, those that
+  /// are measured standing for the others as far as the nearest one is measured.
+  Word voxel_word(const glm::dvec3& q, const glm::dvec3& u) const {
+    const glm::dvec3 nearest = glm::round(q), off = glm::abs(q - nearest);
+    if (std::max({off.x, off.y, off.z}) < 1e-7) {
+      const Measured own = measured_at(nearest);
       if (!own.sure) return on_surface;
       return own.value ? word(*own.value, rounded_, rounded_) : certainly_out;
     }
+    const glm::dvec3 first = glm::floor(u), t = u - first;
     double value = 0.0, weights = 0.0;
-    bool unsure = false;
     for (int i = 0; i < 8; ++i) {
       const glm::dvec3 corner(i & 1, (i >> 1) & 1, i >> 2);
       const glm::dvec3 share = glm::mix(1.0 - t, t, corner);
+      const std::optional<double> sample = sample_at(first + corner);
+      if (!sample) continue;
       const double weight = share.x * share.y * share.z;
-      if (weight == 0.0) continue;
-      const Measured measured = measured_at(first + corner);
-      unsure = unsure || !measured.sure;
-      if (!measured.value) continue;
-      value += weight * *measured.value;
+      value += weight * *sample;
       weights += weight;
     }
-    if (weights == 0.0 && !unsure) return certainly_out;
-    // Where some of the voxels have no sample of the scan's, the others stand for them as far as the voxel
-    // that holds the position is the scan's.
-    if (weights < 1.0 - 1e-9 || unsure) {
-      const Measured own = measured_at(glm::floor(at + 0.5));
+    if (weights < 1.0 - 1e-9) {
       const glm::dvec3 halves = glm::abs(t - 0.5);
-      if (unsure || std::min({halves.x, halves.y, halves.z}) < 1e-6) return on_surface;
-      if (!own.value) return certainly_out;
+      if (weights > 1e-9 && std::min({halves.x, halves.y, halves.z}) < 1e-6) return on_surface;
+      if (!sample_at(glm::floor(u + 0.5))) return certainly_out;
     }
     return word(value / weights, rounded_, rounded_);
+  }
+
+  /// A measured sample of the scan; none beyond it and where it is padding.
+  std::optional<double> sample_at(const glm::dvec3& index) const {
+    if (glm::any(glm::lessThan(index, glm::dvec3(0.0))) ||
+        glm::any(glm::greaterThanEqual(index, glm::dvec3(dims_))))
+      return std::nullopt;
+    const auto at = [&](int axis) {
+      return static_cast<std::size_t>(index[axis]) * strides_[static_cast<std::size_t>(axis)];
+    };
+    const auto sample = static_cast<double>(samples_[at(0) + at(1) + at(2)]);
+    return sample == padding_ ? std::nullopt : std::optional(sample);
   }
 
   /// A voxel's sample, none where the scan has none for it, and whether that is sure.

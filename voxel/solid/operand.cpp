@@ -70,7 +70,7 @@ Operand operand_of(const PostfixExpression::Operand& operand, const Universe& ta
       if (operand.still && window.grey.universe() == target)
         if (const std::optional<Window16> bits = window16(window.low, window.high))
           return WindowOperand(window.grey, *bits);
-      return SampledWindowOperand(window, source(window.grey.universe()), resampling.samples);
+      return SampledWindowOperand(window, still_from_target, resampling.samples);
     }
     Operand operator()(const RegionMask& mask) const { return MaskOperand(mask, still_from_target); }
     Operand operator()(const SliceMask& mask) const { return SliceMaskOperand(mask, still_from_target); }

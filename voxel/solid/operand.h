@@ -151,16 +151,13 @@ class HalfOctreeOperand {
   glm::dvec3 reach_{0.0};               ///< of the points from the centre
 };
 
-/// A grey octree's window on another lattice or under a motion: samples are interpolated, then compared.
-/// Under a translation by whole voxels centres have samples of their own, and words are shifted into place.
+/// A grey octree's window on another lattice or under a motion: samples on the scan's own lattice are
+/// interpolated, then compared. Under a translation by whole voxels centres have samples of their own, and
+/// words are shifted into place.
 class SampledWindowOperand {
  public:
-  SampledWindowOperand(const Window& window, const glm::dmat4& source_from_target,
-                       Interpolation interpolation)
-      : window_(&window),
-        source_from_target_(source_from_target),
-        source_offset_(whole_voxel_offset(source_from_target)),
-        interpolation_(interpolation) {}
+  SampledWindowOperand(const Window& window, const glm::dmat4& still_from_target,
+                       Interpolation interpolation);
   static constexpr bool words_are_quick = true;
   Meets meets(const Cube& cube) const;
   bool contains(const glm::dvec3& p_voxel) const;
@@ -169,7 +166,8 @@ class SampledWindowOperand {
  private:
   void interpolated_words(const WantedLeaves& leaves) const;
 
-  const Window* window_;
+  GreyOctree grey_;
+  double low_, high_;
   glm::dmat4 source_from_target_;
   std::optional<glm::ivec3> source_offset_;
   Interpolation interpolation_;

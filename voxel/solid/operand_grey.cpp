@@ -175,50 +175,60 @@ void WindowOperand::words(const WantedLeaves& leaves) const {
   }
 }
 
+SampledWindowOperand::SampledWindowOperand(const Window& window, const glm::dmat4& still_from_target,
+                                           Interpolation interpolation)
+    : grey_(window.grey), low_(window.low), high_(window.high), interpolation_(interpolation) {
+  const auto source_from_target = [&] {
+    return glm::inverse(grey_.universe().lps_from_voxel) * still_from_target;
+  };
+  source_from_target_ = source_from_target();
+  source_offset_ = whole_voxel_offset(source_from_target_);
+  if (source_offset_) return;
+  grey_ = window.grey.on_scan_lattice();
+  source_from_target_ = source_from_target();
+}
+
 Meets SampledWindowOperand::meets(const Cube& cube) const {
-  const MinMax range = range_within(window_->grey, support(source_from_target_, cube, interpolation_));
-  return Meets::of(window_status(value_range(range, interpolation_), window_->low, window_->high));
+  const MinMax range = range_within(grey_, support(source_from_target_, cube, interpolation_));
+  return Meets::of(window_status(value_range(range, interpolation_), low_, high_));
 }
 
 bool SampledWindowOperand::contains(const glm::dvec3& p_voxel) const {
   const double value =
-      value_at(window_->grey, glm::dvec3(source_from_target_ * glm::dvec4(p_voxel, 1.0)), interpolation_);
-  return value >= window_->low && value <= window_->high;
+      value_at(grey_, glm::dvec3(source_from_target_ * glm::dvec4(p_voxel, 1.0)), interpolation_);
+  return value >= low_ && value <= high_;
 }
 
 void SampledWindowOperand::words(const WantedLeaves& leaves) const {
   if (!source_offset_) return interpolated_words(leaves);
-  const std::optional<Window16> window = window16(window_->low, window_->high);
+  const std::optional<Window16> window = window16(low_, high_);
   if (!window) return for_each_wanted(leaves, [](const glm::ivec3&) { return std::uint64_t{0}; });
   const ShiftedLeaves from(leaves.origin + *source_offset_);
   LeafWords region;
-  region.read(window_->grey, *window, from.first, from.last);
+  region.read(grey_, *window, from.first, from.last);
   region.shifted(from.shift, leaves.words);
 }
 
 void SampledWindowOperand::interpolated_words(const WantedLeaves& leaves) const {
-  const GreyOctree& grey = window_->grey;
   NearSamples near;
   for_each_wanted(leaves, [&](const glm::ivec3& origin) -> std::uint64_t {
     const VoxelBox box = support(source_from_target_, {glm::dvec3(origin) + 1.5, 1.5}, interpolation_);
     const glm::ivec3 first = box.low >> 2;
     const glm::ivec3 last = box.high >> 2;
     const bool is_near = glm::all(glm::lessThan(last - first, glm::ivec3(NearSamples::leaves)));
-    if (is_near) {
-      const ValueRange range = value_range(near.choose(grey, first, last), interpolation_);
-      const Status status = window_status(range, window_->low, window_->high);
-      if (status == Status::Empty) return 0;
-      if (status == Status::Full) return all_children;
-      near.fetch(grey.background());
-    }
+    const MinMax samples = is_near ? near.choose(grey_, first, last) : range_within(grey_, box);
+    const Status status = window_status(value_range(samples, interpolation_), low_, high_);
+    if (status == Status::Empty) return 0;
+    if (status == Status::Full) return all_children;
+    if (is_near) near.fetch(grey_.background());
     std::uint64_t word = 0;
     for (int voxel = 0; voxel < 64; ++voxel) {
       const glm::dvec3 p(source_from_target_ * glm::dvec4(glm::dvec3(origin + child_place(voxel)), 1.0));
       // A lattice so coarse that a leaf's surroundings are many is read from the octree itself.
       const std::optional<double> quick =
-          is_near ? near.interpolate(p, interpolation_, grey.background()) : std::nullopt;
-      const double value = quick ? *quick : value_at(grey, p, interpolation_);
-      word |= std::uint64_t{value >= window_->low && value <= window_->high} << voxel;
+          is_near ? near.interpolate(p, interpolation_, grey_.background()) : std::nullopt;
+      const double value = quick ? *quick : value_at(grey_, p, interpolation_);
+      word |= std::uint64_t{value >= low_ && value <= high_} << voxel;
     }
     return word;
   });

@@ -118,9 +118,13 @@ PostfixExpression postfix_of(const Expression& expression, const std::optional<U
     layout.push(number);
   };
   const auto push_scan_of = [&](const Window& window) {
-    const GreyOctree& grey = window.grey;
-    const bool aligned = moved_depth == 0 && target && grey.universe() == *target;
-    if (aligned && !grey.window_meets_background(window.low, window.high)) return;
+    const bool aligned = moved_depth == 0 && target && window.grey.universe() == *target;
+    if (aligned && !window.grey.window_meets_background(window.low, window.high)) return;
+    // The scan of the samples that the window is read from (SampledWindowOperand).
+    const bool on_voxels =
+        target && whole_voxel_offset(glm::inverse(motions.back() * window.grey.universe().lps_from_voxel) *
+                                     target->lps_from_voxel);
+    const GreyOctree& grey = on_voxels ? window.grey : window.grey.on_scan_lattice();
     const Expression::Leaf*& scan = scans[&grey.universe()];
     if (scan == nullptr)
       scan = postfix.scans.emplace_back(std::make_shared<const Expression::Leaf>(grey.scan())).get();

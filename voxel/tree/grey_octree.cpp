@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 #include <vector>
@@ -77,6 +79,37 @@ std::uint64_t GreyOctree::bytes_memory() const {
       storage_->brick_count * sizeof(GreyBrick) + storage_->brick_of_block.size() * sizeof(std::uint32_t);
   for (const Level& level : storage_->levels) bytes += level.ranges.size() * sizeof(MinMax);
   return bytes + octotomy::voxel::bytes_memory(scan());
+}
+
+struct GreyOctree::KeptScan {
+  std::shared_ptr<const Scene> scene;
+  std::once_flag once;
+  std::optional<GreyOctree> grey;
+};
+
+GreyOctree GreyOctree::with_scan(std::shared_ptr<const Scene> scene) const {
+  GreyOctree made = *this;
+  made.kept_.reset();
+  const glm::ivec3 dims = scene->lattice.dims;
+  const bool is_same =
+      whole_voxel_offset(glm::inverse(scene->lattice.lps_from_voxel) * universe().lps_from_voxel).has_value();
+  if (is_same || std::max({dims.x, dims.y, dims.z}) > 1 << Universe::max_depth) return made;
+  made.kept_ = std::make_shared<KeptScan>();
+  made.kept_->scene = std::move(scene);
+  return made;
+}
+
+const GreyOctree& GreyOctree::on_scan_lattice() const {
+  if (kept_ == nullptr) return *this;
+  std::call_once(kept_->once, [&] {
+    const Lattice& lattice = kept_->scene->lattice;
+    Universe own{2, lattice.lps_from_voxel};
+    while (own.side() < std::max({lattice.dims.x, lattice.dims.y, lattice.dims.z})) ++own.depth;
+    GreyOctreeBuild build(own, *kept_->scene, background(), step());
+    build.add(lattice.dims.z);
+    kept_->grey = build.finished();
+  });
+  return *kept_->grey;
 }
 
 double grey_step(const Scene& scene) {

@@ -90,6 +90,14 @@ class GreyOctree {
   std::int16_t sample(const glm::ivec3& voxel) const;
   std::uint64_t bytes_memory() const;
 
+  /// A copy that keeps the scan that it was made of, for on_scan_lattice().
+  GreyOctree with_scan(std::shared_ptr<const Scene> scene) const;
+  /// The same scan's samples on the scan's own lattice. A window under a motion is read from them, because
+  /// voxels that were interpolated already would be interpolated a second time, which loses thin walls. This
+  /// octree itself where the lattices coincide, no scan is kept or the scan is larger than a universe. The
+  /// first call builds it; later ones return the same. Any number of threads may call it.
+  const GreyOctree& on_scan_lattice() const;
+
  private:
   friend class GreyOctreeBuild;
   friend GreyOctree grey_octree_of_bricks(const Universe&, std::int16_t, std::span<const glm::ivec3>,
@@ -124,7 +132,9 @@ class GreyOctree {
     std::size_t brick_count = 0;  ///< of those that blocks have, and brick 0
   };
   explicit GreyOctree(std::shared_ptr<const Storage> storage) : storage_(std::move(storage)) {}
+  struct KeptScan;
   std::shared_ptr<const Storage> storage_;
+  std::shared_ptr<KeptScan> kept_;  ///< none: no scan, or one whose lattice is the universe's
 };
 
 /// What voxels outside of a scan hold by default: below any CT sample.

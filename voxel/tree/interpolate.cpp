@@ -58,6 +58,16 @@ double interpolate(const GreyOctree& grey, const glm::dvec3& p_voxel, Interpolat
 }
 
 double interpolate_scan(const GreyOctree& grey, const glm::dvec3& p_voxel) {
+  const glm::ivec3 low(glm::floor(p_voxel));
+  const auto corner_of = [&](int number) {
+    return low + glm::ivec3(number & 1, number >> 1 & 1, number >> 2);
+  };
+  // A sample of another value than the background's is the scan's.
+  bool any_background = false;
+  for (int number = 0; number < 8 && !any_background; ++number)
+    any_background = grey.sample(corner_of(number)) == grey.background();
+  if (!any_background) return interpolate(grey, p_voxel, Interpolation::Linear);
+
   const int side = grey.universe().side();
   const auto in_scan = [&](const glm::ivec3& voxel) {
     return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) &&
@@ -65,19 +75,18 @@ double interpolate_scan(const GreyOctree& grey, const glm::dvec3& p_voxel) {
   };
   if (!in_scan(glm::ivec3(glm::floor(p_voxel + 0.5)))) return grey.background();
   bool any_beyond = false;
-  const glm::ivec3 low(glm::floor(p_voxel));
   const glm::dvec3 t = p_voxel - glm::dvec3(low);
   double value = 0.0, weights = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::ivec3 by(corner & 1, corner >> 1 & 1, corner >> 2);
-    const glm::dvec3 share = glm::mix(1.0 - t, t, glm::dvec3(by));
+  for (int number = 0; number < 8; ++number) {
+    const glm::ivec3 corner = corner_of(number);
+    const glm::dvec3 share = glm::mix(1.0 - t, t, glm::dvec3(corner - low));
     const double weight = share.x * share.y * share.z;
     if (weight == 0.0) continue;
-    if (!in_scan(low + by)) {
+    if (!in_scan(corner)) {
       any_beyond = true;
       continue;
     }
-    value += weight * grey.sample(low + by);
+    value += weight * grey.sample(corner);
     weights += weight;
   }
   // Else the same bits as everywhere.

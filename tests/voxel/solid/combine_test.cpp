@@ -273,6 +273,57 @@ TEST(Combine, AMovedWindowIsInterpolatedAtTheCentreMovedBack) {
   EXPECT_GT(inside, 10000U);
 }
 
+TEST(Combine, AMovedWindowOfCoarseVoxelsIsInterpolatedOnceFromItsScan) {
+  // Sheets one sample thick among waves; padding behind a slanted face; voxels of twice to four times the
+  // samples.
+  auto scene = std::make_shared<Scene>();
+  scene->lattice = axis_aligned_lattice({71, 58, 44}, {0.5, 0.6, 0.9}, {-17.2, -16.7, -19.1});
+  Int16Samples samples;
+  for (int z = 0; z < 44; ++z)
+    for (int y = 0; y < 58; ++y)
+      for (int x = 0; x < 71; ++x)
+        samples.push_back(static_cast<std::int16_t>(x + y > 110  ? -3000
+                                                    : x % 9 == 4 ? 1000.0
+                                                                 : 300.0 * std::sin(0.2 * y + 0.1 * z)));
+  scene->samples = samples;
+  scene->padding = -3000.0;
+  const Universe universe = universe_around({{-24, -24, -24}, {24, 24, 24}}, 1.9);
+  const GreyOctree coarse = grey_octree_of(universe, *scene, -3000);
+  const GreyOctree grey = coarse.with_scan(scene);
+  Motion motion;
+  motion.degrees = 14;
+  motion.axis = {0.2, -0.5, 1};
+  motion.translate_mm = {1.3, 0.4, -2.1};
+  const glm::dmat4 matrix = moved_from_still(motion);
+  const Octree octree = combine(universe, moved(Window{grey, 400.5, 2000}, matrix));
+  int inside = 0, compared = 0;
+  for (int z = 0; z < universe.side(); ++z)
+    for (int y = 0; y < universe.side(); ++y)
+      for (int x = 0; x < universe.side(); ++x) {
+        const glm::dvec3 p_mm = universe.lattice().lps_mm(glm::dvec3(x, y, z));
+        const glm::dvec3 p = scene->lattice.voxel(glm::dvec3(glm::inverse(matrix) * glm::dvec4(p_mm, 1.0)));
+        const glm::dvec3 last(scene->lattice.dims - 1);
+        if (glm::any(glm::lessThan(p, glm::dvec3(0.0))) || glm::any(glm::greaterThan(p, last))) continue;
+        const double value = interpolate(*scene, p);
+        // Beside padding the measured samples stand for the others.
+        if (value == -3000.0) continue;
+        ASSERT_EQ(octree.contains({x, y, z}), value >= 400.5) << x << ' ' << y << ' ' << z;
+        inside += value >= 400.5;
+        ++compared;
+      }
+  EXPECT_GT(inside, 300);
+  EXPECT_GT(compared, 10 * inside / 2);
+  EXPECT_FALSE(octree == combine(universe, moved(Window{coarse, 400.5, 2000}, matrix)))
+      << "interpolated twice is the same here, so nothing was tested";
+  // Whole voxels shift what stands still.
+  motion = {};
+  motion.translate_mm = {1.9, 0, -3.8};
+  const Octree still = combine(universe, Window{grey, 400.5, 2000});
+  EXPECT_TRUE(combine(universe, moved(Window{grey, 400.5, 2000}, moved_from_still(motion))) ==
+              combine(universe, moved(still, moved_from_still(motion))));
+  EXPECT_TRUE(still == combine(universe, Window{coarse, 400.5, 2000}));
+}
+
 // Air of -1000 in the box 5..24 x 3..19 x 0..27 of voxels; the background is a value of air, too.
 GreyOctree scan_of_air(const Universe& universe) {
   Scene scene;
