@@ -92,6 +92,7 @@ struct Caveat {
   voxel::Verdict verdict = voxel::Verdict::Warn;
   std::string reason;
   bool is_inherited = false;  ///< of an object that it was made of
+  bool is_of_place = false;   ///< of where the object lies: it does not go with a motion
 };
 
 /// What an operation made, in both kernels.
@@ -124,6 +125,14 @@ struct Object {
     nlohmann::ordered_json details = nlohmann::ordered_json::object();
   };
   std::optional<Moved> moved;
+  /// Of an object that is another one moved or mirrored, by one step or by several.
+  struct Image {
+    std::string object;  ///< the one that was neither moved nor mirrored
+    glm::dmat4 image_from_object{1.0};
+    /// Whether all of both lies within the universe: they are equally large then.
+    bool is_whole = false;
+  };
+  std::optional<Image> image;
   std::vector<CutWall> walls;  ///< of the masks that it was made with, where they have a mesh
 };
 
@@ -153,6 +162,8 @@ class Objects {
   std::map<std::string, std::size_t> index_;
 };
 
+/// The object that an image is of; the object itself where it is none.
+const Object& still_of(const Objects& objects, const Object& object);
 /// The motion of all the steps that moved an object since it was made, LPS to LPS.
 glm::dmat4 moved_since_made(const Objects& objects, const std::string& object);
 /// Where a mark lies: a landmark that goes with an object moves along with that object's motions.

@@ -73,6 +73,23 @@ TEST_F(Caveats, APartThatLeavesTheUniverseFailsAndSaysHowMuchLeft) {
       << reasons(evaluation.object("within"));
 }
 
+TEST_F(Caveats, APieceThatIsBackWithinTheUniverseHasLostNothing) {
+  const auto move = [&](const char* id, const char* object, double by_mm) {
+    add({{"id", id}, {"do", "move"}, {"object", object}, {"translate_mm", {0, by_mm, 0}}});
+  };
+  move("out", "ball", 25.0);
+  move("back", "out", -25.0);
+  add({{"id", "joined"}, {"do", "combine"}, {"expression", "ball | out"}});
+  move("still_cut", "joined", -4.0);
+  const Evaluation evaluation = evaluated();
+  EXPECT_EQ(evaluation.object("out").certificate->verdict, Verdict::Fail);
+  EXPECT_EQ(evaluation.object("back").certificate->verdict, Verdict::Pass)
+      << reasons(evaluation.object("back"));
+  EXPECT_TRUE(evaluation.object("back").voxel.octree == evaluation.object("ball").voxel.octree);
+  // What a Boolean ends with the universe stays cut.
+  EXPECT_NE(evaluation.object("still_cut").certificate->verdict, Verdict::Pass);
+}
+
 TEST_F(Caveats, AnEmptyObjectProvesNothing) {
   add({{"id", "away"}, {"do", "combine"}, {"expression", "(ball & top) - ball"}});
   const Evaluation evaluation = evaluated();
