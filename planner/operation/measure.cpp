@@ -173,6 +173,7 @@ Recommended of_mesh_alone(const brep::Solid& mesh) {
 /// As intervals_of(), of the object's own surface.
 Recommended own_intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
   const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
+  if (object.is_surely_empty) return {};
   const bool is_of_scan = object.bound.spacing_mm != glm::dvec3(0.0);
   if (!object.mesh.within || (!is_of_scan && object.mesh.within->empty()))
     return of_voxels_alone(bench, object, digitised);

@@ -105,6 +105,7 @@ struct Object {
   std::string definition;        ///< in words: "skull & cut"
   bool is_tool = false;          ///< only helps to make others, as a mask
   bool is_interpolated = false;  ///< a part of it comes from samples between images
+  bool is_surely_empty = false;  ///< its definition holds nothing of any objects, as a - a
   VoxelSide voxel;
   MeshSide mesh;
   BoundTerms bound;

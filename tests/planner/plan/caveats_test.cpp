@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+#include "planner/plan/answers.h"
 #include "planner/plan/evaluate.h"
 #include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
@@ -91,12 +92,41 @@ TEST_F(Caveats, APieceThatIsBackWithinTheUniverseHasLostNothing) {
 }
 
 TEST_F(Caveats, AnEmptyObjectProvesNothing) {
-  add({{"id", "away"}, {"do", "combine"}, {"expression", "(ball & top) - ball"}});
+  add({{"id", "cap"}, {"do", "combine"}, {"expression", "ball & top"}});
+  add({{"id", "away"}, {"do", "combine"}, {"expression", "cap - ball"}});
   const Evaluation evaluation = evaluated();
   const Object& away = evaluation.object("away");
   EXPECT_EQ(away.certificate->verdict, Verdict::Warn);
   EXPECT_FALSE(away.certificate->resolved());
   EXPECT_NE(reasons(away).find("could have been missed"), std::string::npos) << reasons(away);
+}
+
+TEST_F(Caveats, AnObjectWithoutItselfIsSurelyEmpty) {
+  add({{"id", "turned"},
+       {"do", "move"},
+       {"object", "ball"},
+       {"rotate", {{"degrees", 30}, {"axis", {0.3, 1, 0.2}}}}});
+  const std::vector<std::pair<const char*, const char*>> empty{
+      {"none", "ball - ball"}, {"neither", "turned ^ turned"}, {"nowhere", "(ball & top) - ball"}};
+  for (const auto& [id, expression] : empty) {
+    add({{"id", id}, {"do", "combine"}, {"expression", expression}});
+    add({{"id", std::string("size_") + id}, {"do", "measure"}, {"object", id}});
+  }
+  add({{"id", "all"}, {"do", "combine"}, {"expression", "ball & ball | top & ~top"}});
+  const Plan plan = parse_plan(plan_.dump(), folder_.path());
+  const Evaluation evaluation = evaluate(plan);
+  for (const auto& [id, expression] : empty) {
+    EXPECT_EQ(evaluation.object(id).certificate->verdict, Verdict::Pass)
+        << id << reasons(evaluation.object(id));
+    EXPECT_TRUE(evaluation.object(id).certificate->resolved()) << id;
+    EXPECT_TRUE(verify::is_evident(*evaluation.object(id).certificate)) << id;
+  }
+  EXPECT_FALSE(evaluation.object("all").is_surely_empty);
+  for (const Json& size : measurements_json(plan, evaluation)) {
+    EXPECT_EQ(size.at("volume").at("value"), 0.0) << size;
+    EXPECT_EQ(size.at("volume").at("half_width"), 0.0) << size;
+    EXPECT_FALSE(size.contains("finding")) << size;
+  }
 }
 
 TEST_F(Caveats, SamplesThatAreNoNumbersAreCountedAndForbidAPass) {
