@@ -252,15 +252,6 @@ Recommended intervals_of(const AnswerBench& bench, const Object& object, const D
   return found;
 }
 
-/// Where the object ends because the scan does: faces of its mesh on the scan's border. A motion keeps them.
-double cut_mm2_of(const AnswerBench& bench, const Object& object) {
-  const Object& still = still_of(bench.objects, object);
-  if (!still.bound.scan_box_mm || !still.mesh.within) return 0.0;
-  const glm::dvec3 cut = area_on_planes(still.mesh.within->triangles(),
-                                        ends_of(*still.bound.scan_box_mm, glm::dvec3(1.0), glm::dvec3(1.0)));
-  return cut.x + cut.y + cut.z;
-}
-
 Json points_json(const Measure& asked, const AnswerBench& bench) {
   const Digitised digitised = digitised_of(bench);
   std::vector<glm::dvec3> p;
@@ -331,9 +322,7 @@ Json size_json(const Measure& asked, const AnswerBench& bench) {
       {voxels_mm3, object.mesh.within ? std::optional(object.mesh.within->size().volume_mm3) : std::nullopt},
       {object.voxel.measures.area_crofton13_mm2,
        object.mesh.within ? std::optional(object.mesh.within->size().area_mm2) : std::nullopt});
-  if (object.mesh.within)
-    if (const auto cut = cut_finding(cut_mm2_of(bench, object), object.mesh.within->size().area_mm2))
-      findings.push_back(*cut);
+  if (object.border_finding) findings.push_back(*object.border_finding);
   if (const auto finding = too_coarse_finding(object, width)) findings.insert(findings.begin(), *finding);
   if (!findings.empty()) {
     std::string all;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "convert/voxel/voxelise.h"
+#include "planner/measure/counted_window.h"
 #include "verify/witness/witness.h"
 #include "voxel/solid/combine.h"
 
@@ -174,6 +175,30 @@ std::optional<Shown> shown_in_common(const Objects& objects, const std::vector<s
     source = &shown;
   }
   return source == nullptr ? std::nullopt : std::optional(*source);
+}
+
+std::optional<std::string> border_finding_of(const Object& object) {
+  if (!object.bound.scan_box_mm) return std::nullopt;
+  const voxel::Box& scan = *object.bound.scan_box_mm;
+  if (object.mesh.within) {
+    const glm::dvec3 cut_mm2 =
+        area_on_planes(object.mesh.within->triangles(), ends_of(scan, glm::dvec3(1.0), glm::dvec3(1.0)));
+    return cut_finding(cut_mm2.x + cut_mm2.y + cut_mm2.z, object.mesh.within->size().area_mm2);
+  }
+  const voxel::Universe universe = object.voxel.octree.universe();
+  const glm::dvec3 voxel_mm = universe.lattice().spacing_mm();
+  double cut_mm2 = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool is_low : {true, false}) {
+      // A layer as thick as a voxel has the centres of one layer of voxels.
+      voxel::Box layer = scan;
+      (is_low ? layer.high_mm : layer.low_mm)[axis] =
+          is_low ? scan.low_mm[axis] + voxel_mm[axis] : scan.high_mm[axis] - voxel_mm[axis];
+      const voxel::Octree beside =
+          voxel::combine(universe, voxel::Expression(object.voxel.octree) & voxel::Expression(layer));
+      cut_mm2 += static_cast<double>(beside.voxel_count()) * universe.lattice().voxel_mm3() / voxel_mm[axis];
+    }
+  return cut_finding(cut_mm2, object.voxel.measures.area_crofton13_mm2);
 }
 
 glm::dvec3 area_on_planes(const brep::Triangles& triangles, const std::vector<CutPlane>& planes) {

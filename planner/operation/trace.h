@@ -45,6 +45,10 @@ double outside_mm3(const voxel::Octree& still, const glm::dmat4& image_from_stil
 /// Masks have none. A union of several windows, or of pieces moved apart, does not lie where one scan says.
 std::optional<Shown> shown_in_common(const Objects& objects, const std::vector<std::string>& names);
 
+/// What is told of an object that the scan's border cuts off, as cut_finding(): of its mesh the faces on the
+/// border, of voxels alone those beside it.
+std::optional<std::string> border_finding_of(const Object& object);
+
 /// Area of triangles on the planes, by the planes' axes and weighted by their errors.
 glm::dvec3 area_on_planes(const brep::Triangles& triangles, const std::vector<CutPlane>& planes);
 

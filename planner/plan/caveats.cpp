@@ -181,6 +181,13 @@ void add_voxels_outside(const Objects& objects, Object& made) {
   made.caveats.push_back({voxel::Verdict::Fail, std::move(text), false, true});
 }
 
+/// Told of an object that a step makes of a scan itself; what is made of it has the same border.
+void add_border_finding(const MadeOf& from, Object& made) {
+  if (made.is_tool) return;
+  made.border_finding = made.image ? still_of(from.objects, made).border_finding : border_finding_of(made);
+  if (made.border_finding && !scans_used(from.action).empty()) made.findings.push_back(*made.border_finding);
+}
+
 /// Whether an object ends by itself: a complement or a mask without an end of its own ends with the universe.
 bool ends_by_itself(const Object& object) {
   constexpr double endless_mm = 1e12;
@@ -198,6 +205,7 @@ void add_caveats(const MadeOf& from, Object& made) {
   // The kernels cannot disagree over samples that both take from the same interpolation.
   for (const std::string& part : interpolated) made.caveats.push_back({voxel::Verdict::Warn, part, false});
   add_unmeasured(from, made);
+  add_border_finding(from, made);
   add_voxels_outside(from.objects, made);
   add_inherited(from, made);
 }

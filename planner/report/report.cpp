@@ -31,6 +31,7 @@ Json certificates_json(const Evaluation& evaluation) {
     if (!object.certificate) continue;
     Json json{{"object", object.id}};
     json.update(to_json(*object.certificate));
+    json["findings"] = object.findings;
     certificates.push_back(std::move(json));
   }
   return certificates;

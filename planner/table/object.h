@@ -112,6 +112,8 @@ struct Object {
   verify::Witness witness;  ///< of the object as `mesh.whole` has it; empty where no third reading exists
   std::optional<verify::Certificate> certificate;  ///< none for tools, and where there is no mesh
   std::vector<std::string> findings;
+  /// What is told where the scan's border cuts it off: no kernel knows what lies beyond. A motion keeps it.
+  std::optional<std::string> border_finding;
   std::vector<Caveat> caveats;
   /// What both kernels took from one place on the way that is no answer: values found by a step, filtered
   /// samples.

@@ -129,6 +129,29 @@ TEST_F(Caveats, AnObjectWithoutItselfIsSurelyEmpty) {
   }
 }
 
+TEST_F(Caveats, AnObjectThatTheScansBorderCutsOffSaysSo) {
+  add({{"id", "bone"}, {"do", "segment"}, {"scan", "ct"}, {"window", "0:"}});
+  // Seeds choose voxels, so that there is no mesh.
+  add({{"id", "grown"},
+       {"do", "segment"},
+       {"scan", "ct"},
+       {"window", "0:"},
+       {"seeds_mm", SortedJson::array({{0.5, 0.5, 0.5}})}});
+  add({{"id", "moved"}, {"do", "move"}, {"object", "bone"}, {"translate_mm", {1, 2, 0}}});
+  for (const Object& whole : evaluated().objects) EXPECT_FALSE(whole.border_finding) << whole.id;
+  // Each of the six sides, 18 mm from the centre, cuts a disc of 238.8 mm2.
+  voxel::write_scene(tests::ball_scene(20.0, 36), folder_ / "ball.nrrd");
+  const Evaluation evaluation = evaluated();
+  for (const char* id : {"ball", "bone", "grown"}) {
+    const Object& object = evaluation.object(id);
+    ASSERT_TRUE(object.border_finding) << id;
+    EXPECT_NE(object.border_finding->find("the scan's border cuts the object off over 1"), std::string::npos)
+        << *object.border_finding;
+    EXPECT_EQ(object.findings.back(), *object.border_finding) << id;
+  }
+  EXPECT_EQ(evaluation.object("moved").border_finding, evaluation.object("bone").border_finding);
+}
+
 TEST_F(Caveats, SamplesThatAreNoNumbersAreCountedAndForbidAPass) {
   write_without_numbers({{2, 2, 2}, {3, 2, 2}});
   add({{"id", "cap"}, {"do", "combine"}, {"expression", "ball & top"}});
