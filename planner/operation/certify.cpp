@@ -22,6 +22,7 @@ void certify(Object& made, const std::string& title, const voxel::Progress& prog
   inputs.flat_cut_mm2 = area_on_planes(made.mesh.within->triangles(), made.bound.planes);
   inputs.scan_box_mm = made.bound.scan_box_mm;
   inputs.voxels_are_samples = made.bound.voxels_are_samples;
+  inputs.is_surely_empty = made.is_surely_empty;
   // What lies outside of the universe has been cut away from both answers.
   const voxel::Box world = voxel::bounds(made.voxel.octree.universe().lattice());
   inputs.witness = verify::both(made.witness, verify::witness_of_box(world));

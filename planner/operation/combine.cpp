@@ -3,6 +3,8 @@
 
 #include "planner/operation/trace.h"
 #include "planner/table/operation.h"
+#include "verify/question/expression_on_meshes.h"
+#include "verify/question/expression_tree.h"
 #include "verify/witness/witness.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/expression.h"
@@ -67,6 +69,33 @@ void triangles(const Combine& combine, const MeshBench& bench, MeshSide& made) {
   made.lineage = "corefinement of meshes";
 }
 
+/// Whether a point is in an expression, where bit i of `held` is whether it is in object i.
+bool holds(const verify::ExpressionTree& tree, unsigned held) {
+  if (tree.parts.empty()) return ((held >> static_cast<unsigned>(tree.leaf)) & 1U) != 0;
+  bool made = holds(tree.parts.front(), held);
+  if (tree.symbol == '~') return !made;
+  for (std::size_t i = 1; i < tree.parts.size(); ++i) {
+    const bool next = holds(tree.parts[i], held);
+    made = tree.symbol == '&'   ? made && next
+           : tree.symbol == '|' ? made || next
+           : tree.symbol == '-' ? made && !next
+                                : made != next;
+  }
+  return made;
+}
+
+/// Whether an expression is empty whatever its objects are, as a - a: no row of its truth table holds. Of
+/// more objects than a table is made for the answer is no.
+bool is_empty_of_any(const std::string& expression) {
+  constexpr std::size_t most_objects = 10;
+  std::vector<std::string> names;
+  const verify::ExpressionTree tree = verify::expression_tree_of(expression, names);
+  if (names.size() > most_objects) return false;
+  for (unsigned held = 0; held < 1U << names.size(); ++held)
+    if (holds(tree, held)) return false;
+  return true;
+}
+
 /// Says where a mask holds nothing of an object that it is to cut, or all of it.
 void tell_idle_masks(const std::vector<std::string>& names, const BoundBench& bench, Object& made) {
   for (const std::string& tool : names) {
@@ -88,7 +117,10 @@ void tell_idle_masks(const std::vector<std::string>& names, const BoundBench& be
 void bound(const Combine& combine, const BoundBench& bench, Object& made) {
   const std::vector<std::string> names = uses(combine);
   tell_idle_masks(names, bench, made);
-  if (made.voxel.octree.is_empty())
+  made.is_surely_empty = is_empty_of_any(combine.expression);
+  if (made.is_surely_empty)
+    made.findings.push_back("'" + combine.expression + "' is empty, whatever its objects are");
+  else if (made.voxel.octree.is_empty())
     made.findings.push_back("no voxel is in '" + combine.expression +
                             "': it is empty, or thinner than the voxels are apart");
   made.shown = shown_in_common(bench.objects, names);

@@ -61,7 +61,7 @@ const std::optional<verify::TwoPhase>& phases_of(const AnswerBench& bench, const
 
 /// Whether the object is all that a window shows, moved or not.
 bool is_whole_window(const Objects& objects, const Object& object) {
-  return object.moved ? is_whole_window(objects, objects.at(object.moved->object)) : object.kind == "window";
+  return still_of(objects, object).kind == "window" && (!object.image || object.image->is_whole);
 }
 
 /// The window of a label map that an object is all of; none: it is of other samples or made of several.
@@ -137,11 +137,11 @@ void take_thickness(const AnswerBench& bench, const Object& object, Recommended&
 /// What counting may be off of an object of voxels alone, by its scan's samples; a motion keeps it. None: it
 /// comes from no scan.
 std::optional<double> counting_doubt_of(const AnswerBench& bench, const Object& object) {
-  if (object.moved) return counting_doubt_of(bench, bench.objects.at(object.moved->object));
+  const Object& still = still_of(bench.objects, object);
   for (const ScanRecord& scan : bench.scans)
-    if (scan.lattice.spacing_mm() == object.bound.spacing_mm) {
+    if (scan.lattice.spacing_mm() == still.bound.spacing_mm) {
       const voxel::LabelMap samples =
-          voxel::label_map(scan.lattice, {&object.voxel.octree, 1}, {bench.stop, {}});
+          voxel::label_map(scan.lattice, {&still.voxel.octree, 1}, {bench.stop, {}});
       return counting_doubt_mm3(samples.scene, 1.0, 1.0);
     }
   return std::nullopt;
@@ -173,6 +173,7 @@ Recommended of_mesh_alone(const brep::Solid& mesh) {
 /// As intervals_of(), of the object's own surface.
 Recommended own_intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
   const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
+  if (object.is_surely_empty) return {};
   const bool is_of_scan = object.bound.spacing_mm != glm::dvec3(0.0);
   if (!object.mesh.within || (!is_of_scan && object.mesh.within->empty()))
     return of_voxels_alone(bench, object, digitised);
@@ -215,10 +216,23 @@ Recommended own_intervals_of(const AnswerBench& bench, const Object& object, con
   return found;
 }
 
-/// The recommended volume and area. The mesh's, where there is one: motions keep it and cuts are exact in it,
-/// so that a moved object has its still one's interval, and parts share the doubt of their whole's windows.
-/// What was made of another's surface is in doubt by as much as that surface may be off.
+Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised);
+
+/// Those of an object where it was made; kept, as several images may be of one.
+const Recommended& kept_intervals_of(const AnswerBench& bench, const Object& still) {
+  std::shared_ptr<const void>& kept = bench.kept["recommended size of " + still.id];
+  if (!kept)
+    kept = std::make_shared<const Recommended>(intervals_of(bench, still, digitised_of(bench, still)));
+  return *static_cast<const Recommended*>(kept.get());
+}
+
+/// The recommended volume and area. The mesh's, where there is one: cuts are exact in it, and parts share the
+/// doubt of their whole's windows. A motion or mirror changes no size, so an image of a whole object has that
+/// object's, where the universe holds both; its own voxels and points were rounded once more. What was made
+/// of another's surface is in doubt by as much as that surface may be off.
 Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
+  if (object.image && object.image->is_whole)
+    return kept_intervals_of(bench, still_of(bench.objects, object));
   Recommended found = own_intervals_of(bench, object, digitised);
   const std::set<std::string> reshaped(object.bound.reshaped.begin(), object.bound.reshaped.end());
   for (const std::string& name : reshaped) {
@@ -236,15 +250,6 @@ Recommended intervals_of(const AnswerBench& bench, const Object& object, const D
         share * of.area_mm2.half_width);
   }
   return found;
-}
-
-/// Where the object ends because the scan does: faces of its mesh on the scan's border. A motion keeps them.
-double cut_mm2_of(const AnswerBench& bench, const Object& object) {
-  if (object.moved) return cut_mm2_of(bench, bench.objects.at(object.moved->object));
-  if (!object.bound.scan_box_mm || !object.mesh.within) return 0.0;
-  const glm::dvec3 cut = area_on_planes(object.mesh.within->triangles(),
-                                        ends_of(*object.bound.scan_box_mm, glm::dvec3(1.0), glm::dvec3(1.0)));
-  return cut.x + cut.y + cut.z;
 }
 
 Json points_json(const Measure& asked, const AnswerBench& bench) {
@@ -317,9 +322,7 @@ Json size_json(const Measure& asked, const AnswerBench& bench) {
       {voxels_mm3, object.mesh.within ? std::optional(object.mesh.within->size().volume_mm3) : std::nullopt},
       {object.voxel.measures.area_crofton13_mm2,
        object.mesh.within ? std::optional(object.mesh.within->size().area_mm2) : std::nullopt});
-  if (object.mesh.within)
-    if (const auto cut = cut_finding(cut_mm2_of(bench, object), object.mesh.within->size().area_mm2))
-      findings.push_back(*cut);
+  if (object.border_finding) findings.push_back(*object.border_finding);
   if (const auto finding = too_coarse_finding(object, width)) findings.insert(findings.begin(), *finding);
   if (!findings.empty()) {
     std::string all;

@@ -128,7 +128,7 @@ void triangles(const Mirror& mirror, const MeshBench& bench, MeshSide& made) {
 }
 
 void bound(const Mirror& mirror, const BoundBench& bench, Object& made) {
-  carry(bench.objects.at(mirror.object.name), reflection_of(mirror), bench.universe, made);
+  carry(mirror.object.name, reflection_of(mirror), bench, made);
   // A mirror image has not moved: nothing in a deck takes it along, and no picture shows it as the same
   // piece.
   made.moved.reset();

@@ -261,7 +261,7 @@ Json points_json(const Move& move, const Objects& objects) {
 }
 
 void bound(const Move& move, const BoundBench& bench, Object& made) {
-  carry(bench.objects.at(move.object.name), motion_of(move, places_of(bench.objects)), bench.universe, made);
+  carry(move.object.name, motion_of(move, places_of(bench.objects)), bench, made);
   if (!move.points.empty()) made.moved->details = points_json(move, bench.objects);
 }
 

@@ -43,7 +43,7 @@ void moved_triangles(const Settled& settled, const MeshBench& bench, MeshSide& m
 }
 template <typename Settled>
 void move_bound(const Settled& settled, const BoundBench& bench, Object& made) {
-  carry(bench.objects.at(settled.object.name), settled.moved_from_still, bench.universe, made);
+  carry(settled.object.name, settled.moved_from_still, bench, made);
 }
 
 }  // namespace octotomy::planner

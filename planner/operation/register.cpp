@@ -166,7 +166,7 @@ void triangles(const Register& asked, const MeshBench& bench, MeshSide& made) {
 }
 
 void bound(const Register& asked, const BoundBench& bench, Object& made) {
-  carry(bench.objects.at(asked.object.name), asked.onto_from_object, bench.universe, made);
+  carry(asked.object.name, asked.onto_from_object, bench, made);
 }
 
 /// The mesh at its new place; a similarity's scale too.

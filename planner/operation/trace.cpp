@@ -6,7 +6,9 @@
 #include <limits>
 
 #include "convert/voxel/voxelise.h"
+#include "planner/measure/counted_window.h"
 #include "verify/witness/witness.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
 namespace {
@@ -24,6 +26,29 @@ std::vector<CutPlane> moved_planes(std::vector<CutPlane> planes, const glm::dmat
     plane.offset_mm = glm::dot(plane.normal, point);
   }
   return planes;
+}
+
+/// Whether a mesh ends within a box, but for the rounding of its points.
+bool is_within(const brep::Solid& mesh, const voxel::Box& box) {
+  if (mesh.empty()) return true;
+  const brep::Size& size = mesh.size();
+  const glm::dvec3 rounding_mm(on_plane_mm(glm::length(size.low_mm) + glm::length(size.high_mm)));
+  return glm::all(glm::greaterThanEqual(size.low_mm, box.low_mm - rounding_mm)) &&
+         glm::all(glm::lessThanEqual(size.high_mm, box.high_mm + rounding_mm));
+}
+
+/// What `made` is an image of. A step that moves an image begins with all of it, also with what lies outside
+/// of the universe.
+Object::Image image_of(const Object& still, const glm::dmat4& moved_from_still, const BoundBench& bench,
+                       const Object& made) {
+  const Object& first = still_of(bench.objects, still);
+  Object::Image image{first.id, moved_from_still};
+  if (still.image) image.image_from_object *= still.image->image_from_object;
+  const voxel::Box universe = voxel::bounds(bench.universe.lattice());
+  image.is_whole = (!first.mesh.whole || is_within(*first.mesh.whole, universe)) &&
+                   (made.mesh.whole ? is_within(*made.mesh.whole, universe)
+                                    : outside_mm3(first.voxel.octree, image.image_from_object) == 0.0);
+  return image;
 }
 
 constexpr const char* voxelised_lineage = "the mesh kernel's answer, voxelised";
@@ -94,9 +119,11 @@ void inherit(const Object& operand, Object& made) {
   if (from.scan_box_mm) to.scan_box_mm = from.scan_box_mm;
 }
 
-void carry(const Object& still, const glm::dmat4& moved_from_still, const voxel::Universe& universe,
+void carry(const std::string& object, const glm::dmat4& moved_from_still, const BoundBench& bench,
            Object& made) {
+  const Object& still = bench.objects.at(object);
   made.moved = Object::Moved{still.id, moved_from_still};
+  made.image = image_of(still, moved_from_still, bench, made);
   made.witness = verify::carried(still.witness, moved_from_still);
   made.walls = still.walls;
   for (CutWall& wall : made.walls) wall.moved_from_still = moved_from_still * wall.moved_from_still;
@@ -111,10 +138,28 @@ void carry(const Object& still, const glm::dmat4& moved_from_still, const voxel:
   made.bound.reshaped = still.bound.reshaped;
   if (still.bound.scan_box_mm) {
     const auto ends =
-        ends_of(*still.bound.scan_box_mm, still.bound.spacing_mm, universe.lattice().spacing_mm());
+        ends_of(*still.bound.scan_box_mm, still.bound.spacing_mm, bench.universe.lattice().spacing_mm());
     made.bound.planes.insert(made.bound.planes.end(), ends.begin(), ends.end());
   }
   made.bound.planes = moved_planes(std::move(made.bound.planes), moved_from_still);
+}
+
+double outside_mm3(const voxel::Octree& still, const glm::dmat4& image_from_still) {
+  const voxel::Universe universe = still.universe();
+  const voxel::Box box = voxel::bounds(universe.lattice());
+  const glm::dmat3 turn = glm::transpose(glm::dmat3(image_from_still));
+  // The universe's sides as the still object meets them. A matrix that was typed has unit vectors to a few
+  // decimals only, a half-space has them to the last.
+  voxel::Expression outside = voxel::Octree::empty(universe);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = glm::length(turn[axis]), shift_mm = image_from_still[3][axis];
+    const glm::dvec3 normal = turn[axis] / length;
+    outside = outside |
+              voxel::Expression(voxel::HalfSpace{-normal, -(box.high_mm[axis] - shift_mm) / length}) |
+              voxel::Expression(voxel::HalfSpace{normal, (box.low_mm[axis] - shift_mm) / length});
+  }
+  return universe.lattice().voxel_mm3() *
+         static_cast<double>(voxel::combine(universe, voxel::Expression(still) & outside).voxel_count());
 }
 
 std::optional<Shown> shown_in_common(const Objects& objects, const std::vector<std::string>& names) {
@@ -130,6 +175,30 @@ std::optional<Shown> shown_in_common(const Objects& objects, const std::vector<s
     source = &shown;
   }
   return source == nullptr ? std::nullopt : std::optional(*source);
+}
+
+std::optional<std::string> border_finding_of(const Object& object) {
+  if (!object.bound.scan_box_mm) return std::nullopt;
+  const voxel::Box& scan = *object.bound.scan_box_mm;
+  if (object.mesh.within) {
+    const glm::dvec3 cut_mm2 =
+        area_on_planes(object.mesh.within->triangles(), ends_of(scan, glm::dvec3(1.0), glm::dvec3(1.0)));
+    return cut_finding(cut_mm2.x + cut_mm2.y + cut_mm2.z, object.mesh.within->size().area_mm2);
+  }
+  const voxel::Universe universe = object.voxel.octree.universe();
+  const glm::dvec3 voxel_mm = universe.lattice().spacing_mm();
+  double cut_mm2 = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool is_low : {true, false}) {
+      // A layer as thick as a voxel has the centres of one layer of voxels.
+      voxel::Box layer = scan;
+      (is_low ? layer.high_mm : layer.low_mm)[axis] =
+          is_low ? scan.low_mm[axis] + voxel_mm[axis] : scan.high_mm[axis] - voxel_mm[axis];
+      const voxel::Octree beside =
+          voxel::combine(universe, voxel::Expression(object.voxel.octree) & voxel::Expression(layer));
+      cut_mm2 += static_cast<double>(beside.voxel_count()) * universe.lattice().voxel_mm3() / voxel_mm[axis];
+    }
+  return cut_finding(cut_mm2, object.voxel.measures.area_crofton13_mm2);
 }
 
 glm::dvec3 area_on_planes(const brep::Triangles& triangles, const std::vector<CutPlane>& planes) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/table/bench.h"
 #include "planner/table/object.h"
 #include "voxel/solid/region_mask.h"
 
@@ -32,13 +33,21 @@ std::vector<CutPlane> planes_of(const voxel::RegionMask& mask);
 /// Adds an operand's walls and bound terms to those of an object made of it.
 void inherit(const Object& operand, Object& made);
 
-/// The same for an object that is one moved or mirrored: its walls, planes, windows and samples move along.
-void carry(const Object& still, const glm::dmat4& moved_from_still, const voxel::Universe& universe,
+/// The same for an object that is another one moved or mirrored: its walls, planes, windows and samples move
+/// along. Precondition: the mesh kernel has made its answer, if it has one.
+void carry(const std::string& object, const glm::dmat4& moved_from_still, const BoundBench& bench,
            Object& made);
+
+/// Volume of an object's voxels whose centres lie outside of the universe after a motion or mirror.
+double outside_mm3(const voxel::Octree& still, const glm::dmat4& image_from_still);
 
 /// The samples that show the surface of an object made of several: those of its operands, where they agree.
 /// Masks have none. A union of several windows, or of pieces moved apart, does not lie where one scan says.
 std::optional<Shown> shown_in_common(const Objects& objects, const std::vector<std::string>& names);
+
+/// What is told of an object that the scan's border cuts off, as cut_finding(): of its mesh the faces on the
+/// border, of voxels alone those beside it.
+std::optional<std::string> border_finding_of(const Object& object);
 
 /// Area of triangles on the planes, by the planes' axes and weighted by their errors.
 glm::dvec3 area_on_planes(const brep::Triangles& triangles, const std::vector<CutPlane>& planes);

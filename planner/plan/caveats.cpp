@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "planner/measure/result_json.h"
+#include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "voxel/space/rounded.h"
 
@@ -148,6 +149,9 @@ void add_inherited(const MadeOf& from, Object& made) {
   for (const std::string& name : objects_used(from.action)) {
     const Object& operand = from.objects.at(name);
     for (const Caveat& caveat : operand.caveats) {
+      // A motion begins with all of its object, also with what lies outside, unless that was cut off for
+      // good.
+      if (caveat.is_of_place && made.image && !operand.ends_with_universe) continue;
       const std::string reason =
           caveat.is_inherited ? caveat.reason : "made of '" + name + "': " + caveat.reason;
       const bool is_known = std::any_of(made.caveats.begin(), made.caveats.end(),
@@ -156,6 +160,32 @@ void add_inherited(const MadeOf& from, Object& made) {
         made.caveats.push_back({voxel::Verdict::Warn, reason, true});
     }
   }
+}
+
+std::string outside_text(double outside_mm3, double whole_mm3, const voxel::Box& universe_mm) {
+  return three_figures(outside_mm3) + " mm3 of the object, " +
+         three_figures(100.0 * outside_mm3 / whole_mm3) + " %, lie outside of the universe (" +
+         plain(universe_mm) + ") and are left out of every number: move less, or use a scan with more room";
+}
+
+/// The same as add_part_outside() of an image that has voxels alone: those that its object has lost.
+void add_voxels_outside(const Objects& objects, Object& made) {
+  if (made.bound.spacing_mm == glm::dvec3(0.0) || made.is_tool || made.mesh.whole) return;
+  if (!made.image || made.image->is_whole) return;
+  const Object& still = still_of(objects, made);
+  const double lost_mm3 = outside_mm3(still.voxel.octree, made.image->image_from_object);
+  if (!(lost_mm3 > 0.0)) return;
+  std::string text = outside_text(lost_mm3, still.voxel.measures.volume_mm3,
+                                  voxel::bounds(made.voxel.octree.universe().lattice()));
+  made.findings.push_back(text);
+  made.caveats.push_back({voxel::Verdict::Fail, std::move(text), false, true});
+}
+
+/// Told of an object that a step makes of a scan itself; what is made of it has the same border.
+void add_border_finding(const MadeOf& from, Object& made) {
+  if (made.is_tool) return;
+  made.border_finding = made.image ? still_of(from.objects, made).border_finding : border_finding_of(made);
+  if (made.border_finding && !scans_used(from.action).empty()) made.findings.push_back(*made.border_finding);
 }
 
 /// Whether an object ends by itself: a complement or a mask without an end of its own ends with the universe.
@@ -175,6 +205,8 @@ void add_caveats(const MadeOf& from, Object& made) {
   // The kernels cannot disagree over samples that both take from the same interpolation.
   for (const std::string& part : interpolated) made.caveats.push_back({voxel::Verdict::Warn, part, false});
   add_unmeasured(from, made);
+  add_border_finding(from, made);
+  add_voxels_outside(from.objects, made);
   add_inherited(from, made);
 }
 
@@ -224,15 +256,10 @@ void add_part_outside(const voxel::Box& universe_mm, Object& made) {
       "a part lies outside of the universe (" + plain(universe_mm) +
       ") and is left out of every number and picture: move less, or use a scan with more room");
   const double whole_mm3 = made.mesh.whole->measures().volume_mm3;
-  const double outside_mm3 = whole_mm3 - (made.mesh.within ? made.mesh.within->measures().volume_mm3 : 0.0);
+  const double lost_mm3 = whole_mm3 - (made.mesh.within ? made.mesh.within->measures().volume_mm3 : 0.0);
   constexpr double rounding = 1e-9;  // where the object touches the universe's border
-  if (!ends_by_itself(made) || !(outside_mm3 > rounding * std::abs(whole_mm3))) return;
-  made.caveats.push_back({voxel::Verdict::Fail,
-                          three_figures(outside_mm3) + " mm3 of the object, " +
-                              three_figures(100.0 * outside_mm3 / whole_mm3) +
-                              " %, lie outside of the universe (" + plain(universe_mm) +
-                              ") and are left out of every number: move less, or use a scan with more room",
-                          false});
+  if (!ends_by_itself(made) || !(lost_mm3 > rounding * std::abs(whole_mm3))) return;
+  made.caveats.push_back({voxel::Verdict::Fail, outside_text(lost_mm3, whole_mm3, universe_mm), false, true});
 }
 
 }  // namespace octotomy::planner

@@ -21,10 +21,12 @@ struct MadeOf {
 };
 
 /// Adds to an object's caveats and findings the gaps between images that it reaches into, samples of its
-/// scans that were no finite numbers, and the caveats of the objects that it was made of. A FAIL where such
-/// samples lie between samples of the object's own windows, because a part is missing there; the operands'
-/// caveats are a WARN. Precondition: both kernels have answered and the object's bound is known. Cost: where
-/// a scan has such samples one walk over it.
+/// scans that were no finite numbers, what a motion brought out of the universe of an object that has voxels
+/// alone, and the caveats of the objects that it was made of. A FAIL where such samples lie between samples
+/// of the object's own windows, because a part is missing there, and where one lies outside; the operands'
+/// caveats are a WARN. That a part of an operand lies outside is none of an image's, which has its own
+/// place. Where the scan's border cuts the object off is a finding. Precondition: both kernels have answered
+/// and the object's bound is known. Cost: where a scan has such samples one walk over it.
 void add_caveats(const MadeOf& from, Object& made);
 
 /// Adds to the audit of a scan that an action made of others what theirs say of samples that were no finite

@@ -170,6 +170,8 @@ std::string overall_verdict(const VerdictCounts& counts) {
   if (counts.warn > 0) lines += ", " + std::to_string(counts.warn) + " warn";
   if (counts.fail > 0) lines += ", " + std::to_string(counts.fail) + " fail";
   if (counts.not_resolved > 0) lines += "; " + std::to_string(counts.not_resolved) + " not resolved";
+  if (counts.without_certificate > 0)
+    lines += "; " + plural(counts.without_certificate, "object") + " without a certificate";
   return element("div class=\"verdict " + css + "\"",
                  element("b", title) + element("span class=\"soft\"", lines));
 }

@@ -31,6 +31,7 @@ Json certificates_json(const Evaluation& evaluation) {
     if (!object.certificate) continue;
     Json json{{"object", object.id}};
     json.update(to_json(*object.certificate));
+    json["findings"] = object.findings;
     certificates.push_back(std::move(json));
   }
   return certificates;
@@ -98,6 +99,7 @@ VerdictCounts& VerdictCounts::operator+=(const VerdictCounts& other) {
   not_resolved += other.not_resolved;
   pass_not_resolved += other.pass_not_resolved;
   without_evidence += other.without_evidence;
+  without_certificate += other.without_certificate;
   return *this;
 }
 
@@ -113,7 +115,10 @@ void add(VerdictCounts& counts, const verify::Certificate& certificate) {
 VerdictCounts verdict_counts(const Evaluation& evaluation) {
   VerdictCounts counts;
   for (const Object& object : evaluation.objects)
-    if (object.certificate) add(counts, *object.certificate);
+    if (object.certificate)
+      add(counts, *object.certificate);
+    else if (!object.is_tool)
+      ++counts.without_certificate;
   return counts;
 }
 
@@ -122,14 +127,18 @@ Json to_json(const VerdictCounts& counts) {
           {"WARN", counts.warn},
           {"FAIL", counts.fail},
           {"not_resolved", counts.not_resolved},
-          {"without_evidence", counts.without_evidence}};
+          {"without_evidence", counts.without_evidence + counts.without_certificate},
+          {"without_certificate", counts.without_certificate}};
 }
 
 std::string text_of(const VerdictCounts& counts) {
   return std::to_string(counts.pass) + " PASS" +
          (counts.pass_not_resolved > 0 ? " (" + std::to_string(counts.pass_not_resolved) + " not resolved)"
                                        : "") +
-         ", " + std::to_string(counts.warn) + " WARN, " + std::to_string(counts.fail) + " FAIL";
+         ", " + std::to_string(counts.warn) + " WARN, " + std::to_string(counts.fail) + " FAIL" +
+         (counts.without_certificate > 0
+              ? ", " + std::to_string(counts.without_certificate) + " without a certificate"
+              : "");
 }
 
 Parts parts_of(const Object& object) {

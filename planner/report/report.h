@@ -46,18 +46,21 @@ struct Result {
 /// Certificates by verdict.
 struct VerdictCounts {
   int pass = 0, warn = 0, fail = 0;
-  int not_resolved = 0;       ///< of all three, the objects that are too small or thin for their voxels
-  int pass_not_resolved = 0;  ///< of `pass` alone: these prove little
-  int without_evidence = 0;   ///< of `pass` alone: these prove nothing (verify::is_evident())
+  int not_resolved = 0;         ///< of all three, the objects that are too small or thin for their voxels
+  int pass_not_resolved = 0;    ///< of `pass` alone: these prove little
+  int without_evidence = 0;     ///< of `pass` alone: these prove nothing (verify::is_evident())
+  int without_certificate = 0;  ///< of none of the three: objects that no kernel checks; masks do not count
 
   VerdictCounts& operator+=(const VerdictCounts& other);
 };
 /// Counts one more.
 void add(VerdictCounts& counts, const verify::Certificate& certificate);
 VerdictCounts verdict_counts(const Evaluation& evaluation);
-/// {"PASS": ..., "WARN": ..., "FAIL": ..., "not_resolved": ...}: the first three add up to all.
+/// {"PASS": ..., "WARN": ..., "FAIL": ..., "not_resolved": ..., "without_evidence": ...,
+/// "without_certificate": ...}: the first three add up to all certificates. Objects without one are among
+/// those without evidence.
 nlohmann::ordered_json to_json(const VerdictCounts& counts);
-/// "6 PASS (1 not resolved), 0 WARN, 0 FAIL".
+/// "6 PASS (1 not resolved), 0 WARN, 0 FAIL", and ", 2 without a certificate" where there are such.
 std::string text_of(const VerdictCounts& counts);
 
 /// The connected parts (by faces) of an object in the voxel kernel.

@@ -163,6 +163,8 @@ std::string certificate_row(const Json& certificate) {
   std::vector<std::string> reasons = certificate.at("reasons");
   if (!certificate.at("resolved"))
     reasons.push_back("not resolved: " + certificate.at("not_resolved_because").get<std::string>());
+  for (const Json& finding : certificate.value("findings", Json::array()))
+    reasons.push_back(finding.get<std::string>());
   return "<tr>" +
          cell(element("code", escaped(certificate.at("operation").get<std::string>())) + list(reasons)) +
          cell(escaped(certificate.at("tier").get<std::string>())) +

@@ -25,7 +25,10 @@ SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
   answer.counts = verdict_counts(result.evaluation);
   answer.text = verdict_text(result.evaluation);
   need_evidence(answer, text);
+  std::string uncertified;
   for (const Object& object : result.evaluation.objects) {
+    if (!object.certificate && !object.is_tool)
+      uncertified += (uncertified.empty() ? "'" : ", '") + object.id + "'";
     if (object.certificate)
       verify::keep_worse(answer.worst, {*object.certificate, object.voxel.octree, object.mesh.within});
     else
@@ -34,6 +37,8 @@ SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
                                     : object.findings.empty() ? "there is no mesh"
                                                               : object.findings.front()));
   }
+  if (!uncertified.empty())
+    warn("no certificate of " + uncertified + ": nothing was verified of these, the findings say why");
   return answer;
 }
 

@@ -30,6 +30,10 @@ const Object& Objects::add(Object object) {
   return objects_.emplace_back(std::move(object));
 }
 
+const Object& still_of(const Objects& objects, const Object& object) {
+  return object.image ? objects.at(object.image->object) : object;
+}
+
 glm::dmat4 moved_since_made(const Objects& objects, const std::string& object) {
   glm::dmat4 motion(1.0);
   for (const Object* at = &objects.at(object); at->moved; at = &objects.at(at->moved->object))

@@ -92,6 +92,7 @@ struct Caveat {
   voxel::Verdict verdict = voxel::Verdict::Warn;
   std::string reason;
   bool is_inherited = false;  ///< of an object that it was made of
+  bool is_of_place = false;   ///< of where the object lies: it does not go with a motion
 };
 
 /// What an operation made, in both kernels.
@@ -104,12 +105,15 @@ struct Object {
   std::string definition;        ///< in words: "skull & cut"
   bool is_tool = false;          ///< only helps to make others, as a mask
   bool is_interpolated = false;  ///< a part of it comes from samples between images
+  bool is_surely_empty = false;  ///< its definition holds nothing of any objects, as a - a
   VoxelSide voxel;
   MeshSide mesh;
   BoundTerms bound;
   verify::Witness witness;  ///< of the object as `mesh.whole` has it; empty where no third reading exists
   std::optional<verify::Certificate> certificate;  ///< none for tools, and where there is no mesh
   std::vector<std::string> findings;
+  /// What is told where the scan's border cuts it off: no kernel knows what lies beyond. A motion keeps it.
+  std::optional<std::string> border_finding;
   std::vector<Caveat> caveats;
   /// What both kernels took from one place on the way that is no answer: values found by a step, filtered
   /// samples.
@@ -124,6 +128,14 @@ struct Object {
     nlohmann::ordered_json details = nlohmann::ordered_json::object();
   };
   std::optional<Moved> moved;
+  /// Of an object that is another one moved or mirrored, by one step or by several.
+  struct Image {
+    std::string object;  ///< the one that was neither moved nor mirrored
+    glm::dmat4 image_from_object{1.0};
+    /// Whether all of both lies within the universe: they are equally large then.
+    bool is_whole = false;
+  };
+  std::optional<Image> image;
   std::vector<CutWall> walls;  ///< of the masks that it was made with, where they have a mesh
 };
 
@@ -153,6 +165,8 @@ class Objects {
   std::map<std::string, std::size_t> index_;
 };
 
+/// The object that an image is of; the object itself where it is none.
+const Object& still_of(const Objects& objects, const Object& object);
 /// The motion of all the steps that moved an object since it was made, LPS to LPS.
 glm::dmat4 moved_since_made(const Objects& objects, const std::string& object);
 /// Where a mark lies: a landmark that goes with an object moves along with that object's motions.

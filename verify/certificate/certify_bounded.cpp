@@ -587,7 +587,10 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   }
   judge_evidence(certificate);
   // A block of two voxels a side is the smallest that a search for what both lack is sure to meet.
-  judge_emptiness(certificate, 8.0 * evidence.voxel_mm3);
+  if (!inputs.is_surely_empty)
+    judge_emptiness(certificate, 8.0 * evidence.voxel_mm3);
+  else if (!octree.is_empty() || !solid.empty())
+    lower(certificate, Verdict::Fail, "The object must be empty, and an answer is not.");
   const auto has_place = [&](const std::string& reason) { return reason.rfind("The two surfaces", 0) == 0; };
   if (certificate.verdict != Verdict::Pass && certificate.worst &&
       std::none_of(certificate.reasons.begin(), certificate.reasons.end(), has_place))

@@ -26,6 +26,8 @@ struct BoundInputs {
   std::optional<voxel::Box> scan_box_mm = {};
   /// Every voxel's centre is a sample and the object is one window of them: topology must agree too.
   bool voxels_are_samples = false;
+  /// The question has no other answer than nothing, as a - a: two empty answers are right.
+  bool is_surely_empty = false;
   /// Judges the places at which the answers differ, and counts the object along lines. It ends with the
   /// universe, as both answers do. Without one, totals and distances decide.
   Witness witness = {};

@@ -3,8 +3,10 @@
 // Windows: a line is followed through the scan in steps of half a sample. The interpolant counts as linear
 // within a step, so a stretch's ends are good to a few hundredths of a sample, and layers thinner than half a
 // sample may be missed where the interpolant bends. Bricks of 4 cells a side whose samples all lie inside or
-// all outside of the window are passed in one step. Expressions: operators and names are put into postfix
-// order by two stacks (Dijkstra's shunting yard), then joined.
+// all outside of the window are passed in one step. Steps lie at multiples of their length from where the
+// line begins, so that a stretch's ends do not depend on which part of the line is read: an object without
+// itself holds nothing. Expressions: operators and names are put into postfix order by two stacks
+// (Dijkstra's shunting yard), then joined.
 #include "verify/witness/line_reading.h"
 
 #include <algorithm>
@@ -277,38 +279,54 @@ class WindowAlong {
     return value == *scan_->padding ? std::numeric_limits<double>::quiet_NaN() : value;
   }
 
-  /// The part of a step whose values go from f0 to f1 that lies in the window.
-  void add_step(double low_mm, double high_mm, double f0, double f1, Spans& inside) const {
+  /// A step of a line: from one place to the next, and the values there.
+  struct Step {
+    double low_mm, high_mm, f0, f1;
+  };
+
+  /// Adds what lies in the window of the part of a step within `part`.
+  void add_step(const Step& step, const Span& part, Spans& inside) const {
+    const auto [low_mm, high_mm, f0, f1] = step;
     if (!std::isfinite(f0) || !std::isfinite(f1)) return;
+    double from = 0.0, to = 1.0;
     if (f0 == f1) {
-      if (f0 >= low_ && f0 <= high_) append(inside, low_mm, high_mm);
-      return;
+      if (f0 < low_ || f0 > high_) return;
+    } else {
+      const double a = (low_ - f0) / (f1 - f0), b = (high_ - f0) / (f1 - f0);
+      from = std::clamp(std::min(a, b), 0.0, 1.0);
+      to = std::clamp(std::max(a, b), 0.0, 1.0);
     }
-    const double a = (low_ - f0) / (f1 - f0), b = (high_ - f0) / (f1 - f0);
-    const double from = std::clamp(std::min(a, b), 0.0, 1.0), to = std::clamp(std::max(a, b), 0.0, 1.0);
-    append(inside, low_mm + from * (high_mm - low_mm), low_mm + to * (high_mm - low_mm));
+    append(inside, std::max(low_mm + from * (high_mm - low_mm), part.low_mm),
+           std::min(low_mm + to * (high_mm - low_mm), part.high_mm));
+  }
+
+  /// The value at the place of this number along a line.
+  struct Known {
+    double number, value;
+  };
+
+  /// Reads a part of a line step by step. `last` is the place that was read last, if any.
+  void follow_steps(const glm::dvec3& u0, const glm::dvec3& du, double step_mm, const Span& part,
+                    std::optional<Known>& last, Spans& inside) const {
+    for (double number = std::floor(part.low_mm / step_mm); number * step_mm < part.high_mm; ++number) {
+      const double low_mm = number * step_mm, high_mm = (number + 1.0) * step_mm;
+      const double f0 = last && last->number == number ? last->value : value(u0 + low_mm * du);
+      last = {number + 1.0, value(u0 + high_mm * du)};
+      add_step({low_mm, high_mm, f0, last->value}, part, inside);
+    }
   }
 
   void follow(const glm::dvec3& u0, const glm::dvec3& du, double step_mm, const Span& span,
               Spans& inside) const {
-    double at_mm = span.low_mm;
-    std::optional<double> before;  // the value at `at_mm`, where it is known
-    while (at_mm < span.high_mm) {
+    std::optional<Known> last;
+    for (double at_mm = span.low_mm; at_mm < span.high_mm;) {
       // A little onward, so that a place between two bricks belongs to the next one.
       const glm::ivec3 b = brick_of(u0 + (at_mm + 1e-6 * step_mm) * du);
+      const double out_mm = std::min(std::max(leaves_mm(u0, du, b), at_mm + 1e-3 * step_mm), span.high_mm);
       const State state = states_[index_of(b)];
-      if (state != State::Mixed) {
-        const double out_mm = std::min(std::max(leaves_mm(u0, du, b), at_mm + 1e-3 * step_mm), span.high_mm);
-        if (state == State::In) append(inside, at_mm, out_mm);
-        at_mm = out_mm;
-        before.reset();
-        continue;
-      }
-      const double next_mm = std::min(at_mm + step_mm, span.high_mm);
-      const double f0 = before ? *before : value(u0 + at_mm * du), f1 = value(u0 + next_mm * du);
-      add_step(at_mm, next_mm, f0, f1, inside);
-      at_mm = next_mm;
-      before = f1;
+      if (state == State::In) append(inside, at_mm, out_mm);
+      if (state == State::Mixed) follow_steps(u0, du, step_mm, {at_mm, out_mm}, last, inside);
+      at_mm = out_mm;
     }
   }
 

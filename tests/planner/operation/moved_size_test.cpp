@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Sizes of objects that moved: each is the still one's, with the still one's interval.
+#include <array>
 #include <cstdlib>
 #include <gtest/gtest.h>
 
@@ -42,6 +43,27 @@ Json sizes(const std::string& further, const std::vector<std::string>& moved) {
       {"id": "piece", "do": "combine", "expression": "egg & low"},
       {"id": "rest", "do": "combine", "expression": "egg - low"})" +
                      further;
+  for (const std::string& name : moved)
+    text += R"(, {"id": "size_)" + name + R"(", "do": "measure", "object": ")" + name + "\"}";
+  const Plan plan = parse_plan(text + "]}", folder.path());
+  return measurements_json(plan, evaluate(plan));
+}
+
+/// The label 1 of a map in which it is a ball of 12 mm about (0.3, 0.3, 0.3), below which stand further
+/// steps. Each object that `moved` names is measured.
+Json label_sizes(const std::string& further, const std::vector<std::string>& moved) {
+  const ScratchFolder folder;
+  voxel::Scene labels = ct_scene(glm::ivec3(48), glm::dvec3(1.0), glm::dvec3(-23.0),
+                                 [](const glm::ivec3& /*at*/, const glm::dvec3& p_mm) {
+                                   return glm::length(p_mm - 0.3) <= 12.0 ? 1 : 0;
+                                 });
+  labels.meaning = voxel::Meaning::Label;
+  labels.modality.clear();
+  voxel::write_scene(labels, folder / "label.nrrd");
+  std::string text =
+      R"({"octotomy_plan": 1, "name": "ball", "scans": {"map": {"path": "label.nrrd"}},
+      "universe": {"voxel_mm": 1.0}, "steps": [{"id": "ball", "do": "segment", "scan": "map", "label": 1})" +
+      further;
   for (const std::string& name : moved)
     text += R"(, {"id": "size_)" + name + R"(", "do": "measure", "object": ")" + name + "\"}";
   const Plan plan = parse_plan(text + "]}", folder.path());
@@ -99,6 +121,46 @@ TEST(MovedSize, IsTheStillOnesWhateverStepMovedIt) {
       {"id": "held", "do": "move", "object": "piece", "by": {"forward_mm": 2, "up_mm": -1}})",
                          {"piece", "off", "met", "shut", "back", "held"});
   for (std::size_t i = 1; i < all.size(); ++i) expect_same_size(all[i], all[0]);
+}
+
+TEST(MovedSize, OfALabelIsTheStillOnesThroughMotionsAndMirrors) {
+  const Json all = label_sizes(R"(,
+      {"id": "turned", "do": "move", "object": "ball",
+        "rotate": {"degrees": 30, "axis": [0.3, 1, 0.2], "about_mm": [0, 0, 0]}},
+      {"id": "twin", "do": "mirror", "object": "turned", "point_mm": [1, 0, 0], "normal": [1, 0.2, 0]},
+      {"id": "again", "do": "move", "object": "twin", "translate_mm": [1.3, -2.2, 0.7]},
+      {"id": "out", "do": "move", "object": "again", "translate_mm": [25, 0, 0]},
+      {"id": "home", "do": "move", "object": "out", "translate_mm": [-25, 0, 0]})",
+                               {"ball", "turned", "twin", "again", "home", "out"});
+  // 4 pi 12^2.
+  EXPECT_NEAR(all[0].at("area").at("value").get<double>(), 1809.6, 0.02 * 1809.6);
+  for (std::size_t i = 1; i < 5; ++i) {
+    for (const char* key : {"volume", "area"})
+      EXPECT_EQ(all[i].at(key), all[0].at(key)) << all[i].at("id") << " " << key;
+    // What was counted after the motion is told as it is: the centre moved, and some voxels came or went.
+    EXPECT_NE(all[i].at("centroid_mm"), all[0].at("centroid_mm")) << all[i].at("id");
+  }
+  EXPECT_NE(all[1].at("volume_mm3"), all[0].at("volume_mm3")) << "the motion moved whole voxels";
+  // A part of it lies outside of the universe and is no part of its size.
+  EXPECT_LT(all[5].at("volume").at("value").get<double>(),
+            0.9 * all[0].at("volume").at("value").get<double>());
+}
+
+TEST(MovedSize, OfAWindowThatLeavesTheUniverseIsNotTheWholeWindows) {
+  const auto [whole, twin, gone] = [] {
+    const ScratchFolder folder;
+    const Plan plan = ball_plan(folder, R"(
+      {"id": "twin", "do": "mirror", "object": "ball", "point_mm": [1, 0, 0], "normal": [1, 0, 0]},
+      {"id": "gone", "do": "move", "object": "ball", "translate_mm": [32, 0, 0]},
+      {"id": "size_ball", "do": "measure", "object": "ball"},
+      {"id": "size_twin", "do": "measure", "object": "twin"},
+      {"id": "size_gone", "do": "measure", "object": "gone"})");
+    const Json all = measurements_json(plan, evaluate(plan));
+    return std::array<Json, 3>{all[0], all[1], all[2]};
+  }();
+  expect_same_size(twin, whole);
+  const double half_mm3 = 0.5 * ball_mm3(ball_radius_mm);
+  EXPECT_NEAR(gone.at("volume").at("value").get<double>(), half_mm3, 0.02 * half_mm3);
 }
 
 TEST(MovedSize, OfPiecesMovedApartIsTheSumAndNoSurerThanTheLeastSureOfThem) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+#include "planner/plan/answers.h"
 #include "planner/plan/evaluate.h"
 #include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
@@ -73,13 +74,82 @@ TEST_F(Caveats, APartThatLeavesTheUniverseFailsAndSaysHowMuchLeft) {
       << reasons(evaluation.object("within"));
 }
 
+TEST_F(Caveats, APieceThatIsBackWithinTheUniverseHasLostNothing) {
+  const auto move = [&](const char* id, const char* object, double by_mm) {
+    add({{"id", id}, {"do", "move"}, {"object", object}, {"translate_mm", {0, by_mm, 0}}});
+  };
+  move("out", "ball", 25.0);
+  move("back", "out", -25.0);
+  add({{"id", "joined"}, {"do", "combine"}, {"expression", "ball | out"}});
+  move("still_cut", "joined", -4.0);
+  const Evaluation evaluation = evaluated();
+  EXPECT_EQ(evaluation.object("out").certificate->verdict, Verdict::Fail);
+  EXPECT_EQ(evaluation.object("back").certificate->verdict, Verdict::Pass)
+      << reasons(evaluation.object("back"));
+  EXPECT_TRUE(evaluation.object("back").voxel.octree == evaluation.object("ball").voxel.octree);
+  // What a Boolean ends with the universe stays cut.
+  EXPECT_NE(evaluation.object("still_cut").certificate->verdict, Verdict::Pass);
+}
+
 TEST_F(Caveats, AnEmptyObjectProvesNothing) {
-  add({{"id", "away"}, {"do", "combine"}, {"expression", "(ball & top) - ball"}});
+  add({{"id", "cap"}, {"do", "combine"}, {"expression", "ball & top"}});
+  add({{"id", "away"}, {"do", "combine"}, {"expression", "cap - ball"}});
   const Evaluation evaluation = evaluated();
   const Object& away = evaluation.object("away");
   EXPECT_EQ(away.certificate->verdict, Verdict::Warn);
   EXPECT_FALSE(away.certificate->resolved());
   EXPECT_NE(reasons(away).find("could have been missed"), std::string::npos) << reasons(away);
+}
+
+TEST_F(Caveats, AnObjectWithoutItselfIsSurelyEmpty) {
+  add({{"id", "turned"},
+       {"do", "move"},
+       {"object", "ball"},
+       {"rotate", {{"degrees", 30}, {"axis", {0.3, 1, 0.2}}}}});
+  const std::vector<std::pair<const char*, const char*>> empty{
+      {"none", "ball - ball"}, {"neither", "turned ^ turned"}, {"nowhere", "(ball & top) - ball"}};
+  for (const auto& [id, expression] : empty) {
+    add({{"id", id}, {"do", "combine"}, {"expression", expression}});
+    add({{"id", std::string("size_") + id}, {"do", "measure"}, {"object", id}});
+  }
+  add({{"id", "all"}, {"do", "combine"}, {"expression", "ball & ball | top & ~top"}});
+  const Plan plan = parse_plan(plan_.dump(), folder_.path());
+  const Evaluation evaluation = evaluate(plan);
+  for (const auto& [id, expression] : empty) {
+    EXPECT_EQ(evaluation.object(id).certificate->verdict, Verdict::Pass)
+        << id << reasons(evaluation.object(id));
+    EXPECT_TRUE(evaluation.object(id).certificate->resolved()) << id;
+    EXPECT_TRUE(verify::is_evident(*evaluation.object(id).certificate)) << id;
+  }
+  EXPECT_FALSE(evaluation.object("all").is_surely_empty);
+  for (const Json& size : measurements_json(plan, evaluation)) {
+    EXPECT_EQ(size.at("volume").at("value"), 0.0) << size;
+    EXPECT_EQ(size.at("volume").at("half_width"), 0.0) << size;
+    EXPECT_FALSE(size.contains("finding")) << size;
+  }
+}
+
+TEST_F(Caveats, AnObjectThatTheScansBorderCutsOffSaysSo) {
+  add({{"id", "bone"}, {"do", "segment"}, {"scan", "ct"}, {"window", "0:"}});
+  // Seeds choose voxels, so that there is no mesh.
+  add({{"id", "grown"},
+       {"do", "segment"},
+       {"scan", "ct"},
+       {"window", "0:"},
+       {"seeds_mm", SortedJson::array({{0.5, 0.5, 0.5}})}});
+  add({{"id", "moved"}, {"do", "move"}, {"object", "bone"}, {"translate_mm", {1, 2, 0}}});
+  for (const Object& whole : evaluated().objects) EXPECT_FALSE(whole.border_finding) << whole.id;
+  // Each of the six sides, 18 mm from the centre, cuts a disc of 238.8 mm2.
+  voxel::write_scene(tests::ball_scene(20.0, 36), folder_ / "ball.nrrd");
+  const Evaluation evaluation = evaluated();
+  for (const char* id : {"ball", "bone", "grown"}) {
+    const Object& object = evaluation.object(id);
+    ASSERT_TRUE(object.border_finding) << id;
+    EXPECT_NE(object.border_finding->find("the scan's border cuts the object off over 1"), std::string::npos)
+        << *object.border_finding;
+    EXPECT_EQ(object.findings.back(), *object.border_finding) << id;
+  }
+  EXPECT_EQ(evaluation.object("moved").border_finding, evaluation.object("bone").border_finding);
 }
 
 TEST_F(Caveats, SamplesThatAreNoNumbersAreCountedAndForbidAPass) {

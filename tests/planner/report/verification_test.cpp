@@ -82,8 +82,12 @@ TEST_F(VerificationPage, AnObjectThatIsNotResolvedIsMarkedAndNoSuccess) {
   certificate.unresolved = {2.0, "the object's smallest extent is 2.00 voxels, six are needed"};
   verification_.counts = {};
   add(verification_.counts, certificate);
-  EXPECT_EQ(to_json(verification_.counts),
-            Json({{"PASS", 1}, {"WARN", 0}, {"FAIL", 0}, {"not_resolved", 1}, {"without_evidence", 0}}));
+  EXPECT_EQ(to_json(verification_.counts), Json({{"PASS", 1},
+                                                 {"WARN", 0},
+                                                 {"FAIL", 0},
+                                                 {"not_resolved", 1},
+                                                 {"without_evidence", 0},
+                                                 {"without_certificate", 0}}));
   EXPECT_EQ(text_of(verification_.counts), "1 PASS (1 not resolved), 0 WARN, 0 FAIL");
   verification_.answer["certificates"] = Json::array({to_json(certificate)});
   EXPECT_EQ(verification_.answer["certificates"][0]["resolved"], false);
@@ -93,6 +97,18 @@ TEST_F(VerificationPage, AnObjectThatIsNotResolvedIsMarkedAndNoSuccess) {
   EXPECT_NE(page.find(">PASS, not resolved<"), std::string::npos);
   EXPECT_NE(page.find("smallest extent is 2.00 voxels"), std::string::npos);
   EXPECT_EQ(page.find("Observed against allowed"), std::string::npos);
+}
+
+TEST_F(VerificationPage, ObjectsWithoutACertificateAreCountedAsWithoutEvidence) {
+  const Json before = to_json(verification_.counts);
+  EXPECT_EQ(verification_html(verification_).find("without a certificate"), std::string::npos);
+  verification_.counts.without_certificate = 2;
+  const Json counts = to_json(verification_.counts);
+  EXPECT_EQ(counts.at("PASS"), before.at("PASS"));
+  EXPECT_EQ(counts.at("without_certificate"), 2);
+  EXPECT_EQ(counts.at("without_evidence").get<int>(), before.at("without_evidence").get<int>() + 2);
+  EXPECT_NE(text_of(verification_.counts).find("0 FAIL, 2 without a certificate"), std::string::npos);
+  EXPECT_NE(verification_html(verification_).find("2 objects without a certificate"), std::string::npos);
 }
 
 TEST_F(VerificationPage, AmongManyTheWorstAreListed) {

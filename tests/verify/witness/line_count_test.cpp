@@ -116,6 +116,31 @@ TEST(LineReading, ReadsExpressionsAsPointsDo) {
   }
 }
 
+TEST(LineReading, OfAnObjectWithoutItselfHoldsNothing) {
+  const auto scan = ball(12.0, {0.9, 1.0, 1.3});
+  const double c = std::cos(0.4), s = std::sin(0.4);
+  const glm::dmat4 motion(c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, 2, -3, 1, 1);
+  const LineReading window = lines_in_window(scan, 0.0, endless);
+  const LineReading half = lines_in_box({glm::dvec3(-30.0), {30.0, 2.0, 30.0}});
+  const std::map<std::string, LineReading> objects{{"a", window},
+                                                   {"turned", lines_moved(window, motion)},
+                                                   {"half", half},
+                                                   {"part", lines_in_both(half, window)},
+                                                   {"smaller", lines_in_window(scan, 1.0, endless)}};
+  const auto count = [&](const char* text) {
+    return count_along_lines(
+        lines_in_expression(text, [&](const std::string& name) { return objects.at(name); }),
+        {.world_mm = {glm::dvec3(-20), glm::dvec3(20)}});
+  };
+  for (const char* text :
+       {"a - a", "a ^ a", "turned - turned", "part - part", "part - a", "(a & half) - part"}) {
+    EXPECT_LT(count(text).volume_mm3, 1e-6) << text;
+    EXPECT_LT(count(text).area_mm2, 1.0) << text;
+  }
+  // A shell of a hundredth of a millimetre is something: 4 pi 12 mm squared times that.
+  EXPECT_NEAR(count("a - smaller").volume_mm3, 18.1, 2.0);
+}
+
 TEST(LineReading, OfTooManyOperandsThereIsNone) {
   const auto scan = ball(3.0, glm::dvec3(1.0));
   const auto lookup = [&](const std::string&) { return lines_in_window(scan, 0.0, endless); };
