@@ -34,9 +34,10 @@ class Attributes {
   Attributes(const DicomFile& file, const DicomFile* shared, const DicomFile* own) : file_(&file) {
     for (const DicomFile* groups : {own, shared}) {
       if (groups == nullptr) continue;
-      for (const DicomTag group : {DicomTag{0x00209113}, DicomTag{0x00209116}, DicomTag{0x00289110},
-                                   DicomTag{0x00289145}, DicomTag{0x00209111}, DicomTag{0x00189314},
-                                   DicomTag{0x00189325}, DicomTag{0x00189341}, DicomTag{0x00189117}})
+      for (const DicomTag group :
+           {DicomTag{0x00209113}, DicomTag{0x00209116}, DicomTag{0x00289110}, DicomTag{0x00289145},
+            DicomTag{0x00209111}, DicomTag{0x00189314}, DicomTag{0x00189325}, DicomTag{0x00189341},
+            DicomTag{0x00189117}, DicomTag{0x00189118}, DicomTag{0x00209253}})
         for (DicomFile& item : groups->items(group)) groups_.push_back(std::move(item));
     }
   }
@@ -61,9 +62,9 @@ class Attributes {
     if (tag == 0x00209128)  // VR UL
       return word() ? std::to_string(*word()) : std::string();
     const std::string found = text(tag);
-    // VR FL, which some writers make a decimal string
+    // VR FL, which some writers make a decimal string. The bytes of a small number, as of 0, are no text.
     if ((tag == 0x00209241 || tag == 0x00209245) && word() &&
-        found.find_first_not_of("0123456789.+- ") != std::string::npos)
+        (found.empty() || found.find_first_not_of("0123456789.+- ") != std::string::npos))
       return print("%g", static_cast<double>(std::bit_cast<float>(*word())));
     return found;
   }
