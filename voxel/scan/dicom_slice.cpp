@@ -439,20 +439,28 @@ std::optional<NoSlice> take_lut(const DicomFile& file, DicomSlice& slice) {
   return std::nullopt;
 }
 
-/// "slope 0.5, intercept -3, unit g/ml" of a Real World Value Mapping; empty if there is none.
-std::string real_world_of(const DicomFile& file, const DicomFile* own, const DicomFile* shared) {
+/// The frame's own mappings, else the shared ones, else the file's.
+std::vector<RealWorldMapping> real_world_of(const DicomFile& file, const DicomFile* own,
+                                            const DicomFile* shared, bool is_signed) {
+  std::vector<RealWorldMapping> found;
   for (const DicomFile* from : {own, shared, &file}) {
-    if (from == nullptr) continue;
+    if (from == nullptr || !found.empty()) continue;
     for (const DicomFile& item : from->items(0x00409096)) {
-      const auto slope = item.float_double(0x00409225), intercept = item.float_double(0x00409224);
-      std::string words = slope && intercept ? print("slope %g, intercept %g", *slope, *intercept)
-                                             : std::string("a table of values");
-      for (const DicomFile& unit : item.items(0x004008ea))
-        words += ", unit " + unit.readable_text(0x00080100);
-      return words;
+      const auto stored = [&](DicomTag tag, DicomTag wide) -> std::optional<double> {
+        if (const auto number = item.float_double(wide)) return number;
+        const auto word = item.unsigned_short(tag);
+        if (!word) return std::nullopt;
+        return is_signed ? static_cast<std::int16_t>(*word) : static_cast<double>(*word);
+      };
+      RealWorldMapping& mapping = found.emplace_back();
+      mapping.slope = item.float_double(0x00409225);
+      mapping.intercept = item.float_double(0x00409224);
+      mapping.first = stored(0x00409216, 0x00409214);
+      mapping.last = stored(0x00409211, 0x00409213);
+      for (const DicomFile& unit : item.items(0x004008ea)) mapping.unit = unit.readable_text(0x00080100);
     }
   }
-  return {};
+  return found;
 }
 
 /// A count of two bytes; 0 if the attribute is absent.
@@ -660,7 +668,7 @@ std::variant<std::vector<DicomSlice>, NoSlice> slices_of(const DicomFile& file,
       return NoSlice{"a multi-frame image without the positions of its frames; export it as single frames",
                      NoSlice::Kind::Unusable};
     if (auto flaw = take_frame(file, attributes, frames, slices[i])) return std::move(*flaw);
-    slices[i].real_world = real_world_of(file, own_groups, shared_groups);
+    slices[i].real_world = real_world_of(file, own_groups, shared_groups, slices[i].pixels.is_signed);
   }
   if (own.empty() && frames > 1)
     if (auto flaw = place_frames(file, slices)) return std::move(*flaw);
