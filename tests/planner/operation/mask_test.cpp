@@ -62,6 +62,28 @@ TEST(MaskStep, AStructureThatReachesBeyondTheScanIsReported) {
   EXPECT_EQ(findings(9).find("beyond the scan"), std::string::npos) << findings(9);
 }
 
+TEST(MaskStep, AnOffsetOfContoursIsAppliedAndSaid) {
+  const ScratchFolder folder;
+  const std::vector<std::vector<glm::dvec3>> contours{
+      rectangle({-8, -8}, {8, 8}, 0), rectangle({-8, -8}, {8, 8}, 2), rectangle({-8, -8}, {8, 8}, 4)};
+  const auto made = [&](const std::string& offset) {
+    std::ofstream(folder / "rs.dcm", std::ios::binary)
+        << structure_set({{1, "A", contours, "CLOSED_PLANAR", 0.0, offset}});
+    const Evaluation evaluation =
+        evaluate(ball_plan(folder, R"({"id": "a", "do": "mask", "slices": "rs.dcm"})"));
+    std::string all;
+    for (const std::string& finding : evaluation.object("a").findings) all += finding + "\n";
+    return std::pair{evaluation.object("a").voxel.measures.centroid_mm.value().z, all};
+  };
+  const auto still = made(""), offset = made("0\\0\\6");
+  EXPECT_NEAR(offset.first - still.first, 6.0, 1e-6);
+  EXPECT_EQ(still.second.find("ContourOffsetVector"), std::string::npos) << still.second;
+  EXPECT_NE(offset.second.find("3 contours are moved by ContourOffsetVector, as the file states, by up to "
+                               "(0, 0, 6) mm"),
+            std::string::npos)
+      << offset.second;
+}
+
 TEST(MaskStep, WhatIsCutAtTheCubeIsAFailWithItsVolume) {
   const ScratchFolder folder;
   const auto findings = [&](double x_mm) {
