@@ -6,6 +6,8 @@
 #include <set>
 
 #include "planner/table/number_format.h"
+#include "voxel/solid/edge_tree.h"
+#include "voxel/solid/polygon.h"
 #include "voxel/solid/polygon_overlaps.h"
 
 namespace octotomy::planner {
@@ -97,6 +99,82 @@ void tell_crossings(const voxel::SliceMask& mask, const std::string& where,
                        unknown.text() + " mm");
 }
 
+/// A corner of a contour in its view and in the voxels of a lattice.
+struct Corner {
+  glm::dvec2 p_mm;
+  glm::dvec3 p_voxel;
+};
+
+/// The part of a closed line within a box of voxels, side by side (Sutherland and Hodgman, Comm. ACM 17,
+/// 1974). Where the part falls into several, edges between them run along the box twice and enclose nothing.
+std::vector<Corner> clipped(std::vector<Corner> line, const voxel::Lattice& box) {
+  for (int side = 0; side < 6 && !line.empty(); ++side) {
+    const int axis = side / 2;
+    const double sign = side % 2 == 0 ? -1.0 : 1.0, end = side % 2 == 0 ? -0.5 : box.dims[axis] - 0.5;
+    const auto beyond = [&](const Corner& corner) { return sign * (corner.p_voxel[axis] - end); };
+    std::vector<Corner> within;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const Corner& a = line[i == 0 ? line.size() - 1 : i - 1];
+      const Corner& b = line[i];
+      const double at_a = beyond(a), at_b = beyond(b);
+      if ((at_a > 0.0) != (at_b > 0.0)) {
+        const double t = at_a / (at_a - at_b);
+        within.push_back({glm::mix(a.p_mm, b.p_mm, t), glm::mix(a.p_voxel, b.p_voxel, t)});
+      }
+      if (at_b <= 0.0) within.push_back(b);
+    }
+    line = std::move(within);
+  }
+  return line;
+}
+
+double area_mm2(const std::vector<Corner>& line) {
+  std::vector<glm::dvec2> polygon;
+  polygon.reserve(line.size());
+  for (const Corner& corner : line) polygon.push_back(corner.p_mm);
+  return polygon.size() < 3 ? 0.0 : std::abs(voxel::signed_area(polygon));
+}
+
+struct Volumes {
+  double drawn_mm3 = 0.0, beyond_mm3 = 0.0;
+};
+
+/// The volume that contours enclose and the part of it beyond a lattice's samples: areas by the thickness
+/// that each plane speaks for. Exact but for crossing contours and for planes whose slab ends beyond.
+Volumes volumes_of(const voxel::SliceMask& mask, const voxel::Lattice& box) {
+  Volumes volumes;
+  const auto& slices = mask.slices;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const std::size_t below = i == 0 ? 0 : i - 1, above = i + 1 == slices.size() ? i : i + 1;
+    const double gaps = static_cast<double>(above - below);
+    const double thick_mm = (slices[above].position_mm - slices[below].position_mm) / std::max(gaps, 1.0);
+    const auto& polygons = slices[i].polygons_mm;
+    std::vector<voxel::EdgeTree> edges;
+    for (const auto& polygon : polygons) edges.emplace_back(std::vector<std::vector<glm::dvec2>>{polygon});
+    for (std::size_t own = 0; own < polygons.size(); ++own) {
+      const auto& polygon = polygons[own];
+      // A contour within an odd number of others is a hole's.
+      double sign = 1.0;
+      for (std::size_t other = 0; other < polygons.size(); ++other)
+        if (other != own && edges[other].contains(polygon.front())) sign = -sign;
+      std::vector<Corner> line;
+      for (const glm::dvec2& p : polygon)
+        line.push_back({p, box.voxel(on_plane(mask.view, p, slices[i].position_mm))});
+      const double whole_mm2 = area_mm2(line);
+      volumes.drawn_mm3 += sign * thick_mm * whole_mm2;
+      volumes.beyond_mm3 += sign * thick_mm * (whole_mm2 - area_mm2(clipped(std::move(line), box)));
+    }
+  }
+  return volumes;
+}
+
+/// "about 12 % of its volume, 3400 mm3,".
+std::string share_of(const Volumes& volumes) {
+  const double percent = 100.0 * volumes.beyond_mm3 / volumes.drawn_mm3;
+  return "about " + three_figures(percent) + " % of its volume, " + three_figures(volumes.beyond_mm3) +
+         " mm3,";
+}
+
 }  // namespace
 
 void add_contour_findings(voxel::SliceMask& mask, const std::string& where,
@@ -151,8 +229,19 @@ std::optional<std::string> beyond_scan(const voxel::SliceMask& mask, const voxel
   }
   if (planes == 0) return std::nullopt;
   return where + ": reaches beyond the scan in " + std::to_string(planes) + " of " + std::to_string(drawn) +
-         " planes, by up to " + three_figures(farthest_mm) + " mm " + at +
-         ": nothing was measured there; was it drawn on another scan?";
+         " planes, by up to " + three_figures(farthest_mm) + " mm " + at + ", with " +
+         share_of(volumes_of(mask, scan)) +
+         " there: nothing was measured there; was it drawn on another scan?";
+}
+
+std::optional<std::string> cut_at_cube(const voxel::SliceMask& mask, const voxel::Universe& universe,
+                                       const std::string& where) {
+  const Volumes volumes = volumes_of(mask, universe.lattice());
+  // Less than a voxel is what decimals round at the border.
+  const glm::dvec3 voxel_mm = universe.lattice().spacing_mm();
+  if (!(volumes.beyond_mm3 > voxel_mm.x * voxel_mm.y * voxel_mm.z)) return std::nullopt;
+  return "FAIL: " + where + ": is cut at the border of the octree's cube: " + share_of(volumes) +
+         " lies beyond and is left out";
 }
 
 }  // namespace octotomy::planner

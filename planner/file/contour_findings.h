@@ -26,9 +26,14 @@ void add_contour_findings(voxel::SliceMask& mask, const std::string& where,
 /// else than painting them would.
 std::vector<std::string> findings_of(const voxel::Region& region);
 
-/// A line on contours that reach beyond a scan's samples: in how many planes, how far and where; none where
-/// all lie within. `where` begins the line.
+/// A line on contours that reach beyond a scan's samples: in how many planes, how far, where and with how
+/// much of the volume; none where all lie within. `where` begins the line.
 std::optional<std::string> beyond_scan(const voxel::SliceMask& mask, const voxel::Lattice& scan,
+                                       const std::string& where);
+
+/// A line, a FAIL, on contours of which a part lies beyond the cube of the octree that they become, and is
+/// left out: how much. None where all lies within.
+std::optional<std::string> cut_at_cube(const voxel::SliceMask& mask, const voxel::Universe& universe,
                                        const std::string& where);
 
 }  // namespace octotomy::planner

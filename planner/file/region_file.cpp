@@ -427,6 +427,14 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
   if (!found.frame_uids.empty()) drawn.identity->frame_uids = found.frame_uids;
   if (found.degenerate > 0) drawn.findings.push_back(where + ": left out what encloses nothing: " + others);
   drawn.mask.view = view_across(normal);
+  if (found.moved > 0) {
+    const glm::dvec3 by_mm = found.farthest_offset_mm;
+    drawn.findings.push_back(where + ": " + std::to_string(found.moved) +
+                             (found.moved == 1 ? " contour is" : " contours are") +
+                             " moved by ContourOffsetVector, as the file states, by up to (" +
+                             plain(by_mm.x) + ", " + plain(by_mm.y) + ", " + plain(by_mm.z) +
+                             ") mm; other programs may leave it out: compare the place with the scan");
+  }
   const PlaneDistances distances = distances_of_planes(set.structures, drawn.mask.view);
   Slices planes = planes_of(found, drawn.mask.view, distances, where, drawn.findings);
   const bool is_slab = !std::isfinite(distances.nearest_mm) && found.slab_mm > 0.0;

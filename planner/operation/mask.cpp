@@ -121,6 +121,9 @@ void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
         read_slices(bench.folder / mask.slices, SlicesOptions{mask.structure, mask.bridge_mm});
     const auto found = findings_of_slices(mask, drawn, bench.scans);
     made.findings.insert(made.findings.end(), found.begin(), found.end());
+    if (auto cut = cut_at_cube(drawn.mask, bench.universe, mask.slices.generic_string()))
+      made.findings.push_back(*cut +
+                              ": the plan's cube holds its scans; check that the contours belong to them");
     const voxel::Expression slices = std::move(drawn.mask);
     made.symbol = made.symbol ? *made.symbol & slices : slices;
   }

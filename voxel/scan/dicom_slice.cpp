@@ -34,12 +34,15 @@ class Attributes {
   Attributes(const DicomFile& file, const DicomFile* shared, const DicomFile* own) : file_(&file) {
     for (const DicomFile* groups : {own, shared}) {
       if (groups == nullptr) continue;
-      for (const DicomTag group : {DicomTag{0x00209113}, DicomTag{0x00209116}, DicomTag{0x00289110},
-                                   DicomTag{0x00289145}, DicomTag{0x00209111}, DicomTag{0x00189314},
-                                   DicomTag{0x00189325}, DicomTag{0x00189341}, DicomTag{0x00189117}})
+      for (const DicomTag group :
+           {DicomTag{0x00209113}, DicomTag{0x00209116}, DicomTag{0x00289110}, DicomTag{0x00289145},
+            DicomTag{0x00209111}, DicomTag{0x00189314}, DicomTag{0x00189325}, DicomTag{0x00189341},
+            DicomTag{0x00189117}, DicomTag{0x00189118}, DicomTag{0x00209253}})
         for (DicomFile& item : groups->items(group)) groups_.push_back(std::move(item));
     }
   }
+  /// Attributes that an item states for this frame, too, before the file's own.
+  void add(const DicomFile& item) { groups_.push_back(item); }
 
   std::string text(DicomTag tag) const {
     return first<std::string>([&](const DicomFile& from) {
@@ -61,9 +64,9 @@ class Attributes {
     if (tag == 0x00209128)  // VR UL
       return word() ? std::to_string(*word()) : std::string();
     const std::string found = text(tag);
-    // VR FL, which some writers make a decimal string
+    // VR FL, which some writers make a decimal string. The bytes of a small number, as of 0, are no text.
     if ((tag == 0x00209241 || tag == 0x00209245) && word() &&
-        found.find_first_not_of("0123456789.+- ") != std::string::npos)
+        (found.empty() || found.find_first_not_of("0123456789.+- ") != std::string::npos))
       return print("%g", static_cast<double>(std::bit_cast<float>(*word())));
     return found;
   }
@@ -438,20 +441,28 @@ std::optional<NoSlice> take_lut(const DicomFile& file, DicomSlice& slice) {
   return std::nullopt;
 }
 
-/// "slope 0.5, intercept -3, unit g/ml" of a Real World Value Mapping; empty if there is none.
-std::string real_world_of(const DicomFile& file, const DicomFile* own, const DicomFile* shared) {
+/// The frame's own mappings, else the shared ones, else the file's.
+std::vector<RealWorldMapping> real_world_of(const DicomFile& file, const DicomFile* own,
+                                            const DicomFile* shared, bool is_signed) {
+  std::vector<RealWorldMapping> found;
   for (const DicomFile* from : {own, shared, &file}) {
-    if (from == nullptr) continue;
+    if (from == nullptr || !found.empty()) continue;
     for (const DicomFile& item : from->items(0x00409096)) {
-      const auto slope = item.float_double(0x00409225), intercept = item.float_double(0x00409224);
-      std::string words = slope && intercept ? print("slope %g, intercept %g", *slope, *intercept)
-                                             : std::string("a table of values");
-      for (const DicomFile& unit : item.items(0x004008ea))
-        words += ", unit " + unit.readable_text(0x00080100);
-      return words;
+      const auto stored = [&](DicomTag tag, DicomTag wide) -> std::optional<double> {
+        if (const auto number = item.float_double(wide)) return number;
+        const auto word = item.unsigned_short(tag);
+        if (!word) return std::nullopt;
+        return is_signed ? static_cast<std::int16_t>(*word) : static_cast<double>(*word);
+      };
+      RealWorldMapping& mapping = found.emplace_back();
+      mapping.slope = item.float_double(0x00409225);
+      mapping.intercept = item.float_double(0x00409224);
+      mapping.first = stored(0x00409216, 0x00409214);
+      mapping.last = stored(0x00409211, 0x00409213);
+      for (const DicomFile& unit : item.items(0x004008ea)) mapping.unit = unit.readable_text(0x00080100);
     }
   }
-  return {};
+  return found;
 }
 
 /// A count of two bytes; 0 if the attribute is absent.
@@ -589,6 +600,96 @@ std::size_t most_frames(const DicomFile& file, const DicomSlice& slice) {
   return held / std::max<std::size_t>(frame_bytes(slice), 1);
 }
 
+constexpr DicomTag detector_vector_tag = 0x00540020;
+constexpr DicomTag slice_vector_tag = 0x00540080;
+
+bool is_nuclear(const std::string& class_uid) {
+  return class_uid == "1.2.840.10008.5.1.4.1.1.20";
+}
+
+/// Numbers from 1 on, one for each frame, of a nuclear medicine image (DICOM PS3.3, C.8.4.8); none if the
+/// file has not one for each.
+std::optional<std::vector<std::uint16_t>> numbers_of_frames(const DicomFile& file, DicomTag vector,
+                                                            std::size_t frames) {
+  std::vector<std::uint16_t> numbers = file.unsigned_shorts(vector);
+  if (numbers.size() != frames || std::find(numbers.begin(), numbers.end(), 0) != numbers.end())
+    return std::nullopt;
+  return numbers;
+}
+
+/// The detector's item of each frame of a nuclear medicine image, which places it; empty if there is none.
+std::vector<DicomFile> detectors_of_frames(const DicomFile& file, std::size_t frames) {
+  const std::vector<DicomFile> detectors = file.items(0x00540022);
+  std::vector<DicomFile> found;
+  if (detectors.empty()) return found;
+  const auto numbers = numbers_of_frames(file, detector_vector_tag, frames);
+  for (std::size_t i = 0; i < frames; ++i) {
+    const std::size_t number = numbers ? (*numbers)[i] : 1;
+    found.push_back(detectors[std::min(number, detectors.size()) - 1]);
+  }
+  return found;
+}
+
+/// The reason if a nuclear medicine image holds no reconstructed slices.
+std::optional<NoSlice> not_reconstructed(const DicomFile& file, std::size_t frames) {
+  const std::string types = file.text(0x00080008);
+  std::string kind = types;
+  for (int bar = 0; bar < 2; ++bar)
+    kind = kind.find('\\') == std::string::npos ? std::string() : kind.substr(kind.find('\\') + 1);
+  kind = kind.substr(0, kind.find('\\'));
+  if (kind.starts_with("RECON")) return std::nullopt;
+  for (const char* projection : {"STATIC", "DYNAMIC", "GATED", "WHOLE BODY", "TOMO", "GATED TOMO"})
+    if (kind == projection)
+      return NoSlice{
+          "a nuclear medicine image of the kind " + kind +
+              ", whose frames are projections and no slices: export the reconstruction (RECON TOMO)",
+          NoSlice::Kind::Unusable};
+  if (numbers_of_frames(file, slice_vector_tag, frames)) return std::nullopt;
+  return NoSlice{
+      "a nuclear medicine image whose ImageType does not state RECON TOMO and that has no "
+      "SliceVector: its frames may be projections; export the reconstruction",
+      NoSlice::Kind::Unusable};
+}
+
+/// What orders the frames of a nuclear medicine image besides their places, as traits, which part them into
+/// stacks: its time slots, energy windows and the like.
+void take_frame_vectors(const DicomFile& file, std::vector<DicomSlice>& slices) {
+  struct Vector {
+    DicomTag tag;
+    const char* check;
+    const char* words;
+  };
+  for (const Vector& vector :
+       {Vector{0x00540010, "acquisition", "energy window"},
+        Vector{detector_vector_tag, "acquisition", "detector"}, Vector{0x00540050, "acquisition", "rotation"},
+        Vector{0x00540060, "phase", "R-R interval"}, Vector{0x00540070, "phase", "time slot"},
+        Vector{0x00540030, "phase", "dynamic phase"}, Vector{0x00540100, "phase", "time slice"}}) {
+    const auto numbers = numbers_of_frames(file, vector.tag, slices.size());
+    if (!numbers || std::all_of(numbers->begin(), numbers->end(),
+                                [&](std::uint16_t number) { return number == numbers->front(); }))
+      continue;
+    for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait)
+      if (dicom_traits[trait].check == std::string_view(vector.check))
+        for (std::size_t i = 0; i < slices.size(); ++i) {
+          std::string& value = slices[i].traits[trait];
+          value +=
+              (value.empty() ? "" : ", ") + std::string(vector.words) + " " + std::to_string((*numbers)[i]);
+        }
+  }
+}
+
+/// The attribute by which FrameIncrementPointer states that frames follow each other in time; empty if it
+/// does not.
+std::string time_between_frames(const DicomFile& file) {
+  const std::vector<std::uint16_t> pointers = file.unsigned_shorts(0x00280009);
+  for (std::size_t i = 0; i + 1 < pointers.size(); i += 2) {
+    const DicomTag tag = DicomTag{pointers[i]} << 16 | pointers[i + 1];
+    if (tag == 0x00181063) return "FrameTime";
+    if (tag == 0x00181065) return "FrameTimeVector";
+  }
+  return {};
+}
+
 /// Places frames that have no positions of their own along the normal, from the first one's on. Returns the
 /// reason if the header states no distances.
 std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlice>& slices) {
@@ -604,6 +705,11 @@ std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlic
   const glm::dvec3 normal = glm::cross(first.along_row, first.along_column) / scale;
   std::vector<double> offsets_mm;
   std::string how;
+  const std::string time = time_between_frames(file);
+  const auto slice_numbers = numbers_of_frames(file, slice_vector_tag, frames);
+  const auto place = [&](std::size_t i) {
+    return slice_numbers ? static_cast<double>((*slice_numbers)[i]) : static_cast<double>(i);
+  };
   for (const NamedTag& named : {NamedTag{0x3004000c, "GridFrameOffsetVector", true},
                                 NamedTag{0x00182005, "SliceLocationVector", true}})
     if (const auto vector = file.decimals(named.tag); vector && vector->size() == frames && how.empty()) {
@@ -615,8 +721,17 @@ std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlic
     const double step_mm =
         named.tag == 0x00180088 ? first.spacing_tag_mm.value_or(0.0) : first.thickness_mm.value_or(0.0);
     if (!how.empty() || step_mm == 0.0 || !(std::abs(step_mm) < 1e6)) continue;
-    for (std::size_t i = 0; i < frames; ++i) offsets_mm.push_back(step_mm * static_cast<double>(i));
-    how = print("%s, %.6g mm", named.name, step_mm);
+    // A film of one slice has a thickness, but no distance of slices.
+    if (!time.empty() && named.tag == 0x00180050)
+      return NoSlice{
+          "a multi-frame image whose frames follow each other in time (FrameIncrementPointer names " + time +
+              ") and have no distance: a film is no volume. If its frames are slices, state "
+              "SpacingBetweenSlices",
+          NoSlice::Kind::Unusable};
+    for (std::size_t i = 0; i < frames; ++i) offsets_mm.push_back(step_mm * place(i));
+    how = (slice_numbers ? "SliceVector and " : "") + print("%s, %.6g mm", named.name, step_mm);
+    if (!time.empty())
+      how += ", although FrameIncrementPointer names " + time + ", as of a film, which is no volume";
   }
   if (how.empty())
     return NoSlice{
@@ -648,21 +763,35 @@ std::variant<std::vector<DicomSlice>, NoSlice> slices_of(const DicomFile& file,
   if (own.empty() && frames > 1 && frames > most_frames(file, first))
     return NoSlice{print("cut short: the header counts %.0f frames, the pixels are fewer", claimed),
                    NoSlice::Kind::Damaged};
+  const bool is_nuclear_medicine = own.empty() && is_nuclear(first.class_uid);
+  if (is_nuclear_medicine && frames > 1)
+    if (auto flaw = not_reconstructed(file, frames)) return std::move(*flaw);
+  const std::vector<DicomFile> detectors =
+      is_nuclear_medicine ? detectors_of_frames(file, frames) : std::vector<DicomFile>();
   std::vector<DicomSlice> slices(frames, first);
   for (std::size_t i = 0; i < slices.size(); ++i) {
     const DicomFile* own_groups = own.empty() ? nullptr : &own[i];
     const DicomFile* shared_groups = shared.empty() ? nullptr : &shared.front();
-    const Attributes attributes(file, shared_groups, own_groups);
+    Attributes attributes(file, shared_groups, own_groups);
+    if (!detectors.empty()) attributes.add(detectors[i]);
     slices[i].frame = static_cast<int>(i);
     if (slices.size() > 1) slices[i].instance_uid.append("#").append(std::to_string(i + 1));
     if (own.empty() && frames > 1 && attributes.text(0x00200032).empty())
-      return NoSlice{"a multi-frame image without the positions of its frames; export it as single frames",
-                     NoSlice::Kind::Unusable};
+      return NoSlice{
+          is_nuclear_medicine
+              ? "a nuclear medicine image without the position of its first slice: state "
+                "ImagePositionPatient "
+                "and ImageOrientationPatient in DetectorInformationSequence, or read the pixels by --raw "
+                "with "
+                "--spacing"
+              : "a multi-frame image without the positions of its frames; export it as single frames",
+          NoSlice::Kind::Unusable};
     if (auto flaw = take_frame(file, attributes, frames, slices[i])) return std::move(*flaw);
-    slices[i].real_world = real_world_of(file, own_groups, shared_groups);
+    slices[i].real_world = real_world_of(file, own_groups, shared_groups, slices[i].pixels.is_signed);
   }
   if (own.empty() && frames > 1)
     if (auto flaw = place_frames(file, slices)) return std::move(*flaw);
+  if (is_nuclear_medicine) take_frame_vectors(file, slices);
   if (auto flaw = take_pixels(file, slices)) return std::move(*flaw);
   return slices;
 }

@@ -48,6 +48,13 @@ struct ModalityLut {
   std::string type;  ///< the unit: "HU", "US"
 };
 
+/// A Real World Value Mapping (DICOM PS3.3, C.7.6.16.2.11), which stands beside the rescale.
+struct RealWorldMapping {
+  std::optional<double> slope, intercept;  ///< none of a mapping by a table
+  std::optional<double> first, last;       ///< stored values that it is stated for
+  std::string unit;                        ///< as coded, in UCUM: "[hnsf'U]"
+};
+
 /// One file's part in an image that was stored in several files (DICOM PS3.3, C.7.6.16.1).
 struct Concatenation {
   std::string uid;  ///< empty: the image is in one file
@@ -85,10 +92,10 @@ struct DicomSlice {
   std::optional<double> intercept;
   std::shared_ptr<const ModalityLut> lut;  ///< applied instead of slope and intercept
   std::optional<DicomPadding> padding;
-  std::string decimal_commas;          ///< attributes whose numbers have a comma for the point, for people
-  std::string real_world;              ///< a Real World Value Mapping, for people
-  std::optional<double> location_mm;   ///< SliceLocation, of no stated origin
-  std::string patient_orientation;     ///< PatientOrientation: "L\\P"
+  std::string decimal_commas;  ///< attributes whose numbers have a comma for the point, for people
+  std::vector<RealWorldMapping> real_world;  ///< not applied
+  std::optional<double> location_mm;         ///< SliceLocation, of no stated origin
+  std::string patient_orientation;           ///< PatientOrientation: "L\\P"
   std::string assumed_coding;          ///< how the file's coding was read against its header, for people
   std::string doubts;                  ///< what the header says against a measurement, for people
   std::string assumed_modality;        ///< what the header states where the images' class contradicts it

@@ -186,7 +186,10 @@ class Words {
       // A time tells stacks apart only where they were parted by it.
       if (role == TraitRole::Order && value.find(" of ") == std::string::npos) continue;
       const bool is_shown = role == TraitRole::Stack || role == TraitRole::Order || value.size() == 2;
-      add(std::string(dicom_traits[trait].words) + (is_shown ? " " + value : " of its own"));
+      if (is_shown && value.empty())
+        add(std::string("no ") + dicom_traits[trait].words);
+      else
+        add(std::string(dicom_traits[trait].words) + (is_shown ? " " + value : " of its own"));
     }
     if (plane_differs_) add(plane_of(slice));
     if (size_differs_ || std::any_of(extremes_.begin(), extremes_.end(),

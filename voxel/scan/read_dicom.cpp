@@ -45,7 +45,7 @@ class SeriesReader {
 
   Scene run() {
     options_.progress.at(0.0);
-    const Stack stack = stack_of_series(path_, options_, scene_.audit);
+    Stack stack = stack_of_series(path_, options_, scene_.audit);
     options_.progress.at(0.1);
     const Plan plan = slice_plan(stack, path_, scene_.audit);
     scene_.holes = plan.holes;
@@ -337,21 +337,34 @@ class SeriesReader {
     return found;
   }
 
+  /// The values that a stored padding is read as by a slice's rescale.
+  static Range read_as(const DicomPadding& padding, const DicomSlice& slice) {
+    const double slope = slice.slope.value_or(1.0) == 0.0 ? 1.0 : slice.slope.value_or(1.0);
+    const double a = slope * padding.low + slice.intercept.value_or(0.0),
+                 b = slope * padding.high + slice.intercept.value_or(0.0);
+    return {std::min(a, b), std::max(a, b)};
+  }
+
   /// The values that the header's padding would be read as: of all slices, without one that has a LUT.
   static std::optional<Range> padding_values(const Stack& stack) {
     std::optional<Range> values;
     for (const DicomSlice& slice : stack.slices) {
       if (!slice.padding) continue;
       if (slice.lut) return std::nullopt;
-      for (const double stored : {slice.padding->low, slice.padding->high}) {
-        const double slope = slice.slope.value_or(1.0) == 0.0 ? 1.0 : slice.slope.value_or(1.0);
-        const double value = slope * stored + slice.intercept.value_or(0.0);
-        if (!values) values = Range{value, value};
-        values->low = std::min(values->low, value);
-        values->high = std::max(values->high, value);
-      }
+      const Range own = read_as(*slice.padding, slice);
+      if (!values) values = own;
+      values->low = std::min(values->low, own.low);
+      values->high = std::max(values->high, own.high);
     }
     return values;
+  }
+
+  /// Whether slices state paddings that differ.
+  static bool is_padding_mixed(const Stack& stack) {
+    const std::optional<DicomPadding> usual = usual_padding(stack);
+    return usual && std::any_of(stack.slices.begin(), stack.slices.end(), [&](const DicomSlice& slice) {
+             return slice.padding && (slice.padding->low != usual->low || slice.padding->high != usual->high);
+           });
   }
 
   /// Whether most padded samples have measured ones on two sides or more. Padding fills areas.
@@ -375,6 +388,86 @@ class SeriesReader {
     return 2 * lonely > padded;
   }
 
+  /// The padding that most of the slices with one state. None: no slice states one.
+  static std::optional<DicomPadding> usual_padding(const Stack& stack) {
+    std::map<std::pair<double, double>, std::size_t> counts;
+    for (const DicomSlice& slice : stack.slices)
+      if (slice.padding) ++counts[{slice.padding->low, slice.padding->high}];
+    const auto most = std::max_element(counts.begin(), counts.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most == counts.end()) return std::nullopt;
+    return DicomPadding{most->first.first, most->first.second};
+  }
+
+  /// Marks the samples of an image from `low` to `high` that reach its rim through others alike. Returns how
+  /// many.
+  template <typename Sample>
+  static std::size_t mark_from_rim(std::span<Sample> image, int width, const Range& values, Sample mark) {
+    const auto columns = static_cast<std::size_t>(width), rows = image.size() / columns;
+    std::vector<std::size_t> reached;
+    std::size_t count = 0;
+    const auto reach = [&](std::size_t at) {
+      const auto value = static_cast<double>(image[at]);
+      if (value < values.low || value > values.high || image[at] == mark) return;
+      image[at] = mark;
+      ++count;
+      reached.push_back(at);
+    };
+    for (std::size_t x = 0; x < columns; ++x) {
+      reach(x);
+      reach((rows - 1) * columns + x);
+    }
+    for (std::size_t y = 0; y < rows; ++y) {
+      reach(y * columns);
+      reach(y * columns + columns - 1);
+    }
+    while (!reached.empty()) {
+      const std::size_t at = reached.back(), x = at % columns, y = at / columns;
+      reached.pop_back();
+      if (x > 0) reach(at - 1);
+      if (x + 1 < columns) reach(at + 1);
+      if (y > 0) reach(at - columns);
+      if (y + 1 < rows) reach(at + columns);
+    }
+    return count;
+  }
+
+  /// Slices without PixelPaddingValue in a series whose others state one: what they hold of the others' usual
+  /// padding at their rims is assumed to be padding. Within the body the same value may be a measurement.
+  template <typename Samples>
+  void assume_padding(Stack& stack, Samples& samples) {
+    using Sample = typename Samples::value_type;
+    const std::optional<DicomPadding> usual = usual_padding(stack);
+    if (!usual) return;
+    const std::size_t area = samples.size() / stack.slices.size();
+    std::vector<std::string> names;
+    std::size_t count = 0, without = 0;
+    for (std::size_t i = 0; i < stack.slices.size(); ++i) {
+      DicomSlice& slice = stack.slices[i];
+      if (slice.padding) continue;
+      ++without;
+      if (slice.lut) continue;
+      const std::size_t marked =
+          mark_from_rim(std::span<Sample>(samples).subspan(i * area, area), slice.size_px.x,
+                        read_as(*usual, slice), static_cast<Sample>(*scene_.padding));
+      if (marked == 0) continue;
+      slice.padding = usual;
+      count += marked;
+      names.push_back(slice.name);
+    }
+    if (names.empty()) return;
+    find("unstated_padding", Verdict::Warn,
+         slices(without) +
+             print(" state no PixelPaddingValue, as %zu of the series do (stored %g",
+                   stack.slices.size() - without, usual->low) +
+             (usual->high > usual->low ? print(" to %g", usual->high) : "") +
+             print("): %zu samples of that value in ", count) + slices(names.size()) +
+             ", all at the rims of their images, are assumed to be padding, too; if they are measurements, "
+             "take PixelPaddingValue out of the other slices: " +
+             listed(names),
+         names);
+  }
+
   void take_other_padding(const Stack& stack, std::string without) {
     if (stack.first().modality == "CT") take_unstated_padding(scene_);
     if (!scene_.padding) find("padding", Verdict::Pass, std::move(without));
@@ -383,14 +476,16 @@ class SeriesReader {
   /// Pixels beyond the scanner's field of view hold a padding value, which is no measurement. They become one
   /// value below all measured ones: the header's own where it is, else the mark that they were decoded to.
   template <typename Samples>
-  void take_padding(const Stack& stack, Samples& samples) {
+  void take_padding(Stack& stack, Samples& samples) {
     using Sample = typename Samples::value_type;
     if (!scene_.padding) return take_other_padding(stack, "the header names no padding value");
+    assume_padding(stack, samples);
     const std::optional<Range> values = padding_values(stack);
     const std::string named = !values ? std::string("by a table")
                               : values->low == values->high
                                   ? print("value %g", values->low)
-                                  : print("values %g to %g", values->low, values->high);
+                                  : print("values %g to %g", values->low, values->high) +
+                                        (is_padding_mixed(stack) ? ", each slice's own," : "");
     const auto mark = static_cast<Sample>(*scene_.padding);
     const auto count = std::count(samples.begin(), samples.end(), mark);
     if (count == 0) {

@@ -250,12 +250,11 @@ class SegReader {
                          gaps.front()));
       return fit_of(gaps.front());
     }
-    const double said_mm = stated_step_mm_ ? *stated_step_mm_ : thickness_mm_.value_or(usual.step_mm);
-    if (stated || usual.step_mm > 1.5 * said_mm)
+    if (stated)
       warn_spacing(
-          print("the file states a distance or thickness of %.6g mm and its planes lie %.6g mm "
-                "apart: the positions are taken",
-                said_mm, usual.step_mm));
+          print("the file states a distance of %.6g mm and its planes lie %.6g mm apart: the positions are "
+                "taken",
+                *stated_step_mm_, usual.step_mm));
     return usual;
   }
 
@@ -285,6 +284,15 @@ class SegReader {
     const double planes = std::round((frames_.back().height_mm - fit_.low_mm) / fit_.step_mm) + 1.0;
     if (planes > 4.0 * static_cast<double>(frames_.size()) + 64.0)
       refused("whose planes are scattered: " + print("%.0f for %zu frames", planes, frames_.size()));
+    // Headers give both to two decimals or better.
+    const double tolerance_mm = 0.02 + 0.01 * fit_.step_mm;
+    if (planes > 1.0 && thickness_mm_ && *thickness_mm_ < fit_.step_mm - tolerance_mm)
+      warn_spacing(
+          print("planes of %.4g mm (SliceThickness) lie %.4g mm apart: the positions are taken, so "
+                "that each plane stands for %.4g mm of its segments. Nothing was drawn in %.3g mm of "
+                "them; volumes are %.3g times those of the planes alone",
+                *thickness_mm_, fit_.step_mm, fit_.step_mm, fit_.step_mm - *thickness_mm_,
+                fit_.step_mm / *thickness_mm_));
     const glm::dvec3 first = origin_mm_ + fit_.low_mm * normal_;
     scene_.lattice = {
         {columns_, rows_, static_cast<int>(planes)},

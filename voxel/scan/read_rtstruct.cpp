@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 
 #include "voxel/scan/dicom_file.h"
 #include "voxel/scan/identity.h"
@@ -20,6 +21,15 @@ int number_of(const DicomFile& item, DicomTag tag) {
   const double number = item.decimal(tag).value_or(0.0);
   constexpr double most = 1e9;
   return number >= 1.0 && number <= most ? static_cast<int>(number) : 0;
+}
+
+/// Where a contour's plane lies beside its points (DICOM PS3.3, C.8.8.6); zero if the contour does not state
+/// it, none if it is no vector.
+std::optional<glm::dvec3> offset_of(const DicomFile& contour) {
+  if (trimmed(contour.text(0x30060045)).empty()) return glm::dvec3(0.0);
+  const auto numbers = contour.decimals(0x30060045);
+  if (!numbers || numbers->size() != 3) return std::nullopt;
+  return glm::dvec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
 }
 
 void add_contours(const DicomFile& of_region, Structure& structure) {
@@ -45,9 +55,17 @@ void add_contours(const DicomFile& of_region, Structure& structure) {
     structure.slab_mm = !is_slab                  ? 0.0
                         : structure.slab_mm > 0.0 ? std::min(structure.slab_mm, slab_mm)
                                                   : slab_mm;
+    const std::optional<glm::dvec3> offset_mm = offset_of(contour);
+    if (!offset_mm) {
+      structure.flaw = "a contour's ContourOffsetVector is not three numbers, so that its place is unknown";
+      continue;
+    }
+    structure.moved += *offset_mm != glm::dvec3(0.0);
+    if (glm::length(*offset_mm) > glm::length(structure.farthest_offset_mm))
+      structure.farthest_offset_mm = *offset_mm;
     std::vector<glm::dvec3> points;
     for (std::size_t i = 0; i < numbers->size(); i += 3)
-      points.emplace_back((*numbers)[i], (*numbers)[i + 1], (*numbers)[i + 2]);
+      points.push_back(glm::dvec3((*numbers)[i], (*numbers)[i + 1], (*numbers)[i + 2]) + *offset_mm);
     structure.contours_mm.push_back(std::move(points));
   }
 }

@@ -13,11 +13,14 @@ namespace octotomy::voxel {
 /// A region of interest of a DICOM structure set.
 struct Structure {
   int number = 0;
-  std::string name;                                  ///< as written, in UTF-8
-  std::vector<std::vector<glm::dvec3>> contours_mm;  ///< closed and planar, LPS; the closing edge is implied
-  std::size_t others = 0;                            ///< points and open lines, which enclose nothing
+  std::string name;  ///< as written, in UTF-8
+  std::vector<std::vector<glm::dvec3>>
+      contours_mm;             ///< closed and planar, LPS, at their offset; the closing edge is implied
+  std::size_t others = 0;      ///< points and open lines, which enclose nothing
   std::size_t degenerate = 0;  ///< closed contours of one or two points, which enclose nothing
-  std::string flaw = {};       ///< why the contours cannot be read; empty: they can
+  std::size_t moved = 0;       ///< contours whose points a ContourOffsetVector moved
+  glm::dvec3 farthest_offset_mm{0.0};  ///< the longest of these vectors, LPS
+  std::string flaw = {};               ///< why the contours cannot be read; empty: they can
   /// Whether the file states that the region goes on between neighbouring contours, however far apart: the
   /// type INTERPOLATED_PLANAR.
   bool is_interpolated = false;

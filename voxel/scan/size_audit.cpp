@@ -74,7 +74,8 @@ std::optional<Finding> size_finding(const Scene& scene) {
   const glm::ivec3 dims = scene.lattice.dims;
   const glm::dvec3 field_mm = spacing_mm * glm::dvec3(dims);
   const double wide_mm = std::max(field_mm.x, field_mm.y), narrow_mm = std::min(field_mm.x, field_mm.y);
-  // What nothing is said of may be of any kind: only what no scanner makes is doubted.
+  // What nothing is said of may be of any kind: only what no scanner makes is doubted. Labels may be of a
+  // part.
   const bool is_known = scene.meaning != Meaning::Label && (!scene.modality.empty() || is_ct);
   const std::optional<glm::ivec2> body = is_known ? body_px(scene) : std::nullopt;
   std::string doubt;
@@ -89,6 +90,14 @@ std::optional<Finding> size_finding(const Scene& scene) {
   } else if (std::max(wide_mm, field_mm.z) < smallest_scan_mm) {
     doubt = print("the scan is %.3g x %.3g x %.3g mm, smaller than what scanners show of a person",
                   field_mm.x, field_mm.y, field_mm.z);
+  } else if (scene.meaning != Meaning::Label && !is_known) {
+    // Finer than any whole field of a person; a part that was cut out may be as small.
+    if (std::max(wide_mm, field_mm.z) >= smallest_fine_field_mm || std::min(dims.x, dims.y) < fine_side_px)
+      return std::nullopt;
+    doubt = print(
+        "the scan is %.3g x %.3g x %.3g mm, smaller than what scanners show of a person unless it "
+        "is a part that was cut out",
+        field_mm.x, field_mm.y, field_mm.z);
   } else if (!is_known) {
     return std::nullopt;
   } else if (is_ct && std::min(spacing_mm.x, spacing_mm.y) > coarsest_ct_mm) {

@@ -26,6 +26,7 @@ class StackAudit {
     audit_instance_order();
     audit_acr_nema();
     audit_numbers();
+    audit_real_world();
     audit_aspect();
     audit_frames();
     audit_coding();
@@ -249,10 +250,81 @@ class StackAudit {
            commas.text + " hold commas, read as decimal points, in " + slices(commas.names.size()) + ": " +
                listed(commas.names),
            commas.names);
-    if (const Noted mapping = noted(&DicomSlice::real_world); !mapping.names.empty())
-      find("real_world_values", Verdict::Warn,
-           "a Real World Value Mapping (" + mapping.text + ") is in " + slices(mapping.names.size()) +
-               " and is not applied: values are those of the rescale");
+  }
+
+  /// The unit of a slice's values; empty: none is stated.
+  static std::string unit_of(const DicomSlice& slice) {
+    const std::string& type = slice.lut ? slice.lut->type : slice.rescale_type;
+    return type == "US" || type.empty() ? (slice.modality == "CT" ? "HU" : "") : type;
+  }
+
+  /// Whether a mapping makes of stored values the numbers that the rescale makes, in no other unit.
+  static bool agrees_with(const RealWorldMapping& mapping, const DicomSlice& slice) {
+    if (slice.lut || !mapping.slope || !mapping.intercept) return false;
+    const double slope = slice.slope.value_or(1.0), intercept = slice.intercept.value_or(0.0);
+    // Decimal strings of 16 letters hold ten digits beside sign and exponent.
+    const auto are_one = [](double a, double b) {
+      return std::abs(a - b) <= 1e-9 * std::max({std::abs(a), std::abs(b), 1e-300});
+    };
+    const std::string ours = unit_of(slice), theirs = mapping.unit == "[hnsf'U]" ? "HU" : mapping.unit;
+    return are_one(*mapping.slope, slope) && are_one(*mapping.intercept, intercept) &&
+           (ours.empty() || theirs.empty() || ours == theirs);
+  }
+
+  /// "2 * stored - 1024 [hnsf'U]".
+  static std::string line_of(double slope, double intercept, const std::string& unit) {
+    return print("%g * stored %s %g ", slope, intercept < 0.0 ? "-" : "+", std::abs(intercept)) +
+           (unit.empty() ? "without a unit" : unit);
+  }
+
+  /// Holds Real World Value Mappings against the rescale, which alone is applied.
+  void audit_real_world() {
+    std::vector<std::string> differing;
+    std::size_t with = 0;
+    const DicomSlice* first = nullptr;
+    for (const DicomSlice& slice : stack_.slices) {
+      if (slice.real_world.empty()) continue;
+      ++with;
+      if (std::any_of(slice.real_world.begin(), slice.real_world.end(),
+                      [&](const RealWorldMapping& mapping) { return agrees_with(mapping, slice); }))
+        continue;
+      if (first == nullptr) first = &slice;
+      differing.push_back(slice.name);
+    }
+    if (with == 0) return;
+    if (first == nullptr)
+      return find("real_world_values", Verdict::Pass,
+                  "the Real World Value Mapping of " + slices(with) + " makes the values of the rescale");
+    const RealWorldMapping& mapping = first->real_world.front();
+    const double slope = first->slope.value_or(1.0), intercept = first->intercept.value_or(0.0);
+    const std::string unit = unit_of(*first);
+    std::string used = first->lut ? "those of the Modality LUT"
+                       : first->slope || first->intercept
+                           ? "those of the rescale, " + line_of(slope, intercept, unit)
+                           : "the stored ones, as the header states no rescale";
+    std::string other = "a table of values" + (mapping.unit.empty() ? "" : " in " + mapping.unit);
+    if (mapping.slope && mapping.intercept) {
+      other = line_of(*mapping.slope, *mapping.intercept, mapping.unit);
+      double stored = std::min(1000.0, std::ldexp(1.0, static_cast<int>(first->pixels.stored) - 1) - 1.0);
+      if (mapping.first && mapping.last && *mapping.first <= *mapping.last)
+        stored = std::clamp(stored, *mapping.first, *mapping.last);
+      const auto named = [](double value, const std::string& of) {
+        return print("%.6g", value) + (of.empty() ? "" : " " + of);
+      };
+      if (!first->lut)
+        other += print("; a stored %g is ", stored) + named(slope * stored + intercept, unit) +
+                 " by the rescale and " + named(*mapping.slope * stored + *mapping.intercept, mapping.unit) +
+                 " by the mapping";
+    }
+    find("real_world_values", Verdict::Warn,
+         "values are " + used + ". The Real World Value Mapping of " + slices(differing.size()) +
+             " is not applied. It would make " + other +
+             (mapping.slope && mapping.intercept ? ". If the mapping's values are wanted, write its slope "
+                                                   "and intercept into RescaleSlope and "
+                                                   "RescaleIntercept: "
+                                                 : ": ") +
+             listed(differing),
+         differing);
   }
 
   void audit_aspect() {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "planner/file/region_file.h"
+#include "planner/table/number_format.h"
 #include "tests/brep/told.h"
 #include "tests/planner/operation/ball_operation.h"
 #include "tests/voxel/scan/structure_set.h"
@@ -59,6 +60,58 @@ TEST(MaskStep, AStructureThatReachesBeyondTheScanIsReported) {
   EXPECT_NE(findings(200).find("rs.dcm: reaches beyond the scan in 1 of 3 planes"), std::string::npos)
       << findings(200);
   EXPECT_EQ(findings(9).find("beyond the scan"), std::string::npos) << findings(9);
+}
+
+TEST(MaskStep, AnOffsetOfContoursIsAppliedAndSaid) {
+  const ScratchFolder folder;
+  const std::vector<std::vector<glm::dvec3>> contours{
+      rectangle({-8, -8}, {8, 8}, 0), rectangle({-8, -8}, {8, 8}, 2), rectangle({-8, -8}, {8, 8}, 4)};
+  const auto made = [&](const std::string& offset) {
+    std::ofstream(folder / "rs.dcm", std::ios::binary)
+        << structure_set({{1, "A", contours, "CLOSED_PLANAR", 0.0, offset}});
+    const Evaluation evaluation =
+        evaluate(ball_plan(folder, R"({"id": "a", "do": "mask", "slices": "rs.dcm"})"));
+    std::string all;
+    for (const std::string& finding : evaluation.object("a").findings) all += finding + "\n";
+    return std::pair{evaluation.object("a").voxel.measures.centroid_mm.value().z, all};
+  };
+  const auto still = made(""), offset = made("0\\0\\6");
+  EXPECT_NEAR(offset.first - still.first, 6.0, 1e-6);
+  EXPECT_EQ(still.second.find("ContourOffsetVector"), std::string::npos) << still.second;
+  EXPECT_NE(offset.second.find("3 contours are moved by ContourOffsetVector, as the file states, by up to "
+                               "(0, 0, 6) mm"),
+            std::string::npos)
+      << offset.second;
+}
+
+TEST(MaskStep, WhatIsCutAtTheCubeIsAFailWithItsVolume) {
+  const ScratchFolder folder;
+  const auto findings = [&](double x_mm) {
+    std::vector<std::vector<glm::dvec3>> contours;
+    for (const double z : {0.0, 2.0, 4.0}) {
+      contours.push_back(rectangle({-8, -8}, {x_mm, 8}, z));
+      // A hole, a quarter of the height, as long as the rectangle but for 2 mm at either end.
+      contours.push_back(rectangle({-6, -2}, {x_mm - 2, 2}, z));
+    }
+    std::ofstream(folder / "rs.dcm", std::ios::binary) << structure_set({{1, "A", contours}});
+    const Evaluation evaluation =
+        evaluate(ball_plan(folder, R"({"id": "a", "do": "mask", "slices": "rs.dcm"})"));
+    std::string all;
+    for (const std::string& finding : evaluation.object("a").findings) all += finding + "\n";
+    const voxel::Universe& universe = evaluation.object("a").voxel.octree.universe();
+    return std::pair{all,
+                     universe.lps_from_voxel[3].x + (universe.side() - 0.5) * universe.lps_from_voxel[0].x};
+  };
+  EXPECT_EQ(findings(9).first.find("cube"), std::string::npos) << findings(9).first;
+  const auto [said, border_mm] = findings(1000.0);
+  EXPECT_NE(said.find("FAIL: rs.dcm: is cut at the border of the octree's cube"), std::string::npos) << said;
+  // Three planes of 2 mm each: the rectangle's part beyond less the hole's.
+  const double beyond_mm3 = 6.0 * (16.0 * (1000.0 - border_mm) - 4.0 * (998.0 - border_mm)),
+               drawn_mm3 = 6.0 * (16.0 * 1008.0 - 4.0 * 1004.0);
+  EXPECT_NE(said.find("about " + three_figures(100.0 * beyond_mm3 / drawn_mm3) + " % of its volume, " +
+                      three_figures(beyond_mm3) + " mm3"),
+            std::string::npos)
+      << said << "; " << border_mm;
 }
 
 /// A ring on four planes, a second block behind a gap of two planes, and a structure of one plane.

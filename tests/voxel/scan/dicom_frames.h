@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "tests/voxel/scan/dicom_bytes.h"
@@ -16,9 +17,11 @@ struct DicomFrames {
   bool reversed = false;         ///< the last frame lies lowest
   bool own_orientation = false;  ///< in every frame's groups instead of the shared ones
   std::string image_type = "ORIGINAL\\PRIMARY";
+  std::function<int(int)> place_of = {};     ///< frame to place along z; without it each frame has its own
+  std::function<std::string(int)> own = {};  ///< more attributes of a frame's groups
 
   std::string position(int k) const {
-    return "-10\\-20\\" + std::to_string(30 + 2 * (reversed ? count - 1 - k : k));
+    return "-10\\-20\\" + std::to_string(30 + 2 * (place_of ? place_of(k) : reversed ? count - 1 - k : k));
   }
   std::string attributes() const {
     const bool o = open;
@@ -36,7 +39,7 @@ struct DicomFrames {
     std::string frames, pixels;
     for (int k = 0; k < count; ++k) {
       frames += DicomBytes::item(seq(0x00209113, DicomBytes::element(0x00200032, "DS", position(k))) +
-                                     (own_orientation ? orientation : ""),
+                                     (own_orientation ? orientation : "") + (own ? own(k) : ""),
                                  o);
       for (int y = 0; y < rows; ++y)
         for (int x = 0; x < columns; ++x)

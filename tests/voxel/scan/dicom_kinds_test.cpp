@@ -104,6 +104,125 @@ TEST(ReadDicom, PlacesFramesByTheFirstOnesPositionAndTheirDistanceAndSaysSo) {
   }
 }
 
+/// A reconstructed nuclear medicine image of four slices 4 mm apart, for each of `slots` time slots. The
+/// pixel in column x, row y of slice k and slot s is 1000 s + 100 k + 10 y + x.
+struct Nuclear {
+  std::string kind = "RECON TOMO";
+  std::string spacing = "4";
+  int slots = 1;
+  bool has_place = true, has_slice_vector = true;
+  int slices_of_slot = 4;
+
+  std::string bytes() const {
+    using D = DicomBytes;
+    const auto columns = 4, rows = 3;
+    std::string slice_vector, slot_vector, pixels;
+    for (int s = 0; s < slots; ++s)
+      for (int k = 0; k < slices_of_slot; ++k) {
+        slice_vector += D::number(static_cast<std::uint32_t>(k + 1), 2);
+        slot_vector += D::number(static_cast<std::uint32_t>(s + 1), 2);
+        for (int y = 0; y < rows; ++y)
+          for (int x = 0; x < columns; ++x)
+            pixels += D::number(static_cast<std::uint32_t>(1000 * s + 100 * k + 10 * y + x), 2);
+      }
+    const std::string place =
+        D::element(0x00200032, "DS", "-10\\-20\\30") + D::element(0x00200037, "DS", "1\\0\\0\\0\\1\\0");
+    return D::file(explicit_little,
+                   D::element(0x00080008, "CS", "ORIGINAL\\PRIMARY\\" + kind + "\\EMISSION") +
+                       D::element(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.20") +
+                       D::element(0x00080018, "UI", "1.2.3.4") + D::element(0x00080060, "CS", "NM") +
+                       D::element(0x00180050, "DS", "4") +
+                       (spacing.empty() ? "" : D::element(0x00180088, "DS", spacing)) +
+                       D::element(0x0020000e, "UI", "1.2.3") + D::us(0x00280002, 1) +
+                       D::element(0x00280004, "CS", "MONOCHROME2") +
+                       D::element(0x00280008, "IS", std::to_string(slots * slices_of_slot)) +
+                       D::us(0x00280010, rows) + D::us(0x00280011, columns) +
+                       D::element(0x00280030, "DS", "2\\2") + D::us(0x00280100, 16) + D::us(0x00280101, 16) +
+                       D::us(0x00280102, 15) + D::us(0x00280103, 0) +
+                       D::sequence(0x00540022, D::item(has_place ? place : "")) +
+                       (slots > 1 ? D::element(0x00540070, "US", slot_vector) : "") +
+                       (has_slice_vector ? D::element(0x00540080, "US", slice_vector) : "") +
+                       D::element(0x7fe00010, "OW", pixels));
+  }
+};
+
+TEST(ReadDicom, PlacesNuclearSlicesFromTheirDetectorOnAlongTheNormalEitherWay) {
+  const ScratchFolder folder;
+  for (const bool falls : {false, true})
+    for (const bool has_vector : {true, false}) {
+      Nuclear nuclear;
+      nuclear.spacing = falls ? "-4" : "4";
+      nuclear.has_slice_vector = has_vector;
+      write_bytes(folder / "nm.dcm", nuclear.bytes());
+      const Scene scene = read_scene(folder / "nm.dcm");
+      ASSERT_EQ(scene.lattice.dims, glm::ivec3(4, 3, 4));
+      EXPECT_EQ(scene.lattice.spacing_mm(), glm::dvec3(2, 2, 4));
+      EXPECT_EQ(glm::dvec3(scene.lattice.lps_from_voxel[3]), glm::dvec3(-10, -20, falls ? 30 - 12 : 30));
+      for (std::size_t z = 0; z < 4; ++z)
+        EXPECT_EQ(std::get<Int16Samples>(scene.samples)[12 * z],
+                  100 * (falls ? 3 - static_cast<int>(z) : static_cast<int>(z)));
+      EXPECT_EQ(verdict(scene, "frame_positions"), Verdict::Warn);
+    }
+}
+
+TEST(ReadDicom, PartsGatedNuclearSlicesByTheirTimeSlots) {
+  const ScratchFolder folder;
+  Nuclear nuclear;
+  nuclear.kind = "RECON GATED TOMO";
+  nuclear.slots = 3;
+  write_bytes(folder / "nm.dcm", nuclear.bytes());
+  const std::vector<SeriesEntry> list = list_series(folder.path());
+  ASSERT_EQ(list.size(), 3U);
+  EXPECT_EQ(list[1].stack, "phase time slot 2");
+  EXPECT_EQ(list[1].slices, 4U);
+  ReadOptions options;
+  options.series = "time slot 2";
+  const Scene scene = read_scene(folder / "nm.dcm", options);
+  EXPECT_EQ(scene.lattice.dims, glm::ivec3(4, 3, 4));
+  EXPECT_EQ(std::get<Int16Samples>(scene.samples)[12], 1100);
+}
+
+TEST(ReadDicom, RefusesFramesThatAreProjectionsOrAFilm) {
+  const ScratchFolder folder;
+  const auto reason = [&](const std::string& bytes) -> std::string {
+    write_bytes(folder / "frames.dcm", bytes);
+    try {
+      read_scene(folder / "frames.dcm");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "nothing was thrown";
+  };
+  const auto expect = [](const std::string& said, const char* part) {
+    EXPECT_NE(said.find(part), std::string::npos) << said;
+  };
+  Nuclear nuclear;
+  nuclear.kind = "TOMO";
+  expect(reason(nuclear.bytes()), "of the kind TOMO, whose frames are projections");
+  nuclear.kind = "RECON TOMO";
+  nuclear.has_place = false;
+  expect(reason(nuclear.bytes()), "DetectorInformationSequence");
+  // Frames with a thickness that follow each other in time; with a stated distance they are placed.
+  const Frames frames;
+  const std::string attributes = frames.attributes();
+  const std::size_t pixel = attributes.find(DicomBytes::tag(0x00280010));
+  const std::size_t groups = attributes.find(DicomBytes::tag(0x52009230));
+  const std::size_t pixels = attributes.find(DicomBytes::tag(0x7fe00010));
+  const auto film = [&](const std::string& distance) {
+    return DicomBytes::file(
+        explicit_little,
+        distance + DicomBytes::element(0x00200032, "DS", frames.position(0)) + attributes.substr(0, pixel) +
+            DicomBytes::element(0x00280009, "AT",
+                                DicomBytes::number(0x0018, 2) + DicomBytes::number(0x1063, 2)) +
+            attributes.substr(pixel, groups - pixel) + attributes.substr(pixels));
+  };
+  expect(reason(film("")), "a film is no volume");
+  write_bytes(folder / "frames.dcm", film(DicomBytes::element(0x00180088, "DS", "2")));
+  const Scene scene = read_scene(folder / "frames.dcm");
+  expect_ramp(scene, frames);
+  expect(tests::finding(scene, "frame_positions")->detail, "as of a film");
+}
+
 TEST(ReadDicom, InflatesWhatIsDeflatedAsAWhole) {
   const ScratchFolder folder;
   const Frames frames;

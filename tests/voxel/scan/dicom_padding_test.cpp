@@ -81,6 +81,93 @@ TEST(DicomPadding, IsOutsideOfTheRangeAndOfEveryWindow) {
   }
 }
 
+/// Twelve slices of 100 or 300 HU in a disc with -2000 around it and one such sample in its middle. Slice k
+/// states padding[k], if it is there, and has `fill[k]` around the disc.
+Scene read_stated(const ScratchFolder& folder, const std::vector<std::optional<std::int16_t>>& padding,
+                  const std::vector<std::int16_t>& fill) {
+  std::vector<SpoiledImage> images = tests::sound_series();
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    std::string pixels;
+    for (int y = 0; y < rows; ++y)
+      for (int x = 0; x < columns; ++x) {
+        const bool is_measured = (x - 12) * (x - 12) + (y - 10) * (y - 10) < 64;
+        const bool is_middle = x == 12 && y == 10;
+        const int value = is_middle ? -2000 : is_measured ? (x < 12 ? 100 : 300) : fill[k];
+        pixels += DicomBytes::number(static_cast<std::uint32_t>(value), 2);
+      }
+    images[k].text(0x7fe00010, "OW", pixels);
+    images[k].number(0x00280103, 1);
+    images[k].text(0x00281052, "DS", "0");
+    if (padding[k])
+      images[k].text(0x00280120, "SS", DicomBytes::number(static_cast<std::uint16_t>(*padding[k]), 2));
+    std::ofstream(folder / images[k].name, std::ios::binary) << images[k].bytes();
+  }
+  return read_scene(folder.path());
+}
+
+/// Of one image, how many samples lie around the disc.
+std::size_t around() {
+  std::size_t count = 0;
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) count += (x - 12) * (x - 12) + (y - 10) * (y - 10) >= 64;
+  return count;
+}
+
+std::size_t padded_in(const Scene& scene, std::size_t slice) {
+  const auto& samples = std::get<Int16Samples>(scene.samples);
+  const auto first = samples.begin() + static_cast<std::ptrdiff_t>(slice * columns * rows);
+  return static_cast<std::size_t>(
+      std::count(first, first + columns * rows, static_cast<std::int16_t>(*scene.padding)));
+}
+
+TEST(DicomPadding, OfSomeSlicesIsAssumedAtTheRimsOfTheOthersAndSaid) {
+  const ScratchFolder folder;
+  std::vector<std::optional<std::int16_t>> padding(12);
+  for (const std::size_t k : {0U, 1U, 2U, 3U}) padding[k] = -2000;
+  const Scene scene = read_stated(folder, padding, std::vector<std::int16_t>(12, -2000));
+  ASSERT_TRUE(scene.padding);
+  for (std::size_t k = 0; k < 12; ++k)
+    EXPECT_EQ(padded_in(scene, k), around() + (k < 4 ? 1 : 0))
+        << k << ": the sample in the middle is padding only where the slice states it";
+  EXPECT_EQ(tests::verdict(scene, "unstated_padding"), Verdict::Warn);
+  const std::string detail = tests::finding(scene, "unstated_padding")->detail;
+  EXPECT_NE(detail.find("8 slices state no PixelPaddingValue, as 4 of the series do (stored -2000)"),
+            std::string::npos)
+      << detail;
+  EXPECT_NE(detail.find(std::to_string(8 * around()) + " samples"), std::string::npos) << detail;
+  EXPECT_EQ(tests::finding(scene, "unstated_padding")->files.size(), 8U);
+}
+
+TEST(DicomPadding, OfSomeSlicesLeavesTheOthersAloneWhereTheyHoldNone) {
+  const ScratchFolder folder;
+  std::vector<std::optional<std::int16_t>> padding(12);
+  std::vector<std::int16_t> fill(12, -1000);
+  padding[0] = -2000;
+  fill[0] = -2000;
+  const Scene scene = read_stated(folder, padding, fill);
+  ASSERT_TRUE(scene.padding);
+  EXPECT_EQ(padded_in(scene, 0), around() + 1);
+  for (std::size_t k = 1; k < 12; ++k) EXPECT_EQ(padded_in(scene, k), 0U) << k;
+  EXPECT_FALSE(tests::finding(scene, "unstated_padding"));
+}
+
+TEST(DicomPadding, IsEachSlicesOwn) {
+  const ScratchFolder folder;
+  std::vector<std::optional<std::int16_t>> padding(12);
+  std::vector<std::int16_t> fill(12);
+  for (std::size_t k = 0; k < 12; ++k) {
+    fill[k] = k < 6 ? -2000 : -1500;
+    padding[k] = fill[k];
+  }
+  const Scene scene = read_stated(folder, padding, fill);
+  ASSERT_TRUE(scene.padding);
+  for (std::size_t k = 0; k < 12; ++k) EXPECT_EQ(padded_in(scene, k), around() + (k < 6 ? 1 : 0)) << k;
+  EXPECT_FALSE(tests::finding(scene, "unstated_padding"));
+  EXPECT_NE(tests::finding(scene, "padding")->detail.find("values -2000 to -1500, each slice's own"),
+            std::string::npos)
+      << tests::finding(scene, "padding")->detail;
+}
+
 TEST(DicomPadding, IsMixedIntoNoSampleOfATiltedStack) {
   for (const Padded& padded : kinds()) {
     SCOPED_TRACE(padded.fill);

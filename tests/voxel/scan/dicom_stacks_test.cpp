@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/scan/dicom_stacks.h"
 
+#include <array>
+#include <bit>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <string>
 
 #include "tests/voxel/linear_scene.h"
+#include "tests/voxel/scan/dicom_bytes.h"
+#include "tests/voxel/scan/dicom_frames.h"
 #include "tests/voxel/scan/spoiled_series.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/scan/read_scene.h"
@@ -60,6 +65,76 @@ TEST(DicomStacks, OfOneSeriesAreListedAndChosenByNumberOrKernel) {
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("1.2 'Head'"), std::string::npos) << error.what();
     }
+}
+
+/// Twelve images with one value of an attribute and twelve with another at the same places, brighter by 76;
+/// an empty value: without the attribute.
+void write_two_values(const std::filesystem::path& folder, std::uint32_t tag, const std::string& vr,
+                      const std::array<std::string, 2>& values) {
+  const std::vector<tests::SpoiledImage> sound = tests::sound_series();
+  for (std::size_t part = 0; part < 2; ++part)
+    for (std::size_t i = 0; i < sound.size(); ++i) {
+      tests::SpoiledImage image = sound[i];
+      image.name = (part == 0 ? "a" : "b") + std::to_string(i);
+      if (part == 1) image.text(0x00080018, "UI", "1.2.3.9." + std::to_string(i));
+      if (part == 1) image.text(0x00281052, "DS", "-948");
+      if (!values[part].empty()) image.text(tag, vr, values[part]);
+      std::ofstream(folder / image.name, std::ios::binary) << image.bytes();
+    }
+}
+
+std::string float_bytes(float value) {
+  return tests::DicomBytes::number(std::bit_cast<std::uint32_t>(value), 4);
+}
+
+TEST(DicomStacks, APhaseOfZeroIsNamed) {
+  struct Kind {
+    std::uint32_t tag;
+    std::string vr;
+    std::array<std::string, 2> values;
+    std::array<std::string, 2> words;
+  };
+  using D = tests::DicomBytes;
+  const std::vector<Kind> kinds{
+      {0x00209241, "FL", {float_bytes(0.0F), float_bytes(40.0F)}, {"phase 0", "phase 40"}},
+      {0x00209245, "FL", {float_bytes(0.0F), float_bytes(12.5F)}, {"phase 0", "phase 12.5"}},
+      {0x00209128, "UL", {D::number(0, 4), D::number(1, 4)}, {"phase 0", "phase 1"}},
+      {0x00200100, "IS", {"0", "1"}, {"phase 0", "phase 1"}},
+      {0x00181060, "DS", {"0", "40"}, {"phase 0", "phase 40"}},
+      {0x00181060, "DS", {"", "40"}, {"no phase", "phase 40"}},
+  };
+  for (const Kind& kind : kinds) {
+    SCOPED_TRACE(kind.words[0] + " by " + kind.vr);
+    const ScratchFolder folder;
+    write_two_values(folder.path(), kind.tag, kind.vr, kind.values);
+    const std::vector<SeriesEntry> list = list_series(folder.path());
+    ASSERT_EQ(list.size(), 2U);
+    EXPECT_EQ(list[0].stack, kind.words[0]);
+    EXPECT_EQ(list[1].stack, kind.words[1]);
+    EXPECT_EQ(read(folder.path(), kind.words[0]).lattice.dims.z, 12);
+  }
+}
+
+TEST(DicomStacks, AHeartsPhaseInTheGroupsOfAFrameNamesItsStack) {
+  const ScratchFolder folder;
+  using D = tests::DicomBytes;
+  for (const bool is_breath : {false, true}) {
+    tests::DicomFrames frames;
+    frames.count = 6;
+    frames.place_of = [](int k) { return k % 3; };
+    frames.own = [&](int k) {
+      return D::sequence(
+          is_breath ? 0x00209253 : 0x00189118,
+          D::item(D::element(is_breath ? 0x00209245 : 0x00209241, "FL", float_bytes(k < 3 ? 0.0F : 75.0F))));
+    };
+    std::ofstream(folder / "frames.dcm", std::ios::binary)
+        << D::file("1.2.840.10008.1.2.1", frames.attributes());
+    const std::vector<SeriesEntry> list = list_series(folder.path());
+    ASSERT_EQ(list.size(), 2U);
+    EXPECT_EQ(list[0].stack, "phase 0");
+    EXPECT_EQ(list[1].stack, "phase 75");
+    EXPECT_EQ(std::get<Int16Samples>(read(folder / "frames.dcm", "phase 75").samples)[0], 300 - 1000);
+  }
 }
 
 TEST(DicomStacks, SlicesAreChosenByTheirNumbersAlongTheNormal) {

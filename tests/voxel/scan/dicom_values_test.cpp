@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // What DICOM states about its pixels' values besides RescaleSlope and RescaleIntercept.
+#include <bit>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <map>
@@ -14,6 +15,7 @@
 namespace octotomy::voxel {
 namespace {
 
+using tests::DicomBytes;
 using tests::ScratchFolder;
 using tests::SpoiledImage;
 
@@ -85,6 +87,49 @@ TEST(DicomValues, ADoseIsScaledByItsOwnFactorAndNamesItsUnit) {
   for (std::size_t i = 0; i < dose.lattice.sample_count(); i += 7)
     ASSERT_EQ(sample(dose, i), 0.25 * sample(stored, i));
   EXPECT_NE(tests::finding(dose, "rescale")->detail.find("GY"), std::string::npos);
+}
+
+std::string wide(double value) {
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  return DicomBytes::number(static_cast<std::uint32_t>(bits), 4) +
+         DicomBytes::number(static_cast<std::uint32_t>(bits >> 32), 4);
+}
+
+/// A Real World Value Mapping of stored values from 0 to `last`.
+std::string mapping(double slope, double intercept, const std::string& unit, std::uint16_t last = 4000) {
+  using D = DicomBytes;
+  return D::item(D::sequence(0x004008ea, D::item(D::element(0x00080100, "SH", unit))) +
+                 D::element(0x00409211, "US", D::number(last, 2)) +
+                 D::element(0x00409216, "US", D::number(0, 2)) +
+                 D::element(0x00409224, "FD", wide(intercept)) + D::element(0x00409225, "FD", wide(slope)));
+}
+
+/// The audit's line on the mappings of a series of slope 1 and intercept -1024, in Hounsfield units.
+Finding on_mapping(const std::string& items) {
+  std::vector<SpoiledImage> images = tests::sound_series();
+  for (SpoiledImage& image : images) image.text(0x00409096, "SQ", items);
+  const Scene scene = read(images);
+  const Finding* line = tests::finding(scene, "real_world_values");
+  return line == nullptr ? Finding{"none", Verdict::Fail, "none"} : *line;
+}
+
+TEST(DicomValues, AMappingThatMakesTheValuesOfTheRescaleIsNoDoubt) {
+  EXPECT_EQ(on_mapping(mapping(1.0, -1024.0, "[hnsf'U]")).verdict, Verdict::Pass);
+  EXPECT_EQ(on_mapping(mapping(2.0, 0.0, "g/ml") + mapping(1.0, -1024.0, "[hnsf'U]")).verdict, Verdict::Pass);
+  EXPECT_EQ(on_mapping(mapping(1.0, -1024.0, "mg/cm3")).verdict, Verdict::Warn) << "another unit";
+}
+
+TEST(DicomValues, AMappingThatDiffersFromTheRescaleIsShownWithBothNumbers) {
+  const Finding other = on_mapping(mapping(2.0, -1000.0, "mg/cm3"));
+  EXPECT_EQ(other.verdict, Verdict::Warn);
+  for (const char* part :
+       {"values are those of the rescale, 1 * stored - 1024 HU.", "would make 2 * stored - 1000 mg/cm3;",
+        "a stored 1000 is -24 HU by the rescale and 1000 mg/cm3 by the mapping"})
+    EXPECT_NE(other.detail.find(part), std::string::npos) << part << " is not in " << other.detail;
+  // The example lies among the values that the mapping is stated for.
+  const Finding narrow = on_mapping(mapping(2.0, -1000.0, "mg/cm3", 100));
+  EXPECT_NE(narrow.detail.find("a stored 100 is -924 HU by the rescale and -800 mg/cm3"), std::string::npos)
+      << narrow.detail;
 }
 
 }  // namespace

@@ -115,6 +115,28 @@ TEST(ReadRtstruct, AContourOfTwoPointsIsCountedAndSpoilsNoOtherRegion) {
   EXPECT_EQ(all[2].slab_mm, 2.5);
 }
 
+TEST(ReadRtstruct, AContourStandsAtItsOffset) {
+  const ScratchFolder folder;
+  const std::vector<std::vector<glm::dvec3>> drawn{rectangle({0, 0}, {9, 9}, 0),
+                                                   rectangle({0, 0}, {9, 9}, 2)};
+  const std::vector<Structure> all =
+      read_rtstruct(written(folder, structure_set({{1, "A", drawn},
+                                                   {2, "B", drawn, "CLOSED_PLANAR", 0.0, "1\\-2\\5"},
+                                                   {3, "C", drawn, "CLOSED_PLANAR", 0.0, "0\\0\\0"},
+                                                   {4, "D", drawn, "CLOSED_PLANAR", 0.0, "0\\5"}})))
+          .structures;
+  EXPECT_EQ(all[0].contours_mm, drawn);
+  EXPECT_EQ(all[0].moved, 0U);
+  ASSERT_EQ(all[1].contours_mm.size(), 2U);
+  EXPECT_EQ(all[1].contours_mm[0][0], glm::dvec3(1, -2, 5));
+  EXPECT_EQ(all[1].contours_mm[1][2], glm::dvec3(10, 7, 7));
+  EXPECT_EQ(all[1].moved, 2U);
+  EXPECT_EQ(all[1].farthest_offset_mm, glm::dvec3(1, -2, 5));
+  EXPECT_EQ(all[2].contours_mm, drawn);
+  EXPECT_EQ(all[2].moved, 0U) << "an offset of nothing moves nothing";
+  EXPECT_NE(all[3].flaw.find("ContourOffsetVector"), std::string::npos) << "two numbers are no vector";
+}
+
 TEST(ReadRtstruct, StatesWhoseItIsAndWhichFrameItRefersTo) {
   const ScratchFolder folder;
   const Identity identity =

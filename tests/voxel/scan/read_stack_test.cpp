@@ -302,6 +302,26 @@ TEST(ReadRaw, DoubtsItsOriginAndASizeThatNoScannerMakes) {
   }
 }
 
+TEST(ReadRaw, DoubtsAWholeFieldOfCentimetresInManyPixels) {
+  const ScratchFolder folder;
+  const glm::ivec3 sizes{100, 80, 4};
+  std::string bytes;
+  for (int i = 0; i < sizes.x * sizes.y * sizes.z; ++i)
+    bytes += {static_cast<char>(i % 97), static_cast<char>(1 + i % 3)};
+  std::ofstream(folder / "scan.raw", std::ios::binary) << bytes;
+  const auto finding = [&](const glm::dvec3& spacing_mm) {
+    ReadOptions options;
+    options.spacing_mm = spacing_mm;
+    options.raw = RawLayout{sizes, SampleType::Int16};
+    const Scene scene = read_scene(folder / "scan.raw", options);
+    const Finding* line = tests::finding(scene, "plausible_size");
+    return line == nullptr ? std::string() : line->detail;
+  };
+  EXPECT_NE(finding({0.24, 0.24, 0.5}).find("24 x 19.2 x 2 mm"), std::string::npos);
+  EXPECT_EQ(finding({0.4, 0.4, 0.5}), "") << "40 mm, as of an ear";
+  EXPECT_EQ(finding({0.24, 0.24, 10.0}), "") << "40 mm long";
+}
+
 TEST(ReadRaw, TakesDoublesBeyondSinglePrecisionAsPaddingAndSaysSo) {
   const ScratchFolder folder;
   std::string bytes = raw_bytes<double>(false);

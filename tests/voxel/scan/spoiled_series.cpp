@@ -908,11 +908,8 @@ std::vector<SpoiledKind> of_statements() {
        "transfer syntax 1.2.840.113619.5.2",
        {"a04"},
        [](Images& images) { images[4].syntax = "1.2.840.113619.5.2"; }},
-      {"real_world_values",
-       "real_world_values",
-       warn,
-       "is not applied",
-       {},
+      {"real_world_values", "real_world_values", warn, "is not applied. It would make a table of values",
+       names("a", 0, 11),
        text(0x00409096, "SQ", DicomBytes::item(DicomBytes::element(0x00409210, "SH", "PD")))},
   };
 }

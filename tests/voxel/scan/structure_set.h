@@ -14,7 +14,8 @@ struct DrawnStructure {
   std::string name;
   std::vector<std::vector<glm::dvec3>> contours_mm;
   std::string kind = "CLOSED_PLANAR";
-  double slab_mm = 0.0;  ///< ContourSlabThickness; 0: not stated
+  double slab_mm = 0.0;     ///< ContourSlabThickness; 0: not stated
+  std::string offset = {};  ///< ContourOffsetVector; empty: not stated
 };
 
 /// Whom a structure set states; empty: it does not.
@@ -39,6 +40,7 @@ inline std::string structure_set(const std::vector<DrawnStructure>& structures,
       contours += D::item(
           D::element(0x30060042, "CS", structure.kind) +
           (structure.slab_mm > 0.0 ? D::element(0x30060044, "DS", std::to_string(structure.slab_mm)) : "") +
+          (structure.offset.empty() ? "" : D::element(0x30060045, "DS", structure.offset)) +
           D::element(0x30060046, "IS", std::to_string(contour.size())) +
           D::element(0x30060050, data.size() > 60000 ? "UN" : "DS", data));
     }
