@@ -284,10 +284,11 @@ std::vector<voxel::Octree> pieces_of(voxel::Octree set) {
   return pieces;
 }
 
-/// What is settled together: with a least volume each part for itself, else all of them.
+/// What is settled together: with a least volume each part for itself, else all of them. `chosen` are the
+/// parts that the voxels keep.
 std::vector<Differing> differing(const WholeObject& whole, const brep::Solid& solid,
-                                 const voxel::Octree& by_voxels, const voxel::Octree& by_mesh,
-                                 const std::optional<double>& least_mm3) {
+                                 const voxel::Octree& chosen, const voxel::Octree& by_voxels,
+                                 const voxel::Octree& by_mesh, const std::optional<double>& least_mm3) {
   const voxel::Octree none = voxel::Octree::empty(by_voxels.universe());
   const voxel::Octree voxels = by_mesh.is_empty() ? none : whole.voxels();
   const auto over = [&](const voxel::Octree& piece) { return voxel::components_that_meet(voxels, piece); };
@@ -305,8 +306,10 @@ std::vector<Differing> differing(const WholeObject& whole, const brep::Solid& so
   const std::vector<brep::Component>& components = solid.components();
   for (std::size_t i = 0; i < components.size() && components[i].volume_mm3 >= *least_mm3; ++i) {
     if (components[i].volume_mm3 > most_mm3) continue;
-    const voxel::Octree own = common_of(digitised_part(solid, components[i], by_mesh.universe()), by_mesh);
-    if (!own.is_empty()) all.push_back({none, over(own), {}, {i}});
+    const voxel::Octree digitised = digitised_part(solid, components[i], by_mesh.universe());
+    const voxel::Octree own = common_of(digitised, by_mesh);
+    // A part of which the voxels keep some hangs together by a thin neck: it is not passed over.
+    if (!own.is_empty() && common_of(digitised, chosen).is_empty()) all.push_back({none, over(own), {}, {i}});
   }
   return all;
 }
@@ -326,7 +329,7 @@ void settle_choice(const WholeObject& whole, const voxel::Universe& universe,
   const auto agrees = [&](const voxel::Octree& voxels, const std::vector<std::size_t>& components) {
     return components.empty() || is_same(voxels, solid_of(solid, components), reading, made);
   };
-  std::vector<Differing> settled = differing(whole, solid, by_voxels, by_mesh, least_mm3);
+  std::vector<Differing> settled = differing(whole, solid, chosen, by_voxels, by_mesh, least_mm3);
   std::erase_if(settled, [&](const Differing& parts) {
     return !is_by_measure(parts, all, least_mm3) || !agrees(parts.by_voxels, parts.wanted) ||
            !agrees(parts.passed_over, parts.unwanted);

@@ -150,6 +150,32 @@ TEST(PartsStep, APlateThatVoxelsBreakIntoSmallPartsIsADoubt) {
   EXPECT_NE(large.caveats[0].reason.find("on different sides of 'at_least_mm3'"), std::string::npos);
 }
 
+TEST(PartsStep, APartOfWhichVoxelsLoseTheEndBeyondAThinNeckStays) {
+  const ScratchFolder folder;
+  // A ball of 3,591 mm3 and one of 697 mm3 on a rod too thin for the voxels; another ball of its own.
+  const auto depth_mm = [](const glm::dvec3& p) {
+    const double rod = 0.7 - glm::length(glm::dvec2(p.y - 0.1 * p.x, p.z - 0.16 * p.x));
+    return std::max({9.5 - glm::length(p - glm::dvec3(-14, -1.4, -2.2)),
+                     5.5 - glm::length(p - glm::dvec3(14, 1.4, 2.2)), std::min(rod, 14.0 - std::abs(p.x)),
+                     10.0 - glm::length(p - glm::dvec3(0, 0, 30))});
+  };
+  voxel::write_scene(
+      ct_scene({64, 32, 64}, glm::dvec3(1.0), {-32.0, -16.0, -20.0},
+               [&](auto, const glm::dvec3& p) { return std::clamp(1000.0 * depth_mm(p), -1000.0, 1000.0); }),
+      folder / "neck.nrrd");
+  const Evaluation evaluation = evaluate(parse_plan(
+      R"({"octotomy_plan": 1, "name": "neck", "scans": {"ct": {"path": "neck.nrrd"}},
+      "universe": {"voxel_mm": 2.5}, "steps": [{"id": "all", "do": "window", "scan": "ct", "low": 0},
+      {"id": "large", "do": "parts", "object": "all", "at_least_mm3": 1500}]})",
+      folder.path()));
+  const Object &all = evaluation.object("all"), &large = evaluation.object("large");
+  ASSERT_EQ(all.mesh.within->components().size(), 2U);
+  ASSERT_GT(voxel::component_count(all.voxel.octree), 2U);
+  EXPECT_EQ(large.mesh.within->components().size(), 2U);
+  EXPECT_EQ(large.certificate->verdict, voxel::Verdict::Warn)
+      << testing::PrintToString(large.certificate->reasons);
+}
+
 TEST(LargestParts, OfEqualPartsAreAsManyAsWanted) {
   const voxel::Universe universe = voxel::universe_around({{-16, -16, -16}, {16, 16, 16}}, 1.0);
   voxel::Expression all = voxel::Expression(voxel::Box{{-15, -15, -15}, {-5, -5, -5}});
