@@ -16,8 +16,8 @@ enum class MeshVerdict { Pass, Warn, Fail };
 /// "PASS", "WARN" or "FAIL".
 std::string to_string(MeshVerdict verdict);
 
-/// One line of a mesh file's audit: "frame", "unit", "writer", "size", "polygons", "file", and beside a scan
-/// "scale" and "place".
+/// One line of a mesh file's audit: "frame", "unit", "writer", "size", "polygons", "points", "file", and beside
+/// a scan "scale" and "place".
 struct MeshFinding {
   std::string check;
   MeshVerdict verdict = MeshVerdict::Pass;

@@ -10,6 +10,7 @@
 
 #include "brep/io/mesh_bytes.h"
 #include "brep/io/mesh_scanner.h"
+#include "brep/io/weld_seams.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/short_text.h"
 
@@ -19,17 +20,18 @@ namespace {
 struct Format {
   std::string_view extension;
   MeshContent (*read)(std::string_view bytes);
-  bool is_text;  ///< or may be
+  bool is_text;         ///< or may be
+  bool repeats_points;  ///< where attributes of a point differ from triangle to triangle
 };
-constexpr std::array<Format, 9> formats{{{".stl", read_stl, true},
-                                         {".ply", read_ply, true},
-                                         {".obj", read_obj, true},
-                                         {".off", read_off, true},
-                                         {".vtk", read_vtk, true},
-                                         {".vtp", read_vtk_xml, true},
-                                         {".vtu", read_vtk_xml, true},
-                                         {".glb", read_glb, false},
-                                         {".3mf", read_3mf, false}}};
+constexpr std::array<Format, 9> formats{{{".stl", read_stl, true, false},
+                                         {".ply", read_ply, true, true},
+                                         {".obj", read_obj, true, true},
+                                         {".off", read_off, true, false},
+                                         {".vtk", read_vtk, true, true},
+                                         {".vtp", read_vtk_xml, true, true},
+                                         {".vtu", read_vtk_xml, true, true},
+                                         {".glb", read_glb, false, false},
+                                         {".3mf", read_3mf, false, false}}};
 
 const Format* format_of(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
@@ -102,11 +104,14 @@ MeshFile read_bytes(std::string bytes, const Format& format, const MeshReadOptio
   MeshContent content = format.read(format.is_text ? plain_text(bytes) : std::string_view(bytes));
   MeshStatements::Resolved resolved = content.says.resolved(options.frame, options.unit);
   MeshFile made{std::move(content.triangles), std::move(resolved.audit)};
+  const std::vector<MeshFinding> welded =
+      format.repeats_points ? weld_seams(made.triangles) : drop_repeating(made.triangles);
   turn_to_lps(made.triangles, resolved.frame, resolved.unit.mm / content.scale);
   need_reach(made.triangles);
   made.audit.push_back(size_finding(made));
   for (MeshFinding& finding : content.polygons.findings(resolved.unit.mm / content.scale))
     made.audit.push_back(std::move(finding));
+  made.audit.insert(made.audit.end(), welded.begin(), welded.end());
   return made;
 }
 

@@ -39,6 +39,9 @@ bool is_mesh_file(const std::filesystem::path& path);
 /// - .vtp and .vtu, XML: text, base64 or appended, plain or packed by zlib or LZ4;
 /// - .glb, binary glTF 2.0: the triangles of the scene's nodes in their places; equal points welded;
 /// - .3mf: the objects of the build in their places.
+/// Points that PLY, OBJ and VTK's files repeat, because normals, colours or textures differ there, become one
+/// where that closes open sides and leaves every edge with two triangles (weld_seams.h); OFF's and 3MF's stay
+/// as they are. Triangles that repeat a corner are left out. The audit says both.
 /// Of an unstructured grid with volume cells it is the surface around those. Larger polygons are triangulated
 /// (polygons.h), strips too; colours, normals, textures, lines and loose points are passed over.
 /// Frame and unit are what the options give, else what the file says (mesh_statements.h; glTF is metres with

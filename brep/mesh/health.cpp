@@ -299,21 +299,30 @@ std::vector<std::uint8_t> mark_degenerate(const Triangles& triangles, Health& he
   return degenerate;
 }
 
-/// Counts shells on the wrong side of the others: the shells around one must add up to no winding where it is
-/// turned outward, to one where it is turned inward. Returns the total volume. Needs a closed, manifold,
-/// consistently wound mesh, and a tree where there are several shells.
-double place_shells(const Triangles& triangles, const std::vector<std::uint32_t>& first,
-                    const std::vector<std::uint32_t>& shell, const MortonTree* tree, Health& health,
-                    Offenders& offenders) {
-  assert(health.closed && health.nonmanifold_edges == 0 && health.misoriented_edges == 0);
+/// The total volume, and whether every shell is right once all triangles are turned over.
+struct PlacedShells {
   double volume_mm3 = 0.0;
+  bool all_face_inward = false;
+};
+
+/// Counts shells on the wrong side of the others: the shells around one must add up to no winding where it is
+/// turned outward, to one where it is turned inward. Needs a closed, manifold, consistently wound mesh, and a
+/// tree where there are several shells.
+PlacedShells place_shells(const Triangles& triangles, const std::vector<std::uint32_t>& first,
+                          const std::vector<std::uint32_t>& shell, const MortonTree* tree, Health& health,
+                          Offenders& offenders) {
+  assert(health.closed && health.nonmanifold_edges == 0 && health.misoriented_edges == 0);
+  PlacedShells placed{0.0, true};
   for (const ShellPlace& place : shell_places({triangles, first, shell}, tree)) {
-    volume_mm3 += place.volume_mm3;
+    placed.volume_mm3 += place.volume_mm3;
+    // Turned over, volume and winding change their signs.
+    placed.all_face_inward = placed.all_face_inward && place.volume_mm3 != 0.0 &&
+                             place.winding == (place.volume_mm3 < 0.0 ? 0 : -1);
     if (place.winding == (place.volume_mm3 > 0.0 ? 0 : 1)) continue;
     ++health.misplaced_shells;
     Offenders::note(offenders.misplaced, place.shell);
   }
-  return volume_mm3;
+  return placed;
 }
 
 void test_intersections(const Triangles& triangles, const MortonTree& tree,
@@ -335,7 +344,8 @@ std::string place_of(const Triangles& triangles, std::uint32_t triangle) {
   return place.data();
 }
 
-void tell(const Triangles& triangles, Health& health, const Offenders& offenders, double volume_mm3) {
+void tell(const Triangles& triangles, Health& health, const Offenders& offenders,
+          const PlacedShells& placed) {
   const auto add = [&](Defect defect, std::string finding) {
     if (!health.first_defect) health.first_defect = defect;
     health.findings.push_back(std::move(finding));
@@ -361,11 +371,19 @@ void tell(const Triangles& triangles, Health& health, const Offenders& offenders
   say(Defect::Degenerate, health.degenerate_faces, "triangles without area", offenders.degenerate);
   say(Defect::Duplicate, health.duplicate_faces, "pairs of triangles with the same points",
       offenders.duplicate);
-  say(Defect::MisplacedShell, health.misplaced_shells,
-      "shells that face the wrong way for the shells around them", offenders.misplaced);
-  if (health.closed && health.nonmanifold_edges == 0 && health.misoriented_edges == 0 && !(volume_mm3 > 0.0))
+  const bool is_placed = health.closed && health.nonmanifold_edges == 0 && health.misoriented_edges == 0;
+  if (is_placed && placed.all_face_inward) {
     add(Defect::InsideOut,
-        "the volume is " + std::to_string(volume_mm3) + " mm3: the triangles face inward or enclose nothing");
+        "the whole surface faces inward, so that its volume is " + std::to_string(placed.volume_mm3) +
+            " mm3: turn its triangles over (first: " + "triangle " + std::to_string(offenders.misplaced) +
+            place_of(triangles, offenders.misplaced) + ")");
+  } else {
+    say(Defect::MisplacedShell, health.misplaced_shells,
+        "shells that face the wrong way for the shells around them", offenders.misplaced);
+    if (is_placed && !(placed.volume_mm3 > 0.0))
+      add(Defect::InsideOut, "the volume is " + std::to_string(placed.volume_mm3) +
+                                 " mm3: the triangles face inward or enclose nothing");
+  }
   if (health.crossing.empty()) return;
   const auto [one, other] = health.crossing.front();
   add(Defect::SelfIntersection, std::to_string(health.self_intersections) +
@@ -395,13 +413,13 @@ Health health(const Triangles& triangles, const HealthOptions& options) {
   health.oriented = health.faces > 0 && health.nonmanifold_edges == 0 && health.misoriented_edges == 0;
   const bool places = health.closed && health.oriented;
   if (!tree && places && health.shells > 1) tree.emplace(triangles);
-  double volume_mm3 = 0.0;
+  PlacedShells placed;
   if (places) {
-    volume_mm3 = place_shells(triangles, first, shell, tree ? &*tree : nullptr, health, offenders);
-    health.oriented = health.misplaced_shells == 0 && volume_mm3 > 0.0;
+    placed = place_shells(triangles, first, shell, tree ? &*tree : nullptr, health, offenders);
+    health.oriented = health.misplaced_shells == 0 && placed.volume_mm3 > 0.0;
   }
   if (options.self_intersections) test_intersections(triangles, *tree, degenerate, health);
-  tell(triangles, health, offenders, volume_mm3);
+  tell(triangles, health, offenders, placed);
   return health;
 }
 

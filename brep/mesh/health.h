@@ -23,7 +23,7 @@ enum class Defect {
   Degenerate,         ///< a triangle without area
   Duplicate,          ///< triangles with the same points
   MisplacedShell,     ///< a shell that faces the wrong way for those around it
-  InsideOut,          ///< the whole volume is not positive
+  InsideOut,          ///< every shell is turned over, or the whole volume is not positive
   SelfIntersection,
 };
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "planner/file/name_text.h"
 #include "planner/table/csv.h"
 #include "planner/table/json.h"
 #include "planner/table/json_file.h"
@@ -35,6 +36,15 @@ std::optional<int> whole(const std::string& text) {
       number > voxel::most_label)
     return std::nullopt;
   return number;
+}
+
+/// A whole number that is no label, such as -1 or 100000.
+bool is_beyond_labels(const std::string& text) {
+  std::string digits = voxel::trimmed(text);
+  if (digits.ends_with(".0")) digits.resize(digits.size() - 2);
+  const std::size_t first = digits.starts_with('-') || digits.starts_with('+') ? 1 : 0;
+  return digits.size() > first && digits.find_first_not_of("0123456789", first) == std::string::npos &&
+         !whole(text);
 }
 
 /// "0.5" or "1e3": a value and no name. Whole numbers can be names, as teeth have them.
@@ -62,9 +72,23 @@ class Names {
       refuse(where, "'" + name + "' is the name of two labels, " + std::to_string(known->second) + " and " +
                         std::to_string(label));
   }
-  std::map<int, std::string> all() && { return std::move(names_); }
+  /// Leaves a row out.
+  void pass_over(const std::string& where, const std::string& why) {
+    constexpr std::size_t most_told = 8;
+    if (++passed_over_count_ <= most_told)
+      passed_over_.push_back(where + ": the row is passed over, as " + why);
+  }
+  bool empty() const { return names_.empty(); }
+  LabelTable table(const fs::path& path) && {
+    if (passed_over_count_ > passed_over_.size())
+      passed_over_.push_back(path.string() + ": " + std::to_string(passed_over_count_ - passed_over_.size()) +
+                             " more rows are passed over");
+    return {std::move(names_), path, std::move(passed_over_)};
+  }
 
  private:
+  std::vector<std::string> passed_over_;
+  std::size_t passed_over_count_ = 0;
   std::map<int, std::string> names_;
   std::map<std::string, int> labels_;
 };
@@ -170,7 +194,7 @@ std::optional<std::size_t> column(const std::vector<std::string>& heading,
 void add_rows(Names& table, const std::vector<std::vector<std::string>>& rows, const std::string& where) {
   if (rows.empty()) return;
   std::size_t label_at = 0, name_at = 1, first = 0;
-  if (!whole(rows[0][0])) {
+  if (!whole(rows[0][0]) && !is_beyond_labels(rows[0][0])) {
     const auto labels = column(rows[0], {"label", "labelvalue", "label_value", "value", "index", "id"});
     const auto names = column(rows[0], {"name", "labelname", "label_name", "segmentname", "structure"});
     if (!labels || !names)
@@ -181,10 +205,21 @@ void add_rows(Names& table, const std::vector<std::vector<std::string>>& rows, c
   }
   for (std::size_t i = first; i < rows.size(); ++i) {
     const std::string at = where + ":" + std::to_string(i + 1);
-    const std::optional<int> label = label_at < rows[i].size() ? whole(rows[i][label_at]) : std::nullopt;
-    if (!label || name_at >= rows[i].size())
-      refuse(at, "has no label from 0 to " + std::to_string(voxel::most_label) + " and a name");
-    table.add(*label, voxel::trimmed(rows[i][name_at]), at);
+    const auto cell = [&](std::size_t column) {
+      return column < rows[i].size() ? voxel::trimmed(rows[i][column]) : std::string();
+    };
+    const std::string number = cell(label_at), name = cell(name_at);
+    if (number.empty() || name.empty()) {
+      table.pass_over(at, number.empty() ? "it has no label" : "label " + number + " has no name");
+      continue;
+    }
+    if (is_beyond_labels(number)) {
+      table.pass_over(at, "no label map can have the label " + number);
+      continue;
+    }
+    const std::optional<int> label = whole(number);
+    if (!label) refuse(at, "has no label from 0 to " + std::to_string(voxel::most_label) + " and a name");
+    table.add(*label, name, at);
   }
 }
 
@@ -203,14 +238,39 @@ std::string name_before_colour(const std::string& text) {
   return name;
 }
 
+/// "Label Name R G B A", "#No. Label Name": two words and more, none of which is a number, one of them a
+/// column's of labels.
+bool is_heading(const std::string& text) {
+  static const std::set<std::string> columns{"label", "index", "id", "idx", "no.", "no", "value"};
+  std::istringstream in(text);
+  bool any = false;
+  std::size_t count = 0;
+  for (std::string word; in >> word; ++count) {
+    if (whole(word) || is_decimal(word) || is_beyond_labels(word)) return false;
+    any = any || columns.contains(voxel::lower_case(word));
+  }
+  return any && count > 1;
+}
+
 /// "5 255 0 0 1 1 1 "liver"" of ITK-SNAP, "5 liver 255 0 0 255" of 3D Slicer and FreeSurfer.
 void add_lines(Names& table, std::istream& in, const std::string& where) {
   std::string line;
+  bool is_first = true;
   for (std::size_t number = 1; std::getline(in, line); ++number) {
     const std::string text = voxel::trimmed(line), at = where + ":" + std::to_string(number);
     if (text.empty() || text[0] == '#') continue;
     const std::size_t blank = text.find_first_of(" \t");
-    const std::optional<int> label = whole(text.substr(0, blank));
+    const std::string word = text.substr(0, blank);
+    const bool may_be_heading = std::exchange(is_first, false);
+    if (is_beyond_labels(word)) {
+      table.pass_over(at, "no label map can have the label " + word);
+      continue;
+    }
+    const std::optional<int> label = whole(word);
+    if (!label && may_be_heading && is_heading(text)) {
+      table.pass_over(at, "it is a heading");
+      continue;
+    }
     if (!label || blank == std::string::npos)
       refuse(at, "begins with no label from 0 to " + std::to_string(voxel::most_label));
     const std::string rest = voxel::trimmed(text.substr(blank));
@@ -331,7 +391,7 @@ void add_disagreements(const fs::path& label_map, const std::set<int>& occurring
 int LabelTable::label(const std::string& name) const {
   std::vector<int> numbers;
   for (const auto& [number, label] : names)
-    if (label == name) numbers.push_back(number);
+    if (composed(label) == composed(name)) numbers.push_back(number);
   if (numbers.size() == 1) return numbers.front();
   if (!numbers.empty()) {
     std::string list;
@@ -353,20 +413,21 @@ LabelTable read_label_table(const fs::path& path) {
   const std::string extension = voxel::extension_of(path), where = path.string();
   if (extension == ".json") {
     add_json(table, read_json(path), where);
-    return {std::move(table).all(), path};
+    return std::move(table).table(path);
   }
   std::ifstream in = voxel::opened(path);
   if (!in) refuse(where, "cannot be read");
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
+  const DecodedText text = decoded({std::istreambuf_iterator<char>(in), {}});
   if (extension == ".csv" || extension == ".tsv") {
-    add_rows(table, extension == ".tsv" ? parse_tsv(text) : parse_csv(text), where);
+    add_rows(table, extension == ".tsv" ? parse_tsv(text.utf8) : parse_csv(text.utf8), where);
   } else {
-    std::istringstream lines(text);
+    std::istringstream lines(text.utf8);
     add_lines(table, lines, where);
   }
-  return {std::move(table).all(), path};
+  LabelTable made = std::move(table).table(path);
+  if (!text.encoding.empty())
+    made.passed_over.insert(made.passed_over.begin(), where + ": read as " + text.encoding);
+  return made;
 }
 
 LabelTable label_table_of(const fs::path& label_map, const std::set<int>& occurring) {
@@ -378,12 +439,11 @@ LabelTable label_table_of(const fs::path& label_map, const std::set<int>& occurr
   for (const fs::path& beside : tables_beside(label_map)) {
     std::string why;
     LabelTable table = table_or_why(beside, occurring, why);
-    table.passed_over = std::move(passed_over);
     if (why.empty()) {
+      table.passed_over.insert(table.passed_over.begin(), passed_over.begin(), passed_over.end());
       add_disagreements(label_map, occurring, table);
       return table;
     }
-    passed_over = std::move(table.passed_over);
     passed_over.push_back(beside.string() + ": passed over, as it is no table of this label map's names: " +
                           why + "; --names takes a table as it is");
   }

@@ -15,18 +15,21 @@ namespace octotomy::planner {
 struct LabelTable {
   std::map<int, std::string> names;
   std::filesystem::path file;  ///< that has them; empty where there are none
-  /// Files beside a label map that look like its table and are none, or contradict it, each with the reason.
+  /// Files beside a label map that look like its table and are none, or contradict it, and rows of the table
+  /// that name no label, each with the reason; the encoding of a table that is not UTF-8.
   std::vector<std::string> passed_over = {};
 
-  /// The label of a name. Throws std::runtime_error with the names that there are, or with the numbers of
-  /// several labels of that name.
+  /// The label of a name; of composed() names, so that it may be written either way. Throws
+  /// std::runtime_error with the names that there are, or with the numbers of several labels of that name.
   int label(const std::string& name) const;
 };
 
 /// A table of labels: JSON ({"liver": 5}, {"5": "liver"}, {"labels": either}, [{"label": 5, "name": "liver"}]
 /// as TotalSegmentator and nnU-Net write them, or dcmqi's "segmentAttributes"); .csv or .tsv, with a header
 /// that names a column of labels and one of names, as BIDS has them, or two columns; ITK-SNAP's .txt and
-/// .label, FreeSurfer's .txt and 3D Slicer's .ctbl. Label 0 is left out. Throws std::runtime_error with path
+/// .label, FreeSurfer's .txt and 3D Slicer's .ctbl. Label 0 is left out; so are, with a line
+/// in `passed_over`, rows of a label below 0 or above the largest, without a label or a name, and a text's
+/// heading. Text is UTF-8, UTF-16 or Latin-1 as decoded() has it. Throws std::runtime_error with path
 /// and line where a file is none of these, has two names for one label, or two labels of one name.
 LabelTable read_label_table(const std::filesystem::path& path);
 

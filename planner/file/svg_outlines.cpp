@@ -4,11 +4,13 @@
 #include "planner/file/svg_outlines.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "planner/file/svg_shapes.h"
@@ -22,10 +24,31 @@ namespace {
 /// The parser counts bytes in 32 bits; a picture in the file is some ten million.
 constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 28;
 
+/// Pixels an inch of the program that wrote a drawing, by its comment or its root. CSS has 96; Illustrator
+/// counts points, Inkscape changed from 90 with its version 0.92.
+struct PixelLength {
+  int per_inch = 96;
+  std::string program;  ///< empty where it is none of these
+  double mm() const { return 25.4 / per_inch; }
+};
+PixelLength pixel_of(const std::string& text) {
+  const std::size_t root = text.find("<svg");
+  const std::string head = text.substr(0, text.find('>', root == std::string::npos ? 0 : root));
+  if (head.find("Adobe Illustrator") != std::string::npos) return {72, "Adobe Illustrator"};
+  constexpr std::string_view key = "inkscape:version=\"";
+  const std::size_t found = head.find(key);
+  if (found == std::string::npos) return {};
+  double version = 1.0;
+  const char* const begin = head.data() + found + key.size();
+  std::from_chars(begin, head.data() + head.size(), version);
+  return version < 0.915 ? PixelLength{90, "Inkscape before 0.92"} : PixelLength{96, "Inkscape"};
+}
+
 /// A file's elements, in two walks: for the units and the picture, and for the outlines.
 class Drawing {
  public:
-  Drawing(std::string file, const std::string& text) : elements_(std::move(file), text) {}
+  Drawing(std::string file, const std::string& text)
+      : pixel_(pixel_of(text)), elements_(std::move(file), text) {}
 
   /// Calls `each` for what is displayed, with the transform that holds there.
   template <typename Each>
@@ -58,7 +81,10 @@ class Drawing {
   }
 
   double mm_per_unit() const { return mm_per_unit_; }
+  /// Whether the root has a width or height in a unit of length, which a pixel is not.
   bool has_length() const { return has_length_; }
+  bool is_in_pixels() const { return is_in_pixels_; }
+  const PixelLength& pixel() const { return pixel_; }
   /// Whether elements have classes, whose style sheet may hide them.
   bool has_classes() const { return has_classes_; }
 
@@ -82,25 +108,26 @@ class Drawing {
   }
 
   void read_root(const XmlTags& elements, const XmlTag& root) {
-    mm_per_unit_ = mm_per_css_pixel;
+    mm_per_unit_ = pixel_.mm();
+    is_in_pixels_ = has_length_ = false;
     const auto length_mm = [&](const char* key) -> std::optional<double> {
       const auto found = root.attributes.find(key);
       if (found == root.attributes.end() || found->second.ends_with('%')) return std::nullopt;
-      const double value = length_of(elements, root, key, 0.0, 1.0);
       const bool is_bare = found->second.find_first_not_of("0123456789+-.eE ") == std::string::npos;
-      return is_bare ? value * mm_per_css_pixel : value;
+      const bool is_pixels = is_bare || found->second.find("px") != std::string::npos;
+      (is_pixels ? is_in_pixels_ : has_length_) = true;
+      // Of a bare number the scale is 1.
+      const double value =
+          length_of(elements, root, key, 0.0, is_pixels && !is_bare ? mm_per_css_pixel : 1.0);
+      return is_pixels ? value * pixel_.mm() : value;
     };
     const std::optional<double> width_mm = length_mm("width"), height_mm = length_mm("height");
     const std::vector<double> box = numbers_of(elements, root, "viewBox");
-    if (box.empty()) {
-      has_length_ = width_mm.has_value();
-      return;
-    }
+    if (box.empty()) return;
     if (box.size() != 4) elements.refuse_at(root.line, "viewBox has no four numbers");
     const glm::dvec2 size(box[2], box[3]);
     if (!(size.x > 0.0 && size.y > 0.0)) elements.refuse_at(root.line, "viewBox has no size");
-    has_length_ = width_mm || height_mm;
-    if (!has_length_) return;
+    if (!width_mm && !height_mm) return;
     const double across = width_mm ? *width_mm / size.x : *height_mm / size.y;
     const double down = height_mm ? *height_mm / size.y : across;
     if (!(across > 0.0) || std::abs(down / across - 1.0) > 1e-3)
@@ -109,8 +136,9 @@ class Drawing {
     mm_per_unit_ = across;
   }
 
+  PixelLength pixel_;
   XmlTags elements_;
-  bool has_length_ = false, has_classes_ = false;
+  bool has_length_ = false, is_in_pixels_ = false, has_classes_ = false;
   double mm_per_unit_ = mm_per_css_pixel;
 };
 
@@ -179,8 +207,13 @@ SvgOutlines read_svg_outlines(const std::filesystem::path& path, const SvgPlacem
         "its style sheet is not read: outlines of classes that it hides are taken, too; delete hidden "
         "layers");
   if (!picture && !drawing.has_length())
-    made.findings.push_back("the drawing has no width in millimetres: a unit is taken as 1/96 inch, " +
-                            three_figures(drawing.mm_per_unit()) + " mm");
+    made.findings.push_back(
+        (drawing.is_in_pixels() ? "the drawing states its width in pixels, which are no length: a pixel"
+                                : "the drawing has no width in millimetres: a unit") +
+        std::string(" is taken as 1/") + std::to_string(drawing.pixel().per_inch) + " inch, " +
+        three_figures(drawing.pixel().mm()) + " mm, " +
+        (drawing.pixel().program.empty() ? "as CSS has it" : "as " + drawing.pixel().program + " has it") +
+        "; give the root a width in mm");
   return made;
 }
 

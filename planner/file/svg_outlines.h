@@ -31,8 +31,9 @@ struct SvgOutlines {
 /// The closed outlines of an SVG file: path, polygon, polyline, rect, circle and ellipse with their
 /// transforms, of all groups that are displayed. Open outlines close as they do when filled; curves become
 /// lines that are nowhere farther than `tolerance_mm` from them. User units are the length that the root's
-/// width and viewBox give them, else 1/96 inch, which a finding tells. Throws std::runtime_error saying file,
-/// line and reason for what is no SVG, for shapes that cannot be read, and where there is no outline.
+/// width and viewBox give them; a pixel is 1/96 inch, of Adobe Illustrator 1/72 and of Inkscape before 0.92
+/// 1/90, which is an assumption and a finding, as is a root without a width. Throws std::runtime_error saying
+/// file, line and reason for what is no SVG, for shapes that cannot be read, and where there is no outline.
 SvgOutlines read_svg_outlines(const std::filesystem::path& path, const SvgPlacement& place,
                               double tolerance_mm);
 

@@ -100,14 +100,19 @@ FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& he
   Json json{{"kind", "mesh"}};
   for (const char* key : {"volume_mm3", "volume_partial_mm3", "centroid_mm", "inertia_mm5"})
     json[key] = nullptr;
-  json["volume_estimator"] = "none: the surface is not closed";
+  const bool is_inside_out = health.first_defect == brep::Defect::InsideOut;
+  json["volume_estimator"] =
+      is_inside_out ? "none: the surface faces inward" : "none: the surface is not closed";
   json["area_mm2"] = size.area_mm2;
   json["area_estimator"] = "triangles";
   json["extents_mm"] = Json::array({to_json(size.low_mm), to_json(size.high_mm)});
   json["components"] = health.components;
   json["euler"] = health.euler;
-  json["findings"] = {"volume_mm3: none, as the surface is not closed, oriented and manifold: " +
-                      health.findings.front() + "; octotomy repair --solid closes it"};
+  json["findings"] = {is_inside_out
+                          ? "volume_mm3: none: " + health.findings.front() +
+                                "; octotomy repair --solid turns it outward"
+                          : "volume_mm3: none, as the surface is not closed, oriented and manifold: " +
+                                health.findings.front() + "; octotomy repair --solid closes it"};
   return said(std::move(json));
 }
 

@@ -427,7 +427,11 @@ OtsuWindow otsu_window(const voxel::Scene& scene, int classes, int number) {
 
 int label_of_name(const Segment& segment, const std::filesystem::path& label_map, const voxel::Scene& scene,
                   const std::filesystem::path& folder, std::vector<std::string>& findings) {
-  if (!segment.names.empty()) return read_label_table(folder / segment.names).label(*segment.named);
+  if (!segment.names.empty()) {
+    const LabelTable given = read_label_table(folder / segment.names);
+    findings.insert(findings.end(), given.passed_over.begin(), given.passed_over.end());
+    return given.label(*segment.named);
+  }
   std::set<int> occurring;
   for (const voxel::Label& label : labels_or_none(scene)) occurring.insert(label.number);
   const LabelTable table = label_table_of(label_map, occurring);

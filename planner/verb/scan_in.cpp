@@ -81,7 +81,7 @@ void add_scan_options(CLI::App& verb, ScanIn& in, const std::string& heading) {
   verb.add_option("--unit", in.unit,
                   "mm, cm, m, um or inch: the unit of a volume file's lengths, whatever it states")
       ->group(heading);
-  verb.add_option("--spacing", in.spacing, "X,Y,Z in mm, of images and raw files, which do not say it")
+  verb.add_option("--spacing", in.spacing, "X,Y,Z in mm, of raw files and of images that do not state it")
       ->group(heading);
   verb.add_option("--raw", in.raw, "XxYxZ TYPE: the file is raw samples, for example 512x512x300 int16")
       ->expected(2)

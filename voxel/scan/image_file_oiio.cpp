@@ -12,6 +12,7 @@
 #include <memory>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 extern "C" bool octotomy_encode_image(const char* format, int width, int height, const std::uint8_t* rgb,
                                       std::vector<std::uint8_t>* encoded, std::string* error) {
@@ -144,6 +145,7 @@ void turn_upright(StoredImage& image) {
       std::copy_n(&image.bytes[(j * width + i) * bytes], bytes, &upright[(y * columns + x) * bytes]);
     }
   image.bytes = std::move(upright);
+  if (is_turned) std::swap(image.pixels_per_unit, image.pixels_per_unit_across);
   image.width = static_cast<int>(columns);
   image.height = static_cast<int>(rows);
 }
@@ -151,9 +153,12 @@ void turn_upright(StoredImage& image) {
 /// Takes what a page states about its pixels.
 void take_statements(const OIIO::ImageSpec& spec, std::string_view format, StoredImage& image) {
   image.pixels_per_unit = static_cast<double>(spec.get_float_attribute("XResolution", 0.0f));
+  image.pixels_per_unit_across = static_cast<double>(spec.get_float_attribute("YResolution", 0.0f));
   const std::string unit = spec.get_string_attribute("ResolutionUnit");
-  const double mm = unit == "in" || unit == "inch" ? 25.4 : unit == "cm" ? 10.0 : unit == "m" ? 1000.0 : 0.0;
-  if (mm > 0.0) image.pixels_per_mm = image.pixels_per_unit / mm;
+  image.mm_per_unit = unit == "in" || unit == "inch" ? 25.4
+                      : unit == "cm"                 ? 10.0
+                      : unit == "m"                  ? 1000.0
+                                                     : 0.0;
   image.is_white_zero = format == "tiff" && spec.get_int_attribute("tiff:PhotometricInterpretation", 1) == 0;
   image.is_lossy = format == "jpeg" || spec.get_string_attribute("compression") == "jpeg";
   image.description = spec.get_string_attribute("ImageDescription");

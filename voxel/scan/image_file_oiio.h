@@ -21,9 +21,10 @@ struct StoredImage {
   std::vector<char> bytes;  ///< in this machine's order, upright
   /// As the file states where its rows begin and how they run (TIFF's and EXIF's 1 to 8); 1: as stored.
   int orientation = 1;
-  double pixels_per_mm = 0.0;    ///< along rows, as the file states; 0: not stated in a unit of length
-  double pixels_per_unit = 0.0;  ///< along rows, of whatever unit
-  bool is_white_zero = false;    ///< TIFF's WhiteIsZero: large samples are dark
+  double pixels_per_unit = 0.0;         ///< along rows, as the file states; 0: not stated
+  double pixels_per_unit_across = 0.0;  ///< across rows
+  double mm_per_unit = 0.0;             ///< 0: the unit of resolution is not stated, or no length
+  bool is_white_zero = false;           ///< TIFF's WhiteIsZero: large samples are dark
   bool is_lossy = false;
   std::string description;  ///< free text, in which ImageJ and OME state what the file is
 };

@@ -6,15 +6,17 @@
 namespace octotomy::voxel {
 
 /// The image files that a path names: the file itself, the images in a folder, or the matches of a pattern
-/// with * and ? in its last part; in the order of the numbers in their names. Empty if it names none. A file
-/// is an image by its extension (tif, tiff, png, jpg, jpeg, bmp, pgm, exr, jp2, webp).
+/// with * and ? in its last part; in the order of the numbers in their names (slice_names.h). Empty if it
+/// names none. A file is an image by its extension (tif, tiff, png, jpg, jpeg, bmp, pgm, exr, jp2, webp).
 std::vector<std::filesystem::path> image_files(const std::filesystem::path& path);
 
-/// Reads images as the slices of a stack, the first at the feet, with the options' spacing; each page of a
-/// file is a slice. All must have the same size and type. Images hold neither patient frame nor unit: the
-/// audit states the assumed ones. What pictures state of themselves is held against the options: sizes of
-/// pixels and slices (picture_spacing; ImageJ's, OME's or the format's own), times and channels
-/// (picture_axes), WhiteIsZero (polarity), JPEG's losses (compression). Throws as read_scene().
+/// Reads images as the slices of a stack, the first at the feet; each page of a file is a slice. The spacing
+/// is the options', else what ImageJ or OME state in the pictures' descriptions, with a line in the audit;
+/// where they state a part of it, or only the resolution of a page, there is none. All must have the same
+/// size and type. Images hold no patient frame: the audit states the assumed one, and what their names leave
+/// open (slice_names). What pictures state of themselves is held against the options: sizes of pixels and
+/// slices (picture_spacing), times and channels (picture_axes), WhiteIsZero (polarity), JPEG's losses
+/// (compression). Throws as read_scene().
 Scene read_image_stack(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace octotomy::voxel

@@ -60,20 +60,22 @@ bool is_smoother_swapped(std::string_view bytes, const glm::ivec3& dims, const S
 
 }  // namespace
 
-void place_without_frame(const fs::path& path, const glm::ivec3& dims, const ReadOptions& options,
-                         Scene& scene) {
-  if (options.unit) refuse(path, "its spacing is --spacing, in mm: leave --unit out");
-  if (!options.spacing_mm) refuse(path, "does not state its spacing: give --spacing X,Y,Z in mm");
-  const glm::dvec3 spacing_mm = *options.spacing_mm;
+void refuse_without_spacing(const fs::path& path) {
+  refuse(path, "does not state its spacing: give --spacing X,Y,Z in mm");
+}
+
+void place_without_frame(const fs::path& path, const glm::ivec3& dims, const KnownSpacing& spacing,
+                         const ReadOptions& options, Scene& scene) {
+  if (options.unit) refuse(path, "its spacing is in " + spacing.unit_says + ": leave --unit out");
   for (int axis = 0; axis < 3; ++axis)
-    if (!(spacing_mm[axis] >= 1e-4 && spacing_mm[axis] <= 1e3))
-      refuse(path,
-             "a spacing of " + std::to_string(spacing_mm[axis]) + " mm is out of range; give 0.0001 to 1000");
+    if (!(spacing.mm[axis] >= 1e-4 && spacing.mm[axis] <= 1e3))
+      refuse(path, "a spacing of " + std::to_string(spacing.mm[axis]) +
+                       " mm is out of range; give 0.0001 to 1000 by --spacing");
   StatedGeometry geometry;
   geometry.dims = dims;
-  for (int axis = 0; axis < 3; ++axis) geometry.file_from_voxel[axis][axis] = spacing_mm[axis];
-  geometry.file_from_voxel[3] = glm::dvec4(-0.5 * glm::dvec3(dims - 1) * spacing_mm, 1.0);
-  geometry.unit_says = "mm (--spacing)";
+  for (int axis = 0; axis < 3; ++axis) geometry.file_from_voxel[axis][axis] = spacing.mm[axis];
+  geometry.file_from_voxel[3] = glm::dvec4(-0.5 * glm::dvec3(dims - 1) * spacing.mm, 1.0);
+  geometry.unit_says = spacing.unit_says;
   scene.lattice = placed(geometry, options.frame, {}, scene.audit);
   scene.audit.push_back(
       {"origin", Verdict::Warn, "the file states no origin: the volume's centre is taken as the origin"});
@@ -101,7 +103,8 @@ Scene read_raw(const fs::path& path, const ReadOptions& options) {
   need_memory(path, bytes / bytes_of(layout.type), 2 * bytes_of(layout.type));
   Scene scene;
   scene.source = path.string();
-  place_without_frame(path, layout.dims, options, scene);
+  if (!options.spacing_mm) refuse_without_spacing(path);
+  place_without_frame(path, layout.dims, {*options.spacing_mm, given_spacing}, options, scene);
   const StoredSamples stored{layout.type, layout.big_endian};
   const std::string samples = bytes_of_part(path, layout.offset, bytes);
   take_bytes(samples, stored, scene);

@@ -13,11 +13,21 @@ namespace octotomy::voxel {
 /// the layout is unusable, no spacing is given, or the file's size is not the layout's.
 Scene read_raw(const std::filesystem::path& path, const ReadOptions& options);
 
-/// Places a scene whose file has no patient frame: the options' spacing, axes along the options' frame or
-/// else LPS, centred on the origin; the audit says so. Throws Error, Input, naming the path if the options
-/// have no spacing or one that is not positive.
+/// A spacing and the audit's words for where its unit comes from.
+struct KnownSpacing {
+  glm::dvec3 mm{1.0};
+  std::string unit_says;
+};
+inline constexpr const char* given_spacing = "mm (--spacing)";
+
+/// Throws Error, Input, naming the path.
+[[noreturn]] void refuse_without_spacing(const std::filesystem::path& path);
+
+/// Places a scene whose file has no patient frame: axes along the options' frame or else LPS, centred on the
+/// origin; the audit says so. Throws Error, Input, naming the path if the options have a unit, or the spacing
+/// is none that a scanner has.
 void place_without_frame(const std::filesystem::path& path, const glm::ivec3& dims,
-                         const ReadOptions& options, Scene& scene);
+                         const KnownSpacing& spacing, const ReadOptions& options, Scene& scene);
 
 /// Takes the samples of a file that does not state its modality, as take_stored() does. Their meaning is
 /// judged by their air (air_level.h) and stated in the audit. Precondition: the bytes are those of the

@@ -85,13 +85,18 @@ class HeaderLines {
     put(name, value);
   }
 
+  /// "Key = Value" or "Key: Value", whichever mark comes first, as MetaIO takes it (MET_Read).
   void take_meta(const std::string& line) {
-    const std::size_t mark = line.find('=');
+    const std::size_t mark = line.find_first_of("=:");
     if (mark == std::string::npos || mark == 0)
-      refuse(path_, "its MetaImage header is damaged: a line is not 'Key = Value'");
+      refuse(path_, "its MetaImage header is damaged: a line is neither 'Key = Value' nor 'Key: Value'");
     const std::string name = lower_case(trimmed(line.substr(0, mark)));
     const std::string value = trimmed(line.substr(mark + 1));
-    put(name, value);
+    // Private keys may share their first part: "lab:dose = 5" and "lab:date = 6" contradict nothing.
+    if (line[mark] == ':' && value.find('=') != std::string::npos)
+      header_.fields.emplace(name, value);
+    else
+      put(name, value);
     ends_ = name == "elementdatafile";
     is_list_ = ends_ && is_list(value);
   }

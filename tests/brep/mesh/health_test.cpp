@@ -36,6 +36,27 @@ TEST(Health, ACavityMustFaceInwardAndAnIslandOutward) {
   EXPECT_FALSE(everted.solid());
 }
 
+TEST(Health, NamesASurfaceThatFacesInwardAsAWhole) {
+  const Triangles outer = shapes::sphere({0, 0, 0}, 4, 2), cavity = shapes::sphere({0, 0, 0}, 3, 2);
+  const Triangles hollow = shapes::together(outer, shapes::inside_out(cavity));
+  ASSERT_TRUE(health(hollow).solid());
+  for (const Triangles& whole : {shapes::inside_out(outer), shapes::inside_out(hollow)}) {
+    const Health everted = health(whole);
+    EXPECT_EQ(everted.first_defect, Defect::InsideOut);
+    ASSERT_EQ(everted.findings.size(), 1u) << told(everted);
+    EXPECT_NE(told(everted).find("the whole surface faces inward, so that its volume is -"),
+              std::string::npos)
+        << told(everted);
+  }
+  // One shell of two, and a part beside another.
+  for (const Triangles& part :
+       {shapes::together(outer, cavity),
+        shapes::together(outer, shapes::inside_out(shapes::sphere({9, 0, 0}, 3, 2)))}) {
+    EXPECT_EQ(health(part).first_defect, Defect::MisplacedShell);
+    EXPECT_EQ(told(health(part)).find("the whole surface"), std::string::npos);
+  }
+}
+
 TEST(Health, CatchesAFlippedTriangle) {
   Triangles t = shapes::sphere({0, 0, 0}, 1, 2);
   std::swap(t.faces[10][0], t.faces[10][1]);

@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <gtest/gtest.h>
+#include <tuple>
 
 #include "tests/planner/cli/command_line.h"
 #include "voxel/scan/write_dicom_seg.h"
@@ -74,7 +75,72 @@ TEST(LabelTable, ASpoiledTableIsRefusedByItsLine) {
             std::string::npos);
   EXPECT_NE(refusal("d.txt", "5 255 0 0 1 1 1 \"liver\"\nliver 5\n").find("d.txt:2"), std::string::npos);
   EXPECT_NE(refusal("e.json", R"({"liver": -1})").find("liver"), std::string::npos);
-  EXPECT_NE(refusal("f.csv", "5,liver\n40000000,spleen\n").find("f.csv:2"), std::string::npos);
+  EXPECT_NE(refusal("f.csv", "5,liver\nsix,spleen\n").find("f.csv:2"), std::string::npos);
+}
+
+TEST(LabelTable, RowsThatNameNoLabelArePassedOverByTheirLine) {
+  const ScratchFolder folder;
+  const Names expected{{2, "left kidney"}, {5, "liver"}};
+  for (const auto& [name, text, told] :
+       {std::tuple<const char*, std::string, const char*>{
+            "a.csv", "label,name\n-1,unknown\n5,liver\n2,left kidney\n", "a.csv:2: the row is passed over"},
+        {"b.csv", "5,liver\n2,left kidney\n40000000,spleen\n", "b.csv:3"},
+        {"c.tsv", "index\tname\n5\tliver\n\tspleen\n2\tleft kidney\n",
+         "c.tsv:3: the row is passed over, as it has no label"},
+        {"d.tsv", "index\tname\n5\tliver\n7\t\n2\tleft kidney\n", "label 7 has no name"},
+        {"e.txt", "Label Name R G B A\n5 liver 9 9 9 255\n2 left kidney 0 9 0 255\n",
+         "e.txt:1: the row is passed over, as it is a heading"},
+        {"f.ctbl", "-1 unknown 0 0 0 0\n5 liver 9 9 9 255\n2 left_kidney 0 9 0 255\n", "f.ctbl:1"}}) {
+    const LabelTable table = read_label_table(put(folder, name, text));
+    EXPECT_EQ(table.names, expected) << name;
+    ASSERT_EQ(table.passed_over.size(), 1u) << name;
+    EXPECT_NE(table.passed_over[0].find(told), std::string::npos) << table.passed_over[0];
+  }
+  EXPECT_TRUE(read_label_table(put(folder, "g.csv", "5,liver\n")).passed_over.empty());
+  std::string many = "5,liver\n";
+  for (int i = 1; i <= 20; ++i) many += "-" + std::to_string(i) + ",none\n";
+  EXPECT_EQ(read_label_table(put(folder, "h.csv", many)).passed_over.size(), 9u);
+}
+
+TEST(LabelTable, OtherEncodingsAreReadAndSaid) {
+  const ScratchFolder folder;
+  const auto in_16_bits = [](const std::u16string& text, bool is_big) {
+    std::string bytes;
+    for (const char16_t unit : u"\ufeff" + text) {
+      const char low = static_cast<char>(unit & 0xff), high = static_cast<char>(unit >> 8);
+      bytes += is_big ? high : low;
+      bytes += is_big ? low : high;
+    }
+    return bytes;
+  };
+  const Names expected{{5, "Gelenkh\u00f6cker"}, {6, "\U0001f9b7"}};
+  const std::u16string text = u"5,Gelenkh\u00f6cker\n6,\U0001f9b7\n";
+  for (const bool is_big : {false, true}) {
+    const LabelTable table = read_label_table(put(folder, "a.csv", in_16_bits(text, is_big)));
+    EXPECT_EQ(table.names, expected) << is_big;
+    ASSERT_EQ(table.passed_over.size(), 1u);
+    EXPECT_NE(table.passed_over[0].find("UTF-16"), std::string::npos);
+  }
+  const LabelTable latin = read_label_table(put(folder, "b.txt",
+                                                "5 255 0 0 1 1 1 \"Gelenkh\xf6"
+                                                "cker\"\n"));
+  EXPECT_EQ(latin.names, (Names{{5, "Gelenkh\u00f6cker"}}));
+  ASSERT_EQ(latin.passed_over.size(), 1u);
+  EXPECT_NE(latin.passed_over[0].find("Latin-1, by assumption"), std::string::npos);
+  const LabelTable plain = read_label_table(put(folder, "c.csv",
+                                                "\xef\xbb\xbf"
+                                                "5,Gelenkh\u00f6cker\n"));
+  EXPECT_EQ(plain.names, (Names{{5, "Gelenkh\u00f6cker"}}));
+  EXPECT_TRUE(plain.passed_over.empty());
+}
+
+TEST(LabelTable, ANameMatchesWhetherItsMarksAreCombinedOrNot) {
+  const LabelTable table{{{5, "Gelenkho\u0308cker"}, {6, "\u010celjust"}, {7, "Gelenkhocker"}}, "a.csv"};
+  EXPECT_EQ(table.label("Gelenkh\u00f6cker"), 5);
+  EXPECT_EQ(table.label("Gelenkho\u0308cker"), 5);
+  EXPECT_EQ(table.label("C\u030celjust"), 6);
+  EXPECT_EQ(table.label("Gelenkhocker"), 7);
+  EXPECT_THROW(table.label("Gelenkho\u0301cker"), std::runtime_error);
 }
 
 TEST(LabelTable, OfALabelMapIsItsOwnOrTheOneBesideItAndOfADicomSegmentationItsSegments) {

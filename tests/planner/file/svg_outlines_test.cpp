@@ -5,6 +5,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <tuple>
 
 #include "tests/planner/ball_scan.h"
 #include "voxel/solid/polygon.h"
@@ -136,6 +137,40 @@ TEST_F(SvgOutlinesFile, UnitsAreTheRootsAndToldWhereTheyAreNone) {
   EXPECT_EQ(side_mm(R"(viewBox="0 0 100 50")").second, 1u);
   EXPECT_EQ(side_mm(R"(width="5cm" viewBox="0 0 100 50")").second, 0u);
   EXPECT_NEAR(side_mm("width=\"100%\"", "20mm").first, 20.0, 1e-9);
+}
+
+TEST_F(SvgOutlinesFile, APixelIsThatOfTheProgramAndAFinding) {
+  const auto read_by = [&](const std::string& before, const std::string& root) {
+    std::ofstream(folder_ / "a.svg") << "<?xml version=\"1.0\"?>\n"
+                                     << before << "<svg " << root
+                                     << "><rect width=\"10\" height=\"10\"/></svg>\n";
+    const SvgOutlines found = read_svg_outlines(
+        folder_ / "a.svg",
+        [](double mm_per_unit, const std::optional<SvgPicture>&) {
+          return glm::dmat3({mm_per_unit, 0, 0}, {0, mm_per_unit, 0}, {0, 0, 1});
+        },
+        tolerance_mm);
+    return std::pair(std::sqrt(voxel::signed_area(found.polygons_mm[0])),
+                     found.findings.empty() ? std::string() : found.findings.front());
+  };
+  const std::string illustrator = "<!-- Generator: Adobe Illustrator 24.0.1, SVG Export Plug-In -->\n",
+                    pixels = R"(width="200px" height="200px" viewBox="0 0 100 100")";
+  for (const auto& [before, root, per_inch, program] :
+       {std::tuple(illustrator, pixels, 72, "as Adobe Illustrator has it"),
+        {illustrator, R"(width="200" viewBox="0 0 100 100")", 72, "as Adobe Illustrator has it"},
+        {"", pixels, 96, "as CSS has it"},
+        {"", R"(inkscape:version="0.48.4 r9939" )" + pixels, 90, "as Inkscape before 0.92 has it"},
+        {"", R"(inkscape:version="0.92.3" )" + pixels, 96, "as Inkscape has it"},
+        {"", R"(inkscape:version="1.2" )" + pixels, 96, "as Inkscape has it"}}) {
+    const auto [side_mm, finding] = read_by(before, root);
+    EXPECT_NEAR(side_mm, 20.0 * 25.4 / per_inch, 1e-9) << root;
+    EXPECT_NE(finding.find("in pixels, which are no length"), std::string::npos) << finding;
+    EXPECT_NE(finding.find("1/" + std::to_string(per_inch) + " inch"), std::string::npos) << finding;
+    EXPECT_NE(finding.find(program), std::string::npos) << finding;
+  }
+  const auto [side_mm, finding] = read_by(illustrator, R"(width="200mm" viewBox="0 0 100 100")");
+  EXPECT_NEAR(side_mm, 20.0, 1e-9);
+  EXPECT_EQ(finding, "");
 }
 
 TEST_F(SvgOutlinesFile, FindsThePictureAndWhereItStands) {

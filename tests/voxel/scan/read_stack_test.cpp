@@ -149,7 +149,7 @@ std::map<std::string, std::string> lines_of_picture(const std::string& descripti
   if (!description.empty()) spec.attribute("ImageDescription", description);
   if (per_cm > 0.0f) {
     spec.attribute("XResolution", per_cm);
-    spec.attribute("YResolution", per_cm);
+    spec.attribute("YResolution", per_cm / 1.5f);
     spec.attribute("ResolutionUnit", "cm");
   }
   EXPECT_TRUE(out && out->open((folder / "a.tif").string(), spec));
@@ -185,6 +185,92 @@ TEST(ReadImageStack, HoldsWhatPicturesStateAgainstHowTheyAreRead) {
   EXPECT_NE(
       lines_of_picture("ImageJ=1.53t\nimages=8\n", 0.0f)["picture_count"].find("8 images and 1 were found"),
       std::string::npos);
+}
+
+/// Pages of one TIFF, the first with a description; `per_unit` are pixels along x and y, 0: not stated.
+void write_described(const fs::path& path, const std::string& description, const glm::vec2& per_unit,
+                     const char* unit = "none", int pages = 3) {
+  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(path.string());
+  for (int z = 0; z < pages; ++z) {
+    OIIO::ImageSpec spec(dims.x, dims.y, 1, OIIO::TypeDesc::INT16);
+    if (z == 0 && !description.empty()) spec.attribute("ImageDescription", description);
+    if (per_unit.x > 0.0f) spec.attribute("XResolution", per_unit.x);
+    if (per_unit.y > 0.0f) spec.attribute("YResolution", per_unit.y);
+    spec.attribute("ResolutionUnit", unit);
+    ASSERT_TRUE(out && out->open(path.string(), spec,
+                                 z == 0 ? OIIO::ImageOutput::Create : OIIO::ImageOutput::AppendSubimage));
+    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::INT16, page<std::int16_t>(z, 0).data()));
+  }
+  ASSERT_TRUE(out->close());
+}
+
+TEST(ReadImageStack, TakesTheSpacingThatImageJAndOmeState) {
+  const ScratchFolder folder;
+  const std::string image_j = "ImageJ=1.53t\nimages=3\nslices=3\n";
+  for (const auto& [description, per_unit] :
+       {std::pair(image_j + "unit=mm\nspacing=1.25\nloop=false\n", glm::vec2(2.0f, 4.0f)),
+        {image_j + "unit=cm\nspacing=0.125\n", {20.0f, 40.0f}},
+        {image_j + "unit=micron\nspacing=1250.0\n", {2e-3f, 4e-3f}},
+        {image_j + "unit=\\u00B5m\nspacing=1250\n", {2e-3f, 4e-3f}},
+        {image_j + "unit=\xb5m\nspacing=1250\n", {2e-3f, 4e-3f}},
+        {image_j + "unit=mm\nyunit=cm\nzunit=um\nspacing=1250\n", {2.0f, 40.0f}},
+        {"<?xml version=\"1.0\"?><OME><Image><Pixels PhysicalSizeX=\"500\" PhysicalSizeY=\"250\" "
+         "PhysicalSizeZ=\"1.25\" PhysicalSizeZUnit=\"mm\" SizeC=\"1\"/></Image></OME>",
+         {0.0f, 0.0f}},
+        {"<OME><Pixels PhysicalSizeX='0.5' PhysicalSizeXUnit='mm' PhysicalSizeY='250' "
+         "PhysicalSizeYUnit='\u00b5m' "
+         "PhysicalSizeZ='0.125' PhysicalSizeZUnit='cm'/></OME>",
+         {72.0f, 72.0f}}}) {
+    SCOPED_TRACE(description);
+    write_described(folder / "a.tif", description, per_unit);
+    const Scene scene = read_scene(folder / "a.tif");
+    const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(spacing_mm[axis], glm::dvec3(0.5, 0.25, 1.25)[axis], 1e-6) << axis;
+    EXPECT_EQ(verdict(scene, "picture_spacing"), Verdict::Pass);
+    EXPECT_NE(tests::finding(scene, "picture_spacing")->detail.find("0.5 x 0.25 x 1.25 mm"),
+              std::string::npos);
+    // The spacing given is 0.5 x 0.75 x 1.25 mm.
+    const Scene given = read_scene(folder / "a.tif", spaced());
+    EXPECT_EQ(given.lattice.spacing_mm(), *spaced().spacing_mm);
+    EXPECT_EQ(verdict(given, "picture_spacing"), Verdict::Warn);
+    EXPECT_NE(tests::finding(given, "picture_spacing")->detail.find("0.25 mm high, and 0.75 mm"),
+              std::string::npos);
+  }
+}
+
+TEST(ReadImageStack, NamesWhatASpacingThatIsStatedInPartLeavesOut) {
+  const ScratchFolder folder;
+  const auto reason = [&](const std::string& description, const glm::vec2& per_unit,
+                          const char* unit = "none") {
+    write_described(folder / "a.tif", description, per_unit, unit);
+    return reason_of(folder / "a.tif", {});
+  };
+  const std::string image_j = "ImageJ=1.53t\nimages=3\nslices=3\n";
+  for (const auto& [text, part] :
+       {std::pair(reason(image_j + "unit=mm\n", {2.0f, 4.0f}),
+                  "0.5 x 0.25 x ? mm (ImageJ), without the distance"),
+        {reason(image_j + "unit=mm\nspacing=1.25\n", {0.0f, 0.0f}),
+         "the width of a pixel, the height of a pixel"},
+        {reason(image_j + "unit=pixel\nspacing=1.25\n", {2.0f, 4.0f}), "unit 'pixel' is no length"},
+        {reason(image_j + "spacing=1.25\n", {2.0f, 4.0f}), "names no unit"},
+        {reason(image_j + "unit=mm\nspacing=-1.25\n", {2.0f, 4.0f}), "a size of -1.25 mm"},
+        {reason(image_j + "unit=mm\nspacing=1.25\n", {72.0f, 72.0f}, "in"), "another program changed it"},
+        {reason("<OME><Pixels PhysicalSizeX=\"1\" PhysicalSizeY=\"1\"/></OME>", {0.0f, 0.0f}),
+         "distance of slices"},
+        {reason("<OME><Pixels PhysicalSizeX=\"1\" PhysicalSizeXUnit=\"pixel\"/></OME>", {0.0f, 0.0f}),
+         "'pixel'"},
+        // The resolution of a page is none of a patient.
+        {reason("", {25.4f, 25.4f}, "in"), "does not state its spacing: give --spacing"},
+        {reason("a photograph", {10.0f, 10.0f}, "cm"), "does not state its spacing: give --spacing"}}) {
+    EXPECT_NE(text.find(part), std::string::npos) << text << "\n" << part;
+    EXPECT_NE(text.find("give --spacing X,Y,Z in mm"), std::string::npos) << text;
+  }
+  write_described(folder / "b.tif", image_j + "unit=mm\nspacing=1.25\n", {2.0f, 4.0f});
+  write_described(folder / "a.tif", image_j + "unit=mm\nspacing=1.25\n", {2.0f, 4.0f});
+  EXPECT_EQ(read_scene(folder.path()).lattice.dims.z, 6);
+  write_described(folder / "b.tif", image_j + "unit=mm\nspacing=2.5\n", {2.0f, 4.0f});
+  EXPECT_NE(reason_of(folder.path(), {}).find("different sizes"), std::string::npos);
 }
 
 TEST(ReadImageStack, WarnsOfNumbersThatTheNamesSkip) {

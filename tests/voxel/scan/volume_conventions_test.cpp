@@ -478,6 +478,11 @@ std::vector<Row> meta_rows() {
        meta(meta_place + "BinaryData = False\n",
             "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23"),
        lps_first, lps_last, as_stored, "rescale", Verdict::Pass},
+      {"a colon behind each key", name,
+       "NDims: 3\nDimSize: 2 3 4\nTransformMatrix: 1 0 0 0 1 0 0 0 1\nOffset: 10 20 30\n"
+       "ElementSpacing: 2 3 4\nElementType: MET_UCHAR\nElementDataFile: LOCAL\n" +
+           tests::ramp(),
+       lps_first, lps_last, as_stored, "orientation", Verdict::Pass},
       {"a mask of a CT",
        name,
        meta(meta_place + "Modality = MET_MOD_CT\n", std::string(20, '\0') + std::string(4, '\1')),

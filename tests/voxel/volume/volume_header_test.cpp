@@ -114,6 +114,22 @@ TEST_F(VolumeHeaderTest, ExtensionsOfOthersArePassedOver) {
   }
 }
 
+TEST_F(VolumeHeaderTest, AColonEndsAKeyOfMetaImageAsAnEqualsSignDoes) {
+  const std::string samples(16, '\0');
+  for (const std::string mark : {" = ", ": ", ":", " : ", "="}) {
+    std::string lines = meta(2, "LOCAL") + samples;
+    for (std::size_t at = 0; (at = lines.find(" = ", at)) != std::string::npos; at += mark.size())
+      lines.replace(at, 3, mark);
+    const VolumeHeader read = header_of("colon.mha", lines);
+    EXPECT_EQ(read.geometry.dims, glm::ivec3(2)) << mark;
+    EXPECT_EQ(read.field("key1"), "a value") << mark;
+    EXPECT_EQ(read.samples.file_at, lines.size() - samples.size()) << mark;
+  }
+  const std::string both = "Comment = a: b\nlab:dose = 5\nlab:date = 6\n";
+  EXPECT_EQ(header_of("both.mha", both + meta(0, "LOCAL") + samples).field("comment"), "a: b");
+  EXPECT_NE(refusal("twice.mha", "NDims: 2\n" + meta(0, "LOCAL") + samples).find("twice"), std::string::npos);
+}
+
 TEST_F(VolumeHeaderTest, AFieldThatContradictsItselfIsRefused) {
   const std::string samples(16, '\0');
   EXPECT_EQ(refusal("twice.nrrd", "NRRD0004\nsizes: 2 2 2\n" + nrrd(0).substr(9) + "\n" + samples), "taken");

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// 1 cut each name into numbers and the text between them; 2 gather what the names of equal text have at each
+// number: signs, digits behind the dot; 3 decide for each number what its minus and its dot mean; 4 sort.
+#include "voxel/scan/slice_names.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace octotomy::voxel {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_digit_at(const std::string& text, std::size_t at) {
+  return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
+}
+
+/// Letters beyond ASCII, too.
+bool is_letter_or_digit(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return std::isalnum(byte) != 0 || byte >= 0x80;
+}
+
+struct NumberInName {
+  char sign = '\0';             ///< as written: '-', '+' or none
+  bool is_behind_word = false;  ///< the sign stands behind a letter
+  std::string whole, fraction;  ///< digits; of the whole number without leading zeros
+  bool is_negative = false, is_decimal = true;
+};
+
+struct CutName {
+  std::string text;  ///< with '\1' for each number and its sign
+  std::vector<std::string> between;
+  std::vector<NumberInName> numbers;
+};
+
+CutName cut(const std::string& name) {
+  CutName made;
+  std::string text;
+  const auto end_text = [&] {
+    made.text += text;
+    made.between.push_back(std::exchange(text, {}));
+  };
+  for (std::size_t at = 0; at < name.size();) {
+    const bool is_sign = (name[at] == '-' || name[at] == '+') && is_digit_at(name, at + 1) &&
+                         !(at > 0 && is_digit_at(name, at - 1));
+    if (!is_sign && !is_digit_at(name, at)) {
+      text += name[at++];
+      continue;
+    }
+    NumberInName number;
+    if (is_sign) {
+      number.sign = name[at];
+      number.is_behind_word = at > 0 && is_letter_or_digit(name[at - 1]);
+      ++at;
+    }
+    const bool is_chained = at > 1 && name[at - 1] == '.' && is_digit_at(name, at - 2);
+    const auto digits = [&] {
+      const std::size_t begin = at;
+      while (is_digit_at(name, at)) ++at;
+      return name.substr(begin, at - begin);
+    };
+    number.whole = digits();
+    number.whole.erase(0, number.whole.find_first_not_of('0'));
+    if (!is_chained && at < name.size() && name[at] == '.' && is_digit_at(name, at + 1)) {
+      const std::size_t dot = at++;
+      number.fraction = digits();
+      // 1.2.840 are three numbers.
+      if (at < name.size() && name[at] == '.' && is_digit_at(name, at + 1)) {
+        number.fraction.clear();
+        at = dot;
+      }
+    }
+    end_text();
+    made.text += '\1';
+    made.numbers.push_back(std::move(number));
+  }
+  end_text();
+  return made;
+}
+
+/// What the names of equal text have at one of their numbers.
+struct Place {
+  bool has_minus = false, has_other = false, is_behind_word = false;
+  std::size_t least_digits = 0, most_digits = 0;  ///< behind a dot, where there is one
+  bool ends_with_zero = false;                    ///< of several digits behind a dot
+
+  void add(const NumberInName& number) {
+    (number.sign == '-' ? has_minus : has_other) = true;
+    is_behind_word = is_behind_word || (number.sign == '-' && number.is_behind_word);
+    const std::size_t digits = number.fraction.size();
+    if (digits == 0) return;
+    least_digits = least_digits == 0 ? digits : std::min(least_digits, digits);
+    most_digits = std::max(most_digits, digits);
+    ends_with_zero = ends_with_zero || (digits > 1 && number.fraction.back() == '0');
+  }
+  bool is_sign() const { return has_minus && (!is_behind_word || has_other); }
+  bool is_decimal() const { return least_digits == most_digits || !ends_with_zero; }
+};
+
+int order_of_digits(const std::string& a, const std::string& b) {
+  if (a.size() != b.size()) return a.size() < b.size() ? -1 : 1;
+  return a.compare(b);
+}
+
+int order_of(const NumberInName& a, const NumberInName& b) {
+  const auto is_zero = [](const NumberInName& n) {
+    return n.whole.empty() && n.fraction.find_first_not_of('0') == std::string::npos;
+  };
+  const bool is_below = a.is_negative && !is_zero(a), is_other_below = b.is_negative && !is_zero(b);
+  if (is_below != is_other_below) return is_below ? -1 : 1;
+  const auto trimmed_zeros = [](const std::string& digits, bool at_end) {
+    return at_end ? digits.substr(0, digits.find_last_not_of('0') + 1)
+                  : digits.substr(std::min(digits.find_first_not_of('0'), digits.size()));
+  };
+  int order = order_of_digits(a.whole, b.whole);
+  if (order == 0 && a.is_decimal)
+    order = trimmed_zeros(a.fraction, true).compare(trimmed_zeros(b.fraction, true));
+  else if (order == 0)
+    order = order_of_digits(trimmed_zeros(a.fraction, false), trimmed_zeros(b.fraction, false));
+  return is_below ? -order : order;
+}
+
+bool comes_before(const CutName& a, const CutName& b) {
+  for (std::size_t i = 0; i < std::min(a.between.size(), b.between.size()); ++i) {
+    if (const int order = a.between[i].compare(b.between[i]); order != 0) return order < 0;
+    const bool has = i < a.numbers.size(), other_has = i < b.numbers.size();
+    if (has != other_has) return other_has;
+    if (!has) return false;
+    if (const int order = order_of(a.numbers[i], b.numbers[i]); order != 0) return order < 0;
+  }
+  return false;
+}
+
+std::optional<double> last_number(const CutName& name) {
+  if (name.numbers.empty()) return std::nullopt;
+  const NumberInName& last = name.numbers.back();
+  const std::string& digits = last.is_decimal || last.fraction.empty() ? last.whole : last.fraction;
+  if (digits.size() > 9) return std::nullopt;
+  const std::string text = last.is_decimal ? "0" + last.whole + "." + last.fraction + "0" : "0" + digits;
+  const double number = std::strtod(text.c_str(), nullptr);
+  return last.is_negative ? -number : number;
+}
+
+}  // namespace
+
+SliceNames ordered_by_name(const std::vector<fs::path>& files) {
+  std::vector<CutName> names;
+  std::map<std::pair<std::string, std::size_t>, Place> places;
+  for (const fs::path& file : files) {
+    names.push_back(cut(file.stem().string()));
+    for (std::size_t i = 0; i < names.back().numbers.size(); ++i)
+      places[{names.back().text, i}].add(names.back().numbers[i]);
+  }
+  for (CutName& name : names)
+    for (std::size_t i = 0; i < name.numbers.size(); ++i) {
+      const Place& place = places[{name.text, i}];
+      name.numbers[i].is_negative = name.numbers[i].sign == '-' && place.is_sign();
+      name.numbers[i].is_decimal = place.is_decimal();
+    }
+  std::vector<std::size_t> order(files.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    if (comes_before(names[a], names[b])) return true;
+    if (comes_before(names[b], names[a])) return false;
+    return files[a].filename().string() < files[b].filename().string();
+  });
+
+  SliceNames made;
+  for (const std::size_t i : order) {
+    made.files.push_back(files[i]);
+    made.number.push_back(last_number(names[i]));
+  }
+  if (files.size() < 2) return made;
+  const auto doubt = [&](bool holds, const char* words) {
+    if (holds) made.doubts.emplace_back(words);
+  };
+  const auto any = [&](const auto& is) {
+    return std::any_of(places.begin(), places.end(), [&](const auto& entry) { return is(entry.second); });
+  };
+  doubt(any([](const Place& p) { return p.is_sign() && !p.has_other; }),
+        "each name has a minus before its number, which is taken as its sign: where it only separates, the "
+        "stack is upside down; rename the files");
+  doubt(
+      any([](const Place& p) { return p.is_sign() && p.has_other && p.is_behind_word; }),
+      "a minus behind a letter is taken as the number's sign, as other names have none there: where it only "
+      "separates, the slices are out of order; rename the files");
+  doubt(any([](const Place& p) { return p.least_digits != p.most_digits && p.is_decimal(); }),
+        "a dot in numbers is taken as the decimal point, so that 1.25 comes before 1.5: where it separates "
+        "two numbers, the slices are out of order; rename the files");
+  return made;
+}
+
+}  // namespace octotomy::voxel
