@@ -21,6 +21,7 @@ void certify(Object& made, const std::string& title, const voxel::Progress& prog
   inputs.scan_spacing_mm = made.bound.spacing_mm;
   inputs.flat_cut_mm2 = area_on_planes(made.mesh.within->triangles(), made.bound.planes);
   inputs.scan_box_mm = made.bound.scan_box_mm;
+  inputs.measured_apart_mm = made.bound.measured_apart_mm;
   inputs.voxels_are_samples = made.bound.voxels_are_samples;
   inputs.is_surely_empty = made.is_surely_empty;
   // What lies outside of the universe has been cut away from both answers.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The solid within a distance of an object, or its points farther than that from its outside. Distances
-// between voxel centres tell this only to half a voxel, so the mesh kernel answers alone.
+// The solid within a distance of an object, or its points farther than that from its outside. Each kernel
+// measures distances to its own answer to the object: to points of the surface between its voxels, and to its
+// triangles.
 #include "brep/shape/offset.h"
 
 #include <algorithm>
@@ -10,6 +11,8 @@
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "verify/witness/offset_witness.h"
+#include "voxel/filter/offset.h"
 
 namespace octotomy::planner {
 namespace {
@@ -68,6 +71,17 @@ std::string definition(const Offset& offset, const Objects&) {
   return offset.object.name + " offset by " + plain(offset.by_mm) + " mm";
 }
 
+void voxels(const Offset& offset, const VoxelBench& bench, VoxelSide& made) {
+  const VoxelSide& object = bench.object(offset.object.name);
+  const voxel::Expression moved = [&] {
+    const Stopwatch watch(bench.timings, "offset_voxel");
+    return voxel::Expression(voxel::offset(object.octree, *object.symbol, offset.by_mm, bench.progress));
+  }();
+  made.octree = bench.combined(moved);
+  made.symbol = bench.within_universe(moved);
+  made.lineage = "distances to where the surface passes between voxels";
+}
+
 void triangles(const Offset& offset, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "offset");
   const brep::Solid& solid = bench.object(offset.object.name);
@@ -84,7 +98,19 @@ void triangles(const Offset& offset, const MeshBench& bench, MeshSide& made) {
 }
 
 void bound(const Offset& offset, const BoundBench& bench, Object& made) {
-  made.bound.spacing_mm = bench.objects.at(offset.object.name).bound.spacing_mm;
+  const Object& object = bench.objects.at(offset.object.name);
+  made.bound.spacing_mm = object.bound.spacing_mm;
+  made.bound.shift_mm = object.bound.shift_mm;
+  if (made.mesh.whole && object.mesh.whole) {
+    const verify::OffsetOperand operand{object.witness, object.voxel.octree, *object.mesh.whole,
+                                        is_whole_voxels(object.voxel)};
+    const verify::OffsetAsked asked{offset.by_mm,
+                                    offset.cell_mm.value_or(cell_for(*object.mesh.whole, offset.by_mm))};
+    made.witness = verify::witness_of_offset(operand, asked);
+    made.bound.measured_apart_mm =
+        object.bound.measured_apart_mm +
+        verify::offset_allowance_mm(operand, asked, made.mesh.whole->measures().area_mm2);
+  }
   made.bound.reshaped = {offset.object.name};
   made.ends_with_universe = true;
 }
@@ -107,7 +133,7 @@ Operation offset_operation() {
           "octotomy offset tumour.stl --by 5 -o margin.stl\n"
           "  octotomy offset skull.stl --by -1 --cell 0.4 -o core.ply --json")
       .check(check)
-      .object(definition, nullptr, triangles, bound);
+      .object(definition, voxels, triangles, bound);
 }
 
 }  // namespace octotomy::planner

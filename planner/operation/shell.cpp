@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The outer layer of an object: its points within a distance of its outside. As of an offset, the mesh kernel
-// answers alone.
+// The outer layer of an object: its points within a distance of its outside. Each kernel takes its own offset
+// inward from its own answer.
 #include "brep/boolean/boolean.h"
 #include "brep/shape/offset.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "verify/witness/offset_witness.h"
+#include "verify/witness/witness.h"
+#include "voxel/filter/offset.h"
 
 namespace octotomy::planner {
 namespace {
@@ -19,11 +22,27 @@ std::string definition(const Shell& shell, const Objects&) {
   return "outer " + plain(shell.thickness_mm) + " mm of " + shell.object.name;
 }
 
+double cell_of(const Shell& shell) {
+  return 0.25 * shell.thickness_mm;
+}
+
+void voxels(const Shell& shell, const VoxelBench& bench, VoxelSide& made) {
+  const VoxelSide& object = bench.object(shell.object.name);
+  const voxel::Expression core = [&] {
+    const Stopwatch watch(bench.timings, "offset_voxel");
+    return voxel::Expression(
+        voxel::offset(object.octree, *object.symbol, -shell.thickness_mm, bench.progress));
+  }();
+  made.octree = bench.combined(voxel::Expression(object.octree) - core);
+  made.symbol = bench.within_universe(*object.symbol - core);
+  made.lineage = "the octree less what is deeper than a distance below its surface between voxels";
+}
+
 void triangles(const Shell& shell, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "offset");
   const brep::Solid& solid = bench.object(shell.object.name);
   const brep::Solid core = brep::offset(solid, {.by_mm = -shell.thickness_mm,
-                                                .cell_mm = 0.25 * shell.thickness_mm,
+                                                .cell_mm = cell_of(shell),
                                                 .progress = {bench.progress.stop, bench.progress.report}});
   brep::BooleanResult rest = brep::boolean(solid, brep::Operation::Difference, core, bench.progress.stop);
   made.shift_mm = rest.shift_mm;
@@ -33,7 +52,16 @@ void triangles(const Shell& shell, const MeshBench& bench, MeshSide& made) {
 }
 
 void bound(const Shell& shell, const BoundBench& bench, Object& made) {
-  inherit(bench.objects.at(shell.object.name), made);
+  const Object& object = bench.objects.at(shell.object.name);
+  inherit(object, made);
+  if (made.mesh.whole && object.mesh.whole) {
+    const verify::OffsetOperand operand{object.witness, object.voxel.octree, *object.mesh.whole,
+                                        is_whole_voxels(object.voxel)};
+    const verify::OffsetAsked asked{-shell.thickness_mm, cell_of(shell)};
+    made.witness = verify::without(object.witness, verify::witness_of_offset(operand, asked));
+    made.bound.measured_apart_mm +=
+        verify::offset_allowance_mm(operand, asked, made.mesh.whole->measures().area_mm2);
+  }
   made.ends_with_universe = true;
 }
 
@@ -45,7 +73,7 @@ Operation shell_operation() {
       .takes(field("thickness_mm", &Shell::thickness_mm, "The thickness of the layer.").greater_than(0.0))
       .example(R"({"id": "crust", "do": "shell", "object": "skull", "thickness_mm": 2})")
       .on_files("octotomy shell skull.stl --thickness 2 -o crust.stl")
-      .object(definition, nullptr, triangles, bound);
+      .object(definition, voxels, triangles, bound);
 }
 
 }  // namespace octotomy::planner

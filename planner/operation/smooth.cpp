@@ -3,6 +3,8 @@
 // steps find it in both kernels, and has no certificate of its own.
 #include "brep/shape/smooth.h"
 
+#include <algorithm>
+
 #include "planner/operation/trace.h"
 #include "planner/table/operation.h"
 
@@ -16,6 +18,16 @@ struct Smooth {
   double max_volume_share = brep::SmoothOptions{}.max_volume_share;
 };
 
+/// The surfaces are no farther apart than this, either way: smoothing moves points and keeps triangles, so
+/// that each place of one triangle has one of the other within the largest move of its corners.
+double largest_move_mm(const brep::Solid& solid, const brep::Solid& smoothed) {
+  const std::vector<glm::dvec3>&before = solid.triangles().points_mm, &after = smoothed.triangles().points_mm;
+  double largest_mm = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    largest_mm = std::max(largest_mm, glm::distance(before[i], after[i]));
+  return largest_mm;
+}
+
 std::string definition(const Smooth& smooth, const Objects&) {
   return smooth.object.name + " smoothed in " + std::to_string(smooth.rounds) + " rounds";
 }
@@ -26,7 +38,8 @@ void triangles(const Smooth& smooth, const MeshBench& bench, MeshSide& made) {
   const brep::Solid smoothed =
       brep::trusted_solid(brep::smooth(solid, {smooth.rounds, smooth.pass_band, smooth.max_volume_share}),
                           brep::Proof::Connection);
-  made.details = {{"volume_change_mm3", brep::volume_mm3(smoothed) - brep::volume_mm3(solid)}};
+  made.details = {{"volume_change_mm3", brep::volume_mm3(smoothed) - brep::volume_mm3(solid)},
+                  {"largest_move_mm", largest_move_mm(solid, smoothed)}};
   made.whole = smoothed;
   made.lineage = "steps in and out along the mesh (Taubin 1995)";
 }

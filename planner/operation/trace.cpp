@@ -65,6 +65,13 @@ void voxelise(const brep::Solid& mesh, const voxel::Universe& universe, VoxelSid
   made.lineage = voxelised_lineage;
 }
 
+bool is_whole_voxels(const VoxelSide& side) {
+  if (!side.symbol) return true;
+  const voxel::Expression::Term* term = &side.symbol->term();
+  while (term->kind == voxel::Expression::Kind::Moved) term = term->left.get();
+  return term->leaf && std::holds_alternative<voxel::Octree>(*term->leaf);
+}
+
 std::vector<CutPlane> ends_of(const voxel::Box& scan, const glm::dvec3& sample_mm,
                               const glm::dvec3& voxel_mm) {
   std::vector<CutPlane> planes;
@@ -116,6 +123,7 @@ void inherit(const Object& operand, Object& made) {
   to.shift_mm += from.shift_mm;
   to.windows.insert(to.windows.end(), from.windows.begin(), from.windows.end());
   to.reshaped.insert(to.reshaped.end(), from.reshaped.begin(), from.reshaped.end());
+  to.measured_apart_mm = std::max(to.measured_apart_mm, from.measured_apart_mm);
   if (from.scan_box_mm) to.scan_box_mm = from.scan_box_mm;
 }
 
@@ -136,6 +144,7 @@ void carry(const std::string& object, const glm::dmat4& moved_from_still, const 
     window.moved_from_still = moved_from_still * window.moved_from_still;
   made.bound.shift_mm = still.bound.shift_mm;
   made.bound.reshaped = still.bound.reshaped;
+  made.bound.measured_apart_mm = still.bound.measured_apart_mm;
   if (still.bound.scan_box_mm) {
     const auto ends =
         ends_of(*still.bound.scan_box_mm, still.bound.spacing_mm, bench.universe.lattice().spacing_mm());

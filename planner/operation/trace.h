@@ -19,6 +19,10 @@ bool is_voxelised(const Object& object);
 /// Makes the voxels of a mesh an object's own.
 void voxelise(const brep::Solid& mesh, const voxel::Universe& universe, VoxelSide& made);
 
+/// Whether an answer is known by whole voxels alone, and not by samples or forms that show its surface
+/// between their centres.
+bool is_whole_voxels(const VoxelSide& side);
+
 /// The planes of a scan's ends: there mesh and voxels end up to half a sample apart, not half a voxel.
 std::vector<CutPlane> ends_of(const voxel::Box& scan, const glm::dvec3& sample_mm,
                               const glm::dvec3& voxel_mm);

@@ -78,6 +78,9 @@ struct BoundTerms {
   /// Objects whose surface was made anew on the way, by an offset, by smoothing or by fewer triangles: where
   /// theirs is in doubt, so is this one's.
   std::vector<std::string> reshaped;
+  /// How far right answers may lie apart on the mean because each kernel measured distances of its own
+  /// (verify::BoundInputs).
+  double measured_apart_mm = 0.0;
 };
 
 /// A wall of an object that a mask cut, and the motion of all the steps that moved it since, LPS to LPS.

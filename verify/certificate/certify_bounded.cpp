@@ -25,6 +25,8 @@
 // rough      In a cell whose inside samples meet diagonally the mesh parts the corners; the interpolant that
 //            the octree samples joins some. Not derived: a CT of a head at 0.7 of its sample spacing showed
 //            0.12 of the curvature without sign.
+// distances  Where each kernel moved a surface by distances of its own, the mean errors of both
+//            (offset_witness.cpp) times the area.
 // rounding   Coordinates are good to a few units in the last place.
 //
 // Symmetric difference: errors that cancel in the volume count here. 0.06 s S on oblique planes between
@@ -104,14 +106,18 @@ struct Evidence {
   double voxel_mm3 = 1.0;
   double unseen_mm3 = 0.0;  ///< half a voxel of cuts that were declared and not found
   VolumeSpread border;
-  bool witnessed = false;  ///< every place is judged by itself
+  bool witnessed = false;      ///< every place is judged by itself
+  bool totals_decide = false;  ///< because no place is judged as finely as totals are
+  VolumeSpread apart;          ///< between surfaces that each kernel measured for itself
 };
 
 /// Adds a comparison of totals. With a witness a difference is no worse than a doubt: what is no error of a
 /// kernel in any place comes from resampling, or from triangles between samples.
+/// Not so where totals decide.
 void compare(Certificate& certificate, const Evidence& evidence, Comparison comparison,
              Verdict worst_verdict = Verdict::Fail) {
-  add_comparison(certificate, std::move(comparison), evidence.witnessed ? Verdict::Warn : worst_verdict);
+  add_comparison(certificate, std::move(comparison),
+                 evidence.witnessed && !evidence.totals_decide ? Verdict::Warn : worst_verdict);
 }
 
 /// Half a sample times the mesh's faces on the scan's border.
@@ -136,6 +142,20 @@ VolumeSpread border_of(const brep::Solid& solid, const BoundInputs& inputs, cons
     }
   }
   return border;
+}
+
+/// A layer over all of the mesh.
+VolumeSpread layer_of(const brep::Solid& solid, double thick_mm, const glm::dvec3& about_mm) {
+  VolumeSpread layer;
+  if (!(thick_mm > 0.0)) return layer;
+  const brep::Triangles& triangles = solid.triangles();
+  for (const auto& face : triangles.faces) {
+    const glm::dvec3 &a = triangles.points_mm[face[0]], &b = triangles.points_mm[face[1]],
+                     &c = triangles.points_mm[face[2]];
+    layer.add(0.5 * thick_mm * glm::length(glm::cross(b - a, c - a)),
+              glm::distance((a + b + c) / 3.0, about_mm));
+  }
+  return layer;
 }
 
 double count_deviation_mm3(const Evidence& evidence) {
@@ -169,6 +189,8 @@ void derive_volume_tolerance(Certificate& certificate, const Evidence& evidence)
        "0.33 |integral of s^2 curvature|, with rough at most 0.1 s S", share * bent_mm3},
       {"rough", "One kernel joins samples that meet diagonally, the other parts them.",
        "0.12 * integral of |s^2 curvature|, with bent at most 0.1 s S", share * rough_mm3},
+      {"distances", "Each kernel measures distances to its own points of a surface.",
+       "mean errors of both distances * S", evidence.apart.mm3},
       // Each coordinate is off by half a unit in the last place in each of several operations.
       {"rounding", "Coordinates are rounded to double precision.", "16 eps |p| S",
        16.0 * std::numeric_limits<double>::epsilon() * reach_mm * evidence.mesh.area_mm2}};
@@ -179,16 +201,16 @@ void derive_volume_tolerance(Certificate& certificate, const Evidence& evidence)
 void derive_other_tolerances(Certificate& certificate, const Evidence& evidence) {
   const BoundaryModel& model = evidence.model;
   const double free_mm2 = std::max(model.area_mm2 - model.coherent_mm2, 0.0);
-  const double layer = interpolation * longest(evidence.sample_mm) * free_mm2 +
-                       bent_share * model.bent_without_sign.mm3 +
-                       2.0 * (model.tied_mm3 + evidence.unseen_mm3) + evidence.border.mm3;
+  const double layer =
+      interpolation * longest(evidence.sample_mm) * free_mm2 + bent_share * model.bent_without_sign.mm3 +
+      2.0 * (model.tied_mm3 + evidence.unseen_mm3) + evidence.border.mm3 + evidence.apart.mm3;
   certificate.symmetric_difference_tolerance_mm3 =
       layer + coverage * std::sqrt(layer * evidence.voxel_mm3) + evidence.voxel_mm3;
   if (evidence.mesh.volume_mm3 > 0.0 && model.area_mm2 > 0.0) {
     const double arm_mm = 0.5 * glm::length(evidence.mesh.high_mm - evidence.mesh.low_mm);
     const double mm4 = coverage * std::sqrt(model.count_mm8) +
                        glm::length(model.planes.mm4 + model.nearly_planes.mm4) + model.unsure.mm4 +
-                       evidence.unseen_mm3 * arm_mm + evidence.border.mm4 +
+                       evidence.unseen_mm3 * arm_mm + evidence.border.mm4 + evidence.apart.mm4 +
                        bent_share * glm::length(model.bent.mm4) + rough_share * model.bent_without_sign.mm4 +
                        certificate.terms.back().value_mm3 * arm_mm;
     certificate.centroid_tolerance_mm = mm4 / evidence.mesh.volume_mm3;
@@ -242,7 +264,7 @@ void compare_inertia(Certificate& certificate, const Evidence& evidence, const b
   const double meeting = 1.0 + longest(evidence.voxel_mm) / std::min({extent_mm.x, extent_mm.y, extent_mm.z});
   const double tolerance =
       coverage * std::sqrt(model.count_mm10) + meeting * (model.planes_without_sign.mm5 + model.unsure.mm5) +
-      evidence.border.mm5 + evidence.unseen_mm3 * arm_mm * arm_mm +
+      evidence.border.mm5 + evidence.apart.mm5 + evidence.unseen_mm3 * arm_mm * arm_mm +
       (bent_share + rough_share) * model.bent_without_sign.mm5 +
       evidence.mesh.volume_mm3 * std::pow(certificate.centroid_tolerance_mm.value_or(0.0), 2.0) +
       certificate.terms.back().value_mm3 * arm_mm * arm_mm + rounded_sums * largest;
@@ -261,8 +283,8 @@ DistanceBounds distance_bounds(const Evidence& evidence) {
   const double apart_mm = 0.1 * longest(evidence.sample_mm);
   const double free_mm2 = std::max(model.area_mm2 - model.coherent_mm2, 0.0);
   const double layers_mm3 = model.planes_without_sign.mm3 + model.tied_mm3 + evidence.unseen_mm3 +
-                            model.unsure.mm3 + evidence.border.mm3;
-  return {0.5 * glm::length(evidence.voxel_mm) + apart_mm,
+                            model.unsure.mm3 + evidence.border.mm3 + evidence.apart.mm3;
+  return {0.5 * glm::length(evidence.voxel_mm) + apart_mm + evidence.apart.mm3 / model.area_mm2,
           0.25 * longest(evidence.voxel_mm) * (1.0 + free_mm2 / model.area_mm2) / 2.0 + apart_mm +
               layers_mm3 / model.area_mm2};
 }
@@ -546,6 +568,8 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   progress.at(0.2);
   evidence.model = boundary_model(solid, {lattice, evidence.sample_mm, about_mm});
   evidence.border = border_of(solid, inputs, about_mm);
+  evidence.apart = layer_of(solid, inputs.measured_apart_mm, about_mm);
+  evidence.totals_decide = inputs.measured_apart_mm > 0.0;
   evidence.unseen_mm3 = glm::dot(glm::max(inputs.flat_cut_mm2 - evidence.model.flat_mm2, glm::dvec3(0.0)),
                                  0.5 * evidence.voxel_mm);
 

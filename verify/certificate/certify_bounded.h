@@ -24,6 +24,10 @@ struct BoundInputs {
   glm::dvec3 flat_cut_mm2{0.0};
   /// The box that the scan's voxels fill, if the solid may end with the scan.
   std::optional<voxel::Box> scan_box_mm = {};
+  /// How far right answers may lie apart on the mean over the surface because each kernel measured distances
+  /// of its own (offset_allowance_mm()). Above 0 totals fail beyond twice their tolerance, with a witness,
+  /// too: such an object's witness is coarser than they are.
+  double measured_apart_mm = 0.0;
   /// Every voxel's centre is a sample and the object is one window of them: topology must agree too.
   bool voxels_are_samples = false;
   /// The question has no other answer than nothing, as a - a: two empty answers are right.

@@ -16,8 +16,21 @@ TEST(OffsetStep, ABallGrowsAndShrinksByTheDistance) {
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "larger", "do": "offset", "object": "ball", "by_mm": 4},
       {"id": "smaller", "do": "offset", "object": "ball", "by_mm": -4})"));
-  expect_of_mesh(evaluation.object("larger"), ball_mm3(ball_radius_mm + 4.0), 0.02);
-  expect_of_mesh(evaluation.object("smaller"), ball_mm3(ball_radius_mm - 4.0), 0.03);
+  expect_certified(evaluation.object("larger"), ball_mm3(ball_radius_mm + 4.0), 0.02);
+  expect_certified(evaluation.object("smaller"), ball_mm3(ball_radius_mm - 4.0), 0.03);
+  for (const char* id : {"larger", "smaller"})
+    EXPECT_TRUE(evaluation.object(id).certificate->independent()) << id;
+}
+
+TEST(OffsetStep, IsCombinedAndMovedAsAnyOtherObject) {
+  const ScratchFolder folder;
+  const Evaluation evaluation = evaluate(ball_plan(folder, ball_caps(R"(
+      {"id": "larger", "do": "offset", "object": "ball", "by_mm": 4},
+      {"id": "cap", "do": "combine", "expression": "larger & high"},
+      {"id": "moved", "do": "move", "object": "cap", "translate_mm": [0.4, 0.3, 0.2],
+       "rotate": {"degrees": 10, "axis": [1, 0, 0]}})")));
+  for (const char* id : {"cap", "moved"})
+    expect_certified(evaluation.object(id), cap_mm3(ball_radius_mm + 4.0, 5.0), 0.02);
 }
 
 TEST(OffsetStep, HasItsOperandsDoubtByTheShareOfItsSurface) {

@@ -15,6 +15,9 @@ TEST(SmoothStep, TheVolumeStaysAndOneKernelAloneHasNoCertificate) {
   const Object& even = evaluation.object("even");
   EXPECT_NEAR(even.mesh.within->measures().volume_mm3 / ball_mm3(ball_radius_mm), 1.0, 0.01);
   EXPECT_NEAR(even.voxel.measures.volume_mm3 / ball_mm3(ball_radius_mm), 1.0, 0.01);
+  const double moved_mm = even.mesh.details["largest_move_mm"];
+  EXPECT_GT(moved_mm, 0.0);
+  EXPECT_LT(moved_mm, 1.0);
   EXPECT_FALSE(even.certificate);
   ASSERT_FALSE(even.findings.empty());
   EXPECT_NE(even.findings.back().find("no certificate"), std::string::npos) << even.findings.back();

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "brep/mesh/solid.h"
+#include "verify/witness/reading.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::verify {
+
+/// An object whose surface is moved, as both kernels have it, and its own witness.
+struct OffsetOperand {
+  Witness witness;
+  voxel::Octree voxels;
+  brep::Solid mesh;
+  /// The voxel kernel knows the object by whole voxels alone, not where its surface lies between them.
+  bool is_whole_voxels = false;
+};
+
+/// How far its surface moves, and how finely the mesh kernel looks for it.
+struct OffsetAsked {
+  double by_mm = 1.0;    ///< outward; below 0 inward; not 0
+  double cell_mm = 1.0;  ///< edge of the mesh kernel's cells, above 0
+};
+
+/// The points within by_mm of the operand, or deeper than that within it. Where the operand's surface lies is
+/// read from the operand's own witness, along the edges between voxels' centres at which one of the kernels
+/// has it; where that witness does not know the side, both kernels must have a voxel for it to count as
+/// inside. Distances are compared with every such place within reach, on a grid of this source's own. What
+/// each kernel may answer beside the moved surface is derived in offset_witness.cpp: it is coarse, so that
+/// totals decide about errors below a voxel. Empty where the operand has no witness, or both answers are
+/// empty. Cost: some ten readings of the operand for each face of its voxels; of one reading that operand's
+/// and a look at the places about it.
+Witness witness_of_offset(const OffsetOperand& operand, const OffsetAsked& asked);
+
+/// How far two right answers to an offset may lie apart on the mean over a surface of `area_mm2`, beyond what
+/// digitisation does to that surface: the mean errors of both kernels' distances. Derived in
+/// offset_witness.cpp. Not of the answers under test, but of the operand. Cost: linear in the operand's
+/// triangles.
+double offset_allowance_mm(const OffsetOperand& operand, const OffsetAsked& asked, double area_mm2);
+
+}  // namespace octotomy::verify

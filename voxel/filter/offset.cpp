@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// 1 Find where the solid's surface crosses the edges between neighbouring voxels' centres, by halving.
+// 2 Add the middles of chords and of rings of crossings, which lie on the surface but for its bending within
+//   a cell: half as far from each other as the crossings are.
+// 3 Put those points into a k-d tree (Bentley 1975).
+// 4 Signed distances change no faster than places do, so a block whose middle is farther from the offset
+//   surface than its corners are from its middle has one value. The others are halved down to voxels.
+// The octree alone decides on which side of the surface a voxel's centre lies: between two centres that
+// differ there is always a crossing, so that sign and distance agree.
+#include "voxel/filter/offset.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_sort.h>
+#include <utility>
+#include <vector>
+
+#include "voxel/measure/distance_map.h"
+#include "voxel/solid/membership.h"
+#include "voxel/tree/octree_node.h"
+#include "voxel/tree/voxel_boundary.h"
+
+namespace octotomy::voxel {
+namespace {
+
+/// Samples far from the offset surface; more than ten voxels' diagonals.
+constexpr double most_steps = 30000.0;
+
+glm::ivec3 axis_step(int axis) {
+  glm::ivec3 step(0);
+  step[axis] = 1;
+  return step;
+}
+
+/// A voxel of the universe or beside it, and an axis or 3, as one number.
+std::uint64_t key_of(const glm::ivec3& voxel, int axis) {
+  constexpr int bits = 20;
+  const glm::u64vec3 from(voxel + 2);
+  return (((from.z << bits | from.y) << bits | from.x) << 2) | static_cast<std::uint64_t>(axis);
+}
+glm::ivec3 voxel_of(std::uint64_t key) {
+  constexpr int bits = 20;
+  constexpr std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+  const std::uint64_t at = key >> 2;
+  return glm::ivec3(static_cast<int>(at & mask), static_cast<int>((at >> bits) & mask),
+                    static_cast<int>(at >> (2 * bits))) -
+         2;
+}
+
+template <typename Value>
+void sort_and_unify(std::vector<Value>& values) {
+  tbb::parallel_sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+/// Where a surface crosses the lattice, each crossing by the edge from a voxel's centre along an axis.
+/// Positions are in voxels.
+class Crossings {
+ public:
+  Crossings(const Octree& octree, const Expression& solid) {
+    const std::vector<VoxelFace> faces = voxel_boundary(octree);
+    const Lattice lattice = octree.universe().lattice();
+    const Membership contains(octree.universe(), solid);
+    constexpr std::uint64_t no_crossing = std::numeric_limits<std::uint64_t>::max();
+    std::vector<std::pair<std::uint64_t, double>> found(faces.size());
+    tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t i) {
+      const VoxelFace& face = faces[i];
+      const glm::ivec3 step = face.side * axis_step(face.axis);
+      if (goes_on_beyond(face, octree.universe(), contains)) {
+        found[i].first = no_crossing;
+        return;
+      }
+      // The share of the way out: eight halvings, below a hundredth of an edge.
+      double in = 0.0, out = 1.0;
+      for (int halving = 0; halving < 8; ++halving) {
+        const double middle = 0.5 * (in + out);
+        (contains(lattice.lps_mm(glm::dvec3(face.voxel) + middle * glm::dvec3(step))) ? in : out) = middle;
+      }
+      const double share = 0.5 * (in + out);
+      found[i] = face.side > 0 ? std::pair{key_of(face.voxel, face.axis), share}
+                               : std::pair{key_of(face.voxel - axis_step(face.axis), face.axis), 1.0 - share};
+    });
+    tbb::parallel_sort(found.begin(), found.end());
+    for (const auto& [key, share] : found) {
+      if (key == no_crossing) break;
+      keys_.push_back(key);
+      glm::dvec3 at(voxel_of(key));
+      at[static_cast<int>(key & 3)] += share;
+      points_.push_back(at);
+    }
+  }
+
+  /// The crossings and the middles between them, in voxels.
+  std::vector<glm::dvec3> with_middles() const {
+    std::vector<std::uint64_t> squares, cells;
+    for (const std::uint64_t key : keys_) {
+      const int axis = static_cast<int>(key & 3);
+      const glm::ivec3 at = voxel_of(key), b = axis_step((axis + 1) % 3), c = axis_step((axis + 2) % 3);
+      // A square is known by its lowest voxel and its normal.
+      for (const int back : {0, 1}) {
+        squares.push_back(key_of(at - back * b, (axis + 2) % 3));
+        squares.push_back(key_of(at - back * c, (axis + 1) % 3));
+        for (const int also : {0, 1}) cells.push_back(key_of(at - back * b - also * c, 3));
+      }
+    }
+    sort_and_unify(squares);
+    sort_and_unify(cells);
+    std::vector<glm::dvec3> all = points_;
+    append(squares, all, [this](std::uint64_t key) { return middle_of_chord(key); });
+    append(cells, all, [this](std::uint64_t key) { return middle_of_ring(voxel_of(key)); });
+    return all;
+  }
+
+ private:
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+  /// Whether a solid that the universe cuts off has no surface at a face of the universe.
+  static bool goes_on_beyond(const VoxelFace& face, const Universe& universe, const Membership& contains) {
+    glm::ivec3 beyond = face.voxel;
+    beyond[face.axis] += face.side;
+    return (beyond[face.axis] < 0 || beyond[face.axis] >= universe.side()) &&
+           contains(universe.lattice().lps_mm(glm::dvec3(beyond)));
+  }
+
+  using Middle = std::pair<bool, glm::dvec3>;
+
+  template <typename Find>
+  static void append(const std::vector<std::uint64_t>& keys, std::vector<glm::dvec3>& to, const Find& find) {
+    std::vector<Middle> found(keys.size());
+    tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) { found[i] = find(keys[i]); });
+    for (const auto& [is_there, at] : found)
+      if (is_there) to.push_back(at);
+  }
+
+  std::size_t crossing(const glm::ivec3& from, int axis) const {
+    const std::uint64_t key = key_of(from, axis);
+    const auto found = std::lower_bound(keys_.begin(), keys_.end(), key);
+    return found != keys_.end() && *found == key ? static_cast<std::size_t>(found - keys_.begin()) : none;
+  }
+
+  /// The crossings of a square's four edges: none, two, or four where its corners differ diagonally.
+  std::vector<std::size_t> of_square(const glm::ivec3& low, int normal) const {
+    std::vector<std::size_t> found;
+    const int b = (normal + 1) % 3, c = (normal + 2) % 3;
+    for (const int far : {0, 1})
+      for (const auto& [along, across] : {std::pair{b, c}, std::pair{c, b}})
+        if (const std::size_t at = crossing(low + far * axis_step(across), along); at != none)
+          found.push_back(at);
+    return found;
+  }
+
+  Middle middle_of_chord(std::uint64_t square) const {
+    const std::vector<std::size_t> ends = of_square(voxel_of(square), static_cast<int>(square & 3));
+    if (ends.size() != 2) return {};
+    return {true, 0.5 * (points_[ends[0]] + points_[ends[1]])};
+  }
+
+  /// The mean of a cell's crossings where chords join all of them to one ring: there the cell holds one
+  /// sheet.
+  Middle middle_of_ring(const glm::ivec3& low) const {
+    std::vector<std::pair<std::size_t, std::size_t>> chords;
+    for (int normal = 0; normal < 3; ++normal)
+      for (const int far : {0, 1}) {
+        const std::vector<std::size_t> ends = of_square(low + far * axis_step(normal), normal);
+        if (ends.size() > 2) return {};
+        if (ends.size() == 2) chords.emplace_back(ends[0], ends[1]);
+      }
+    if (chords.size() < 3) return {};
+    // From chord to chord: each crossing has two, as its edge lies in two of the cell's squares.
+    glm::dvec3 sum = points_[chords[0].first];
+    std::size_t at = chords[0].second, used = 0, count = 1;
+    for (; at != chords[0].first; ++count) {
+      sum += points_[at];
+      for (std::size_t i = 1; i < chords.size(); ++i) {
+        if (i == used || (chords[i].first != at && chords[i].second != at)) continue;
+        at = chords[i].first == at ? chords[i].second : chords[i].first;
+        used = i;
+        break;
+      }
+    }
+    if (count != chords.size()) return {};
+    return {true, sum / static_cast<double>(count)};
+  }
+
+  std::vector<std::uint64_t> keys_;  // ascending
+  std::vector<glm::dvec3> points_;
+};
+
+/// The nearest of many points: halved at the middle one along the longer side of their box, so that a range
+/// of the list is a node and its middle the point that divides it.
+class NearestPoint {
+ public:
+  explicit NearestPoint(std::vector<glm::dvec3> points)
+      : points_(std::move(points)), axes_(points_.size(), 0) {
+    divide(0, points_.size());
+  }
+
+  bool empty() const { return points_.empty(); }
+  double distance(const glm::dvec3& p) const {
+    double square = std::numeric_limits<double>::infinity();
+    search(0, points_.size(), p, square);
+    return std::sqrt(square);
+  }
+
+ private:
+  static constexpr std::size_t few = 8, many = 4096;
+
+  void divide(std::size_t begin, std::size_t end) {
+    if (end - begin <= few) return;
+    glm::dvec3 low = points_[begin], high = low;
+    for (std::size_t i = begin; i < end; ++i) {
+      low = glm::min(low, points_[i]);
+      high = glm::max(high, points_[i]);
+    }
+    const glm::dvec3 extent = high - low;
+    int axis = extent.y > extent.x ? 1 : 0;
+    if (extent.z > extent[axis]) axis = 2;
+    const std::size_t middle = begin + (end - begin) / 2;
+    const auto at = [this](std::size_t i) { return points_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(begin), at(middle), at(end),
+                     [axis](const glm::dvec3& a, const glm::dvec3& b) { return a[axis] < b[axis]; });
+    axes_[middle] = static_cast<std::uint8_t>(axis);
+    if (end - begin < many) {
+      divide(begin, middle);
+      divide(middle + 1, end);
+    } else {
+      tbb::parallel_invoke([=, this] { divide(begin, middle); }, [=, this] { divide(middle + 1, end); });
+    }
+  }
+
+  void search(std::size_t begin, std::size_t end, const glm::dvec3& p, double& square) const {
+    const auto compare = [&](std::size_t i) {
+      const glm::dvec3 to = points_[i] - p;
+      square = std::min(square, glm::dot(to, to));
+    };
+    if (end - begin <= few) {
+      for (std::size_t i = begin; i < end; ++i) compare(i);
+      return;
+    }
+    const std::size_t middle = begin + (end - begin) / 2;
+    const int axis = axes_[middle];
+    const double beyond = p[axis] - points_[middle][axis];
+    compare(middle);
+    search(beyond < 0.0 ? begin : middle + 1, beyond < 0.0 ? middle : end, p, square);
+    if (beyond * beyond < square)
+      search(beyond < 0.0 ? middle + 1 : begin, beyond < 0.0 ? end : middle, p, square);
+  }
+
+  std::vector<glm::dvec3> points_;
+  std::vector<std::uint8_t> axes_;  ///< by the middle of a node
+};
+
+/// The depth of voxels' centres below the offset surface.
+class Depths {
+ public:
+  Depths(const Octree& octree, const Expression& solid, double by_mm)
+      : octree_(octree),
+        edges_mm_(octree.universe().lps_from_voxel),
+        by_mm_(by_mm),
+        surface_(on_surface(octree, solid)) {
+    for (int corner = 0; corner < 4; ++corner)
+      diagonal_mm_ = std::max(diagonal_mm_, glm::length(edges_mm_ * glm::dvec3(1.0, corner & 1 ? 1.0 : -1.0,
+                                                                               corner & 2 ? 1.0 : -1.0)));
+    step_mm_ = std::exp2(std::floor(std::log2(diagonal_mm_ / 1024.0)));
+  }
+
+  double step_mm() const { return step_mm_; }
+
+  /// The depth of all voxels of a block where it is farther from 0 than it can change within the block, and
+  /// by more than two voxels, so that no cell about a voxel holds a crossing of the offset surface. Otherwise
+  /// 0.
+  double of_block(const glm::ivec3& first, int side) const {
+    const double depth_mm = at(glm::dvec3(first) + 0.5 * (side - 1), first + side / 2);
+    return std::abs(depth_mm) > (0.5 * side + 2.0) * diagonal_mm_ ? depth_mm : 0.0;
+  }
+  double of_voxel(const glm::ivec3& voxel) const { return at(glm::dvec3(voxel), voxel); }
+
+  std::int16_t sample(double depth_mm) const {
+    return static_cast<std::int16_t>(std::clamp(std::floor(depth_mm / step_mm_), -most_steps, most_steps));
+  }
+
+ private:
+  static std::vector<glm::dvec3> on_surface(const Octree& octree, const Expression& solid) {
+    std::vector<glm::dvec3> points = Crossings(octree, solid).with_middles();
+    const glm::dmat3 edges_mm(octree.universe().lps_from_voxel);
+    for (glm::dvec3& p : points) p = edges_mm * p;
+    return points;
+  }
+
+  /// `voxel` is the one whose side of the surface counts.
+  double at(const glm::dvec3& p_voxel, const glm::ivec3& voxel) const {
+    const double distance_mm = surface_.distance(edges_mm_ * p_voxel);
+    return octree_.contains(voxel) ? by_mm_ + distance_mm : by_mm_ - distance_mm;
+  }
+
+  const Octree& octree_;
+  glm::dmat3 edges_mm_;
+  double by_mm_;
+  double diagonal_mm_ = 0.0, step_mm_ = 1.0;
+  NearestPoint surface_;
+};
+
+/// The blocks of 16 voxels a side that the offset solid may reach.
+std::vector<glm::ivec3> blocks_about(const Octree& octree, double by_mm) {
+  VoxelRange range = range_of(octree);
+  if (range.is_empty()) return {};
+  const Universe& universe = octree.universe();
+  if (by_mm > 0.0) {
+    // Along a voxel axis an offset reaches as far as the distance between the planes across it allows.
+    const glm::dmat3 voxel_from_mm = glm::transpose(glm::inverse(glm::dmat3(universe.lps_from_voxel)));
+    glm::ivec3 reach(0);
+    for (int axis = 0; axis < 3; ++axis)
+      reach[axis] = static_cast<int>(std::min(std::ceil(by_mm * glm::length(voxel_from_mm[axis])) + 2.0,
+                                              static_cast<double>(universe.side())));
+    range = {range.low - reach, range.high + reach};
+  }
+  const glm::ivec3 first = glm::max(range.low, glm::ivec3(0)) / 16,
+                   last = glm::min(range.high, glm::ivec3(universe.side() - 1)) / 16;
+  std::vector<glm::ivec3> blocks;
+  for (int z = first.z; z <= last.z; ++z)
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x) blocks.emplace_back(x, y, z);
+  return blocks;
+}
+
+void fill(const Depths& depths, const glm::ivec3& block, int side, GreyBrick& brick) {
+  for (int leaf = 0; leaf < 64; ++leaf) {
+    const glm::ivec3 first = 16 * block + 4 * child_place(leaf);
+    auto& samples = brick.samples[static_cast<std::size_t>(leaf)];
+    samples.fill(depths.sample(-std::numeric_limits<double>::infinity()));
+    if (glm::any(glm::greaterThanEqual(first, glm::ivec3(side)))) continue;
+    if (const double depth_mm = side >= 4 ? depths.of_block(first, 4) : 0.0; depth_mm != 0.0) {
+      samples.fill(depths.sample(depth_mm));
+      continue;
+    }
+    for (int bit = 0; bit < 64; ++bit) {
+      const glm::ivec3 voxel = first + child_place(bit);
+      if (glm::all(glm::lessThan(voxel, glm::ivec3(side))))
+        samples[static_cast<std::size_t>(bit)] = depths.sample(depths.of_voxel(voxel));
+    }
+  }
+}
+
+}  // namespace
+
+Window offset(const Octree& octree, const Expression& solid, double by_mm, const Progress& progress) {
+  if (!std::isfinite(by_mm) || by_mm == 0.0)
+    throw std::invalid_argument("an offset is by a finite length other than 0 mm");
+  const Universe& universe = octree.universe();
+  const Depths depths(octree, solid, by_mm);
+  progress.at(0.4);
+  const std::vector<glm::ivec3> tried = blocks_about(octree, by_mm);
+  std::vector<std::uint8_t> is_out(tried.size(), 0);
+  tbb::parallel_for(std::size_t{0}, tried.size(), [&](std::size_t i) {
+    is_out[i] = universe.side() >= 16 && depths.of_block(16 * tried[i], 16) < 0.0 ? 1 : 0;
+  });
+  std::vector<glm::ivec3> blocks;
+  for (std::size_t i = 0; i < tried.size(); ++i)
+    if (is_out[i] == 0) blocks.push_back(tried[i]);
+  progress.at(0.5);
+  GreyOctree grey = grey_octree_of_bricks(
+      universe, static_cast<std::int16_t>(-most_steps), blocks,
+      [&](std::size_t number, GreyBrick& brick) {
+        if (!progress.stop.stop_requested()) fill(depths, blocks[number], universe.side(), brick);
+      },
+      Octree::full(universe), depths.step_mm());
+  progress.at(1.0);
+  return {std::move(grey), 0.0, most_steps};
+}
+
+}  // namespace octotomy::voxel
