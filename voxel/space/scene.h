@@ -48,6 +48,9 @@ using FloatSamples = Samples<float>;
 struct Identity {
   std::string patient_id, patient_name;
   std::vector<std::string> study_uids, frame_uids;
+  std::string id_issuer = {};   ///< who gave the patient's number, which is unique only among the issuer's
+  std::string birth_date = {};  ///< YYYYMMDD
+  std::string sex = {};         ///< M, F or O
 };
 
 /// Samples on a lattice, x fastest.
