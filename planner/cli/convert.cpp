@@ -181,6 +181,10 @@ int convert(const Program& program, const ConvertText& text) {
       options.series_description = "Octotomy, derived";
       if (scene.modality.empty())
         findings.push_back(text.in.string() + " does not state its modality: written as CT");
+      if (voxel::is_written_as_secondary_capture(scene))
+        findings.push_back("the modality " + scene.modality + " is written as Secondary Capture images" +
+                           (scene.declared_unit.empty() ? "" : " with the unit " + scene.declared_unit) +
+                           ": the attributes of its own kind of image are left out");
       options.source = source_of(program, text, is_dicom(scene), scene.identity, findings);
       if (!options.source) {
         options.patient_name =

@@ -69,6 +69,9 @@ struct Scene {
   /// The sample that stands where the scanner measured nothing; below every measured one. No interpolation
   /// may mix it with a measurement. None: every sample is a measurement.
   std::optional<double> padding = {};
+  /// The samples' unit as a DICOM file declares it: "HU", "US" (unspecified), "OD", "BQML", "GY". Empty where
+  /// none is declared, which of a CT means HU (PS3.3, C.8.2.1).
+  std::string declared_unit = {};
 };
 
 /// A window's lower bound, raised above the padding: what was not measured lies in no window.
