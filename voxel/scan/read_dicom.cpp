@@ -85,6 +85,7 @@ class SeriesReader {
         air.meaning = Meaning::Raw;
       scene_.meaning = air.meaning;
       scene_.audit.push_back(air.finding);
+      if (auto sign = lost_sign_finding(scene_, true)) scene_.audit.push_back(std::move(*sign));
     }
     scene_.source = path_.string();
     if (!stack.first().series_description.empty()) scene_.source += ": " + stack.first().series_description;
