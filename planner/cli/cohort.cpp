@@ -81,46 +81,60 @@ CohortNeeds needs_of(const CohortText& text, const Plan& plan, const std::vector
 }
 
 Json json_of(const Subject& subject, const SubjectRecord& record) {
-  return {
-      {"subject", subject.label},  {"state", record.is_another_at_work ? "in hand" : to_string(record.state)},
-      {"kept", record.was_kept},   {"reason", record.reason.empty() ? Json(nullptr) : Json(record.reason)},
-      {"seconds", record.seconds}, {"peak_mb", record.peak_mb}};
+  return {{"subject", subject.label},
+          {"state", record.is_another_at_work ? "in hand" : to_string(record.state)},
+          {"kept", record.was_kept},
+          {"reason", record.reason.empty() ? Json(nullptr) : Json(record.reason)},
+          {"audit_findings", record.audit_findings},
+          {"seconds", record.seconds},
+          {"peak_mb", record.peak_mb}};
 }
 
-/// The records of the subjects, and where one has no answer 3 if a process ran out of time, memory or disk,
-/// else 2.
+/// The records of the subjects with the WARN and FAIL of their scans' audits, and where one has no answer 3
+/// if a process ran out of time, memory or disk, else 2.
 int say_records(const Program& program, const std::vector<Subject>& subjects,
                 const std::vector<SubjectRecord>& records, const std::vector<std::string>& jobs,
-                bool ran_out) {
+                const std::vector<std::string>& findings, bool ran_out) {
   Json json = answer({});
+  json["findings"] = findings;
+  for (const std::string& finding : findings) warn_finding(finding);
   json["subjects"] = Json::array();
   json["jobs"] = jobs;
-  std::size_t done_count = 0, in_hand = 0;
+  std::size_t done_count = 0, doubtful = 0, in_hand = 0;
   for (std::size_t i = 0; i < records.size(); ++i) {
     json["subjects"].push_back(json_of(subjects[i], records[i]));
     done_count += records[i].state == SubjectRecord::State::Done ? 1 : 0;
+    doubtful += records[i].state == SubjectRecord::State::Doubtful ? 1 : 0;
     in_hand += records[i].is_another_at_work ? 1 : 0;
-    if (records[i].state != SubjectRecord::State::Done && !records[i].is_another_at_work && jobs.empty())
+    if (!records[i].has_answer() && !records[i].is_another_at_work && jobs.empty())
       warn_finding(subjects[i].label + ": " + records[i].reason);
   }
+  // Doubtful ones first, because a terminal shows the first findings only.
+  for (const bool are_doubtful : {true, false})
+    for (std::size_t i = 0; i < records.size() && jobs.empty(); ++i)
+      for (const std::string& finding : records[i].audit_findings)
+        if ((records[i].state == SubjectRecord::State::Doubtful) == are_doubtful)
+          warn_finding(subjects[i].label + ": " + finding);
   json["done"] = done_count;
-  json["without_answer"] = records.size() - done_count - in_hand;
+  json["doubtful"] = doubtful;
+  json["without_answer"] = records.size() - done_count - doubtful - in_hand;
   std::string said =
       std::to_string(done_count) + " of " + std::to_string(subjects.size()) + " subjects done\n";
+  if (doubtful > 0) said += std::to_string(doubtful) + " doubtful: the audit of a scan has a FAIL\n";
   if (!jobs.empty())
     said = "submitted: job " + jobs.front() + " and on; the group is job " + jobs.back() + "\n";
   program.say(json, said);
-  if (!jobs.empty() || done_count + in_hand == records.size()) return done;
+  if (!jobs.empty() || done_count + doubtful + in_hand == records.size()) return done;
   return ran_out ? out_of_resources : bad_input;
 }
 
 int participants(const Program& program, const CohortText& text, const Plan& plan,
-                 const std::vector<Subject>& subjects) {
+                 const std::vector<Subject>& subjects, const std::vector<std::string>& findings) {
   if (subjects.size() == 1 && text.engine == "serial") {
     const SubjectRecord record =
         run_participant(plan, subjects.front(), text.out,
                         {program.stop.get_token(), program.progress(), text.again, text.reports});
-    return say_records(program, subjects, {record}, {}, false);
+    return say_records(program, subjects, {record}, {}, findings, false);
   }
   EngineRequest request{command(program, text, "participant"),
                         command(program, text, "group"),
@@ -141,7 +155,7 @@ int participants(const Program& program, const CohortText& text, const Plan& pla
     ran_out = run_serial(request);
   std::vector<SubjectRecord> records;
   for (const Subject& subject : subjects) records.push_back(subject_record(text.out, subject));
-  return say_records(program, subjects, records, jobs, ran_out);
+  return say_records(program, subjects, records, jobs, findings, ran_out);
 }
 
 /// What the subjects would take, by those that are done.
@@ -151,14 +165,14 @@ int dry_run(const Program& program, const CohortText& text, const std::vector<Su
   std::size_t to_do = 0;
   for (const Subject& subject : subjects) {
     const SubjectRecord record = subject_record(text.out, subject);
-    if (record.state == SubjectRecord::State::Done && record.scan_bytes > 0) done_records.push_back(record);
-    if (record.state == SubjectRecord::State::Done && !text.again) continue;
+    if (record.has_answer() && record.scan_bytes > 0) done_records.push_back(record);
+    if (record.has_answer() && !text.again) continue;
     ++to_do;
   }
   const Forecast forecast = forecast_of(done_records);
   double seconds = 0.0, peak_mb = 0.0;
   for (const Subject& subject : subjects) {
-    if (!text.again && subject_record(text.out, subject).state == SubjectRecord::State::Done) continue;
+    if (!text.again && subject_record(text.out, subject).has_answer()) continue;
     const std::uint64_t size = subject.scan_bytes();
     bytes += size;
     largest = std::max(largest, size);
@@ -193,20 +207,26 @@ int dry_run(const Program& program, const CohortText& text, const std::vector<Su
 int cohort(Program& program, const CohortText& text) {
   if (text.level == "participant") end_with_engine();
   const Plan plan = plan_of(text);
-  const std::vector<Subject> subjects = chosen_subjects(find_subjects(text.in, plan), text.labels);
+  const std::vector<Subject> all = find_subjects(text.in, plan);
+  const std::vector<Subject> subjects = chosen_subjects(all, text.labels);
+  // Of a subject that is asked for by its label nothing is said of the others, as an engine asks for each.
+  std::vector<std::string> doubts;
+  if (text.labels.empty()) doubts = doubts_of_cohort(text.in, plan, all);
   if (text.dry_run) return dry_run(program, text, subjects);
   const CohortNeeds needs = needs_of(text, plan, subjects);
   need_cohort_folder(text.out, needs);
   prepare_cohort_folder(text.out, needs.plan_text);
-  if (text.level == "participant") return participants(program, text, plan, subjects);
-  GroupOptions options{program.stop.get_token(), program.progress(), {}};
+  if (text.level == "participant") return participants(program, text, plan, subjects, doubts);
+  GroupOptions options{program.stop.get_token(), program.progress(), {}, doubts};
   if (!text.against.empty()) options.against = text.against;
   Json json = answer({});
   json.update(merge_group(subjects, text.out, options));
   for (const Json& finding : json["findings"]) warn_finding(finding.get<std::string>());
-  program.say(json, std::to_string(json["done"].get<std::size_t>()) + " of " +
-                        std::to_string(subjects.size()) +
-                        " subjects merged\nwritten: " + (text.out / "group/index.html").string() + "\n");
+  const auto doubtful = json["doubtful"].get<std::size_t>();
+  program.say(json, std::to_string(json["done"].get<std::size_t>() + doubtful) + " of " +
+                        std::to_string(subjects.size()) + " subjects merged" +
+                        (doubtful == 0 ? "" : ", " + std::to_string(doubtful) + " of them doubtful") +
+                        "\nwritten: " + (text.out / "group/index.html").string() + "\n");
   return done;
 }
 
@@ -240,6 +260,7 @@ int table(Program& program, const TableText& text) {
   CohortTable columns;
   std::vector<std::string> labels;
   std::size_t count = 0;
+  std::vector<std::string> failures, findings;
   for (const fs::path& result : text.results) {
     const bool is_folder = fs::is_directory(result);
     const fs::path file = is_folder ? result / "result.json" : result;
@@ -247,7 +268,11 @@ int table(Program& program, const TableText& text) {
         is_folder ? fs::absolute(result).lexically_normal() : fs::absolute(file).parent_path();
     const std::string name =
         folder.filename().empty() ? folder.parent_path().filename().string() : folder.filename().string();
-    const std::vector<ResultRow> rows = rows_of(read_result(file), name);
+    const Json read = read_result(file);
+    const std::vector<ResultRow> rows = rows_of(read, name);
+    const ScanAudits audits = scan_audits_of(read);
+    for (const std::string& finding : audits.findings)
+      (audits.fails() ? failures : findings).push_back(name + ": " + finding);
     count += rows.size();
     for (const ResultRow& row : rows) written += long_line(row);
     columns.add(static_cast<std::uint32_t>(labels.size()), rows);
@@ -258,6 +283,10 @@ int table(Program& program, const TableText& text) {
   json["path"] = text.out.string();
   json["results"] = labels.size();
   json["numbers"] = count;
+  // Failures first, because a terminal shows the first findings only.
+  findings.insert(findings.begin(), failures.begin(), failures.end());
+  for (const std::string& finding : findings) warn_finding(finding);
+  json["findings"] = std::move(findings);
   program.say(json, std::to_string(count) + " numbers of " + std::to_string(labels.size()) +
                         " results\nwritten: " + text.out.string() + "\n");
   return done;

@@ -2,6 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <optional>
 #include <set>
 
 #include "planner/cli/verbs.h"
@@ -13,6 +15,7 @@
 #include "planner/verb/octree_out.h"
 #include "planner/verb/scan_in.h"
 #include "voxel/filter/label_map.h"
+#include "voxel/measure/measure.h"
 #include "voxel/scan/write_dicom_seg.h"
 #include "voxel/scan/write_scene.h"
 
@@ -36,19 +39,70 @@ bool is_volume(const fs::path& path) {
 }
 
 /// The DICOM series that what is written refers to; none where it was made from none. Refuses one of another
-/// patient than what is converted, and adds to the findings what could not be compared.
+/// patient than what is converted, and adds to the findings what could not be compared and, of a --source,
+/// each WARN and FAIL of its own audit.
 std::optional<voxel::DicomSource> source_of(const Program& program, const ConvertText& text, bool reads_dicom,
                                             const voxel::Identity& identity,
                                             std::vector<std::string>& findings) {
   if (text.source.empty() && !reads_dicom) return std::nullopt;
   voxel::DicomSource source =
       voxel::dicom_source(text.source.empty() ? text.in : text.source, read_options(program, text.scan));
-  if (!text.source.empty())
-    for (std::string& finding :
-         need_same_patient({text.source.string(), source.identity}, {text.in.string(), identity},
-                           text.other_identity, "--other-identity"))
-      findings.push_back(std::move(finding));
+  if (text.source.empty()) return source;
+  for (const voxel::Finding& line : source.audit)
+    if (line.verdict != voxel::Verdict::Pass)
+      findings.push_back(text.source.string() + ": " + to_string(line.verdict) + ", " + line.check + ": " +
+                         line.detail);
+  for (std::string& finding :
+       need_same_patient({text.source.string(), source.identity}, {text.in.string(), identity},
+                         text.other_identity, "--other-identity"))
+    findings.push_back(std::move(finding));
   return source;
+}
+
+/// The smallest box around objects.
+voxel::Box box_around(const std::vector<voxel::DicomSegment>& segments) {
+  constexpr double far_mm = std::numeric_limits<double>::infinity();
+  voxel::Box around{glm::dvec3(far_mm), glm::dvec3(-far_mm)};
+  for (const voxel::DicomSegment& segment : segments)
+    if (const std::optional<voxel::Box> own = voxel::extents_of(segment.object)) {
+      around.low_mm = glm::min(around.low_mm, own->low_mm);
+      around.high_mm = glm::max(around.high_mm, own->high_mm);
+    }
+  return around;
+}
+
+/// Holds what is written, a box in LPS millimetres, against the images of --source that it refers to. Refuses
+/// what lies wholly beside them, as that was made of another scan or its frame is wrong, unless
+/// --other-identity allows it; adds a line where it reaches beyond. Nothing is held where nothing is written.
+void need_on_source(const ConvertText& text, const voxel::DicomSource& source, const voxel::Box& box,
+                    std::vector<std::string>& findings) {
+  if (!(box.low_mm.x <= box.high_mm.x)) return;
+  const glm::dvec3 low(-0.5), high = glm::dvec3(source.around.dims) - 0.5;
+  const glm::dvec3 spacing_mm = source.around.spacing_mm();
+  glm::dvec3 least(std::numeric_limits<double>::infinity()), most(-least);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p_voxel = source.around.voxel({corner & 1 ? box.high_mm.x : box.low_mm.x,
+                                                    corner & 2 ? box.high_mm.y : box.low_mm.y,
+                                                    corner & 4 ? box.high_mm.z : box.low_mm.z});
+    least = glm::min(least, p_voxel);
+    most = glm::max(most, p_voxel);
+  }
+  const auto largest = [](const glm::dvec3& mm) { return std::max({mm.x, mm.y, mm.z}); };
+  const double beyond_mm = largest(glm::max(low - least, most - high) * spacing_mm);
+  const double beside_mm = largest(glm::max(least - high, low - most) * spacing_mm);
+  const std::string images = " the images of " + text.source.string();
+  if (beside_mm >= 0.0) {
+    const std::string said = text.in.string() + ": lies wholly beside" + images + ", by " +
+                             three_figures(beside_mm) +
+                             " mm: was it made of another scan, or is its frame wrong (--frame)?";
+    if (!text.other_identity)
+      throw std::runtime_error(said + " Where that is meant, --other-identity goes on and reports a FAIL");
+    findings.push_back("FAIL: " + said);
+  } else if (beyond_mm > std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z})) {
+    // Less than a voxel is how objects end on other voxels than the images'.
+    findings.push_back(text.in.string() + ": reaches beyond" + images + " by " + three_figures(beyond_mm) +
+                       " mm: was it made of another scan?");
+  }
 }
 
 /// Refuses options of DICOM where something else is written, which they would not change.
@@ -99,6 +153,7 @@ int convert_octree(const Program& program, const ConvertText& text) {
     options.source = source_of(program, text, false, {}, findings);
   }
   if (!options.source) warn("no --source: the segmentation is of a study of its own and refers to no images");
+  if (options.source) need_on_source(text, *options.source, box_around({{options.label, *octree}}), findings);
   {
     const Stopwatch watch(timings, "write");
     voxel::write_dicom_seg(*octree, text.out, options);
@@ -149,6 +204,7 @@ int convert_labels(const Program& program, const ConvertText& text) {
   options.progress.stop = program.stop.get_token();
   options.source = source_of(program, text, false, scene.identity, findings);
   if (!options.source) warn("no --source: the segmentation is of a study of its own and refers to no images");
+  if (options.source) need_on_source(text, *options.source, box_around(segments), findings);
   {
     const Stopwatch watch(timings, "write");
     voxel::write_dicom_seg(segments, text.out, options);
@@ -181,7 +237,13 @@ int convert(const Program& program, const ConvertText& text) {
       options.series_description = "Octotomy, derived";
       if (scene.modality.empty())
         findings.push_back(text.in.string() + " does not state its modality: written as CT");
+      if (voxel::is_written_as_secondary_capture(scene))
+        findings.push_back("the modality " + scene.modality + " is written as Secondary Capture images" +
+                           (scene.declared_unit.empty() ? "" : " with the unit " + scene.declared_unit) +
+                           ": the attributes of its own kind of image are left out");
       options.source = source_of(program, text, is_dicom(scene), scene.identity, findings);
+      if (options.source && !text.source.empty())
+        need_on_source(text, *options.source, voxel::bounds(scene.lattice), findings);
       if (!options.source) {
         options.patient_name =
             scene.identity.patient_name.empty() ? "Anonymous" : scene.identity.patient_name;
@@ -231,8 +293,8 @@ void add_convert(Program& program) {
                   "The DICOM series that DICOM written here refers to; default: the scan, where it is DICOM")
       ->check(CLI::ExistingPath);
   verb.add_flag("--other-identity", text->other_identity,
-                "Take a source that states another patient, study or frame of reference than the scan, and "
-                "report a FAIL");
+                "Take a source that states another patient, study or frame of reference than the scan, or "
+                "whose images lie elsewhere, and report a FAIL");
   verb.add_option("--label", text->label, "Of a segmentation; default: the octree's name");
   add_scan_options(verb, text->scan);
 }

@@ -32,6 +32,7 @@ int preview_step(Program& program, PreviewText& text) {
   need_folder_of(text.out);
   text.options.evaluation = evaluate_options(program);
   Preview made = preview(plan_of(program, text), text.step, text.options);
+  for (const ScanRecord& scan : made.evaluation.scans) program.note_scan(scan);
   {
     const Stopwatch watch(made.evaluation.timings, "write");
     write_whole(text.out, {made.png.begin(), made.png.end()});

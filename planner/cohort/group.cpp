@@ -20,14 +20,52 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a subject whose record is Done.
+/// Of a subject whose record has an answer.
 std::vector<ResultRow> rows_in(const fs::path& out, const Subject& subject) {
   const fs::path path = out / subject.folder() / "rows.csv";
   try {
     return parse_long_table(voxel::file_bytes(path));
   } catch (const voxel::Error& error) {
-    throw voxel::Error(error.code(), path.string() + ": " + error.what());
+    throw voxel::Error(error.code(), path.string() + ": " + error.what() + ": evaluate the subject again");
   }
+}
+
+/// The findings of the scans' audits over a cohort: every line of a subject with a FAIL, and the other
+/// subjects' WARNs by their checks, since one export's WARN stands in each of its subjects.
+class AuditFindings {
+ public:
+  void add(const std::string& label, const SubjectRecord& record) {
+    for (const std::string& finding : record.audit_findings) {
+      if (record.state == SubjectRecord::State::Doubtful) {
+        failures_.push_back(label + ": " + finding);
+        continue;
+      }
+      Warned& warned = warnings_[finding.substr(0, finding.find(": ", finding.find("WARN, ")))];
+      if (warned.count++ == 0) warned.first = label + ": " + finding;
+    }
+  }
+  void append_to(Json& findings) const {
+    for (const std::string& failure : failures_) findings.push_back(failure);
+    for (const auto& [check, warned] : warnings_)
+      findings.push_back(warned.first + (warned.count == 1
+                                             ? ""
+                                             : " (and " + check + " " + std::to_string(warned.count - 1) +
+                                                   " times more: subjects.csv has all)"));
+  }
+
+ private:
+  struct Warned {
+    std::size_t count = 0;
+    std::string first;
+  };
+  std::vector<std::string> failures_;
+  std::map<std::string, Warned> warnings_;
+};
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : "; ") + line;
+  return text;
 }
 
 /// Both kernels' answers of a column, mesh less voxel.
@@ -68,8 +106,15 @@ GroupColumn summarised(const CohortColumn& column, const std::vector<Subject>& s
                        const std::optional<CohortTable>& other) {
   const std::string unit = shown_unit(column.unit);
   GroupColumn made{column.name(), unit, {}, {}, {}};
-  std::vector<double> numbers;
-  for (const CohortValue& value : column.values) numbers.push_back(value.value);
+  std::vector<double> numbers, undoubted;
+  Json doubtful = Json::array();
+  for (const CohortValue& value : column.values) {
+    numbers.push_back(value.value);
+    if (value.is_doubtful)
+      doubtful.push_back(subjects[value.subject].label);
+    else
+      undoubted.push_back(value.value);
+  }
   const Spread spread = spread_of(numbers);
   for (const CohortValue& value : column.values)
     if (value.value < spread.lower_fence || value.value > spread.upper_fence)
@@ -87,7 +132,14 @@ GroupColumn summarised(const CohortColumn& column, const std::vector<Subject>& s
                   {"least", spread.least},
                   {"median", spread.median},
                   {"greatest", spread.greatest},
-                  {"outliers", outliers}};
+                  {"outliers", outliers},
+                  {"doubtful", doubtful}};
+  if (!doubtful.empty() && !undoubted.empty()) {
+    const Spread without = spread_of(undoubted);
+    made.summary["without_doubtful"] = {{"subjects", without.count}, {"mean", without.mean},
+                                        {"sd", without.sd},          {"least", without.least},
+                                        {"median", without.median},  {"greatest", without.greatest}};
+  }
   const auto add = [&](const std::string& of, const std::string& title,
                        const std::vector<std::pair<double, double>>& answers) {
     if (answers.size() < 2) return;
@@ -144,14 +196,15 @@ Json merge_group(const std::vector<Subject>& subjects, const fs::path& out, cons
   std::ofstream rows_file(folder.path() / "measurements.csv", std::ios::binary);
   std::ofstream subjects_file(folder.path() / "subjects.csv", std::ios::binary);
   rows_file << long_header();
-  subjects_file << csv_line({"subject", "state", "reason", "seconds", "peak_mb"});
+  subjects_file << csv_line({"subject", "state", "reason", "seconds", "peak_mb", "audit_findings"});
   CohortTable table;
   std::optional<CohortTable> other;
   if (options.against) other.emplace();
   std::vector<std::string> labels;
   GroupPage page;
-  std::size_t done = 0, failed = 0;
-  Json findings = Json::array();
+  std::size_t done = 0, doubtful = 0, failed = 0;
+  AuditFindings audits;
+  Json findings = options.findings;
   for (std::uint32_t i = 0; i < subjects.size(); ++i) {
     const Subject& subject = subjects[i];
     look_up(options, i, subjects.size());
@@ -162,28 +215,37 @@ Json merge_group(const std::vector<Subject>& subjects, const fs::path& out, cons
       return record;
     };
     const SubjectRecord record = told_record(out);
-    const bool is_done = record.state == SubjectRecord::State::Done;
-    ++(is_done ? done : failed);
+    const bool has_answer = record.has_answer(), is_doubtful = record.state == SubjectRecord::State::Doubtful;
+    ++(is_doubtful ? doubtful : has_answer ? done : failed);
+    audits.add(subject.label, record);
     labels.push_back(subject.label);
-    if (is_done) {
+    if (has_answer) {
       const std::vector<ResultRow> rows = rows_in(out, subject);
       for (const ResultRow& row : rows) rows_file << long_line(row);
       table.add(i, rows);
-      if (other && told_record(*options.against).state == SubjectRecord::State::Done)
+      if (const SubjectRecord others = other ? told_record(*options.against) : SubjectRecord{};
+          others.has_answer()) {
         other->add(i, rows_in(*options.against, subject));
+        if (others.audit_findings != record.audit_findings)
+          audits.add(options.against->string() + ", " + subject.label, others);
+      }
     }
-    subjects_file << csv_line({subject.label, to_string(record.state), is_done ? "" : record.reason,
-                               csv_number(record.seconds), csv_number(record.peak_mb)});
-    page.subjects.push_back(
-        {subject.label, is_done ? "" : record.reason, fs::exists(out / subject.folder() / "picture.png")});
+    subjects_file << csv_line({subject.label, to_string(record.state), has_answer ? "" : record.reason,
+                               csv_number(record.seconds), csv_number(record.peak_mb),
+                               joined(record.audit_findings)});
+    page.subjects.push_back({subject.label, has_answer ? "" : record.reason,
+                             fs::exists(out / subject.folder() / "picture.png"), is_doubtful,
+                             is_doubtful ? joined(record.audit_findings) : ""});
   }
   if (!rows_file.flush() || !subjects_file.flush())
     throw voxel::Error(voxel::ErrorCode::Resource,
                        folder.path().string() + ": cannot be written: the disk may be full");
 
-  Json summary{
-      {"octotomy", OCTOTOMY_VERSION}, {"subjects", subjects.size()}, {"done", done},
-      {"without_answer", failed},     {"findings", findings},        {"measurements", Json::array()}};
+  audits.append_to(findings);
+  for (const Json& finding : findings) page.findings.push_back(finding.get<std::string>());
+  Json summary{{"octotomy", OCTOTOMY_VERSION}, {"subjects", subjects.size()}, {"done", done},
+               {"doubtful", doubtful},         {"without_answer", failed},    {"findings", findings},
+               {"measurements", Json::array()}};
   for (const CohortColumn& column : table.columns()) {
     page.columns.push_back(summarised(column, subjects, other));
     summary["measurements"].push_back(page.columns.back().summary);

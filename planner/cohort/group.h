@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "planner/cohort/statistics.h"
@@ -18,13 +19,16 @@ struct GroupOptions {
   std::function<void(const std::string& doing, double fraction)> progress;
   /// The same cohort by another observer: its derivatives' folder.
   std::optional<std::filesystem::path> against;
+  std::vector<std::string> findings = {};  ///< of the cohort as a whole, which stand before the subjects'
 };
 
 /// Merges the subjects' answers into out/group: measurements.csv (long), wide.csv, subjects.csv (everyone,
 /// with the reason where there is no answer), summary.json, plots/*.svg, and index.html with everyone's
-/// picture. Returns summary.json, whose findings name the subjects with files that were changed after they
-/// were written: these are not merged. Cost: linear; memory some 100 bytes a number. Throws voxel::Error,
-/// Input or Resource, and Stopped; an earlier group stays then.
+/// picture. Subjects whose scans' audits have a FAIL are merged as doubtful: each table and the page mark
+/// them, and each number's summary holds their labels and its spread without them. Returns summary.json,
+/// whose findings name every such FAIL, each WARN with the number of subjects that have it, and the subjects
+/// with files that were changed after they were written: these are not merged. Cost: linear; memory some 100
+/// bytes a number. Throws voxel::Error, Input or Resource, and Stopped; an earlier group stays then.
 nlohmann::ordered_json merge_group(const std::vector<Subject>& subjects, const std::filesystem::path& out,
                                    const GroupOptions& options = {});
 

@@ -18,13 +18,16 @@ std::string numbers_table(const GroupPage& page) {
       "<tr><th>Number</th><th>Unit</th><th class='n'>Subjects</th><th class='n'>Mean</th><th "
       "class='n'>SD</th>"
       "<th class='n'>Least</th><th class='n'>Median</th><th class='n'>Greatest</th><th "
-      "class='n'>Outliers</th></tr>";
+      "class='n'>Outliers</th><th class='n'>Doubtful</th><th class='n'>Mean without doubtful</th></tr>";
   for (const GroupColumn& column : page.columns) {
     const auto& told = column.summary;
     rows += "<tr>" + cell(escaped(column.name)) + cell(escaped(column.unit)) +
             figure_cell(std::to_string(told["subjects"].get<std::size_t>())) + figure(told, "mean") +
             figure(told, "sd") + figure(told, "least") + figure(told, "median") + figure(told, "greatest") +
-            figure_cell(std::to_string(column.outliers.size())) + "</tr>";
+            figure_cell(std::to_string(column.outliers.size())) +
+            figure_cell(std::to_string(told["doubtful"].size())) +
+            (told.contains("without_doubtful") ? figure(told["without_doubtful"], "mean") : figure_cell("")) +
+            "</tr>";
   }
   return "<table>" + rows + "</table>";
 }
@@ -67,19 +70,24 @@ std::string outliers_of(const GroupPage& page, const std::map<std::uint32_t, std
 }  // namespace
 
 std::string group_page(const GroupPage& page) {
-  std::size_t done = 0;
-  std::string missing, pictures, plots;
+  std::size_t answers = 0, doubtful = 0;
+  std::string missing, doubts, pictures, plots;
   const std::map<std::uint32_t, std::string> outlying = outlying_numbers(page);
   for (std::uint32_t i = 0; i < page.subjects.size(); ++i) {
     const GroupPage::Shown& subject = page.subjects[i];
     const bool is_outlier = outlying.contains(i);
     const std::string label = escaped(subject.label);
+    if (subject.is_doubtful) {
+      ++doubtful;
+      doubts += "<li><a href='#" + label + "'>" + label + "</a>: " + escaped(subject.audit) + "</li>";
+    }
     if (subject.reason.empty())
-      ++done;
+      ++answers;
     else
       missing += "<li><a href='#" + label + "'>" + label + "</a>: " + escaped(subject.reason) + "</li>";
     pictures += "<figure id='" + label + (is_outlier ? "' class='outlier'>" : "'>") +
                 captioned(subject, label + (is_outlier ? ": outlier" : "") +
+                                       (subject.is_doubtful ? ": doubtful" : "") +
                                        (subject.reason.empty() ? "" : ": without an answer"));
   }
   for (const GroupColumn& column : page.columns)
@@ -91,9 +99,17 @@ std::string group_page(const GroupPage& page) {
       "line-height:160px;text-align:center;outline:1px dashed}.outlier img{outline:2px solid "
       "#c2410c}</style>";
   body += element("h1", "Cohort of " + std::to_string(page.subjects.size()) + " subjects");
-  body += element("p", "With an answer: " + std::to_string(done) +
-                           ". Without one: " + std::to_string(page.subjects.size() - done) + ".");
+  body += element(
+      "p", "With an answer: " + std::to_string(answers) + ", " + std::to_string(doubtful) +
+               " of them doubtful. Without one: " + std::to_string(page.subjects.size() - answers) + ".");
+  if (!doubts.empty())
+    body += element("h2", "Doubtful") +
+            element("p",
+                    "The audit of a scan has a FAIL. The numbers below count these subjects; look at each "
+                    "before you trust them.") +
+            element("ul", doubts);
   if (!missing.empty()) body += element("h2", "Without an answer") + element("ul", missing);
+  if (!page.findings.empty()) body += element("h2", "Findings") + list(page.findings);
   body += element("h2", "Numbers") + numbers_table(page);
   body += element("h2", "Outliers") + outliers_of(page, outlying);
   body += element("h2", "Plots") + "<div class='plots'>" + plots + "</div>";

@@ -22,12 +22,16 @@ struct GroupPage {
     std::string label;
     std::string reason;  ///< why there is no answer; empty: there is one
     bool has_picture = false;
+    bool is_doubtful = false;  ///< the audit of a scan has a FAIL, and the numbers count all the same
+    std::string audit;         ///< of a doubtful one: what its scans' audits say
   };
   std::vector<Shown> subjects;
   std::vector<GroupColumn> columns;
+  std::vector<std::string> findings;  ///< of the cohort, as summary.json has them
 };
 
-/// The cohort for quality control: who has no answer and why, numbers and plots, outliers by name, and
+/// The cohort for quality control: who has no answer and why, whose scans' audits have a FAIL, all findings,
+/// numbers and plots, outliers by name, and
 /// everyone's picture, which lies in the subject's folder beside the group's.
 std::string group_page(const GroupPage& page);
 

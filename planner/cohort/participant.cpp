@@ -52,7 +52,8 @@ class Claim {
 };
 
 std::string key_of(const Plan& plan, const Subject& subject) {
-  std::string text = OCTOTOMY_VERSION "\n" + plan_sha256(Json::parse(plan.text)) + "\n";
+  // The form of subject.json and rows.csv: answers of another form are made anew.
+  std::string text = OCTOTOMY_VERSION " 2\n" + plan_sha256(Json::parse(plan.text)) + "\n";
   for (const auto& [name, path] : subject.scans) text += name + " " + sha256_of_path(path) + "\n";
   for (const Step& step : plan.steps)
     for (const fs::path& file : files_read(step))
@@ -96,6 +97,7 @@ Json to_json(const SubjectRecord& record, const Subject& subject) {
           {"subject", subject.label},
           {"state", to_string(record.state)},
           {"reason", record.reason.empty() ? Json(nullptr) : Json(record.reason)},
+          {"audit_findings", record.audit_findings},
           {"key", record.key},
           {"scans", scans},
           {"scan_bytes", record.scan_bytes},
@@ -126,9 +128,9 @@ Plan of_subject(const Plan& plan, const Subject& subject) {
   return with_files(plan, places);
 }
 
-/// Evaluates and writes into `folder`.
-void answer(const Plan& plan, const Subject& subject, const ParticipantOptions& options,
-            const fs::path& folder) {
+/// Evaluates and writes into `folder`; what the audits of the scans say.
+ScanAudits answer(const Plan& plan, const Subject& subject, const ParticipantOptions& options,
+                  const fs::path& folder) {
   Result result;
   result.plan = plan;
   for (auto& [name, scan] : result.plan.scans) scan.path = subject.scans.at(name);
@@ -149,6 +151,7 @@ void answer(const Plan& plan, const Subject& subject, const ParticipantOptions& 
   write_text(folder / "result.json", json.dump() + "\n");
   if (const std::vector<std::uint8_t> png = picture_of(result.plan, result.evaluation); !png.empty())
     write_bytes(folder / "picture.png", png);
+  return scan_audits_of(json);
 }
 
 /// Paths in a subject's folder that its result needs.
@@ -180,6 +183,8 @@ std::string to_string(SubjectRecord::State state) {
   switch (state) {
     case SubjectRecord::State::Done:
       return "done";
+    case SubjectRecord::State::Doubtful:
+      return "doubtful";
     case SubjectRecord::State::Failed:
       return "failed";
     case SubjectRecord::State::Changed:
@@ -199,14 +204,17 @@ SubjectRecord subject_record(const fs::path& out, const Subject& subject) {
   const Json json = Json::parse(bytes_of_regular(folder / "subject.json"), nullptr, false);
   if (!json.is_object() || !json.contains("state")) return record;
   const std::string state = json.value("state", "");
-  if (state != "done" && state != "failed") return record;
-  record.state = state == "done" ? SubjectRecord::State::Done : SubjectRecord::State::Failed;
+  if (state != "done" && state != "doubtful" && state != "failed") return record;
+  record.state = state == "done"       ? SubjectRecord::State::Done
+                 : state == "doubtful" ? SubjectRecord::State::Doubtful
+                                       : SubjectRecord::State::Failed;
   record.reason = json["reason"].is_string() ? json["reason"].get<std::string>() : "";
+  record.audit_findings = json.value("audit_findings", std::vector<std::string>{});
   record.key = json.value("key", "");
   record.seconds = json.value("seconds", 0.0);
   record.peak_mb = json.value("peak_mb", 0.0);
   record.scan_bytes = json.value("scan_bytes", std::uint64_t{0});
-  if (record.state == SubjectRecord::State::Done)
+  if (record.has_answer())
     for (const char* name : {"rows.csv", "result.json"})
       if (const auto loss = record_of_loss(folder / name, list)) return *loss;
   return record;
@@ -228,17 +236,20 @@ SubjectRecord run_participant(const Plan& given, const Subject& subject, const f
   Plan plan = given;
   if (record.reason.empty()) record.reason = reason_of([&] { plan = of_subject(given, subject); });
   if (record.reason.empty()) record.reason = reason_of([&] { record.key = key_of(plan, subject); });
-  if (!options.again && record.reason.empty() && earlier.state == SubjectRecord::State::Done &&
-      earlier.key == record.key) {
+  if (!options.again && record.reason.empty() && earlier.has_answer() && earlier.key == record.key) {
     earlier.was_kept = true;
     return earlier;
   }
   const fs::path place = out / subject.folder();
   need_result_folder(place, needed_names(plan, options));
   ResultFolder folder(place);
+  ScanAudits audits;
   if (record.reason.empty())
-    record.reason = reason_of([&] { answer(plan, subject, options, folder.path()); });
-  record.state = record.reason.empty() ? SubjectRecord::State::Done : SubjectRecord::State::Failed;
+    record.reason = reason_of([&] { audits = answer(plan, subject, options, folder.path()); });
+  record.audit_findings = audits.findings;
+  record.state = !record.reason.empty() ? SubjectRecord::State::Failed
+                 : audits.fails()       ? SubjectRecord::State::Doubtful
+                                        : SubjectRecord::State::Done;
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.peak_mb = peak_mb();
   write_text(folder.path() / "subject.json", to_json(record, subject).dump(2) + "\n");

@@ -14,17 +14,22 @@ namespace octotomy::planner {
 
 /// What became of a subject, as its folder's subject.json tells it.
 struct SubjectRecord {
-  /// Changed: a file of the answer is not as it was written, so nothing is told of the subject.
-  enum class State { Done, Failed, Missing, Changed };
+  /// Doubtful: there is an answer, and the audit of a scan has a FAIL. Changed: a file of the answer is not
+  /// as it was written, so nothing is told of the subject.
+  enum class State { Done, Doubtful, Failed, Missing, Changed };
 
   State state = State::Missing;
-  std::string reason;  ///< of what is not done
-  std::string key;     ///< of the plan, the program's version and the scans: the same key, the same answer
+  std::string reason;  ///< of what has no answer
+  /// Every WARN and FAIL of the audits of its scans, as ScanAudits has them.
+  std::vector<std::string> audit_findings = {};
+  std::string key;  ///< of the plan, the program's version and the scans: the same key, the same answer
   double seconds = 0.0;
   double peak_mb = 0.0;             ///< the process's largest memory
   std::uint64_t scan_bytes = 0;     ///< of the scans' files
   bool was_kept = false;            ///< an earlier run's answer to the same question stands
   bool is_another_at_work = false;  ///< nothing was done, as another process has the subject in hand
+
+  bool has_answer() const { return state == State::Done || state == State::Doubtful; }
 };
 
 std::string to_string(SubjectRecord::State state);

@@ -14,9 +14,20 @@
 namespace octotomy::planner {
 namespace {
 
-const std::vector<std::string> columns = {"subject", "measurement", "object",   "quantity",   "value",
-                                          "unit",    "half_width",  "coverage", "voxel",      "mesh",
-                                          "verdict", "octotomy",    "plan",     "plan_sha256"};
+const std::vector<std::string> columns = {"subject", "measurement", "object",   "quantity",    "value",
+                                          "unit",    "half_width",  "coverage", "voxel",       "mesh",
+                                          "verdict", "octotomy",    "plan",     "plan_sha256", "scan_audit"};
+
+constexpr std::array<const char*, 3> verdicts{"PASS", "WARN", "FAIL"};  ///< the gravest last
+
+/// The graver of two verdicts; an empty or unknown one is no verdict.
+std::string graver(const std::string& a, const std::string& b) {
+  const auto rank = [](const std::string& verdict) {
+    const auto at = std::find(verdicts.begin(), verdicts.end(), verdict);
+    return at == verdicts.end() ? -1 : static_cast<int>(at - verdicts.begin());
+  };
+  return rank(a) > rank(b) ? a : b;
+}
 
 std::string text_at(const Json& object, const char* key) {
   const auto found = object.find(key);
@@ -41,21 +52,16 @@ std::optional<std::pair<std::string, std::string>> quantity_and_unit(const std::
 
 /// The gravest verdict of the objects that a measurement names.
 std::string verdict_of(const Json& measurement, const Json& result) {
-  static constexpr std::array<const char*, 3> order{"PASS", "WARN", "FAIL"};
-  std::size_t gravest = 0;
-  bool any = false;
+  std::string gravest;
   const auto certificates = result.find("certificates");
   if (certificates == result.end()) return {};
   for (const char* key : {"object", "to", "a", "b"})
     for (const Json& certificate : *certificates) {
       const std::string name = text_at(measurement, key);
       if (name.empty() || text_at(certificate, "object") != name) continue;
-      const auto at = std::find(order.begin(), order.end(), text_at(certificate, "verdict"));
-      if (at == order.end()) continue;
-      gravest = std::max(gravest, static_cast<std::size_t>(at - order.begin()));
-      any = true;
+      gravest = graver(text_at(certificate, "verdict"), gravest);
     }
-  return any ? order.at(gravest) : "";
+  return gravest;
 }
 
 std::optional<double> kernel_answer(const Json& measurement, const char* kernel, const std::string& quantity,
@@ -106,10 +112,28 @@ std::string plan_sha256(const Json& plan) {
   return sha256_of(document.dump());
 }
 
+ScanAudits scan_audits_of(const Json& result) {
+  ScanAudits audits;
+  const auto scans = result.find("scans");
+  if (scans == result.end() || !scans->is_array()) return audits;
+  for (const Json& scan : *scans) {
+    if (!scan.is_object() || !scan.contains("audit")) continue;
+    for (const Json& line : scan["audit"]) {
+      const std::string verdict = text_at(line, "verdict");
+      audits.gravest = graver(verdict, audits.gravest);
+      if (verdict != "WARN" && verdict != "FAIL") continue;
+      audits.findings.push_back((scans->size() > 1 ? text_at(scan, "name") + ": " : "") + verdict + ", " +
+                                text_at(line, "check") + ": " + text_at(line, "detail"));
+    }
+  }
+  return audits;
+}
+
 std::vector<ResultRow> rows_of(const Json& result, const std::string& subject) {
   std::vector<ResultRow> rows;
   const Json plan = result.value("plan", Json::object());
   const std::string sha256 = plan_sha256(plan);
+  const std::string audit = scan_audits_of(result).gravest;
   const auto measurements = result.find("measurements");
   if (measurements == result.end()) return rows;
   for (const Json& measurement : *measurements) {
@@ -126,6 +150,8 @@ std::vector<ResultRow> rows_of(const Json& result, const std::string& subject) {
       row.measurement = text_at(measurement, "id");
       row.object = text_at(measurement, "object");
       row.verdict = verdict_of(measurement, result);
+      row.scan_audit = audit;
+      if (audit != "PASS") row.verdict = graver(row.verdict, audit);
       row.version = text_at(result, "octotomy");
       row.plan = text_at(plan, "name");
       row.plan_sha256 = sha256;
@@ -142,7 +168,8 @@ std::string long_header() {
 std::string long_line(const ResultRow& row) {
   return csv_line({row.subject, row.measurement, row.object, row.quantity, csv_number(row.value), row.unit,
                    csv_number(row.half_width), csv_number(row.coverage), csv_number(row.voxel),
-                   csv_number(row.mesh), row.verdict, row.version, row.plan, row.plan_sha256});
+                   csv_number(row.mesh), row.verdict, row.version, row.plan, row.plan_sha256,
+                   row.scan_audit});
 }
 
 std::vector<ResultRow> parse_long_table(std::string_view text) {
@@ -156,7 +183,7 @@ std::vector<ResultRow> parse_long_table(std::string_view text) {
     if (i == 0) continue;
     rows.push_back({cells[0], cells[1], cells[2], cells[3], number_of(cells[4], i + 1), cells[5],
                     number_of(cells[6], i + 1), number_of(cells[7], i + 1), number_of(cells[8], i + 1),
-                    number_of(cells[9], i + 1), cells[10], cells[11], cells[12], cells[13]});
+                    number_of(cells[9], i + 1), cells[10], cells[11], cells[12], cells[13], cells[14]});
   }
   return rows;
 }

@@ -20,13 +20,28 @@ struct ResultRow {
   std::optional<double> half_width;   ///< of the interval, in the same unit
   std::optional<double> coverage;     ///< of the interval
   std::optional<double> voxel, mesh;  ///< the kernels' own answers
-  std::string verdict;                ///< the gravest of its objects' certificates; empty: none
+  std::string verdict;                ///< the gravest of its objects' certificates and of `scan_audit`
   std::string version;                ///< of the program
   std::string plan;
   std::string plan_sha256;  ///< of the plan without its scans: the same for all of a cohort
+  std::string scan_audit;   ///< the gravest verdict of all scans' audits; empty: no scan was read
 };
 
-/// The numbers of a result.json, in the order of the plan's measurements.
+/// What the audits of a result's scans say.
+struct ScanAudits {
+  std::string gravest;                ///< "PASS", "WARN" or "FAIL"; empty: the result has no audit
+  std::vector<std::string> findings;  ///< each WARN and FAIL: "FAIL, patient: ...", with the scan's name
+                                      ///< before it where there are several scans
+
+  bool fails() const { return gravest == "FAIL"; }
+};
+/// Of a result.json. An audit without a FAIL or WARN has no finding.
+ScanAudits scan_audits_of(const nlohmann::ordered_json& result);
+
+/// The numbers of a result.json, in the order of the plan's measurements. No number's verdict is better than
+/// the audits of the result's scans: certificates compare both kernels on what was read, and cannot see that
+/// it is another patient's or the half of a scan. A number without a certificate has a verdict where an audit
+/// has a WARN or a FAIL, else none.
 std::vector<ResultRow> rows_of(const nlohmann::ordered_json& result, const std::string& subject);
 
 /// SHA-256 of a plan's document without its scans.

@@ -31,7 +31,7 @@ void CohortTable::add(std::uint32_t subject, const std::vector<ResultRow>& rows)
         at_.emplace(row.measurement + "." + row.quantity + " " + row.unit, columns_.size());
     if (is_new) columns_.push_back({row.measurement, row.quantity, row.unit, {}});
     columns_[at->second].values.push_back(
-        {subject, *row.value, row.half_width, row.voxel, row.mesh, row.verdict});
+        {subject, *row.value, row.half_width, row.voxel, row.mesh, row.verdict, row.scan_audit == "FAIL"});
   }
 }
 

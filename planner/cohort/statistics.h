@@ -19,6 +19,7 @@ struct CohortValue {
   std::optional<double> half_width;
   std::optional<double> voxel, mesh;
   std::string verdict;
+  bool is_doubtful = false;  ///< the audit of a scan has a FAIL
 };
 
 /// One number over a cohort: a measurement's quantity in a unit.

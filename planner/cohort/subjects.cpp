@@ -293,6 +293,47 @@ std::vector<Subject> find_subjects(const fs::path& input, const Plan& plan) {
   return subjects;
 }
 
+std::vector<std::string> doubts_of_cohort(const fs::path& input, const Plan& plan,
+                                          const std::vector<Subject>& subjects) {
+  std::vector<std::string> doubts;
+  std::map<fs::path, std::set<std::string>> labels;  // by what a path leads to
+  for (const Subject& subject : subjects)
+    for (const auto& [name, path] : subject.scans) {
+      std::error_code none;
+      fs::path real = fs::weakly_canonical(path, none);
+      labels[none ? path : real].insert(subject.label);
+    }
+  for (const auto& [path, sharing] : labels) {
+    if (sharing.size() < 2) continue;
+    std::string named;
+    for (const std::string& label : sharing) named += (named.empty() ? "" : ", ") + label;
+    doubts.push_back("the subjects " + named + " have one scan, " + path.string() +
+                     ": their numbers are one head's, counted " + std::to_string(sharing.size()) + " times");
+  }
+  if (fs::is_directory(input)) return doubts;
+  const std::vector<std::vector<std::string>> rows = rows_of_table(input);
+  if (rows.empty()) return doubts;
+  const std::vector<std::string>& header = rows.front();
+  std::set<std::size_t> read;
+  for (const char* name : {"participant_id", "subject"})
+    if (const auto at = column_of(header, name); at && read.empty()) read.insert(*at);
+  const std::size_t ids = read.size();
+  for (const auto& [name, unused] : plan.scans) {
+    auto at = column_of(header, name);
+    if (!at && plan.scans.size() == 1) at = column_of(header, "scan");
+    if (at) read.insert(*at);
+  }
+  if (read.size() == ids) return doubts;  // of no scans: of people
+  std::string passed_over;
+  for (std::size_t i = 0; i < header.size(); ++i)
+    if (!read.contains(i)) passed_over += (passed_over.empty() ? "'" : ", '") + header[i] + "'";
+  if (!passed_over.empty())
+    doubts.push_back(
+        input.string() + ": nothing reads the columns " + passed_over +
+        ": how a scan is read, as its unit, frame or series, stands beside its path in the plan");
+  return doubts;
+}
+
 fs::path file_of_subject(const Subject& subject, const fs::path& name) {
   if (subject.place.empty()) return {};
   fs::path found;

@@ -35,6 +35,12 @@ struct Subject {
 /// told.
 std::vector<Subject> find_subjects(const std::filesystem::path& input, const Plan& plan);
 
+/// What is doubtful about a cohort as a whole, a sentence each: subjects that have one scan's path in common,
+/// and columns of a table of scans that nothing reads. Nothing of BIDS's participants.tsv, whose columns
+/// describe people. Throws as find_subjects() where the table cannot be read.
+std::vector<std::string> doubts_of_cohort(const std::filesystem::path& input, const Plan& plan,
+                                          const std::vector<Subject>& subjects);
+
 /// A file that a step reads and that is not beside the plan: the file of the subject's folder with this name,
 /// or with this name behind "_". Empty where there is none or the subject has no folder. Throws voxel::Error
 /// (Input) where there are several.

@@ -234,6 +234,38 @@ std::optional<std::string> beyond_scan(const voxel::SliceMask& mask, const voxel
          " there: nothing was measured there; was it drawn on another scan?";
 }
 
+std::optional<std::string> slices_without_contours(const voxel::SliceMask& mask, const voxel::Lattice& scan,
+                                                   const std::string& where) {
+  double slice_mm = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::dvec3 step_mm(scan.lps_from_voxel[axis]);
+    const double along_mm = std::abs(glm::dot(step_mm, mask.view.look));
+    // A plane that leans by less than this misses no slice within the scan.
+    if (along_mm > 0.9999 * glm::length(step_mm)) slice_mm = along_mm;
+  }
+  if (slice_mm == 0.0) return std::nullopt;
+  std::size_t gaps = 0;
+  double widest_mm = 0.0, at_mm = 0.0;
+  for (std::size_t i = 1; i < mask.slices.size(); ++i) {
+    const auto &below = mask.slices[i - 1], &above = mask.slices[i];
+    if (below.polygons_mm.empty() || above.polygons_mm.empty()) continue;
+    const double apart_mm = above.position_mm - below.position_mm;
+    // Two slices or more: one left out now and then is a habit of drawing.
+    if (apart_mm < 2.5 * slice_mm) continue;
+    ++gaps;
+    if (apart_mm <= widest_mm) continue;
+    widest_mm = apart_mm;
+    at_mm = below.position_mm;
+  }
+  if (gaps == 0) return std::nullopt;
+  return where + ": " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
+         " between neighbouring contours, the widest of " + three_figures(widest_mm) + " mm from " +
+         hundredths(at_mm) + " mm on, leave out slices of the scan, which are " + three_figures(slice_mm) +
+         " mm apart: each contour is taken as half a gap thick on either side; draw the slices between if "
+         "the "
+         "structure ends there";
+}
+
 std::optional<std::string> cut_at_cube(const voxel::SliceMask& mask, const voxel::Universe& universe,
                                        const std::string& where) {
   const Volumes volumes = volumes_of(mask, universe.lattice());

@@ -31,6 +31,12 @@ std::vector<std::string> findings_of(const voxel::Region& region);
 std::optional<std::string> beyond_scan(const voxel::SliceMask& mask, const voxel::Lattice& scan,
                                        const std::string& where);
 
+/// A line on contours that leave out slices of a scan: neighbouring planes with contours that are joined over
+/// two or more of its slices along the planes' normal. None where the planes' normal is none of the scan's
+/// axes.
+std::optional<std::string> slices_without_contours(const voxel::SliceMask& mask, const voxel::Lattice& scan,
+                                                   const std::string& where);
+
 /// A line, a FAIL, on contours of which a part lies beyond the cube of the octree that they become, and is
 /// left out: how much. None where all lies within.
 std::optional<std::string> cut_at_cube(const voxel::SliceMask& mask, const voxel::Universe& universe,

@@ -426,6 +426,13 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
   DrawnSlices drawn{{}, set.identity, {}};
   if (!found.frame_uids.empty()) drawn.identity->frame_uids = found.frame_uids;
   if (found.degenerate > 0) drawn.findings.push_back(where + ": left out what encloses nothing: " + others);
+  if (found.miscounted > 0)
+    drawn.findings.push_back(where + ": " + std::to_string(found.miscounted) +
+                             (found.miscounted == 1 ? " contour holds" : " contours hold") +
+                             " another number of points than NumberOfContourPoints states, first " +
+                             std::to_string(found.held_points) + " for " +
+                             std::to_string(found.stated_points) +
+                             ": points may be lost; compare the contours with the program that drew them");
   drawn.mask.view = view_across(normal);
   if (found.moved > 0) {
     const glm::dvec3 by_mm = found.farthest_offset_mm;

@@ -107,6 +107,9 @@ std::vector<std::string> findings_of_slices(const Mask& mask, const DrawnSlices&
       findings = need_same_patient({"scan '" + scan->name + "'", scan->identity}, {file, *drawn.identity},
                                    mask.other_identity, "\"other_identity\": true");
     if (auto beyond = beyond_scan(drawn.mask, scan->lattice, file)) findings.push_back(std::move(*beyond));
+    if (drawn.identity)
+      if (auto lacking = slices_without_contours(drawn.mask, scan->lattice, file))
+        findings.push_back(std::move(*lacking));
   }
   findings.insert(findings.end(), drawn.findings.begin(), drawn.findings.end());
   return findings;

@@ -87,6 +87,9 @@ voxel::SliceMask slices_of(const Mask& asked, const std::optional<Like>& like,
   if (like && like->scan)
     if (auto beyond = beyond_scan(drawn.mask, *like->scan, asked.slices.string()))
       findings.push_back(std::move(*beyond));
+  if (like && like->scan && drawn.identity)
+    if (auto lacking = slices_without_contours(drawn.mask, *like->scan, asked.slices.string()))
+      findings.push_back(std::move(*lacking));
   if (like)
     if (auto cut = cut_at_cube(drawn.mask, like->universe, asked.slices.string()))
       findings.push_back(*cut + "; without --like the cube is as large as the contours");

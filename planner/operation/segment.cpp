@@ -115,6 +115,10 @@ class Segmenter {
     made_.findings.insert(made_.findings.end(), drawn.findings.begin(), drawn.findings.end());
     if (auto beyond = beyond_scan(drawn.mask, source_.scene.lattice, segment_.regions.string()))
       made_.findings.push_back(std::move(*beyond));
+    if (drawn.identity)
+      if (auto lacking =
+              slices_without_contours(drawn.mask, source_.scene.lattice, segment_.regions.string()))
+        made_.findings.push_back(std::move(*lacking));
     return std::move(drawn.mask);
   }
 

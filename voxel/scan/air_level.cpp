@@ -141,6 +141,36 @@ AirLevel air_level_of_unnamed(const Scene& scene) {
                " are taken as raw"}};
 }
 
+std::optional<Finding> lost_sign_finding(const Scene& scene, bool is_ct) {
+  const auto* samples = std::get_if<FloatSamples>(&scene.samples);
+  if (samples == nullptr || samples->empty()) return std::nullopt;
+  // The extended scale of a CT ends at 30710 HU.
+  constexpr float beyond_ct = 40000.0F, half_of_16_bits = 32768.0F;
+  std::size_t count = 0;
+  float least = std::numeric_limits<float>::infinity(), most = -least, others = -least;
+  for (const float sample : *samples) {
+    if (sample <= beyond_ct) {
+      others = std::max(others, sample);
+      continue;
+    }
+    ++count;
+    least = std::min(least, sample);
+    most = std::max(most, sample);
+  }
+  if (count < std::max(least_padded, samples->size() / samples_for_one_padded) || count == samples->size() ||
+      most - least > half_of_16_bits || least - others < half_of_16_bits || most > 65535.0F)
+    return std::nullopt;
+  const double low = static_cast<double>(least), high = static_cast<double>(most);
+  return Finding{
+      "sign", is_ct ? Verdict::Fail : Verdict::Warn,
+      print(
+          "%zu samples from %.9g to %.9g lie far above all others (up to %.9g), as numbers below 0 do whose "
+          "16 bits are read without a sign: they would be %.9g to %.9g, which is air or padding; if so, "
+          "every window without an upper bound takes them for bone: correct the type in the header to 16 "
+          "bits with a sign",
+          count, low, high, static_cast<double>(others), low - 65536.0, high - 65536.0)};
+}
+
 void take_unstated_padding(Scene& scene) {
   std::visit(
       [&](auto& samples) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <optional>
+
 #include "voxel/space/scene.h"
 
 namespace octotomy::voxel {
@@ -23,6 +25,13 @@ AirLevel air_level_of_ct(const Scene& scene);
 /// many samples as in the equally wide band above it. Warn, since it is a guess. Otherwise Raw, Pass: nothing
 /// is assumed.
 AirLevel air_level_of_unnamed(const Scene& scene);
+
+/// Numbers below 0 that were stored or read as 16 bits without a sign, so that air or padding is brighter
+/// than bone: samples above 40000, beyond what a CT measures, with nothing between them and the others for
+/// half of the numbers of 16 bits, at least 64 of them and one in ten thousand. A FAIL in a CT, else a WARN;
+/// none where there are none. The samples stay as they are. Cost: two passes over samples in single
+/// precision; those of 16 bits with a sign cannot hold such numbers.
+std::optional<Finding> lost_sign_finding(const Scene& scene, bool is_ct);
 
 /// Takes as padding what only padding can be in a CT and what its file does not name. Many converters drop
 /// that statement and keep the samples: corners of -2000 or -3024 around a round field of view.

@@ -299,9 +299,12 @@ class SeriesAssembler {
   }
 
   static bool is_of_one_patient(const DicomSlice& a, const DicomSlice& b) {
-    return compared({a.identity.patient_id, a.identity.patient_name, {}, {}},
-                    {b.identity.patient_id, b.identity.patient_name, {}, {}})
-        .differing.empty();
+    Identity of_a = a.identity, of_b = b.identity;
+    for (Identity* each : {&of_a, &of_b}) {
+      each->study_uids.clear();
+      each->frame_uids.clear();
+    }
+    return compared(of_a, of_b).differing.empty();
   }
 
   struct Asked {
@@ -379,6 +382,8 @@ class SeriesAssembler {
       std::map<std::string, std::size_t> counts;
       for (const DicomSlice& slice : members)
         if (!slice.traits[trait].empty()) ++counts[slice.traits[trait]];
+      const bool is_rarely_stated = dicom_traits[trait].check == std::string("patient_issuer");
+      if (counts.empty() && is_rarely_stated) continue;
       if (counts.size() < 2) {
         find(dicom_traits[trait].check, Verdict::Pass, "one in all slices");
         continue;

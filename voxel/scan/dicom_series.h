@@ -31,10 +31,11 @@ struct DicomStack {
 
 /// Reads the headers below a path, chooses the series that the options ask for, and keeps the slices that
 /// form a stack. The audit names the files that were left out and why: stray_files, unusable_images,
-/// damaged_files, series, localizers, patient, study, modality, frame_of_reference, size, orientation,
-/// stacks, pixel_spacing, duplicates; then audit_stack()'s lines. Slices left out of a series are a Fail. If
-/// there is a doubt also orientation_noise, orientation_rounded, orientation_length, join, image_count and
-/// concatenation. Folders of staged files count as stray files. Throws as read_scene().
+/// damaged_files, series, localizers, patient, patient_issuer where it is stated, study, modality,
+/// frame_of_reference, size, orientation, stacks, pixel_spacing, duplicates; then audit_stack()'s lines.
+/// Slices left out of a series are a Fail. If there is a doubt also orientation_noise, orientation_rounded,
+/// orientation_length, join, image_count and concatenation. Folders of staged files count as stray files.
+/// Throws as read_scene().
 DicomStack stack_of_series(const std::filesystem::path& path, const ReadOptions& options,
                            std::vector<Finding>& audit);
 

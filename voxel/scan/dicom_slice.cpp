@@ -576,6 +576,8 @@ std::optional<NoSlice> take_frame(const DicomFile& file, const Attributes& attri
   slice.rescale_type = attributes.text(0x00281054);
   slice.intercept = attributes.decimal(0x00281052);
   slice.slope = attributes.decimal(0x00281053);
+  // PET and nuclear medicine state their unit by an attribute of its own (PS3.3, C.8.9.1).
+  if (slice.rescale_type.empty()) slice.rescale_type = file.text(0x00541001);
   // A dose states its scaling by an attribute of its own, and its unit as GY or RELATIVE.
   if (const auto scaling = file.decimal(0x3004000e); scaling && !slice.slope && !slice.intercept) {
     slice.slope = scaling;

@@ -42,9 +42,8 @@ std::string file_uid(const std::string& instance_uid) {
 }  // namespace
 
 DicomSource dicom_source(const fs::path& path, const ReadOptions& options) {
-  std::vector<Finding> ignored;  // read_scene() reports them
-  const DicomStack stack = stack_of_series(path, options, ignored);
   DicomSource source;
+  const DicomStack stack = stack_of_series(path, options, source.audit);
   source.normal = stack.normal;
   source.identity = stack.first().identity;
   source.series_uid = stack.first().series_uid;
@@ -53,8 +52,9 @@ DicomSource dicom_source(const fs::path& path, const ReadOptions& options) {
   for (const DicomSlice& slice : stack.slices)
     source.images.push_back(
         {slice.class_uid, file_uid(slice.instance_uid), glm::dot(slice.first_mm, stack.normal)});
-  if (const SlicePlan plan = slice_plan(stack, path, ignored); plan.is_copy())
-    source.lattice = lattice_of(stack, plan);
+  const SlicePlan plan = slice_plan(stack, path, source.audit);
+  source.around = lattice_of(stack, plan);
+  if (plan.is_copy()) source.lattice = source.around;
   std::string stored = file_bytes(stack.first().path);
   try {
     const std::string bytes = whole_dicom(std::move(stored));

@@ -36,6 +36,10 @@ struct DicomSource {
   std::vector<Image> images;  ///< in order along the normal; each frame of a file is an image
   glm::dvec3 normal{0, 0, 1};
   std::optional<Lattice> lattice = {};  ///< of the images as they lie; none if they form no lattice
+  Lattice around = {};  ///< the lattice that read_scene() makes of the images, which holds all of them
+  /// What the headers say: which series was taken, whose images were left out, how they lie. read_scene()'s
+  /// audit without the lines on samples.
+  std::vector<Finding> audit = {};
 };
 
 /// The series that read_scene() reads with these options. Throws as read_scene().

@@ -27,8 +27,13 @@ struct DicomTrait {
   const char* effect;            ///< of images that differ
 };
 
-constexpr std::array<DicomTrait, 17> dicom_traits{{
+constexpr std::array<DicomTrait, 21> dicom_traits{{
     {"patient", "patient", TraitRole::Identity, {0x00100020, 0x00100010}, "another patient's images"},
+    {"patient_issuer",
+     "issuer of the patient's number",
+     TraitRole::Identity,
+     {0x00100021},
+     "images of another issuer's patient of the same number"},
     {"study", "study", TraitRole::Origin, {0x0020000d}, "images of another study"},
     {"modality", "modality", TraitRole::Identity, {0x00080060}, "images of another modality"},
     {"frame_of_reference",
@@ -55,6 +60,21 @@ constexpr std::array<DicomTrait, 17> dicom_traits{{
     {"stack", "stack", TraitRole::Stack, {0x00209056}, "the slices are of several stacks"},
     {"image_type", "type", TraitRole::Stack, {0x00080008}, "some slices are measured, others derived"},
     {"patient_name", "name", TraitRole::Uniformity, {0x00100010}, "the identifier is the same"},
+    {"patient_birth_date",
+     "birth date",
+     TraitRole::Uniformity,
+     {0x00100030},
+     "the identifier is the same, but they may be another patient's"},
+    {"patient_sex",
+     "sex",
+     TraitRole::Uniformity,
+     {0x00100040},
+     "the identifier is the same, but they may be another patient's"},
+    {"acquisition_date",
+     "date of acquisition",
+     TraitRole::Uniformity,
+     {0x00080022},
+     "days lie between the images, in which the patient moved and may have changed"},
     {"patient_position",
      "position",
      TraitRole::Uniformity,

@@ -25,6 +25,10 @@ std::string quoted(const std::vector<std::string>& values) {
   return values.size() > most ? text + " or " + std::to_string(values.size() - most) + " more" : text;
 }
 
+bool are_both_stated_and_differ(const std::string& a, const std::string& b) {
+  return !a.empty() && !b.empty() && a != b;
+}
+
 void compare_uids(const char* what, const std::vector<std::string>& a, const std::vector<std::string>& b,
                   IdentityComparison& made) {
   if (a.empty() || b.empty()) return made.unstated.emplace_back(what), void();
@@ -42,6 +46,9 @@ Identity identity_of(const DicomFile& file) {
     identity.study_uids.push_back(std::move(uid));
   if (std::string uid = trimmed(file.text(0x00200052)); !uid.empty())
     identity.frame_uids.push_back(std::move(uid));
+  identity.id_issuer = trimmed(file.readable_text(0x00100021));
+  identity.birth_date = trimmed(file.text(0x00100030));
+  identity.sex = trimmed(file.text(0x00100040));
   return identity;
 }
 
@@ -54,6 +61,13 @@ IdentityComparison compared(const Identity& a, const Identity& b) {
     made.unstated.emplace_back("patient");
   else if (by_id ? of_a != of_b : plain_name(of_a) != plain_name(of_b))
     made.differing.push_back("patient '" + of_a + "' and '" + of_b + "'");
+  else if (by_id && are_both_stated_and_differ(lower_case(a.id_issuer), lower_case(b.id_issuer)))
+    made.differing.push_back("patient '" + of_a + "' of the issuers '" + a.id_issuer + "' and '" +
+                             b.id_issuer + "', whose numbers are their own");
+  if (are_both_stated_and_differ(a.birth_date, b.birth_date))
+    made.differing.push_back("patient's birth date '" + a.birth_date + "' and '" + b.birth_date + "'");
+  if (are_both_stated_and_differ(a.sex, b.sex))
+    made.differing.push_back("patient's sex '" + a.sex + "' and '" + b.sex + "'");
   compare_uids("study", a.study_uids, b.study_uids, made);
   compare_uids("frame of reference", a.frame_uids, b.frame_uids, made);
   return made;

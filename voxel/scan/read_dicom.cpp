@@ -73,6 +73,7 @@ class SeriesReader {
     scene_.lattice = lattice_of(stack, plan);
     scene_.modality = stack.first().modality;
     scene_.identity = stack.first().identity;
+    scene_.declared_unit = stack.first().lut ? stack.first().lut->type : stack.first().rescale_type;
     audit_steps();
     if (scene_.modality == "CT") {
       AirLevel air = air_level_of_ct(scene_);
@@ -84,6 +85,7 @@ class SeriesReader {
         air.meaning = Meaning::Raw;
       scene_.meaning = air.meaning;
       scene_.audit.push_back(air.finding);
+      if (auto sign = lost_sign_finding(scene_, true)) scene_.audit.push_back(std::move(*sign));
     }
     scene_.source = path_.string();
     if (!stack.first().series_description.empty()) scene_.source += ": " + stack.first().series_description;

@@ -46,6 +46,12 @@ void add_contours(const DicomFile& of_region, Structure& structure) {
       structure.flaw = "a contour's points are no numbers x, y, z";
       continue;
     }
+    if (const int stated = number_of(contour, 0x30060046);
+        stated > 0 && static_cast<std::size_t>(stated) != numbers->size() / 3 &&
+        structure.miscounted++ == 0) {
+      structure.stated_points = static_cast<std::size_t>(stated);
+      structure.held_points = numbers->size() / 3;
+    }
     if (numbers->size() < 9) {
       ++structure.degenerate;
       continue;

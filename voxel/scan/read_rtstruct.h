@@ -18,9 +18,11 @@ struct Structure {
       contours_mm;             ///< closed and planar, LPS, at their offset; the closing edge is implied
   std::size_t others = 0;      ///< points and open lines, which enclose nothing
   std::size_t degenerate = 0;  ///< closed contours of one or two points, which enclose nothing
-  std::size_t moved = 0;       ///< contours whose points a ContourOffsetVector moved
-  glm::dvec3 farthest_offset_mm{0.0};  ///< the longest of these vectors, LPS
-  std::string flaw = {};               ///< why the contours cannot be read; empty: they can
+  std::size_t miscounted = 0;  ///< contours that hold another number of points than NumberOfContourPoints
+  std::size_t stated_points = 0, held_points = 0;  ///< of the first of these
+  std::size_t moved = 0;                           ///< contours whose points a ContourOffsetVector moved
+  glm::dvec3 farthest_offset_mm{0.0};              ///< the longest of these vectors, LPS
+  std::string flaw = {};                           ///< why the contours cannot be read; empty: they can
   /// Whether the file states that the region goes on between neighbouring contours, however far apart: the
   /// type INTERPOLATED_PLANAR.
   bool is_interpolated = false;

@@ -263,6 +263,9 @@ void take_meaning(const VolumeHeader& header, const SmallNumbers& small, Scene& 
   }
   scene.meaning = air.meaning;
   scene.audit.push_back(air.finding);
+  if (air.meaning == Meaning::Label) return;
+  const bool is_ct = header.modality == "CT" || air.meaning == Meaning::Hounsfield;
+  if (auto sign = lost_sign_finding(scene, is_ct)) scene.audit.push_back(std::move(*sign));
 }
 
 /// Takes the padding that the file states where it is the least sample, as padding is below every measured

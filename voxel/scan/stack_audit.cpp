@@ -2,9 +2,12 @@
 #include "voxel/scan/stack_audit.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "voxel/scan/audit.h"
 
@@ -79,6 +82,23 @@ class StackAudit {
     return told > 4 ? text + " and " + std::to_string(told - 4) + " more values" : text;
   }
 
+  /// Whether dates of the form YYYYMMDD lie more than a day apart; a scan may run over midnight.
+  static bool are_days_apart(const Values& values) {
+    std::optional<std::chrono::sys_days> first, last;
+    for (const auto& [date, names] : values) {
+      int year = 0;
+      unsigned month = 0, day = 0;
+      if (std::sscanf(date.c_str(), "%4d%2u%2u", &year, &month, &day) != 3) continue;
+      const std::chrono::year_month_day read{std::chrono::year{year}, std::chrono::month{month},
+                                             std::chrono::day{day}};
+      if (!read.ok()) continue;
+      const std::chrono::sys_days at = read;
+      first = first ? std::min(*first, at) : at;
+      last = last ? std::max(*last, at) : at;
+    }
+    return first && *last - *first > std::chrono::days{1};
+  }
+
   void audit_traits() {
     std::string same;
     for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait) {
@@ -99,13 +119,16 @@ class StackAudit {
       const bool counts_on = 4 * values.size() > stack_.slices.size() && values.size() > 2 &&
                              (kind.check == std::string("acquisition") || kind.check == std::string("phase"));
       if (counts_on) continue;
-      const bool is_name = kind.check == std::string("patient_name");
-      find(
-          kind.check, Verdict::Warn,
-          (is_name ? slices(fewer_of(values).size()) + " with another name (" + listed(fewer_of(values)) + ")"
-                   : mixture_of(values)) +
-              ": " + kind.effect,
-          fewer_of(values));
+      if (kind.check == std::string("acquisition_date") && !are_days_apart(values)) continue;
+      // An audit goes where names and birth dates may not.
+      const bool is_of_person =
+          std::string(kind.check).starts_with("patient_") && kind.check != std::string("patient_position");
+      find(kind.check, Verdict::Warn,
+           (is_of_person ? slices(fewer_of(values).size()) + " with another " + kind.words + " (" +
+                               listed(fewer_of(values)) + ")"
+                         : mixture_of(values)) +
+               ": " + kind.effect,
+           fewer_of(values));
     }
     find("uniform", Verdict::Pass, same.empty() ? "no attribute to compare" : "all slices: " + same);
   }

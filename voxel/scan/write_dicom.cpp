@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* ct_image_storage = "1.2.840.10008.5.1.4.1.1.2";
 constexpr const char* mr_image_storage = "1.2.840.10008.5.1.4.1.1.4";
+constexpr const char* secondary_capture_storage = "1.2.840.10008.5.1.4.1.1.7";
 
 /// Sample = slope * stored + intercept.
 struct Rescale {
@@ -97,7 +98,11 @@ class SeriesWriter {
     digest_.add(options.patient_name);
     digest_.add(options.series_description);
     if (options.source) digest_.add(options.source->series_uid);
+    is_secondary_ = is_written_as_secondary_capture(scene);
     is_mr_ = scene.modality == "MR";
+    // Identifiers come from all that the files hold.
+    if (!scene.declared_unit.empty()) digest_.add(scene.declared_unit);
+    if (is_secondary_) digest_.add(scene.modality);
     rescale_ = rescale_of(scene);
     values_ = range(scene);
     is_resampled_ =
@@ -135,12 +140,20 @@ class SeriesWriter {
     return slice;
   }
 
-  const char* storage() const { return is_mr_ ? mr_image_storage : ct_image_storage; }
+  const char* storage() const {
+    return is_secondary_ ? secondary_capture_storage : is_mr_ ? mr_image_storage : ct_image_storage;
+  }
+  /// Only what was declared: a unit that this program found by the samples' values is none of the file's.
+  std::string rescale_type() const {
+    if (!scene_.declared_unit.empty()) return scene_.declared_unit;
+    return scene_.meaning == Meaning::Hounsfield ? "HU" : "US";
+  }
   std::string instance_uid(int k) const { return digest_.uid("slice " + std::to_string(k)); }
 
   /// Every MR image must describe its acquisition (PS3.3, C.8.3.1); these values mean unknown.
   void put_acquisition(DicomAttributes& slice) const {
-    slice.put(0x00080060, "CS", is_mr_ ? "MR" : "CT");
+    slice.put(0x00080060, "CS", is_secondary_ ? scene_.modality : is_mr_ ? "MR" : "CT");
+    if (is_secondary_) slice.put(0x00080064, "CS", "WSD");  // from a workstation (PS3.3, C.8.6.1)
     slice.put(0x00185100, "CS", "HFS");
     slice.put(0x00200060, "CS", "");
     if (!is_mr_) return;
@@ -174,21 +187,22 @@ class SeriesWriter {
   }
 
   void put_image(DicomAttributes& slice, int k) const {
-    slice.put(0x00080008, "CS", is_mr_ ? "DERIVED\\SECONDARY\\OTHER" : "DERIVED\\SECONDARY\\AXIAL");
+    slice.put(0x00080008, "CS",
+              is_mr_ || is_secondary_ ? "DERIVED\\SECONDARY\\OTHER" : "DERIVED\\SECONDARY\\AXIAL");
     slice.put(0x00080016, "UI", storage());
     slice.put(0x00080018, "UI", instance_uid(k));
     slice.put(0x00180050, "DS", dicom_decimal(step_mm_));
-    if (!is_mr_) slice.put(0x00180060, "DS", "");
+    if (!is_mr_ && !is_secondary_) slice.put(0x00180060, "DS", "");
     slice.put(0x00200012, "IS", "1");
     slice.put(0x00200013, "IS", std::to_string(k + 1));
     slice.put(0x00200032, "DS", dicom_decimals(scene_.lattice.lps_mm({0.0, 0.0, k})));
     slice.put(0x00200037, "DS", dicom_decimals(along_row_) + "\\" + dicom_decimals(along_column_));
     put_window(slice);
     slice.put(0x00280030, "DS", dicom_decimal(spacing_mm_.y) + "\\" + dicom_decimal(spacing_mm_.x));
-    if (is_mr_ && rescale_.slope == 1.0) return;
+    if (is_mr_ && rescale_.slope == 1.0 && scene_.declared_unit.empty()) return;
     slice.put(0x00281052, "DS", dicom_decimal(rescale_.intercept));
     slice.put(0x00281053, "DS", dicom_decimal(rescale_.slope));
-    slice.put(0x00281054, "LO", scene_.meaning == Meaning::Hounsfield ? "HU" : "US");
+    slice.put(0x00281054, "LO", rescale_type());
   }
 
   /// Black and white for viewers: bone and soft tissue, or all values.
@@ -221,6 +235,7 @@ class SeriesWriter {
   glm::dvec3 along_column_{0, 1, 0};
   double step_mm_ = 1.0;
   bool is_mr_ = false;
+  bool is_secondary_ = false;
   bool is_resampled_ = false;
   Rescale rescale_;
   Range values_;
@@ -282,6 +297,10 @@ void need_no_slices(const fs::path& folder) {
   if (!slices.empty())
     refuse(folder / *std::min_element(slices.begin(), slices.end()),
            "exists already; choose another folder or empty it");
+}
+
+bool is_written_as_secondary_capture(const Scene& scene) {
+  return !scene.modality.empty() && scene.modality != "CT" && scene.modality != "MR";
 }
 
 double dicom_rounding(const Scene& scene) {

@@ -53,18 +53,24 @@ struct DicomOptions {
 /// For refusals before the samples are made.
 void need_no_slices(const std::filesystem::path& folder);
 
-/// Writes each slice as a file (slice_0001.dcm and so on) into a folder, as MR Image Storage if the scene's
-/// modality is MR and as CT otherwise. A folder that is absent appears whole, with all slices, or not at all;
-/// one that is there gets them one after the other. A lattice whose third axis is not
+/// Writes each slice as a file (slice_0001.dcm and so on) into a folder: as CT Image Storage of a CT or where
+/// the scene states no modality, as MR Image Storage of an MR, and of every other modality as Secondary
+/// Capture with that modality, since those kinds' own classes need attributes that a scene does not hold
+/// (is_written_as_secondary_capture()). The rescale type is the unit that the scene declares; where it
+/// declares none HU of Hounsfield units, else US. A folder that is absent appears whole, with all slices, or
+/// not at all; one that is there gets them one after the other. A lattice whose third axis is not
 /// perpendicular to the first two becomes a series with gantry tilt. Samples are written as int16: integers
-/// with slope 1 and intercept 0, others with the finest slope for which their range fits, a power of two; the
-/// rescale type of a CT says if it is not Hounsfield. Padding is stored as -32768 and stated as such. Viewers
-/// get a window: level 500, width 2000 in Hounsfield units, else all values. Unique identifiers come from the
-/// content: the same scene and options give the same files, byte by byte. Throws Error, Input or Resource,
-/// with path and reason, also as need_no_slices(); std::invalid_argument if a sample is not finite, the first
-/// two axes are not perpendicular or a text is too long.
+/// with slope 1 and intercept 0, others with the finest slope for which their range fits, a power of two.
+/// Padding is stored as -32768 and stated as such. Viewers get a window: level 500, width 2000 in Hounsfield
+/// units, else all values. Unique identifiers come from the content: the same scene and options give the same
+/// files, byte by byte. Throws Error, Input or Resource, with path and reason, also as need_no_slices();
+/// std::invalid_argument if a sample is not finite, the first two axes are not perpendicular or a text is too
+/// long.
 void write_dicom_series(const Scene& scene, const std::filesystem::path& folder,
                         const DicomOptions& options = {});
+
+/// Whether write_dicom_series() writes a scene as Secondary Capture: its modality is neither CT nor MR.
+bool is_written_as_secondary_capture(const Scene& scene);
 
 /// By how much a sample changes at most where write_dicom_series() stores it in 16 bits; 0 where all keep
 /// their values. Throws std::invalid_argument if a sample is not finite.

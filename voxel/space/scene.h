@@ -48,6 +48,9 @@ using FloatSamples = Samples<float>;
 struct Identity {
   std::string patient_id, patient_name;
   std::vector<std::string> study_uids, frame_uids;
+  std::string id_issuer = {};   ///< who gave the patient's number, which is unique only among the issuer's
+  std::string birth_date = {};  ///< YYYYMMDD
+  std::string sex = {};         ///< M, F or O
 };
 
 /// Samples on a lattice, x fastest.
@@ -66,6 +69,9 @@ struct Scene {
   /// The sample that stands where the scanner measured nothing; below every measured one. No interpolation
   /// may mix it with a measurement. None: every sample is a measurement.
   std::optional<double> padding = {};
+  /// The samples' unit as a DICOM file declares it: "HU", "US" (unspecified), "OD", "BQML", "GY". Empty where
+  /// none is declared, which of a CT means HU (PS3.3, C.8.2.1).
+  std::string declared_unit = {};
 };
 
 /// A window's lower bound, raised above the padding: what was not measured lies in no window.

@@ -165,6 +165,39 @@ TEST_F(WrittenDicom, ASegmentationHoldsTheOctreesVoxelsWhereTheyAre) {
   EXPECT_NE(alone["study"], said["study"]);
 }
 
+TEST_F(WrittenDicom, ALabelMapBesideTheImagesOfItsSourceIsRefused) {
+  const fs::path source = source_series(0.0);
+  voxel::Scene labels = tests::ball_scene(6.0, 40);
+  for (std::int16_t& sample : std::get<voxel::Int16Samples>(labels.samples)) sample = sample > 0 ? 1 : 0;
+  labels.meaning = voxel::Meaning::Label;
+  labels.modality = "";
+  voxel::write_scene(labels, folder_ / "within.nrrd");
+  labels.lattice.lps_from_voxel[3].x += 500.0;
+  voxel::write_scene(labels, folder_ / "beside.nrrd");
+  const auto converted = [&](const char* in, const std::string& more) {
+    return command(std::string(OCTOTOMY_BINARY_DIR) + "/octotomy convert " + quoted(folder_ / in) + " -o " +
+                   quoted(folder_ / "s.dcm") + " --source " + quoted(source) + more + " --json");
+  };
+  const tests::CommandAnswer within = converted("within.nrrd", "");
+  ASSERT_EQ(within.status, 0) << within.errors;
+  const std::string said = SortedJson::parse(within.out)["findings"].dump();
+  EXPECT_EQ(said.find("beyond"), std::string::npos) << said;
+  EXPECT_EQ(said.find("series"), std::string::npos) << said;
+  const tests::CommandAnswer beside = converted("beside.nrrd", "");
+  EXPECT_EQ(beside.status, 2);
+  EXPECT_NE(beside.errors.find("lies wholly beside"), std::string::npos) << beside.errors;
+  const tests::CommandAnswer allowed = converted("beside.nrrd", " --other-identity");
+  ASSERT_EQ(allowed.status, 0) << allowed.errors;
+  EXPECT_NE(SortedJson::parse(allowed.out)["findings"].dump().find("FAIL: "), std::string::npos);
+
+  // The audit of the source is the answer's, too: here that one of two series was chosen.
+  voxel::write_dicom_series(tests::ball_scene(4.0, 12), source / "more");
+  const tests::CommandAnswer chosen = converted("within.nrrd", "");
+  ASSERT_EQ(chosen.status, 0) << chosen.errors;
+  EXPECT_NE(SortedJson::parse(chosen.out)["findings"].dump().find("WARN, series: "), std::string::npos)
+      << chosen.out;
+}
+
 TEST_F(WrittenDicom, WhatIsNoSegmentationIsRefused) {
   const fs::path source = source_series(0.0);
   octotomy("octree " + quoted(source) + " --grey -o " + quoted(folder_ / "grey.octree"));

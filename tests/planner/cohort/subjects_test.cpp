@@ -49,6 +49,23 @@ TEST(Subjects, AColumnIsKnownWhateverItsCapitalsAndARowWithoutOneIsShown) {
             std::string::npos);
 }
 
+TEST(Subjects, OneScanOfTwoAndColumnsThatNothingReadsAreTold) {
+  const tests::ScratchFolder folder;
+  const auto doubts = [&](const std::string& table) {
+    std::ofstream(folder / "scans.csv") << table;
+    Plan plan;
+    plan.scans["ct"] = {};
+    return doubts_of_cohort(folder / "scans.csv", plan, find_subjects(folder / "scans.csv", plan));
+  };
+  EXPECT_TRUE(doubts("participant_id,scan\na,a.nrrd\nb,b.nrrd\n").empty());
+  const auto shared = doubts("participant_id,scan\na,a.nrrd\nb,./a.nrrd\n");
+  ASSERT_EQ(shared.size(), 1U);
+  EXPECT_EQ(shared[0].rfind("the subjects a, b have one scan, ", 0), 0U) << shared[0];
+  const auto unread = doubts("participant_id,scan,unit\na,a.nrrd,cm\n");
+  ASSERT_EQ(unread.size(), 1U);
+  EXPECT_NE(unread[0].find("nothing reads the columns 'unit'"), std::string::npos) << unread[0];
+}
+
 class BidsSubjects : public testing::Test {
  protected:
   void put(const std::string& name, const std::string& text = "") {

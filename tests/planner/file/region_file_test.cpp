@@ -5,6 +5,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "planner/file/contour_findings.h"
 #include "tests/voxel/scan/structure_set.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/solid/combine.h"
@@ -48,6 +49,42 @@ std::string slices_refusal(const std::filesystem::path& path, const std::string&
 }
 
 #define EXPECT_HOLDS(text, part) EXPECT_NE(std::string(text).find(part), std::string::npos) << text
+
+TEST(RegionFile, AContourWithFewerPointsThanItStatesIsTold) {
+  const ScratchFolder folder;
+  std::string bytes = tests::structure_set({{1, "Bone", square_block()}});
+  std::ofstream(folder / "rs.dcm", std::ios::binary) << bytes;
+  EXPECT_TRUE(read_slices(folder / "rs.dcm", SlicesOptions{"Bone"}).findings.empty());
+  const std::string four = tests::DicomBytes::element(0x30060046, "IS", "4");
+  const std::size_t at = bytes.find(four);
+  ASSERT_NE(at, std::string::npos);
+  bytes.replace(at, four.size(), tests::DicomBytes::element(0x30060046, "IS", "9"));
+  std::ofstream(folder / "rs.dcm", std::ios::binary) << bytes;
+  const DrawnSlices drawn = read_slices(folder / "rs.dcm", SlicesOptions{"Bone"});
+  ASSERT_EQ(drawn.findings.size(), 1U);
+  EXPECT_HOLDS(drawn.findings[0], "1 contour holds another number of points");
+  EXPECT_HOLDS(drawn.findings[0], "first 4 for 9");
+}
+
+TEST(RegionFile, ContoursThatLeaveOutSlicesOfTheScanAreTold) {
+  voxel::SliceMask mask;
+  mask.view = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}};
+  const auto square = [](double z) {
+    return voxel::SliceMask::Slice{z, {{{-5, -5}, {5, -5}, {5, 5}, {-5, 5}}}};
+  };
+  mask.slices = {square(0.0), square(8.0)};
+  voxel::Lattice scan;
+  scan.dims = glm::ivec3(20);
+  scan.lps_from_voxel[2] = {0, 0, 2, 0};
+  const auto found = slices_without_contours(mask, scan, "set");
+  ASSERT_TRUE(found);
+  EXPECT_HOLDS(*found, "set: 1 gap between neighbouring contours, the widest of 8 mm");
+  // Planes between that hold nothing state that the structure ends.
+  mask.slices = {square(0.0), {2.0, {}}, {6.0, {}}, square(8.0)};
+  EXPECT_FALSE(slices_without_contours(mask, scan, "set"));
+  mask.slices = {square(0.0), square(4.0)};
+  EXPECT_FALSE(slices_without_contours(mask, scan, "set")) << "every other slice";
+}
 
 TEST(RegionFile, AContourDrawnAgainInItsPlaneIsTakenOnceAndTold) {
   const ScratchFolder folder;

@@ -29,6 +29,20 @@ TEST(Identity, WithoutIdentifiersNamesAreComparedWithoutCaseAndEmptyComponents) 
   EXPECT_EQ(compared(scan, {"", "Roe^Jane", {}, {}}).differing.size(), 1U);
 }
 
+TEST(Identity, OneNumberOfTwoIssuersBirthDatesOrSexesIsOfTwoPatients) {
+  const auto with = [](const char* issuer, const char* birth_date, const char* sex) {
+    return Identity{"17", "", {"1.2.3"}, {"1.2.4"}, issuer, birth_date, sex};
+  };
+  const Identity scan = with("HOSP A", "19500101", "F");
+  for (const Identity& same : {scan, with("", "", ""), with("hosp a", "19500101", "F")})
+    EXPECT_TRUE(compared(scan, same).differing.empty());
+  for (const Identity& other :
+       {with("HOSP B", "19500101", "F"), with("HOSP A", "19600101", "F"), with("HOSP A", "19500101", "M")}) {
+    ASSERT_EQ(compared(scan, other).differing.size(), 1U);
+    EXPECT_TRUE(compared(scan, other).differing[0].starts_with("patient"));
+  }
+}
+
 TEST(Identity, WhatOneSideDoesNotStateIsUnstated) {
   const IdentityComparison found = compared({}, {"17", "", {"1.2.3"}, {"1.2.4"}});
   EXPECT_TRUE(found.differing.empty());

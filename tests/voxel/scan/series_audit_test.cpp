@@ -400,5 +400,15 @@ TEST(SeriesAudit, PutsSlicesOfEveryOrientationWhereTheyAre) {
   EXPECT_EQ(stacks, 48);
 }
 
+TEST(SeriesAudit, AScanThatRunsOverMidnightIsOfOneDate) {
+  std::vector<tests::SpoiledImage> images = tests::sound_series();
+  for (std::size_t i = 0; i < images.size(); ++i)
+    images[i].text(0x00080022, "DA", i < 6 ? "20231231" : "20240101");
+  const tests::ScratchFolder folder;
+  for (const tests::SpoiledImage& image : images)
+    std::ofstream(folder / image.name, std::ios::binary) << image.bytes();
+  EXPECT_EQ(tests::finding(read_scene(folder.path()), "acquisition_date"), nullptr);
+}
+
 }  // namespace
 }  // namespace octotomy::voxel

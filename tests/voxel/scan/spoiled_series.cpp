@@ -157,6 +157,41 @@ std::vector<SpoiledKind> of_identity() {
        "another frame of reference",
        {"a05", "a06"},
        text(0x00200052, "UI", "1.8", 5, 6)},
+      {"another_issuer_of_the_patients_number",
+       "patient_issuer",
+       fail,
+       "another issuer",
+       {"a05"},
+       [](std::vector<SpoiledImage>& images) {
+         for (std::size_t i = 0; i < images.size(); ++i)
+           images[i].text(0x00100021, "LO", i == 5 ? "HOSP B" : "HOSP A");
+       }},
+      {"another_birth_date",
+       "patient_birth_date",
+       warn,
+       "another birth date",
+       {"a05"},
+       [](std::vector<SpoiledImage>& images) {
+         for (std::size_t i = 0; i < images.size(); ++i)
+           images[i].text(0x00100030, "DA", i == 5 ? "19600101" : "19500101");
+       }},
+      {"another_sex",
+       "patient_sex",
+       warn,
+       "another sex",
+       {"a05"},
+       [](std::vector<SpoiledImage>& images) {
+         for (std::size_t i = 0; i < images.size(); ++i) images[i].text(0x00100040, "CS", i == 5 ? "M" : "F");
+       }},
+      {"acquired_half_a_year_later",
+       "acquisition_date",
+       warn,
+       "days lie between",
+       {"a05"},
+       [](std::vector<SpoiledImage>& images) {
+         for (std::size_t i = 0; i < images.size(); ++i)
+           images[i].text(0x00080022, "DA", i == 5 ? "20240701" : "20240101");
+       }},
       {"name_spelled_differently",
        "patient_name",
        warn,

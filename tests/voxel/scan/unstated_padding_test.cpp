@@ -108,5 +108,53 @@ TEST(UnstatedPadding, IsFoundInSlicesWhoseHeaderNamesNoneOrAnother) {
   }
 }
 
+/// The round scene in single precision, where numbers below 0 may have 65536 added.
+Scene wrapped_scene(bool is_wrapped) {
+  Scene scene = round_scene([](int) { return -2000; });
+  FloatSamples samples;
+  for (const std::int16_t sample : std::get<Int16Samples>(scene.samples))
+    samples.push_back(static_cast<float>(is_wrapped && sample < 0 ? sample + 65536 : sample));
+  scene.samples = std::move(samples);
+  return scene;
+}
+
+TEST(LostSign, NumbersBelowZeroThatWereReadWithoutASignAreTold) {
+  const auto found = lost_sign_finding(wrapped_scene(true), true);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->verdict, Verdict::Fail);
+  EXPECT_NE(found->detail.find("they would be -2000 to -975"), std::string::npos) << found->detail;
+  EXPECT_EQ(lost_sign_finding(wrapped_scene(true), false)->verdict, Verdict::Warn);
+  EXPECT_FALSE(lost_sign_finding(wrapped_scene(false), true));
+}
+
+TEST(LostSign, BrightSamplesThatContinueUpwardsAreMeasured) {
+  Scene scene = wrapped_scene(false);
+  auto& samples = std::get<FloatSamples>(scene.samples);
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<float>(5 * i % 60000);
+  EXPECT_FALSE(lost_sign_finding(scene, false));
+}
+
+/// Slices without a sign whose corners hold 63536, which is -2000 with one.
+TEST(LostSign, IsFoundInSlicesAndInVolumes) {
+  const ScratchFolder folder;
+  for (tests::SpoiledImage& image : tests::sound_series()) {
+    std::string pixels;
+    for (int y = 0; y < 20; ++y)
+      for (int x = 0; x < 24; ++x) {
+        const int r2 = (x - 12) * (x - 12) + (y - 10) * (y - 10);
+        pixels += DicomBytes::number(static_cast<std::uint32_t>(r2 < 30 ? 1064 : r2 < 90 ? 24 : 63536), 2);
+      }
+    image.text(0x7fe00010, "OW", pixels);
+    image.number(0x00280103, 0);
+    image.text(0x00281052, "DS", "-1024");
+    std::ofstream(folder / image.name, std::ios::binary) << image.bytes();
+  }
+  EXPECT_EQ(tests::verdict(read_scene(folder.path()), "sign"), Verdict::Fail);
+  Scene volume = wrapped_scene(true);
+  volume.meaning = Meaning::Raw;
+  write_scene(volume, folder / "ct.nrrd");
+  EXPECT_EQ(tests::verdict(read_scene(folder / "ct.nrrd"), "sign"), Verdict::Warn);
+}
+
 }  // namespace
 }  // namespace octotomy::voxel

@@ -275,6 +275,42 @@ TEST(WriteDicomSeries, SaysWhereValuesAreNotHounsfield) {
   EXPECT_EQ(read_scene(folder / "raw").meaning, Meaning::Raw);
 }
 
+TEST(WriteDicomSeries, KeepsTheUnitThatTheSceneDeclares) {
+  const ScratchFolder folder;
+  for (const char* unit : {"HU", "US", "OD", "Z_EFF", "MGML"}) {
+    Scene scene = linear_scene(oblique_lattice());
+    scene.modality = "CT";
+    scene.declared_unit = unit;
+    write_dicom_series(scene, folder / unit);
+    const Scene read = read_scene(folder / unit);
+    EXPECT_EQ(read.declared_unit, unit);
+    EXPECT_EQ(read.modality, "CT");
+    EXPECT_FALSE(is_written_as_secondary_capture(scene));
+  }
+  // A declared unit other than HU is none of Hounsfield, whatever the values look like.
+  EXPECT_EQ(read_scene(folder / "OD").meaning, Meaning::Raw);
+}
+
+TEST(WriteDicomSeries, WritesOtherModalitiesAsWhatTheyAre) {
+  const ScratchFolder folder;
+  for (const auto& [modality, unit] :
+       {std::pair{"PT", "BQML"}, std::pair{"RTDOSE", "GY"}, std::pair{"OT", ""}}) {
+    Scene scene = linear_scene(oblique_lattice());
+    scene.meaning = Meaning::Raw;
+    scene.modality = modality;
+    scene.declared_unit = unit;
+    EXPECT_TRUE(is_written_as_secondary_capture(scene));
+    write_dicom_series(scene, folder / modality);
+    const std::string bytes = bytes_of(folder / modality / "slice_0001.dcm");
+    EXPECT_NE(bytes.find("1.2.840.10008.5.1.4.1.1.7"), std::string::npos) << modality;
+    const Scene read = read_scene(folder / modality);
+    EXPECT_EQ(read.modality, modality);
+    EXPECT_EQ(read.meaning, Meaning::Raw);
+    EXPECT_EQ(read.declared_unit, *unit == '\0' ? "US" : unit);
+    EXPECT_EQ(read.samples, scene.samples);
+  }
+}
+
 TEST(WriteDicomSeries, KeepsFractionsByASlope) {
   const ScratchFolder folder;
   const Scene halves = half_scene(oblique_lattice());
