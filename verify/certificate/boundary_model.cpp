@@ -4,19 +4,20 @@
 // space"):
 //
 // planes   A plane whose normal n is a vector of small integers errs coherently: centres lie on lattice
-//          planes 1 / |n| apart, and the digitised plane lies half-way between two of them. Where it lies is
-//          known, so the displacement is exact and has a sign, but for a plane through centres, which may go
-//          either way. Two planes displaced by a and b outward whose normals are an angle t apart gain
-//          (a b - (a^2 + b^2) / 2 cos t) / sin t along each unit of their common edge besides, or lose it
-//          where the edge is an inside corner.
+//          planes 1 / |n| apart, and the digitised plane lies half-way between two of them. Its position
+//          follows from the lattice, so the displacement is exact and has a sign. Only a plane through
+//          centres may move either way. Two planes that are displaced outward by a and b, with an angle t
+//          between their normals, gain (a b - (a^2 + b^2) / 2 cos t) / sin t in addition along each unit of
+//          their common edge; at an inside corner they lose it.
 //
-// nearly   What blur or noise leaves of such a plane is curved, yet errs in step all the same: along a column
-//          of centres the count follows the surface to half a voxel's step, floor(z) + 1/2 - z. Its integral
-//          over the triangles within 15 degrees of an axis is exact up to the scatter of columns, which
-//          `count` has. A displaced part adds area past its rim: a displacement d times the integral of the
+// nearly   After blur or noise such a plane is curved, but its error is still coherent: along a column of
+//          centres the count follows the surface to half a voxel's step, floor(z) + 1/2 - z. The integral of
+//          this step over the triangles within 15 degrees of an axis is exact up to the scatter of columns,
+//          which `count` includes. A displaced part adds area past its rim: a displacement d times the
+//          integral of the
 //          curvature there (the first variation of area; do Carmo, Differential Geometry of Curves and
 //          Surfaces, section 3.5), which is d times the rim's length where the surface turns by a right
-//          angle. Parts are displaced independently, so that their areas add up as chance does.
+//          angle. Parts are displaced independently, so the squares of their areas add up.
 //
 // count    Elsewhere the error of a count is a sum over the reciprocal lattice (Poisson; Kendall, "On the
 //          number of lattice points inside a random oval", 1948): over all places of the lattice its variance
@@ -24,31 +25,33 @@
 //          the boundary is curved, a(k) / (4 pi^2 |k|^4) for every point whose normal is along k, with a the
 //          area there per solid angle of normals (1 / Gaussian curvature). A sphere has 0.0666 S in all, a
 //          root mean square of 0.258 sqrt(S): the 0.20 to 0.32 that were measured. Of other solids a(k) is
-//          taken from the triangles whose normal is near k for the 13 nearest directions and their multiples,
-//          which have 65 % of the sum, and as if normals were spread evenly for the rest. So poles that an
-//          anisotropic lattice flattens, and facets nearly along it, count as the more that they err.
-//          Departure: near is within 15, 7 or 3.5 degrees, whichever gives most. The moments take pieces of
-//          equal area as equal and independent parts. Large flat facets are not curved, and those along the
-//          lattice err in step however far they run: their transform is summed instead (facet_count.h).
+//          computed from the triangles whose normal is near k for the 13 nearest directions and their
+//          multiples, which have 65 % of the sum. For the rest normals are assumed to be spread evenly. So
+//          the sum includes the larger errors of poles that an anisotropic lattice flattens and of facets
+//          nearly along the lattice. Departure: near is within 15, 7 or 3.5 degrees, the one with the largest
+//          variance. The moments treat pieces of equal area as equal and independent parts. Large flat facets
+//          are not curved, and those along the lattice err coherently over their whole extent. Their
+//          transform is summed instead (facet_count.h).
 //
 // bent     A polyhedron with its vertices on a surface lies within it where it is convex, and interpolation
-//          between samples a length d apart puts a point off by d^2 / 8 times the curvature along d. So what
-//          an isosurface loses is a constant times the integral of d(t)^2 curvature(t) over the tangent's
-//          directions t, and of a triangle mesh that integral is the sum over edges of length times angle
+//          between samples a length d apart displaces a point by d^2 / 8 times the curvature along d. So an
+//          isosurface loses a constant times the integral of d(t)^2 curvature(t) over the tangent's
+//          directions t. For a triangle mesh that integral is the sum over edges of length times angle
 //          times d^2 across the edge, d the spacing of samples in that direction (the curvature measure of
-//          Cohen-Steiner and Morvan, 2003). Marching cubes' triangles alternate about the surface: with its
-//          sign the sum levels that out; without, it is taken cell by cell of three samples and by the
-//          direction of the normal, so that the two sides of a thin plate do not cancel.
-// sharp    A line of voxels' centres, h apart, misses a chord of the length l < h with the chance 1 - l / h,
-// and
-//          with it two crossings. Across a wedge whose faces turn by t at an edge, chords a distance x from
-//          the edge have the length x / f, f = sin a sin(t - a) / sin t for a line at the angle a to one
-//          face: the loss is h f / 2 crossings twice along each unit of the edge. Over all directions, with
+//          Cohen-Steiner and Morvan, 2003). The triangles of marching cubes lie alternately on both sides of
+//          the surface. In the sum with sign these deviations cancel. The sum without sign adds the absolute
+//          values of cells of three samples, separate by the direction of the normal, so that the two sides
+//          of a thin plate do not cancel.
+// sharp    A line of voxels' centres, h apart, misses a chord of the length l < h with the probability
+//          1 - l / h, and with it two crossings. Across a wedge whose faces turn by t at an edge, chords at a
+//          distance x from the edge have the length x / f, f = sin a sin(t - a) / sin t for a line at the
+//          angle a to one face. The loss is twice h f / 2 crossings along each unit of the edge. Over all
+//          directions, with
 //          the 13 directions' mean distance of 1.39 h, the area loses 2 / (3 pi) 1.39 h (1 - t cot t) = 0.295
 //          h (1 - t cot t) along each unit. Up to 75 degrees that is less than 0.3 of the mean curvature's
 //          0.5 t. The probability of chords: Santalo, Integral Geometry and Geometric Probability, 1976,
 //          chapter 4.
-// Long, as the terms of one model share its points and what moved.
+// This file is long because all terms of the model use the same points and displacements.
 #include "verify/certificate/boundary_model.h"
 
 #include <algorithm>
@@ -114,8 +117,8 @@ struct LatticePlane {
 /// The largest distance, in voxels, of a lattice plane's points from it: a thousand times the rounding of
 /// coordinates in a universe of 4096 voxels.
 constexpr double flatness_voxels = 1000.0 * 4096.0 * std::numeric_limits<double>::epsilon();
-/// The largest integer of a normal: planes with larger normals err by less than h / 8 in each voxel, and not
-/// coherently.
+/// The largest component of such a normal. Planes with larger normals err by less than h / 8 in each voxel,
+/// and not coherently.
 constexpr int largest_index = 3;
 
 std::optional<LatticePlane> lattice_plane(const std::array<glm::dvec3, 3>& q) {
@@ -152,8 +155,8 @@ std::array<glm::dvec3, 13> units(const glm::dmat3& from_index) {
   return unit;
 }
 
-/// The share of directions of space nearest to each unit vector, by a Fibonacci lattice of 20 000 points on
-/// the sphere: a share's error is below one in a hundred.
+/// The share of the sphere's directions that are nearest to each unit vector, from a Fibonacci lattice of
+/// 20 000 points on the sphere: the error of a share is below 1 %.
 std::array<double, 13> shares_of_space(const std::array<glm::dvec3, 13>& unit) {
   constexpr int points = 20000;
   std::array<int, 13> count{};
@@ -172,11 +175,11 @@ std::array<double, 13> shares_of_space(const std::array<glm::dvec3, 13>& unit) {
   return share;
 }
 
-/// The variance of a count by the boundary's normals, all in voxels.
+/// The variance of a count, computed from the boundary's normals, all in voxels.
 class CountVariance {
  public:
   CountVariance() : unit_(units(glm::dmat3(1.0))) {}
-  /// An area, and a bit for each cone that its normal is in.
+  /// An area, and one bit for each cone that contains its normal.
   struct Share {
     double size = 0.0;
     std::uint64_t cones = 0;
@@ -197,7 +200,7 @@ class CountVariance {
     }
   }
   double sum() const {
-    // Sums over all integer vectors but zero of 1 / |k|^4, and over the multiples of one.
+    // Sum of 1 / |k|^4 over all integer vectors but zero, and over the multiples of one unit vector.
     constexpr double epstein = 16.5323;
     constexpr double multiples = pi * pi * pi * pi / 90.0;
     double counted = 0.0, variance = 0.0;
@@ -209,13 +212,14 @@ class CountVariance {
       double most = 0.0;
       for (std::size_t w = 0; w < cosines.size(); ++w) {
         const double per_angle = in_cone_[d][w] / (2.0 * pi * (1.0 - cosines[w]));
-        // All in step the planes 1 / |g| apart cannot err by more than evenly over half of that.
+        // The largest variance is that of a fully coherent error: evenly distributed between half of a
+        // lattice plane's distance 1 / |g| inward and half of it outward.
         const double in_step = in_cone_[d][w] * in_cone_[d][w] / (12.0 * square);
         most = std::max(most, std::min(both / (4.0 * pi * pi) * per_angle, in_step));
       }
       variance += most;
     }
-    // Points with normals along +k and -k: two of the even density S / 4 pi.
+    // Normals along +k and along -k count: twice the even density S / (4 pi).
     return variance + (epstein - counted) / (4.0 * pi * pi) * area_ / (2.0 * pi);
   }
 
@@ -227,14 +231,15 @@ class CountVariance {
   double area_ = 0.0;
 };
 
-/// Flat parts of a boundary are taken by themselves from here on, in voxel faces: smaller ones are many, and
-/// their errors independent.
+/// Flat parts of this area or more, in voxel faces, are summed by their transforms. Smaller parts are
+/// numerous and their errors independent.
 constexpr double large_facet = 16.0;
 
-/// The cosine of 15 degrees: such a part lies between two layers of centres over several voxels.
+/// The cosine of 15 degrees. A part within that angle of an axis lies between two layers of centres over
+/// several voxels.
 constexpr double nearly_along = 0.9659258262890683;
 
-/// The model of one mesh in the making.
+/// Computes the model of one mesh.
 class Modeller {
  public:
   Modeller(const brep::Solid& solid, const BoundaryFrame& frame)
@@ -296,7 +301,7 @@ class Modeller {
     return {{points_voxel_[corner[0]], points_voxel_[corner[1]], points_voxel_[corner[2]]}};
   }
 
-  /// A face's area, and of each of its pieces with the arm squared and to the fourth.
+  /// A face's area, and the second and fourth moments of each piece's area about the frame's origin.
   struct ArmsOfFace {
     double mm2 = 0.0;
     std::array<double, 6> mm4{}, mm6{};
@@ -313,7 +318,8 @@ class Modeller {
     return made;
   }
 
-  /// The boundary outside such planes: flat facets by their transforms, the rest by its normals.
+  /// Adds the count's variance for the boundary outside lattice planes: large flat facets by their
+  /// transforms, the rest by its normals.
   void add_counts() {
     const std::vector<std::uint32_t> set = flat_sets();
     std::vector<double> area(set.size(), 0.0);
@@ -369,12 +375,13 @@ class Modeller {
     add_nearly_rims();
   }
 
-  /// A face nearly along the lattice: its axis from 1 on, negative where it looks back, and what it gains.
+  /// A face nearly along the lattice. `way` is the number of its normal's axis from 1 on, negative for a
+  /// normal along the negative axis, and 0 for any other face. `mm3` is the volume that the face gains.
   struct Displaced {
     int way = 0;
     double mm3 = 0.0;
   };
-  /// What the pieces of such a face gain; none of another one.
+  /// The volumes that the pieces of such a face gain; any other face has no pieces.
   struct NearlyPlane {
     std::size_t count = 0;
     int way = 0;
@@ -383,7 +390,8 @@ class Modeller {
 
     Displaced displaced() const { return {way, std::accumulate(mm3.begin(), mm3.end(), 0.0)}; }
   };
-  /// Columns of centres along the axis that the face is nearly across count it to half a voxel's step.
+  /// The pieces of a face whose normal is nearly along an axis. A column of centres along that axis follows
+  /// the face to half a voxel's step.
   NearlyPlane nearly_plane_of(std::size_t face, const glm::dvec3& across) const {
     NearlyPlane made;
     int axis = 0;
@@ -402,7 +410,7 @@ class Modeller {
     return made;
   }
 
-  /// Connected parts of such faces of one way, and the area that each adds past its rim.
+  /// Joins such faces of one `way` to connected parts and adds the area that each part gains past its rim.
   void add_nearly_rims() {
     brep::DisjointSets sets(nearly_.size());
     const auto each_side = [&](const auto& take) {
@@ -438,7 +446,7 @@ class Modeller {
     model_.rims_mm2 += std::min(all_mm2, coverage * std::sqrt(squares));
   }
 
-  /// By face, the name of the set of coplanar faces it is in; faces in lattice planes are in none.
+  /// By face, the number of its set of coplanar faces. A face in a lattice plane is a set of its own.
   std::vector<std::uint32_t> flat_sets() const {
     brep::DisjointSets sets(triangles_.faces.size());
     struct Pair {
@@ -471,7 +479,7 @@ class Modeller {
     return set;
   }
 
-  /// The sides of a face beyond which its facet ends.
+  /// Adds to the facet those sides of a face at which the facet ends.
   void add_rims(Facet& facet, std::uint32_t face, const std::vector<std::uint32_t>& set) const {
     for (std::uint32_t side = 3 * face; side != 3 * face + 3; ++side) {
       const std::uint32_t beyond = linked_.opposite[side] / 3;
@@ -480,7 +488,7 @@ class Modeller {
     }
   }
 
-  /// Area with the squares of its arms.
+  /// An area and its second and fourth moments.
   struct Arms {
     double mm2 = 0.0, mm4 = 0.0, mm6 = 0.0;
     void add(const ArmsOfFace& face) {
@@ -504,19 +512,19 @@ class Modeller {
   /// How far counting moves a plane outward.
   struct Moved {
     double mm = 0.0;
-    bool tied = false;  ///< it goes through voxel centres and may as well go the other way
+    bool tied = false;  ///< the plane goes through voxel centres, so it may move to either side
     glm::ivec3 normal{0};
   };
 
   Moved add_plane(const LatticePlane& plane, const Triangle& triangle, double area_mm2) {
-    // Moves of one in n . q are moves of 1 / |n'| millimetres, n' the normal in LPS.
+    // A displacement of one in n . q is one of 1 / |n'| millimetres, n' the normal in LPS.
     const glm::dmat3 normal_from_voxel =
         glm::transpose(glm::inverse(glm::dmat3(frame_.lattice.lps_from_voxel)));
     const glm::dvec3 normal = normal_from_voxel * glm::dvec3(plane.normal);
     const glm::ivec3 index = glm::abs(plane.normal);
     model_.coherent_mm2 += area_mm2;
     if (index.x + index.y + index.z == 1) model_.flat_mm2 += area_mm2 * glm::dvec3(index);
-    // Centres have whole n . q, so the digitised plane lies half-way between two of them.
+    // At centres n . q is an integer, so the digitised plane lies half-way between two integers.
     const double shift = std::floor(plane.offset) + 0.5 - plane.offset;
     const double outward = glm::dot(triangle.area_vector(), normal) < 0.0 ? -1.0 : 1.0;
     const Moved moved{outward * shift / glm::length(normal),
@@ -534,7 +542,7 @@ class Modeller {
     return moved;
   }
 
-  /// What an edge adds to its cell, or the sum of a cell, which stands where its last edge does.
+  /// An edge's contribution to its cell, or the sum of a cell. The sum has the position of the last edge.
   struct Bend {
     std::uint64_t cell = 0;  // of three samples a side, and the direction of the normal
     double mm = 0.0;
@@ -548,8 +556,9 @@ class Modeller {
     }
   };
 
-  /// Of each unit of an edge whose faces turn by an angle, see `sharp` above. Wedges of less than 15 degrees
-  /// end before their loss is larger.
+  /// Area lost per unit length of an edge whose faces turn by `angle`, for voxels of edge 1; see `sharp`
+  /// above. The turn counts as 165 degrees at most, because a wedge of less than 15 degrees ends before it
+  /// loses more.
   static double sharp_loss(double angle) {
     constexpr double bluntest = 75.0 / 180.0 * pi, sharpest = 165.0 / 180.0 * pi;
     const double turn = std::min(std::abs(angle), sharpest);
@@ -557,13 +566,13 @@ class Modeller {
     return std::max(0.0, 0.295 * (1.0 - turn / std::tan(turn)) - 0.3 * 0.5 * turn);
   }
 
-  /// An edge with its angle, and what it adds to its cell if it has any.
+  /// An edge with its dihedral angle, and its contribution to its cell if it bends.
   struct BentEdge {
     double angle = 0.0, sharp_mm = 0.0;
     bool is_inner = false, bends = false;
     Bend bend;
   };
-  /// Of the first side of an edge; nothing of the second.
+  /// The edge of a side; empty for the second side of an edge, so that each edge counts once.
   BentEdge bent_edge(std::uint32_t side) const {
     BentEdge made;
     if (!linked_.is_inner_edge(side)) return made;
@@ -603,7 +612,7 @@ class Modeller {
       model_.curvature_mm += std::abs(cell.mm);
     });
   }
-  /// What displaced planes gain along an edge, on either side of it or beside one.
+  /// Adds the gain along an edge between two displaced planes, or at the rim of one displaced plane.
   void add_displaced(std::uint32_t side, double angle) {
     const std::uint32_t a = side / 3, b = linked_.opposite[side] / 3;
     if (!moved_[a] && !moved_[b]) return;
@@ -617,7 +626,7 @@ class Modeller {
   }
   /// The volume that two displaced planes gain at their common edge beyond their own gains.
   void add_corner(const Moved& a, const Moved& b, double angle, double length_mm, const glm::dvec3& arm_mm) {
-    // Triangles of parallel planes have no common edge but one that rounding bends, however they are moved.
+    // Parallel planes have no common edge. An edge between their triangles comes from rounding.
     if (a.normal == b.normal || a.normal == -b.normal || !(std::abs(std::sin(angle)) > flatness_voxels))
       return;
     const double mm2 = (a.mm * b.mm - 0.5 * (a.mm * a.mm + b.mm * b.mm) * std::cos(angle)) / std::sin(angle);
@@ -633,12 +642,12 @@ class Modeller {
     int direction = 0;
     for (int axis = 1; axis < 3; ++axis)
       if (std::abs(normal[axis]) > std::abs(normal[direction])) direction = axis;
-    // 20 bits an axis hold three million samples about the origin.
+    // 20 bits per axis cover three million samples about the origin.
     constexpr std::int64_t middle = 1 << 19;
     auto key = static_cast<std::uint64_t>(normal[direction] < 0.0 ? direction : direction + 3);
     for (int axis = 0; axis < 3; ++axis) {
       const double cell = std::floor(p_mm[axis] / (3.0 * frame_.sample_spacing_mm[axis]));
-      // Where there are no samples, their spacing is zero and all edges are of one cell.
+      // Without samples the spacing is zero, and all edges belong to one cell.
       const std::int64_t number = std::abs(cell) < 0x1p62 ? static_cast<std::int64_t>(cell) : 0;
       key = (key << 20) | (static_cast<std::uint64_t>(number + middle) & 0xFFFFFU);
     }
@@ -650,7 +659,7 @@ class Modeller {
   const brep::Triangles& triangles_;
   std::vector<glm::dvec3> points_voxel_;     ///< the points of the triangles
   std::vector<std::optional<Moved>> moved_;  ///< of each face that is part of a lattice plane
-  std::vector<Displaced> nearly_;            ///< of each face
+  std::vector<Displaced> nearly_;            ///< by face
   const double longest_mm_ =
       std::max({frame_.sample_spacing_mm.x, frame_.sample_spacing_mm.y, frame_.sample_spacing_mm.z});
   BoundaryModel model_;

@@ -6,8 +6,8 @@
 #include "brep/mesh/solid.h"
 #include "voxel/space/lattice.h"
 
-// The theory of a solid's boundary when voxels count its inside, and when it is an isosurface of samples. The
-// source has the derivations.
+// Models the errors of a solid's boundary: of counting voxel centres inside it, and of computing it as an
+// isosurface of samples. The source has the derivations.
 namespace octotomy::verify {
 
 /// A signed volume that a boundary gains, and its first moment about a point.
@@ -34,30 +34,30 @@ struct VolumeSpread {
 
 struct BoundaryModel {
   double area_mm2 = 0.0;
-  glm::dvec3 flat_mm2{0.0};   ///< of planes along the universe's planes, by the axis of their normal
-  double coherent_mm2 = 0.0;  ///< of all planes whose normal has small integers in voxels
-  /// Displacement of planes of small integers by counting centres: exact, with its sign.
+  glm::dvec3 flat_mm2{0.0};   ///< area of planes along the universe's planes, by the axis of their normal
+  double coherent_mm2 = 0.0;  ///< area of all planes whose normal has small integers in voxels
+  /// Volume by which counting centres displaces planes with such normals: exact, with its sign.
   VolumeShift planes;
   VolumeSpread planes_without_sign;
-  /// The same of curved or rough boundary nearly along the lattice, as blur and noise leave a plane.
+  /// The same for boundary that is curved or rough but nearly along the lattice, as a plane is after blur and
+  /// noise.
   VolumeShift nearly_planes;
   /// Area gained or lost past the rims of both kinds of planes: the rims' length times the displacement.
   double rims_mm2 = 0.0;
-  /// Displacement of unknown sign: planes through voxel centres, and rims of planes, which an isosurface
-  /// chamfers over the width of a sample so that they are not found flat.
+  /// Displacement of unknown sign: of planes through voxel centres and of the rims of planes. An isosurface
+  /// chamfers a rim over the width of a sample, so the rim is not found to be flat.
   VolumeSpread unsure;
   double tied_mm3 = 0.0;  ///< the part of planes through voxel centres: half a layer of voxels
-  /// The variance of a count over all positions of the lattice, of boundary outside such planes: in mm6,
-  /// times the arm squared, and times its fourth power.
+  /// The variance of a count over all positions of the lattice, for the boundary outside those planes: in
+  /// mm6, times the arm squared, and times the fourth power of the arm.
   double count_mm6 = 0.0, count_mm8 = 0.0, count_mm10 = 0.0;
   /// The integral of mean curvature in units of samples: half the sum over edges of length times angle times
-  /// the squared spacing of samples across the edge, positive for convex edges. With its sign, and as the sum
-  /// of the absolute values of cells of three samples.
+  /// the squared spacing of samples across the edge, positive for convex edges. `bent` keeps the sign;
+  /// `bent_without_sign` adds the absolute values of cells of three samples a side.
   VolumeShift bent;
   VolumeSpread bent_without_sign;
   double curvature_mm = 0.0;  ///< the integral of absolute mean curvature, by the same cells
-  /// What area lattice lines lose at sharp edges beyond 0.3 of that curvature, for each millimetre of a
-  /// voxel.
+  /// Area that lattice lines miss at sharp edges beyond 0.3 of that curvature, per millimetre of voxel edge.
   double sharp_mm = 0.0;
   /// The Crofton formula with 13 directions on these triangles, in the limit of fine voxels.
   double crofton13_mm2 = 0.0;

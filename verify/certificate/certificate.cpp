@@ -14,8 +14,8 @@
 namespace octotomy::verify {
 namespace {
 
-/// A difference up to this many tolerances is doubtful, a larger one wrong: a normal error that is allowed
-/// three standard deviations does not reach six by chance.
+/// A difference up to this multiple of the tolerance is a WARN, a larger one a FAIL. The tolerance allows
+/// three standard deviations; a normal error does not reach six by chance.
 constexpr double doubt = 2.0;
 
 std::string with_unit(double value, const std::string& unit) {
@@ -51,7 +51,7 @@ void lower(Certificate& certificate, Verdict verdict, const std::string& reason)
 }
 
 void add_comparison(Certificate& certificate, Comparison comparison, Verdict worst_verdict) {
-  // Written so that a difference that is no number fails.
+  // The comparison is written so that a NaN difference fails.
   const auto within = [&](double allowed) { return comparison.difference <= allowed; };
   if (comparison.tolerance && !within(*comparison.tolerance)) {
     comparison.verdict =

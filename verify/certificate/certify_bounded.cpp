@@ -1,44 +1,44 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Compares an octree with a solid of separate lineage: how much may two right answers differ at most?
-// boundary_model.h has the theory and its symbols; the constants are here.
+// Compares an octree with a solid that other code computed, and bounds the difference of two right answers.
+// boundary_model.h has the theory and its symbols; the constants are here. The terms of the volume's bound:
 //
-// count      Three standard deviations of a count. Against closed forms (eight solids in 60 random poses
-// each,
-//            spacings 1:1:1 to 5:1:1) the deviation was 0.8 to 1.1 of the predicted one. Narrow cones of
-//            normals predict the coherent error of nearly flat parts along the lattice.
-// flat       The sum of the displacements of planes and of parts nearly along them, with its sign.
+// count        Three standard deviations of a count. Against closed forms (eight solids in 60 random poses
+//              each, spacings 1:1:1 to 5:1:1) the deviation was 0.8 to 1.1 of the predicted one. Narrow cones
+//              of normals predict the coherent error of nearly flat parts along the lattice.
+// flat         The sum of the displacements of planes and of parts nearly along them, with its sign.
 // flat_unsure  Half a voxel for planes through centres, rims, and declared cuts that were not found.
-// border     If the solid ends with the scan, the mesh closes half a sample beyond the last one. The voxels
-//            end where their samples leave the window, at the last sample or after it: half a sample apart.
-// bent       A mesh's volume is low by c times the signed curvature integral: c is 0.14 for binary samples,
-//            0.2 to 0.28 for blurred ones and fractions, 0.32 with edges and corners if voxels are samples.
-//            0.33 is used. Samples further apart than two voxels give both kernels the same straight lines,
-//            so a spacing counts as two voxel edges at most; and as three times the finest spacing at most,
-//            because crossings of the finer lattice lines hold the facets.
-// bent_cap   Both of these and `rough` grow without end on a surface of crumbs, where no answer could be
-// wrong any more.
-//            A surface that bends with a radius of three samples errs by 0.33 s^2 / r, about 0.1 s, times its
-//            area; a sharper one is lost as a whole, which is a difference to report. The finest spacing
-//            counts. The smaller of both answers' areas counts, so that a rough answer does not allow for its
-//            own roughness.
-// rough      In a cell whose inside samples meet diagonally the mesh parts the corners; the interpolant that
-//            the octree samples joins some. Not derived: a CT of a head at 0.7 of its sample spacing showed
-//            0.12 of the curvature without sign.
-// distances  Where each kernel moved a surface by distances of its own, the mean errors of both
-//            (offset_witness.cpp) times the area.
-// rounding   Coordinates are good to a few units in the last place.
+// border       If the solid ends with the scan, the mesh closes half a sample beyond the last one. The voxels
+//              end where their samples leave the window, at the last sample or after it. So both ends are up
+//              to half a sample apart.
+// bent         A mesh's volume is low by c times the signed curvature integral: c is 0.14 for binary samples,
+//              0.2 to 0.28 for blurred ones and fractions, 0.32 with edges and corners if voxels are samples.
+//              0.33 is used. Between samples further apart than two voxels both kernels interpolate along the
+//              same straight lines, so a spacing counts as two voxel edges at most. It counts as three times
+//              the finest spacing at most, because crossings of the finer lattice lines fix the facets.
+// bent_cap     `bent` and `rough` have no limit on a surface of crumbs, where the bound would then allow any
+//              answer. A surface that bends with a radius of three samples errs by 0.33 s^2 / r, about 0.1 s,
+//              times its area. A sharper surface is lost as a whole, which must be reported. s is the finest
+//              spacing. The area is the smaller one of both answers, so that the roughness of a wrong answer
+//              does not widen its own bound.
+// rough        In a cell whose inside samples meet diagonally the mesh separates the corners; the interpolant
+//              that the octree samples joins some. Not derived: a CT of a head at 0.7 of its sample spacing
+//              showed 0.12 of the curvature without sign.
+// distances    Where each kernel moved a surface by distances that it measured, the mean errors of both
+//              (offset_witness.cpp) times the area.
+// rounding     Coordinates have an error of a few units in the last place.
 //
-// Symmetric difference: errors that cancel in the volume count here. 0.06 s S on oblique planes between
-// saturated samples (0.02 s S on spheres), 0.33 of the curvature integral without sign, a layer for planes
-// through centres, and three standard deviations of the number of voxels in those layers.
+// Symmetric difference: errors that cancel in the volume add up here. The terms are 0.06 s S on oblique
+// planes between saturated samples (0.02 s S on spheres), 0.33 of the curvature integral without sign, a
+// layer for planes through centres, and three standard deviations of the number of voxels in those layers.
 // Centroid and inertia: the first and second moment of each error.
-// Area: the voxels' Crofton estimate against the same formula on the mesh's triangles, so that both lose
-// alike on flats. 3 % of S for ripple (marching cubes adds up to 2.6 % to the formula's answer), 0.3 h M for
-// displaced edges, M the mean curvature integral, what voxels lose at sharp edges beyond that, and the strips
-// that displaced planes add beside their rims (boundary_model.cpp derives both).
-// Distances: as surface_distances.h defines them. A right face lies anywhere within half a voxel of the
-// surface along its axis: at most half a voxel's diagonal, a quarter of an edge on average.
+// Area: the voxels' Crofton estimate against the same formula on the mesh's triangles, so that flat parts
+// have the same error in both. The terms are 3 % of S for ripple (marching cubes adds up to 2.6 % to the
+// formula's answer), 0.3 h M for displaced edges with M the mean curvature integral, the further loss of
+// voxels at sharp edges, and the strips that displaced planes add beside their rims (boundary_model.cpp
+// derives the last two).
+// Distances: as surface_distances.h defines them. A face of a right answer lies anywhere within half a voxel
+// of the surface along its axis: at most half a voxel's diagonal, a quarter of an edge on average.
 
 #include "verify/certificate/certify_bounded.h"
 
@@ -82,8 +82,9 @@ constexpr double edge_shift = 0.3;
 constexpr double resolved_voxels = 6.0;
 /// Relative error of a sum of many terms of one sign: some units in the last place in each kernel.
 constexpr double rounded_sums = 64.0 * std::numeric_limits<double>::epsilon();
-/// A surface has no counterpart if the other is this many times further away than digitisation explains.
-/// Parts thinner than a voxel may be lost over two or three voxels, so this is a doubt and not a failure.
+/// A surface has no counterpart if the other surface is further away than this multiple of the distance that
+/// digitisation explains. Parts thinner than a voxel may be lost over two or three voxels, so the verdict is
+/// WARN, not FAIL.
 constexpr double lost = 3.0;
 
 double longest(const glm::dvec3& edges_mm) {
@@ -96,7 +97,7 @@ glm::dvec3 seen_spacing_mm(const glm::dvec3& sample_mm, const glm::dvec3& voxel_
   return glm::min(glm::min(sample_mm, 2.0 * voxel_mm), glm::dvec3(3.0 * finest_mm));
 }
 
-/// Both answers and the bound's ingredients.
+/// Measures of both answers, and the numbers that the bound is computed from.
 struct Evidence {
   voxel::Measures voxels;
   brep::Measures mesh;
@@ -104,23 +105,23 @@ struct Evidence {
   glm::dvec3 voxel_mm{1.0};
   glm::dvec3 sample_mm{1.0};  ///< as seen_spacing_mm()
   double voxel_mm3 = 1.0;
-  double unseen_mm3 = 0.0;  ///< half a voxel of cuts that were declared and not found
+  double unseen_mm3 = 0.0;  ///< half a voxel times the area of cuts that were declared and not found
   VolumeSpread border;
-  bool witnessed = false;      ///< every place is judged by itself
-  bool totals_decide = false;  ///< because no place is judged as finely as totals are
+  bool witnessed = false;      ///< a witness judges every place separately
+  bool totals_decide = false;  ///< the witness judges places more coarsely than totals
   VolumeSpread apart;          ///< between surfaces that each kernel measured for itself
 };
 
-/// Adds a comparison of totals. With a witness a difference is no worse than a doubt: what is no error of a
-/// kernel in any place comes from resampling, or from triangles between samples.
-/// Not so where totals decide.
+/// Adds a comparison of totals. With a witness the verdict is WARN at worst, unless totals decide: a
+/// difference that is no error of a kernel in any place comes from resampling or from triangles between
+/// samples.
 void compare(Certificate& certificate, const Evidence& evidence, Comparison comparison,
              Verdict worst_verdict = Verdict::Fail) {
   add_comparison(certificate, std::move(comparison),
                  evidence.witnessed && !evidence.totals_decide ? Verdict::Warn : worst_verdict);
 }
 
-/// Half a sample times the mesh's faces on the scan's border.
+/// Half a sample times the area of the mesh's faces on the scan's border.
 VolumeSpread border_of(const brep::Solid& solid, const BoundInputs& inputs, const glm::dvec3& about_mm) {
   VolumeSpread border;
   if (!inputs.scan_box_mm) return border;
@@ -191,7 +192,7 @@ void derive_volume_tolerance(Certificate& certificate, const Evidence& evidence)
        "0.12 * integral of |s^2 curvature|, with bent at most 0.1 s S", share * rough_mm3},
       {"distances", "Each kernel measures distances to its own points of a surface.",
        "mean errors of both distances * S", evidence.apart.mm3},
-      // Each coordinate is off by half a unit in the last place in each of several operations.
+      // Each of several operations rounds a coordinate by half a unit in the last place.
       {"rounding", "Coordinates are rounded to double precision.", "16 eps |p| S",
        16.0 * std::numeric_limits<double>::epsilon() * reach_mm * evidence.mesh.area_mm2}};
   certificate.tolerance_mm3 = 0.0;
@@ -224,8 +225,8 @@ glm::dmat3 inertia_about(const brep::Triangles& triangles, const glm::dvec3& abo
     const glm::dvec3 a = triangles.points_mm[face[0]] - about_mm, b = triangles.points_mm[face[1]] - about_mm,
                      c = triangles.points_mm[face[2]] - about_mm;
     const double six_mm3 = glm::dot(a, glm::cross(b, c));
-    // Over a tetrahedron with a corner at the origin the mean of x x' is (sum of p p' + s s') / 20, s =
-    // a+b+c.
+    // Over a tetrahedron with a corner at the origin and corners p = a, b, c, the mean of x x' is (sum of
+    // p p' + s s') / 20 with s = a + b + c.
     const glm::dvec3 s = a + b + c;
     second += (six_mm3 / 120.0) * (glm::outerProduct(a, a) + glm::outerProduct(b, b) +
                                    glm::outerProduct(c, c) + glm::outerProduct(s, s));
@@ -259,7 +260,7 @@ void compare_inertia(Certificate& certificate, const Evidence& evidence, const b
       largest = std::max(largest, std::abs(inertia[i][j]));
     }
   const double arm_mm = 0.5 * glm::length(evidence.mesh.high_mm - evidence.mesh.low_mm);
-  // Displaced planes meet: second order in a voxel over the least extent.
+  // Where displaced planes meet, the error is of second order in a voxel over the least extent.
   const glm::dvec3 extent_mm = evidence.mesh.high_mm - evidence.mesh.low_mm;
   const double meeting = 1.0 + longest(evidence.voxel_mm) / std::min({extent_mm.x, extent_mm.y, extent_mm.z});
   const double tolerance =
@@ -289,9 +290,9 @@ DistanceBounds distance_bounds(const Evidence& evidence) {
               layers_mm3 / model.area_mm2};
 }
 
-/// Compares area and distances: of a resolved object with a witness by a sample of the surfaces' points.
-/// Looks for parts thinner than a voxel only if these leave a doubt, and only without a witness or in an
-/// object that is not resolved, whose certificate states the loss.
+/// Compares area and distances; for a resolved object with a witness, on a sample of the surfaces' points.
+/// Any other object is searched for parts thinner than a voxel if its distances exceed their bounds, and the
+/// certificate then states the lost area.
 void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
                       const brep::Solid& solid) {
   const bool is_strict = evidence.witnessed && certificate.resolved();
@@ -308,7 +309,7 @@ void compare_surfaces(Certificate& certificate, const Evidence& evidence, const 
       !(area.difference <= *area.tolerance && distances.percentile95_mm() <= bounds.percentile95_mm &&
         distances.mean_mm() <= bounds.mean_mm && distances.largest_mm() <= far_mm))
     area = area_of(evidence, distances.leave_out_thin());
-  // Sheets thinner than a voxel lose their area before their volume shows it: never more than a doubt.
+  // Sheets thinner than a voxel lose much area and little volume, so the verdict is WARN at worst.
   compare(certificate, evidence, std::move(area), Verdict::Warn);
   if (loses_area && is_strict)
     certificate.reasons.push_back("At this voxel size " + lost_share +
@@ -334,8 +335,9 @@ void compare_surfaces(Certificate& certificate, const Evidence& evidence, const 
     lower(certificate, Verdict::Warn, text_of(distances.worst()));
 }
 
-/// Every place at which the witness contradicts a kernel is an error: interpolation and rounding are in its
-/// words. Up to seven voxels or as much surface are a doubt, as coordinates on a voxel's centre may be.
+/// Every place at which the witness contradicts a kernel is an error, because the witness allows for
+/// interpolation and rounding. Up to seven voxels, or an equal area of surface, are a WARN, because
+/// coordinates on a voxel's centre may cause as much.
 void judge_by_witness(Certificate& certificate, const Evidence& evidence, const Places& places) {
   constexpr std::uint64_t doubtful_voxels = 8;
   certificate.limit = places.limit;
@@ -363,7 +365,7 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
                  most);
 }
 
-/// Bridges are decisions that the kernels took differently: a doubt, each with its place.
+/// Adds the places of bridges as WARN: the kernels chose differently whether a thin neck connects a part.
 void judge_bridges(Certificate& certificate, const Places& places) {
   constexpr std::size_t most_told = 3;
   for (const OpenPart& part : places.open) certificate.bridges.push_back(part.bridge);
@@ -382,7 +384,7 @@ void judge_bridges(Certificate& certificate, const Places& places) {
   if (!certificate.bridges.empty() && !certificate.worst) certificate.worst = certificate.bridges.front();
 }
 
-/// Sets `unresolved`, independent of the verdict.
+/// Sets `unresolved` if the object is too small or too thin. Does not depend on the verdict.
 void judge_extent(Certificate& certificate, const Evidence& evidence) {
   double extent_voxels = std::numeric_limits<double>::infinity();
   const auto shorten = [&](const glm::dvec3& extent_mm) {
@@ -396,7 +398,7 @@ void judge_extent(Certificate& certificate, const Evidence& evidence) {
                                                  voxel::rounded(extent_voxels) + " voxels, six are needed"};
   if (!(evidence.mesh.area_mm2 > 0.0)) return;
   // Twice the volume over the area is a sheet's thickness. Chance decides which voxels lie inside a sheet
-  // thinner than a voxel. The larger volume counts: both kernels must say that the object is thin.
+  // thinner than a voxel. With the larger volume, the object is thin only if it is thin in both kernels.
   const double larger_mm3 = std::max(std::abs(evidence.mesh.volume_mm3), evidence.voxels.volume_mm3);
   const double thickness_voxels = 2.0 * larger_mm3 / evidence.mesh.area_mm2 / longest(evidence.voxel_mm);
   if (thickness_voxels < std::min(1.0, extent_voxels))
@@ -411,7 +413,8 @@ void judge_volume(Certificate& certificate, const Evidence& evidence) {
     lower(certificate, Verdict::Fail,
           "The mesh is inside out: its volume is " + voxel::rounded(mesh.volume_mm3) +
               " mm3. Reverse its triangles, or check the frame that it was read in.");
-  // A sliver between voxels' centres may be empty for one kernel alone: a witness knows.
+  // A sliver between voxels' centres may be empty for one kernel alone. A witness decides about it if there
+  // is one.
   if (!evidence.witnessed && (voxels.voxel_count == 0) != (mesh.area_mm2 == 0.0)) {
     const bool lost_by_voxels = voxels.voxel_count == 0;
     lower(certificate, Verdict::Fail,
@@ -442,8 +445,8 @@ void judge_volume(Certificate& certificate, const Evidence& evidence) {
              .statement = "The centroids are % apart"});
 }
 
-/// The mesh's volume against the voxels' centres inside of it, where parts that it has several times count
-/// once.
+/// Compares the mesh's volume with the number of voxel centres inside it. Parts that the mesh has several
+/// times count once among the centres.
 void compare_counted(Certificate& certificate, const Evidence& evidence, const voxel::Octree& digitised) {
   const double counted_mm3 = static_cast<double>(digitised.voxel_count()) * evidence.voxel_mm3;
   add_comparison(
@@ -455,7 +458,8 @@ void compare_counted(Certificate& certificate, const Evidence& evidence, const v
        "several times"});
 }
 
-/// Numbers of the keys that share a slot, of eight slots a key: of equal ones all, of others an eighth.
+/// Indices of the keys that share a slot of a hash table with at least eight slots per key: all equal keys,
+/// and at most about an eighth of the others.
 std::vector<std::uint32_t> in_shared_slots(const std::vector<std::uint64_t>& keys) {
   const std::uint64_t last = std::bit_ceil(8 * keys.size() + 1) - 1;
   std::vector<bool> taken(last + 1, false), shared(last + 1, false);
@@ -467,9 +471,9 @@ std::vector<std::uint32_t> in_shared_slots(const std::vector<std::uint64_t>& key
   return found;
 }
 
-/// Area of triangles that the mesh has a second time, wound the same way, which no set of voxels shows.
-/// Equal triangles are found by a hash of their corners; two different ones of a million share it with a
-/// chance of 2^-24.
+/// Adds the area of triangles that the mesh has a second time with the same winding; a set of voxels cannot
+/// show them. Equal triangles are found by a hash of their corners. Among a million triangles two different
+/// ones have the same hash with a probability of 2^-24.
 void compare_repeated(Certificate& certificate, const brep::Triangles& mesh) {
   const auto hash = [](const glm::dvec3& p) {
     std::uint64_t made = 0;
@@ -482,7 +486,7 @@ void compare_repeated(Certificate& certificate, const brep::Triangles& mesh) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       std::array<std::uint64_t, 3> corners{};
       for (std::size_t k = 0; k < 3; ++k) corners[k] = hash(mesh.points_mm[mesh.faces[i][k]]);
-      // From the corner of the least hash on, so that the winding stays.
+      // Start at the corner with the smallest hash; the winding does not change.
       std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
       for (const std::uint64_t corner : corners)
         keys[i] = (std::rotl(keys[i], 17) ^ corner) * 0xBF58476D1CE4E5B9ULL;
@@ -506,8 +510,8 @@ void compare_repeated(Certificate& certificate, const brep::Triangles& mesh) {
                                .statement = "Triangles of % are there several times in the mesh"});
 }
 
-/// Amounts by lines against both answers. Where these agree with each other and not with the lines, both are
-/// wrong.
+/// Compares amounts measured along lines with both answers. If the answers agree with each other and not with
+/// the lines, both are wrong.
 void compare_with_lines(Certificate& certificate, const Evidence& evidence, const LineReading& lines,
                         const voxel::Box& world, const voxel::Progress& progress) {
   if (!lines) return;
@@ -516,7 +520,7 @@ void compare_with_lines(Certificate& certificate, const Evidence& evidence, cons
   options.progress.stop = progress.stop;
   certificate.third = count_along_lines(lines, options);
   const LineCount& third = *certificate.third;
-  // The mean of twelve directions strays further than five deviations once in 2000 objects.
+  // The mean over twelve directions is off by more than five estimated deviations in one of 2000 objects.
   constexpr double sure = 5.0;
   const double tolerance_mm3 = certificate.tolerance_mm3 + sure * third.deviation_mm3 + evidence.voxel_mm3;
   const double of_voxels = std::abs(evidence.voxels.volume_mm3 - third.volume_mm3);
@@ -610,7 +614,8 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
     if (inputs.voxels_are_samples) compare_same_topology(certificate, octree, solid);
   }
   judge_evidence(certificate);
-  // A block of two voxels a side is the smallest that a search for what both lack is sure to meet.
+  // The search for parts that both kernels lack samples one voxel in each block of two voxels a side, so it
+  // may miss a part of up to eight voxels.
   if (!inputs.is_surely_empty)
     judge_emptiness(certificate, 8.0 * evidence.voxel_mm3);
   else if (!octree.is_empty() || !solid.empty())

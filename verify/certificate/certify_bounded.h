@@ -13,14 +13,14 @@
 
 namespace octotomy::verify {
 
-/// Inputs of the bound beside the two objects.
+/// Inputs of the bound in addition to the two objects.
 struct BoundInputs {
   std::string operation;
   std::string voxel_lineage;
   std::string mesh_lineage;
-  std::optional<voxel::Measures> voxel_measures = {};  ///< of the octree, if they are known
+  std::optional<voxel::Measures> voxel_measures = {};  ///< of the octree; none: measured here
   glm::dvec3 scan_spacing_mm{1.0};                     ///< of the samples that the isosurface was made from
-  /// Area of flat cuts by direction of their normal (x, y, z). Counts only cuts along the universe's planes.
+  /// Area of flat cuts by direction of their normal (x, y, z). Only cuts along the universe's planes count.
   glm::dvec3 flat_cut_mm2{0.0};
   /// The box that the scan's voxels fill, if the solid may end with the scan.
   std::optional<voxel::Box> scan_box_mm = {};
@@ -30,16 +30,16 @@ struct BoundInputs {
   double measured_apart_mm = 0.0;
   /// Every voxel's centre is a sample and the object is one window of them: topology must agree too.
   bool voxels_are_samples = false;
-  /// The question has no other answer than nothing, as a - a: two empty answers are right.
+  /// The right answer is the empty set, as for a - a. Two empty answers then pass.
   bool is_surely_empty = false;
-  /// Judges the places at which the answers differ, and counts the object along lines. It ends with the
-  /// universe, as both answers do. Without one, totals and distances decide.
+  /// Judges the places at which the answers differ, and measures the object along lines. The witness must end
+  /// with the universe, as both answers do. Without a witness, totals and distances decide.
   Witness witness = {};
 };
 
-/// Compares an octree with a solid of separate lineage (tier Bounded). The source derives the terms. A solid
-/// by Connection may be inside out or meet itself: the comparison shows it. Throws as convert::voxelise();
-/// voxel::Stopped. Cost: about that of making both objects.
+/// Compares an octree with a solid that other code computed (tier Bounded). The source derives the terms of
+/// the tolerance. A solid with Proof::Connection may be inside out or meet itself; the comparison reports
+/// that. Throws as convert::voxelise(); voxel::Stopped. Cost: about that of computing both objects.
 Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& solid, const BoundInputs& inputs,
                             const voxel::Progress& progress = {});
 

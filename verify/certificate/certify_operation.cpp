@@ -18,13 +18,13 @@
 namespace octotomy::verify {
 namespace {
 
-/// The distance from a surface within which rounding decides on which side a voxel's centre lies: a few units
-/// in the last place of the largest coordinate, and the distance by which corefinement moved an operand.
+/// The distance from a surface within which the side of a voxel's centre is uncertain: a few units in the
+/// last place of the largest coordinate, plus the distance by which corefinement moved an operand.
 double undecided_mm(double reach_mm, double shift_mm) {
   return shift_mm + 64.0 * std::numeric_limits<double>::epsilon() * reach_mm;
 }
 
-/// Voxels' centres on which the kernels differ, further than `within_mm` from the result's surface.
+/// Voxel centres at which the kernels differ, farther than `within_mm` from the result's surface.
 struct DifferingCentres {
   std::size_t count = 0;
   glm::dvec3 farthest_mm{0.0};
@@ -66,14 +66,14 @@ voxel::Expression expression_of(const voxel::Octree& a, brep::Operation operatio
   return voxel::Expression(a) - b;
 }
 
-/// A part that holds no voxel's centre is not seen: wherever it lies a ball of more than this volume holds
-/// one, its radius half a voxel's diagonal.
+/// A part without a voxel's centre is not detected. A ball of more than this volume holds a centre wherever
+/// it lies, because its radius exceeds half a voxel's diagonal.
 double unseen_ball_mm3(const voxel::Lattice& lattice) {
   const double radius_mm = 0.5 * glm::length(lattice.spacing_mm());
   return 4.0 / 3.0 * std::numbers::pi * radius_mm * radius_mm * radius_mm;
 }
 
-/// Two empty answers prove nothing where the voxels may have missed an operand.
+/// Marks two empty answers as unresolved if the voxels may have missed one of the operands.
 void judge_operands(const brep::Solid& a, const brep::Solid& b, Certificate& certificate) {
   const double smaller_mm3 = std::min(a.size().volume_mm3, b.size().volume_mm3);
   if (certificate.unseen_mm3() <= evident_share * smaller_mm3) return;
@@ -103,7 +103,7 @@ Certificate certify_at_centres(const voxel::Octree& octree, const brep::Solid& s
   certificate.mesh = {"corefinement of both meshes", triangles.volume_mm3, triangles.area_mm2,
                       triangles.centroid_mm};
   certificate.difference_mm3 = voxels.volume_mm3 - triangles.volume_mm3;
-  // A plane along the voxels errs coherently, and a user's mesh may have such planes.
+  // A plane along the voxels errs coherently, and a mesh may have such planes.
   const double coherent_mm3 = glm::dot(voxels.exposed_mm2, 0.5 * lattice.spacing_mm());
   certificate.terms = {
       {"sampling", "Voxels are sampled at their centres.", "h/2 * area of exposed voxel faces", coherent_mm3},
@@ -166,7 +166,6 @@ OperationAnswers certify_operation(const brep::Solid& a, brep::Operation operati
   answers.findings = std::move(result.findings);
   answers.certificate =
       certify_at_centres(*answers.octree, answers.solid, answers.shift_mm, answers.findings);
-  // An empty result of operands that the voxels miss proves nothing.
   if (answers.certificate.larger_mm3() == 0.0) judge_operands(a, b, answers.certificate);
   answers.certificate.operation = text_of(operation);
   progress.at(1.0);

@@ -26,18 +26,18 @@ struct MeshOperationOptions {
 };
 /// A Boolean of two solids in both kernels (tier Bounded): by corefinement, and by voxelising each operand
 /// (D3) and combining the octrees. Both kernels have the same surfaces, so no voxel's centre may be inside
-/// one answer and outside the other. Exempt are centres so near the surface that rounding, or the shift that
-/// corefinement reported, decides. Volumes are compared loosely, by the error of sampling at centres. Throws
-/// as brep::boolean() and convert::voxelise(), std::length_error if the voxels are too small for a universe,
-/// voxel::Stopped.
+/// one answer and outside the other. Exempt are centres that lie nearer to the surface than rounding and the
+/// shift that corefinement reported. Volumes are compared with the error of sampling at centres as tolerance.
+/// Throws as brep::boolean() and convert::voxelise(); std::length_error if the voxels are too small for a
+/// universe; voxel::Stopped.
 OperationAnswers certify_operation(const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
                                    const MeshOperationOptions& options = {});
 
 /// The operation in words: "a | b".
 std::string text_of(brep::Operation operation);
 
-/// An octree and a solid that have the same surfaces, at voxels' centres (tier Bounded). `shift_mm` and
-/// `findings` are those of the Boolean that made the solid.
+/// Compares an octree with a solid that has the same surfaces, at voxels' centres (tier Bounded). `shift_mm`
+/// and `findings` are those of the Boolean that computed the solid.
 Certificate certify_at_centres(const voxel::Octree& octree, const brep::Solid& solid, double shift_mm,
                                const std::vector<std::string>& findings);
 

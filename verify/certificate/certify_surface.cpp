@@ -29,7 +29,7 @@ Certificate certify_surface(const voxel::Octree& octree, const brep::Triangles& 
   if (triangles.faces.empty()) return certify_bounded(octree, brep::Solid(), inputs, progress);
   const brep::Health health = brep::health(triangles, {.self_intersections = false});
   Certificate certificate = without_mesh(octree, inputs);
-  // A halfedge mesh cannot hold some of these faults, and an open mesh has no inside.
+  // A halfedge mesh cannot represent non-manifold or misoriented edges, and an open mesh has no inside.
   if (health.closed && health.manifold && health.misoriented_edges == 0)
     certificate =
         certify_bounded(octree, brep::trusted_solid(triangles, brep::Proof::Connection), inputs, progress);

@@ -6,8 +6,9 @@
 
 namespace octotomy::verify {
 
-/// certify_bounded() for any triangles. The certificate fails and says why if they are not a closed, oriented
-/// manifold surface; then it compares what it can. Cost: brep::health() without intersections in addition.
+/// certify_bounded() for any triangles. The certificate fails, with reasons, if the triangles are no closed,
+/// oriented manifold surface. It still compares them with the octree if every edge joins two triangles of one
+/// winding. Cost: brep::health() without intersections in addition.
 Certificate certify_surface(const voxel::Octree& octree, const brep::Triangles& triangles,
                             const BoundInputs& inputs, const voxel::Progress& progress = {});
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Why the surfaces are manifold: each occurrence of a leaf is a set of its own in general position, so an
-// expression of intersections, unions, differences and complements has every surface once. At the line along
-// which two surfaces cross, such an expression is their intersection or union, or independent of them.
-// Neither leaves two wedges that meet only at the line. An exclusive or does. Its answer is therefore two
-// solids with disjoint insides, a - b and b - a, and later operators treat each of them and their complement
-// by cases: see Pieces.
+// Why the surfaces are manifold: each occurrence of a leaf is a set of its own in general position, so every
+// surface occurs once in an expression of intersections, unions, differences and complements. At the line
+// along which two surfaces cross, such an expression equals their intersection or union, or it does not
+// depend on them. In neither case do two wedges meet only at the line. With an exclusive or they do. Its
+// answer is therefore two solids with disjoint insides, a - b and b - a, and later operators combine the
+// pieces one by one: see Piece and Sides.
 #include "verify/certificate/exact_agreement.h"
 
 #include <algorithm>
@@ -38,9 +38,9 @@ namespace {
 using voxel::Expression;
 using Term = Expression::Term;
 
-/// The largest distance of an integer coordinate from its double after corefinement: some roundings of
-/// coordinates up to `reach`. Coordinates that are not integers have denominators below the third power of
-/// the lattice's side, so they lie a thousand times further off.
+/// The largest rounding error of an integer coordinate after corefinement: a few roundings of coordinates up
+/// to `reach`. Coordinates that are not integers have denominators below the third power of the lattice's
+/// side, so their distance from an integer is a thousand times larger.
 double whole_within(double reach) {
   return 64.0 * std::numeric_limits<double>::epsilon() * std::max(reach, 1.0);
 }
@@ -52,7 +52,8 @@ double reach_of(const brep::Mesh& mesh) {
   return reach;
 }
 
-/// Rounds coordinates that are integers but for rounding errors, so that faces lie exactly in their planes.
+/// Rounds coordinates that differ from integers by rounding errors only, so that faces lie exactly in their
+/// planes.
 brep::Mesh with_whole_numbers(brep::Mesh mesh) {
   const double tolerance = whole_within(reach_of(mesh));
   for (const auto v : mesh.vertices()) {
@@ -64,7 +65,7 @@ brep::Mesh with_whole_numbers(brep::Mesh mesh) {
   return mesh;
 }
 
-/// A solid, or all that it leaves.
+/// A solid or its complement.
 struct Piece {
   brep::Solid solid;
   bool complement = false;
@@ -84,7 +85,7 @@ std::vector<voxel::Octree> leaves_of(const Expression& expression) {
   return sets;
 }
 
-/// A motion of the refined lattice.
+/// The motion of a term, a translation by whole voxels, on the refined lattice.
 glm::dmat4 refined_motion(const Term& term, const voxel::Universe& own, int refinement) {
   const glm::dmat4 voxels = glm::inverse(own.lps_from_voxel) * term.moved_from_still * own.lps_from_voxel;
   const glm::dvec3 by = glm::round(glm::dvec3(voxels[3]));
@@ -104,7 +105,7 @@ class Evaluation {
   Evaluation(const voxel::Universe& own, const GeneralPosition& position, const voxel::Progress& progress)
       : own_(own), position_(position), progress_(progress) {}
 
-  /// The expression with its leaves replaced.
+  /// The expression with its leaves replaced by the operands' octrees.
   Expression on_octrees(const Expression& expression) {
     std::size_t next = 0;
     return voxel::evaluate_terms<Expression>(
@@ -127,7 +128,7 @@ class Evaluation {
         });
   }
 
-  /// Both sides of an expression as pieces whose insides do not meet.
+  /// The inside and the outside of an expression, each as pieces with disjoint insides.
   struct Sides {
     std::vector<Piece> in, out;
     bool single() const { return in.size() == 1 && out.size() == 1; }
@@ -154,7 +155,7 @@ class Evaluation {
   double shift_mm() const { return shift_mm_; }
   std::vector<std::string> findings() { return std::move(findings_); }
 
-  /// The part of a piece in the universe.
+  /// The part of a piece within the universe.
   brep::Solid within_universe(const Piece& piece) {
     const double side = position_.universe.side();
     const Piece world{brep::solid_of(brep::Prism{{0, 1, 0},
@@ -208,7 +209,8 @@ class Evaluation {
   }
   Sides intersection(const Sides& left, const Sides& right) {
     if (left.single() && right.single()) return both(intersection(left.in.front(), right.in.front()));
-    // The outside is the left's outside, and the left's inside outside the right; these two share faces.
+    // The outside of the intersection is the left's outside plus the left's inside without the right. These
+    // two share faces.
     areas_add_up_ = false;
     return {pairs(left.in, right.in), joined(left.out, pairs(left.in, right.out))};
   }
@@ -329,7 +331,8 @@ std::optional<std::int64_t> whole_volume(const std::vector<brep::Mesh>& solids) 
     }
   const long double total = static_cast<long double>(six) + rest;
   const auto volume = static_cast<std::int64_t>(std::llround(total / 6.0L));
-  // A wrong answer differs by a whole voxel, six of these; nothing that is right leaves even a hundredth.
+  // The sum is six times the volume: a wrong answer is off by whole voxels, six each, and the rounding of a
+  // right answer is far below a hundredth.
   if (std::abs(total - 6.0L * static_cast<long double>(volume)) > 0.01L) return std::nullopt;
   return volume;
 }
@@ -383,7 +386,8 @@ Certificate certify_exact(const ExactAnswers& answers) {
          " mm about " + voxel::rounded(certificate.worst->at_mm) + ": " + certificate.worst->what + ".");
   }
   if (filled != united.voxel_count()) fail("Solids of the mesh kernel overlap that should only touch.");
-  // Areas are whole, too; they are summed as square roots, each good to a unit in the last place.
+  // Areas are whole numbers, too. They are sums of square roots with an error of one unit in the last place
+  // each.
   if (answers.areas_add_up && std::abs(area - faces) > 1e-9 * (faces + 1.0))
     fail("The mesh kernel's area differs from the voxel kernel's by " + voxel::rounded(area - faces) +
          " faces of refined voxels.");

@@ -19,31 +19,31 @@ namespace octotomy::verify {
 /// corner is the origin (GeneralPosition).
 struct ExactAnswers {
   voxel::Octree octree;
-  /// The mesh kernel's answer: solids with disjoint insides. One unless the expression has an exclusive or,
-  /// which no manifold surface bounds.
+  /// The mesh kernel's answer: solids with disjoint insides. There is one solid unless the expression has an
+  /// exclusive or, whose result no manifold surface bounds.
   std::vector<brep::Mesh> solids;
   std::string operation;
   double unit_mm3 = 1.0;              ///< volume of a refined voxel in the patient
   glm::dmat4 lps_from_unit{1.0};      ///< to the patient's millimetres, to within a voxel
   bool areas_add_up = true;           ///< no two of the solids share a face
-  double shift_mm = 0.0;              ///< how far the corefinements moved operands: zero if all is well
+  double shift_mm = 0.0;              ///< how far the corefinements moved operands; not zero is a failure
   std::vector<std::string> findings;  ///< of the corefinements
 };
 
-/// Evaluates the expression in both kernels: in one walk over octrees, and by corefinement of cuberilles. Its
-/// leaves are octrees of one universe, moved at most by whole voxels; an octree that occurs twice counts as
-/// two sets. Parts outside the universe are cut off. Throws std::invalid_argument that names a leaf or motion
-/// of another kind; as general_position() and brep::boolean(); voxel::Stopped. Cost: see general_position();
-/// one corefinement for each operator, about 10 us a triangle.
+/// Evaluates the expression in both kernels: in one walk over octrees, and by corefinement of cuberilles.
+/// Precondition: the leaves are octrees of one universe, moved at most by whole voxels. An octree that occurs
+/// twice counts as two sets. Parts outside the universe are cut off. Throws std::invalid_argument for any
+/// other leaf, with its number, and any other motion; as general_position() and brep::boolean();
+/// voxel::Stopped. Cost: see general_position(); one corefinement for each operator, about 10 us a triangle.
 ExactAnswers exact_answers(const voxel::Expression& expression, const voxel::Progress& progress = {});
 
 /// Compares both answers with tolerance zero (tier Exact): six times the mesh's volume as an integer, its
 /// area, and its set of voxels. The mesh's surface must be closed and oriented. FAIL if anything differs.
 Certificate certify_exact(const ExactAnswers& answers);
 
-/// The volume of solids with corners on the unit lattice as an integer, in 64-bit integers for whole points.
-/// The other points are roundings of points on lines between whole ones; they change the sum by far less than
-/// a half (see source). None if the sum is not an integer.
+/// The volume of solids with corners on the unit lattice, as an integer. Triangles of whole points are summed
+/// in 64-bit integers. The other points are roundings of points on lines between whole ones; they change the
+/// sum by far less than a half (see source). None if the sum is not an integer.
 std::optional<std::int64_t> whole_volume(const std::vector<brep::Mesh>& solids);
 
 }  // namespace octotomy::verify

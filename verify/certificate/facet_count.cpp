@@ -5,12 +5,13 @@
 // T(k) = i / (2 pi |t|^2) * sum over sides of (t . m) L J(k), m the side's outward normal in the plane, L its
 // length and J the mean of exp(-2 pi i k . x) along it. If t vanishes, all of the facet is in phase, and T is
 // its area.
-//   1  lay each facet's sides end to end, so that a point between two sides is taken once, and sides that
-//      run on straight, as along the cells of a scan, are one
-//   2  of up to `part_sides` of them take the phases exp(-2 pi i x) of their points' coordinates, of which
-//      only the fraction counts, and their powers up to the largest component of any k, by multiplication
-//   3  for each k three powers multiplied are a point's phase, and J the difference of a side's two phases
-//      over its turn; where that turn is small and the difference has lost digits, a series
+//   1  Lay each facet's sides end to end, so that a point between two sides is evaluated once. Join sides
+//      that continue in a straight line, as along the cells of a scan.
+//   2  For up to `part_sides` sides at a time, compute the phases exp(-2 pi i x) of the points' coordinates
+//      (only the fraction of x matters), and by multiplication their powers up to the largest component of
+//      any k.
+//   3  For each k the product of three powers is a point's phase. J is the difference of a side's two phases
+//      divided by its turn, or a series where the turn is so small that the difference has lost digits.
 // A power of 65 errs by at most 65 roundings of a complex product, sqrt(5) half-units each (Brent, Percival
 // and Zimmermann, 2007): a phase by 5e-14 and J, of turns over 0.01, by 1e-11. The series leaves 2e-13.
 #include "verify/certificate/facet_count.h"
@@ -34,23 +35,24 @@ constexpr int longest_wave = 6;
 constexpr int reach_along_normals = 64;
 constexpr std::size_t normals_followed = 32;
 
-/// As many sides of one facet as are taken at once: their powers fit a core's own cache.
+/// Number of sides of a facet in one part: their powers fit the cache of a core.
 constexpr std::size_t part_sides = 48;
-/// Parts are summed in as many groups, so that a sum has the same order on any number of threads.
+/// Number of groups in which parts are summed. It is fixed so that the order of a sum does not depend on the
+/// number of threads.
 constexpr std::size_t sum_groups = 32;
 
-/// Sides end to end: side i goes from points[i] to points[i + 1]. Where the facet's outline ends and another
-/// begins, a side of no weight leads there.
+/// Sides end to end: side i goes from points[i] to points[i + 1]. A side that does not count leads from the
+/// end of one outline of the facet to the start of the next.
 struct Path {
   std::vector<glm::dvec3> points;
-  std::vector<bool> counts;  ///< of each side
+  std::vector<bool> counts;  ///< by side: whether it belongs to the facet
 };
 
 bool before(const glm::dvec3& a, const glm::dvec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// The path with its sides that run on straight joined: points that lie on the line are left out.
+/// The path without the points that lie on the straight line between their neighbours.
 Path straightened(const Path& path) {
   constexpr double off_line_voxels = 1e-9;
   Path made;
@@ -98,7 +100,7 @@ Path path_of(std::vector<std::array<glm::dvec3, 2>> sides) {
   return straightened(path);
 }
 
-/// Some sides of a facet, and what a vector k makes of them.
+/// Up to part_sides sides of a facet, and their contribution to the sum for each vector k.
 class Part {
  public:
   Part(const Facet& facet, const Path& path, std::size_t first, std::size_t last)
@@ -117,8 +119,8 @@ class Part {
     }
   }
 
-  /// Adds to each total the part's share of the facets' sum, times -i |k|^2 2 pi, as all facets of one k
-  /// share that. `most` has the largest components of the vectors.
+  /// Adds to each total the part's contribution to the sum over facets, times -i |k|^2 2 pi, a factor that
+  /// all facets of one k share. `most` has the largest components of the vectors.
   void add(const std::vector<glm::ivec3>& vectors, const glm::ivec3& most, std::vector<Complex>& totals) {
     for (int axis = 0; axis < 3; ++axis) take_powers(axis, most[axis]);
     multiply(power_[1][0], power_[2][0], false, false, yz_);
@@ -171,8 +173,8 @@ class Part {
     const glm::dvec3 tangent = k - along * normal_;
     const double square = glm::dot(tangent, tangent);
     take_phases(k_integer);
-    // Below a ten-thousandth of a turn across the facet the phase is that of any of its points; sums over
-    // sides would cancel to that share of their digits.
+    // If the phase changes by less than a ten-thousandth of a turn across the facet, the phase of any point
+    // is used. The sum over sides would lose that share of its digits by cancellation.
     if (square * area_ < 1e-8)
       return is_first_ ? along * area_ * Complex(phase_.re[0], phase_.im[0]) : Complex(0.0);
     constexpr double small_turn = 0.01;
@@ -206,20 +208,20 @@ class Part {
   bool is_first_;
   std::size_t sides_;
   std::vector<glm::dvec3> points_;
-  std::array<std::vector<double>, 3> side_, outward_;  ///< by axis; turns of a unit along it, weights
+  std::array<std::vector<double>, 3> side_, outward_;  ///< by axis: turns for k of one along it, weights
   std::array<std::vector<Phases>, 3> power_;
   glm::ivec3 last_{0};
   Phases yz_, phase_;
   std::array<double, part_sides> turn_, weight_, re_, im_;
 };
 
-/// One of k and -k.
+/// The representative of the pair k and -k.
 glm::ivec3 one_of_opposites(const glm::ivec3& k) {
   const bool lower = k.z != 0 ? k.z < 0 : k.y != 0 ? k.y < 0 : k.x < 0;
   return lower ? -k : k;
 }
 
-/// The vectors nearest to the multiples of a normal, nine in each step along its largest component.
+/// The vectors nearest to the multiples of a normal: nine for each step along its largest component.
 void add_along(const glm::dvec3& normal, std::vector<glm::ivec3>& vectors) {
   int most = 0;
   for (int axis = 1; axis < 3; ++axis)
@@ -295,8 +297,9 @@ double count_variance(const std::vector<Facet>& facets) {
     seen.variance += 2.0 * std::norm(total) / (4.0 * pi * pi * square * square);
     seen.fourths += 2.0 / (square * square);
   }
-  // Of facets that were followed the rest is small. All integer vectors but zero have a sum of 1 / |k|^4 of
-  // 16.5323; spread evenly over the directions of both k and -k, normals have area / (2 pi) per solid angle.
+  // The terms beyond `seen` are small for the facets whose normals were followed. For the others: the sum of
+  // 1 / |k|^4 over all integer vectors but zero is 16.5323, and normals spread evenly over the directions of
+  // both k and -k have area / (2 pi) per solid angle.
   constexpr double epstein = 16.5323;
   double others = 0.0;
   for (std::size_t i = normals_followed; i < flat.size(); ++i) others += glm::length(flat[i].area);

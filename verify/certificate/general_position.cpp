@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 On a lattice of two cells a voxel, a cell is kept if all voxels that it touches are inside: cells 2k + 1
-// are
-//   the middle of voxel k, cells 2k the middle of the wall between voxels k - 1 and k. As sets of unit cells
-//   this is the intersection of the doubled set's eight translates by 0 or 1. The kept set is well composed:
-//   if two of its cells met only at an edge or corner, a cell between them would touch no other voxels than
-//   they do.
+// 1 On a lattice of two cells a voxel, a cell is kept if all voxels that it touches are inside. Cell 2k + 1
+//   is the middle of voxel k, cell 2k the middle of the wall between voxels k - 1 and k. As sets of unit
+//   cells this is the intersection of the doubled set's eight translates by 0 or 1. The kept set is well
+//   composed: if two of its cells met only at an edge or corner, a cell between them would touch only voxels
+//   that these two touch, so it would be kept as well.
 // 2 A cell becomes `cell` refined voxels a side, cell a power of two above the number of sets; set i is
 //   shifted by i + 1 refined voxels downwards. Its planes then lie at -(i + 1) modulo `cell`: no two sets
-//   share one, and none lies on the border, which is 0. The shift is at most half a voxel, which step 1 left
-//   free at the low end.
+//   share one, and none lies on the border, which is 0. The shift is at most half a voxel; step 1 leaves that
+//   much free at the low end.
 // All cells are cubes, so diagonals of their faces have slope one and meet every plane at integers.
 #include "verify/certificate/general_position.h"
 
@@ -39,7 +38,7 @@ glm::dmat4 translation(const glm::dvec3& by_mm) {
   return matrix;
 }
 
-/// The set on the lattice of two cells a voxel, as cells of one millimetre.
+/// Step 1: the kept cells of a set, as cells of one millimetre.
 voxel::Octree parted(const voxel::Octree& set) {
   const int depth = set.universe().depth;
   const voxel::Universe fine = cubes(depth + 1, 1.0, 0.0);

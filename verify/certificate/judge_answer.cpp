@@ -20,8 +20,8 @@ constexpr const char* of_others = "the answer to be judged";
 constexpr const char* lacks_part = "the answer lacks a part there";
 constexpr const char* has_more = "the answer has a part there that it must not have";
 
-/// Files hold coordinates in 32 bits, of which a unit in the last place is 2^-23; programs round once when
-/// they compute and once when they write.
+/// Bound of a file's rounding. Files hold 32-bit coordinates, with a unit in the last place of 2^-23 of the
+/// coordinate. A program rounds once when it computes and once when it writes.
 double rounding_mm(const brep::Solid& solid) {
   const brep::Size& size = solid.size();
   return 0x1p-22 * glm::length(glm::max(glm::abs(size.low_mm), glm::abs(size.high_mm)));
@@ -86,7 +86,7 @@ Certificate named(Certificate certificate, const char* against) {
   return certificate;
 }
 
-/// Centres of voxels of a set but for those so near the solid's surface that rounding decides their side.
+/// Centres of a set's voxels, except those so near the solid's surface that rounding decides their side.
 std::vector<glm::dvec3> decided_centres(const voxel::Octree& set, const KernelAnswers& kernels) {
   std::vector<glm::dvec3> centres_mm;
   if (set.is_empty()) return centres_mm;

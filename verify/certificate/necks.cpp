@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// A neck may be thinner than the voxels are apart, and then no path of voxels leads through it. So a part
-// that hangs on by no voxel is followed through the reading itself, at `fine` points to a voxel's edge, by
-// whatever either kernel may call inside there.
+// A neck may be thinner than the spacing of the voxels, and then no path of voxels leads through it. So a
+// part that no voxel connects is followed through the witness's reading, at `fine` points per voxel edge. A
+// point belongs to the path if the reading allows either kernel to have it inside.
 #include "verify/certificate/necks.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ namespace octotomy::verify {
 namespace {
 
 constexpr int fine = 4;
-/// A part that holds more of these points is followed no further: a few thousand voxels without a contact.
+/// The search ends at this number of points, which is a few thousand voxels without a contact.
 constexpr std::size_t most_followed = 200000;
 
 bool is_within(const voxel::Octree& octree, const glm::ivec3& at) {
@@ -80,7 +80,7 @@ Necks::Side* Necks::side_near(const glm::ivec3& at) const {
 bool Necks::is_thick(Side& side, const std::vector<glm::ivec3>& part) const {
   if (!side.eroded) {
     const glm::dvec3 voxel_mm = octree_.universe().lattice().spacing_mm();
-    // Past one voxel, or half a sample.
+    // A little more than one voxel, or than half a sample.
     const glm::dvec3 past_mm = 1.01 * glm::max(voxel_mm, 0.5 * sample_mm_);
     const double radius_mm = std::max({past_mm.x, past_mm.y, past_mm.z});
     side.eroded = connected(voxel::erode(*side.set, radius_mm), *common_);
@@ -156,7 +156,7 @@ std::optional<glm::dvec3> Necks::neck_mm(const std::vector<glm::dvec3>& part_mm)
 
 namespace {
 
-/// The neck by which one of the choices leaves a part open; the part's points are those of the object.
+/// The thin neck by which one of the choices connects a part. `part_mm` is in the frame of the object.
 std::optional<WorstPlace> bridge_of(const std::vector<glm::dvec3>& part_mm, bool in_voxels, double volume_mm3,
                                     const std::vector<PartChoice>& choices) {
   for (const PartChoice& choice : choices) {
@@ -204,7 +204,7 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<glm::ivec3>& v
   return groups;
 }
 
-// The answers that are judged hang on by necks of their own, whatever was chosen on the way.
+// Besides the earlier choices of parts, the two judged answers themselves may differ by a thin neck.
 Bridges::Bridges(const voxel::Octree& octree, const voxel::Octree& digitised, const Witness& witness)
     : octree_(octree) {
   if (witness.choices().empty()) return;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 Voxels. A kernel's answer at a voxel's centre must be one that the witness allows it. Away from any
-//   surface, where the witness does not know the side, the kernels must agree.
+// 1 Voxels. A kernel's answer at a voxel's centre must be one that the witness allows for this kernel. Where
+//   the witness cannot decide the side away from any surface, the kernels must agree.
 // 2 Triangles. A triangle's centroid must lie where the witness has a surface, each vertex where a surface
 //   has a vertex of its own or two surfaces cross.
-// 3 Inside. What both kernels lack, or have too much of, has no boundary that step 1 would compare. So every
-//   eighth voxel wherever the object may be is held against the witness: those with x + 2y + 4z a multiple of
-//   8, one in each block of two voxels a side.
+// 3 Inside. A part that both kernels lack, or that both add, has no boundary, so step 1 does not compare it.
+//   So the witness is read at every eighth voxel wherever the object may be: at the voxels with x + 2y + 4z a
+//   multiple of 8, one in each block of two voxels a side.
 // 4 Groups. Voxels that fail, joined by faces, edges and corners; the largest is the worst place.
-// 5 Limit. Errors are made at random places of this object and judged as above: groups of voxels next to the
-//   boundary are removed and added, pieces of the mesh are lost, the whole is shifted along both directions
-//   of three axes. The limit is the smallest size from which every one of them is found.
+// 5 Limit. Errors are injected at random places of this object and judged as above: groups of voxels next to
+//   the boundary are removed and added, pieces of the mesh are removed, the whole is shifted along both
+//   directions of three axes. The limit is the smallest size from which every such error is detected.
 #include "verify/certificate/places.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// Which of the kernels is wrong at a voxel.
+/// The error of a kernel at a voxel. Apart: the kernels differ and the witness does not decide.
 enum class Fault : std::uint8_t { None, VoxelsLack, VoxelsHave, MeshLacks, MeshHas, Apart };
 
 /// Clauses of a WorstPlace, by Fault.
@@ -54,14 +54,15 @@ Fault fault_of(const Reading& reading, bool in_voxels, bool in_mesh) {
   if (!reading.voxel.allows(in_voxels)) return in_voxels ? Fault::VoxelsHave : Fault::VoxelsLack;
   if (!reading.mesh.allows(in_mesh)) return in_mesh ? Fault::MeshHas : Fault::MeshLacks;
   const bool near = reading.voxel.near || reading.mesh.near;
-  // A kernel that keeps a certain word is right, whatever the other does: their interpolations part there.
+  // Where the witness decides for one kernel and that kernel agrees, the difference is no error: the kernels'
+  // interpolations differ there.
   const bool told = reading.voxel != untold || reading.mesh != untold;
   return in_voxels == in_mesh || near || told ? Fault::None : Fault::Apart;
 }
 
-/// Where a part hangs on by less than a voxel, as thin bone does, chance decides whether a kernel takes it
-/// with the rest. So fewer voxels than a block of three a side are no fault where they are Apart and no face
-/// connects them with what the kernel that lacks them has.
+/// Where a part is connected by less than a voxel, as thin bone is, chance decides whether a kernel keeps it.
+/// So a group of Apart voxels is no fault if it has fewer voxels than a block of three a side and shares no
+/// face with voxels of the kernel that lacks it.
 constexpr std::size_t chance_voxels = 27;
 
 struct FailedVoxel {
@@ -98,7 +99,8 @@ void collect(const voxel::BlockRef& block, int height, const glm::ivec3& low,
   }
 }
 
-/// Sorts voxels of a universe and leaves each once: dealt out to their slices, these sorted by themselves.
+/// Sorts voxels of a universe by z, y, x and removes duplicates: a counting sort by slice, then a sort of
+/// each slice.
 void sort_and_unify(std::vector<glm::ivec3>& voxels, int side) {
   std::vector<std::size_t> end(static_cast<std::size_t>(side) + 1, 0);
   for (const glm::ivec3& at : voxels) ++end[static_cast<std::size_t>(at.z) + 1];
@@ -122,7 +124,7 @@ void sort_and_unify(std::vector<glm::ivec3>& voxels, int side) {
     }
 }
 
-/// The voxels at which answers can be wrong and are compared: where the kernels differ, and beside the
+/// The voxels to compare: those at which the kernels differ, and those on both sides of the octree's
 /// boundary.
 std::vector<glm::ivec3> compared_voxels(const voxel::Octree& octree, const voxel::Octree& digitised,
                                         const std::vector<voxel::VoxelFace>& boundary) {
@@ -168,7 +170,7 @@ constexpr bool is_sampled(int x, int y, int z) {
 bool is_sampled(const glm::ivec3& voxel) {
   return is_sampled(voxel.x, voxel.y, voxel.z);
 }
-/// The one of the block of two voxels a side that begins at a voxel.
+/// The sampled voxel of the block of two voxels a side whose lowest voxel is `first`.
 glm::ivec3 sampled_in_block(const glm::ivec3& first) {
   glm::ivec3 at = first;
   for (int i = 0; i < 8 && !is_sampled(at); ++i)
@@ -176,7 +178,7 @@ glm::ivec3 sampled_in_block(const glm::ivec3& first) {
   return at;
 }
 
-/// A leaf's voxels, and of those the ones of step 3.
+/// The voxels of a leaf as bits, and a mask of the voxels that step 3 samples.
 constexpr int leaf_side = 4;
 std::uint64_t leaf_word(const voxel::Octree& octree, const glm::ivec3& low) {
   const glm::ivec3 leaf = (low / leaf_side) % leaf_side;
@@ -194,13 +196,13 @@ std::uint64_t sampled_word(const glm::ivec3& low) {
   return at_even_and_odd_leaves[static_cast<std::size_t>(low.x / leaf_side % 2)];
 }
 
-/// Blocks of the universe in which the object may be, by its reading along lines, or voxels are: their lowest
-/// voxels.
+/// The lowest voxels of all blocks that meet the box of the object's reading along lines or the box of the
+/// octree's voxels.
 constexpr int block_side = 8;
 std::vector<glm::ivec3> blocks_of(const voxel::Octree& octree, const LineReading& lines) {
   const voxel::Lattice lattice = octree.universe().lattice();
   glm::dvec3 low(octree.universe().side()), high(-1.0);
-  // A box with sides in infinity has no corners: it reaches over all.
+  // A box with infinite sides has no corners; the whole universe replaces it.
   const bool is_bounded = glm::all(glm::lessThan(glm::abs(lines.box_mm.low_mm), glm::dvec3(1e9))) &&
                           glm::all(glm::lessThan(glm::abs(lines.box_mm.high_mm), glm::dvec3(1e9)));
   const voxel::Box box = is_bounded ? lines.box_mm : voxel::bounds(lattice);
@@ -227,9 +229,9 @@ std::vector<glm::ivec3> blocks_of(const voxel::Octree& octree, const LineReading
   return blocks;
 }
 
-/// Sampled voxels on which both kernels agree and that the witness's word of the mesh contradicts, but for
-/// `compared` ones, which are sorted. Empty where the object has no reading along lines, which says where to
-/// look.
+/// Sampled voxels on which both kernels agree and which the witness's word for the mesh contradicts, except
+/// the `compared` ones, which are sorted. Empty if the object has no reading along lines, because that
+/// reading bounds the search.
 std::vector<FailedVoxel> failed_inside(const voxel::Octree& octree, const voxel::Octree& digitised,
                                        const std::vector<glm::ivec3>& compared, const Witness& witness,
                                        const voxel::Progress& progress) {
@@ -251,7 +253,7 @@ std::vector<FailedVoxel> failed_inside(const voxel::Octree& octree, const voxel:
         const int bit = std::countr_zero(tried);
         const glm::ivec3 at = low + voxel::child_place(bit);
         const bool inside = ((voxels >> bit) & 1) != 0;
-        // Its interpolation of the scan is enough: the voxels' own differs at surfaces alone.
+        // The mesh's interpolation is enough: the voxel kernel's differs from it only at surfaces.
         if (!is_within(at, octree) || witness.mesh_word(lattice.lps_mm(glm::dvec3(at))).allows(inside) ||
             std::binary_search(compared.begin(), compared.end(), at, before))
           continue;
@@ -264,7 +266,7 @@ std::vector<FailedVoxel> failed_inside(const voxel::Octree& octree, const voxel:
   return failed;
 }
 
-/// Each stands for its block.
+/// Adds failed samples of step 3. Each counts as the eight voxels of its block.
 void add_inside(const std::vector<FailedVoxel>& failed, const voxel::Octree& octree, Places& places) {
   if (failed.empty()) return;
   const voxel::Lattice lattice = octree.universe().lattice();
@@ -281,8 +283,8 @@ void add_inside(const std::vector<FailedVoxel>& failed, const voxel::Octree& oct
                             volume_mm3};
 }
 
-/// Whether no face connects a voxel that one kernel lacks with a part of which it might be. What certainly is
-/// there is another object's.
+/// Whether the voxel shares no face with a voxel of the kernel that lacks it. Neighbours for which the
+/// witness decides do not count, because a part that is certainly present belongs to another object.
 bool hangs_on_no_face(const glm::ivec3& voxel, const voxel::Octree& octree, const voxel::Octree& digitised,
                       const Witness& witness) {
   const bool in_voxels = octree.contains(voxel);
@@ -306,7 +308,7 @@ WorstPlace place_of(const std::vector<FailedVoxel>& group, const voxel::Lattice&
     middle += glm::dvec3(voxel.at) / static_cast<double>(group.size());
     ++votes[static_cast<std::size_t>(voxel.fault)];
   }
-  // The voxel of the group that is nearest to its middle, so that the place lies in it.
+  // The voxel nearest to the group's middle, so that the place lies in the group.
   const auto nearest =
       std::min_element(group.begin(), group.end(), [&](const FailedVoxel& a, const FailedVoxel& b) {
         return glm::distance(glm::dvec3(a.at), middle) < glm::distance(glm::dvec3(b.at), middle);
@@ -317,8 +319,8 @@ WorstPlace place_of(const std::vector<FailedVoxel>& group, const voxel::Lattice&
           clauses[static_cast<std::size_t>(fault)], volume_mm3};
 }
 
-/// Joins failed voxels, which are sorted, leaves out groups by chance and parts beyond thin necks, and keeps
-/// the largest group.
+/// Joins the failed voxels, which are sorted, into groups. Leaves out groups that chance explains, moves
+/// parts beyond thin necks to `places.open`, and keeps the largest remaining group as the worst place.
 void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& octree,
                 const voxel::Octree& digitised, const Witness& witness, Places& places) {
   const Bridges bridges(octree, digitised, witness);
@@ -409,8 +411,8 @@ std::vector<glm::ivec3> steps_outward() {
   return steps;
 }
 
-/// The number of voxels of one state, outward from a voxel, until one of them would differ from the other
-/// kernel's and fail in the other state: a smaller error of that shape would pass there.
+/// Size of the largest error around a voxel that could pass. Counts voxels of the same state outward, up to
+/// the first one that would fail if the octree changed it. Smaller errors of that shape pass.
 std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digitised, const glm::ivec3& from,
                           const std::vector<glm::ivec3>& steps, const Witness& witness) {
   const bool inside = octree.contains(from);
@@ -426,7 +428,7 @@ std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digi
   return count;
 }
 
-/// Whether a voxel that is not in the mesh is compared: it is in the octree or beside its boundary.
+/// Whether step 1 compares a voxel outside the mesh: it is in the octree or beside the octree's boundary.
 bool is_compared(const voxel::Octree& octree, const glm::ivec3& voxel) {
   const auto has = [&](const glm::ivec3& at) { return is_within(at, octree) && octree.contains(at); };
   for (int axis = 0; axis < 3; ++axis)
@@ -438,9 +440,9 @@ bool is_compared(const voxel::Octree& octree, const glm::ivec3& voxel) {
   return has(voxel);
 }
 
-/// Whether the loss of a piece would be seen, by the mesh alone and by both kernels: it holds a voxel's
-/// centre that is compared, and at which the mesh would fail without it, and a sampled one at which both
-/// would. Looked for beneath its triangles, up to two voxels deep.
+/// Whether the loss of a piece is detected, both in the mesh alone and in both kernels. The piece must hold a
+/// compared voxel's centre at which the mesh fails without the piece, and a sampled voxel's centre at which
+/// both kernels fail. Tries points beneath the piece's triangles, up to two voxels deep.
 bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const voxel::Octree& octree,
              const Witness& witness) {
   constexpr std::size_t most_faces = 4096, most_tried = 64;
@@ -483,7 +485,7 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
       if (!seen_in_both) seen_in_both = is_lost_in_both(sampled_in_block(voxel));
       if (seen_alone && seen_in_both) return true;
     }
-  // A small piece has few sampled voxels: each is tried.
+  // A small piece holds few sampled voxels, so all of them are tried.
   const glm::dvec3 box = glm::ceil(high) - glm::floor(low) + 1.0;
   constexpr double most_voxels = 16384.0;
   if (!seen_alone || box.x * box.y * box.z > most_voxels) return false;
@@ -494,8 +496,8 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
   return false;
 }
 
-/// The largest piece of the mesh that could be lost unseen. A part that is lost or added otherwise leaves
-/// vertices where the witness has none.
+/// Volume of the largest whole piece of the mesh whose loss is not detected. Any other lost or added part
+/// leaves vertices where the witness has none, which step 2 detects.
 double piece_limit_mm3(const brep::Solid& solid, const brep::Triangles& mesh, const voxel::Octree& octree,
                        const Witness& witness) {
   const std::vector<brep::Component>& pieces = solid.components();
@@ -506,9 +508,9 @@ double piece_limit_mm3(const brep::Solid& solid, const brep::Triangles& mesh, co
   return pieces.empty() ? 0.0 : *std::max_element(lost_mm3.begin(), lost_mm3.end());
 }
 
-/// Places of an object at which errors are tried.
+/// Number of places of an object at which errors are injected.
 constexpr std::size_t tried_places = 1024;
-/// Triangles by which a shift is tried.
+/// Number of triangles that are tested for each shift.
 constexpr std::size_t tried_triangles = 4096;
 
 double place_limit_mm3(const voxel::Octree& octree, const voxel::Octree& digitised,
@@ -530,8 +532,8 @@ double place_limit_mm3(const voxel::Octree& octree, const voxel::Octree& digitis
   return static_cast<double>(std::bit_ceil(most)) * octree.universe().lattice().voxel_mm3();
 }
 
-/// The smallest tried shift that takes at least one triangle of a sample off the surface, in every direction.
-/// None: the largest tried does not.
+/// The smallest tried shift that moves at least one sampled triangle off the surface, in each of six
+/// directions. None: the largest tried shift does not.
 std::optional<double> shift_limit_mm(const brep::Triangles& mesh, double voxel_mm, const Witness& witness) {
   std::mt19937_64 random(2);
   std::vector<glm::dvec3> points_mm;
@@ -551,7 +553,7 @@ std::optional<double> shift_limit_mm(const brep::Triangles& mesh, double voxel_m
   return std::nullopt;
 }
 
-/// Without the limit.
+/// Steps 1 to 4, without the limit.
 Places contradictions(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,
                       const std::vector<voxel::VoxelFace>& boundary, const Witness& witness,
                       const voxel::Progress& progress) {

@@ -13,24 +13,25 @@
 
 namespace octotomy::verify {
 
-/// Both kernels' answers held against the witness, place by place.
+/// The comparison of both kernels' answers with the witness, place by place.
 struct Places {
-  /// Voxels at which a kernel contradicts the witness, or the kernels each other away from any surface.
+  /// Voxels at which a kernel contradicts the witness, or at which the kernels contradict each other away
+  /// from any surface.
   std::uint64_t voxel_count = 0;
-  std::uint64_t largest_count = 0;  ///< of those that touch by faces, edges or corners
+  std::uint64_t largest_count = 0;  ///< voxels of the largest group that touch by faces, edges or corners
   double stray_mm2 = 0.0;           ///< area of triangles where the witness has no surface
-  /// The largest such group of voxels, otherwise the largest such triangle.
+  /// The largest such group of voxels; if there is none, the largest such triangle.
   std::optional<WorstPlace> worst;
-  /// Parts that one kernel joins to the object by a thin_neck and the other cuts there,
-  /// the largest first. No error of either: on the scan the neck may be there or not.
+  /// Parts that one kernel joins to the object by a thin_neck and the other kernel cuts there, the largest
+  /// first. Neither kernel is wrong, because the scan does not show whether the neck is present.
   std::vector<OpenPart> open;
   DetectionLimit limit;
 };
 
-/// Holds against the witness the voxels at which the two kernels differ, those beside the octree's boundary,
-/// and the solid's vertices and triangles' centroids. `digitised` are the voxels whose centre lies inside of
-/// the solid. Throws voxel::Stopped. Parallel; same answer on any thread count. Cost: one reading for each of
-/// these points; for the limit some ten thousand more, and a sort of the solid's pieces.
+/// Compares with the witness the voxels at which the two kernels differ, the voxels beside the octree's
+/// boundary, and the solid's vertices and triangle centroids. `digitised` are the voxels whose centre lies
+/// inside the solid. Throws voxel::Stopped. Parallel; same answer on any thread count. Cost: one reading for
+/// each of these points; for the limit some ten thousand more, and a sort of the solid's pieces.
 Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,
                     const Witness& witness, const voxel::Progress& progress = {});
 
@@ -39,7 +40,7 @@ Places contradicted_places(const voxel::Octree& octree, const voxel::Octree& dig
                            const brep::Solid& solid, const Witness& witness);
 
 /// The parts that one kernel alone joins to an object by thin necks, the largest first. Cost: digitises the
-/// solid and reads where the kernels differ.
+/// solid and reads the witness at each voxel where the kernels differ.
 std::vector<OpenPart> open_parts(const voxel::Octree& octree, const brep::Solid& solid,
                                  const Witness& witness);
 

@@ -28,7 +28,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// Voxels of two units a side, so that a cuberille's corners and its half-way points are whole.
+/// Units per voxel edge. With two, the coordinates of a cuberille's corners and half-way points are integers.
 constexpr double units = 2.0;
 
 voxel::Octree on_units(const voxel::Octree& set) {
@@ -38,14 +38,15 @@ voxel::Octree on_units(const voxel::Octree& set) {
   return {universe, voxel::Block::share(set.root())};
 }
 
-/// Half of the distance that parts sheets of one set: above the rounding of points and below a shift.
+/// Half of the distance, in units, by which sheets of one set are moved apart: more than the rounding of
+/// points, less than the shift of an operand in corefinement.
 double parted_units(int side) {
   return 1e-6 * units * side;
 }
 
-/// Parts corners that share a place with others of the surface, and points half way on an edge, which lie on
-/// another sheet's: each moves along the mean normal of its own sheet, into the solid, or out of it where the
-/// solid's other side is as near.
+/// Moves apart the sheets of the surface that touch: corners that coincide with other corners, and points
+/// half way along an edge, which lie on an edge of another sheet. Each point moves along the mean normal of
+/// its own sheet, into the solid, or out of it where the solid's other side is as near.
 void part_sheets(const voxel::Octree& set, double by, brep::Triangles& surface) {
   std::vector<std::size_t> order(surface.points_mm.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -92,9 +93,9 @@ brep::Solid cuberille_of(const voxel::Octree& set, const voxel::Progress& progre
   return brep::trusted_solid(std::move(triangles), brep::Proof::Construction);
 }
 
-/// Coordinates within `near` of whole units are rounded to them; the others are those of points in the middle
-/// of a face or side, whose volume does not depend on them. And the farthest that a triangle lies from a
-/// plane between voxels.
+/// Rounds coordinates within `near` of whole units to them. The other coordinates belong to points in the
+/// middle of a face or side, and the volume does not depend on those. Also returns the largest distance of a
+/// triangle from the nearest plane between voxels, in units.
 std::pair<brep::Mesh, double> on_lattice(brep::Mesh mesh, double near) {
   double farthest = 0.0;
   for (const auto face : mesh.faces()) {
@@ -163,7 +164,7 @@ struct Corefined {
   std::vector<std::string> findings;
 };
 
-/// The certificate of an octree and what `corefine` gives.
+/// Certifies an octree against the solid that `corefine` returns.
 SetsAnswer certified(voxel::Octree octree, const std::string& operation,
                      const std::function<Corefined()>& corefine, const voxel::Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
@@ -182,7 +183,7 @@ SetsAnswer certified(voxel::Octree octree, const std::string& operation,
   try {
     Corefined corefined = corefine();
     progress.at(0.8);
-    // Points are rounded to some units in the last place of the largest coordinate.
+    // Points are rounded to a few units in the last place of the largest coordinate.
     const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * units * universe.side();
     const double near = corefined.shift_units + parted_units(universe.side()) + rounding;
     compare(on_units(answer.octree), corefined.solid, near, unit_mm3, certificate);

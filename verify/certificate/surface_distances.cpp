@@ -24,8 +24,9 @@ namespace {
 
 /// Spacing of the points on the solid. An isosurface's triangles are smaller and have one point each.
 constexpr double spacing_voxels = 2.0;
-/// Runs that a point is chosen from. The 95th percentile of so many points is the true one of a share between
-/// 0.946 and 0.954: three standard deviations, 3 sqrt(0.95 * 0.05 / 32768). The largest distance is exact.
+/// Largest number of runs; one point of each is chosen. With 32768 points the estimated 95th percentile lies
+/// between the true percentiles 94.6 and 95.4: three standard deviations, 3 sqrt(0.95 * 0.05 / 32768). The
+/// largest distance is exact.
 constexpr std::size_t most_runs = std::size_t{1} << 15;
 
 SurfaceDistances::Points face_centres(const voxel::Octree& octree) {
@@ -54,8 +55,8 @@ struct Farthest {
   }
 };
 
-/// `start` makes a function (point, enough_mm) that measures neighbours one after the other: below enough_mm,
-/// any number will do.
+/// `start` returns a function (point, enough_mm) that measures the distances of neighbouring points one after
+/// the other. A distance below enough_mm need not be exact; any number below enough_mm may be returned.
 template <typename Start>
 SurfaceDistances::Directed directed(const std::vector<glm::dvec3>& p_mm, const std::vector<double>& areas_mm2,
                                     bool sampled, const Start& start) {
@@ -146,7 +147,7 @@ WorstPlace SurfaceDistances::worst() const {
   const bool of_voxels = from_voxels_.largest_mm >= from_solid_.largest_mm;
   const Directed& farther = of_voxels ? from_voxels_ : from_solid_;
   const glm::dvec3 p_mm = farther.farthest_mm;
-  // A point of one surface is inside the other object if that has more there.
+  // A point of one surface inside the other object shows that the other object has a part there.
   const bool mesh_has_more =
       of_voxels ? solid_.tree().inside({p_mm}).front() != 0
                 : !octree_.contains(glm::ivec3(glm::round(octree_.universe().lattice().voxel(p_mm))));
@@ -158,7 +159,8 @@ double SurfaceDistances::leave_out_thin() {
   const glm::dmat3 axes_mm(octree_.universe().lps_from_voxel);
   std::vector<glm::dvec3> within_mm, beyond_mm;
   for (std::size_t i = 0; i < samples_.points_mm.size(); ++i) {
-    // A slab this wide holds a voxel's centre near each of its points: the voxel's projection on its normal.
+    // The width of a voxel along the normal. A slab of this width holds a voxel's centre near each of its
+    // points.
     const glm::dvec3 normal = samples_.normals[i], widths_mm = glm::abs(normal * axes_mm);
     const double width_mm = widths_mm.x + widths_mm.y + widths_mm.z;
     within_mm.push_back(samples_.points_mm[i] - width_mm * normal);

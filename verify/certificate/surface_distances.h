@@ -17,22 +17,22 @@ namespace octotomy::verify {
 /// apart, to the boundary faces. Each point stands for its share of the area.
 class SurfaceDistances {
  public:
-  /// Measures every point, or, for mean and percentile, some 130,000 of each direction: one by chance out of
-  /// each run of neighbours. The largest distance is of all points either way.
+  /// Measures every point. With `sampled`, mean and percentile use one random point of each run of
+  /// neighbours, at most 32,768 points in each direction; the largest distance always covers all points.
   /// Preconditions: neither object is empty, and the universe's axes are perpendicular. Keeps references to
-  /// both. Parallel; same answer on any thread count.
+  /// both objects. Parallel; same answer on any thread count.
   SurfaceDistances(const voxel::Octree& octree, const brep::Solid& solid, bool sampled);
 
-  /// Of both directions the larger.
+  /// The larger of both directions' means.
   double mean_mm() const;
   /// The smallest distance that at least 95 % of the area does not exceed.
   double percentile95_mm() const;
   double largest_mm() const;
-  /// The place of the largest, and which kernel has a part there.
+  /// The place of the largest distance, and the kernel that has a part there.
   WorstPlace worst() const;
 
-  /// Removes from the solid's side what voxels cannot show, sheets and gaps thinner than a voxel. Returns
-  /// their area in mm2. Precondition: every point was measured.
+  /// Removes the points of the solid on sheets and gaps thinner than a voxel, because voxels cannot represent
+  /// those. Returns the removed area in mm2. Precondition: every point was measured.
   double leave_out_thin();
 
   /// Points of one surface.

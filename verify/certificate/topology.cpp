@@ -30,7 +30,7 @@ Octree difference(const Octree& a, const Octree& b) {
 Octree cavities_of(const Octree& octree) {
   return difference(voxel::fill_cavities(octree), octree);
 }
-/// Sets the voxels of the middle slice that have all their 26 neighbours. Whether there is one.
+/// Sets the voxels of the middle slice that have all their 26 neighbours. Returns whether there is one.
 bool set_centres_of_blocks(const std::array<SliceBits, 3>& slices, SliceBits& centres) {
   bool any = false;
   std::vector<std::uint64_t> all(static_cast<std::size_t>(centres.words_per_row) + 2, 0);
@@ -86,7 +86,7 @@ Unmatched told(const Octree& of_voxels, const Octree& of_mesh, Neighbours neighb
   return found;
 }
 
-/// What of `parts` shares no voxel with a set.
+/// The components of `parts` that share no voxel with a set.
 Octree apart_from(const Octree& parts, const Octree& set, Neighbours neighbours) {
   return parts.is_empty() ? parts : difference(parts, voxel::components_that_meet(parts, set, neighbours));
 }
@@ -156,8 +156,9 @@ void compare_topology(Certificate& certificate, const Octree& octree, const Octr
                   .formula = "none: one voxel opens or closes a tunnel"});
 }
 
-// The mesh parts inside corners that meet at edges and corners, and outside corners that meet at a cell's
-// corners only. The voxels' Euler number by faces joins the latter, by a tunnel each.
+// In a cell of the isosurface, inside samples that meet only at edges or corners are separate, and so are
+// outside samples that meet only at the cell's corners. The voxels' Euler number by faces connects two such
+// outside samples by a tunnel, so each of those cells adds one.
 void compare_same_topology(Certificate& certificate, const Octree& octree, const brep::Solid& solid) {
   std::int64_t solid_euler = voxel::euler_numbers(octree).by_faces;
   const std::array<std::uint64_t, 256> cells = voxel::cell_counts(octree);

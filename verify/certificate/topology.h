@@ -8,33 +8,35 @@
 #include "verify/certificate/certificate.h"
 #include "voxel/tree/octree.h"
 
-// How two sets of voxels hang together, and what one of them lacks altogether.
+// Parts, cavities and tunnels of two sets of voxels, and the parts and cavities that only one set has.
 namespace octotomy::verify {
 
 struct Topology {
-  std::int64_t parts = 0;     ///< connected by faces, edges or corners
-  std::int64_t cavities = 0;  ///< that no path of faces connects with the universe's border
+  std::int64_t parts = 0;     ///< components connected by faces, edges or corners
+  std::int64_t cavities = 0;  ///< components of the outside that no path of faces connects with the border
   std::int64_t tunnels = 0;
 };
 Topology topology(const voxel::Octree& octree);
 
-/// The parts, or cavities, of either set that share no voxel with one of the other's. A part that holds no
-/// block of three voxels a side may be chance, as bone thinner than a voxel is, and does not count.
+/// The parts, or cavities, of each set that share no voxel with a part, or cavity, of the other set. A part
+/// without a block of three voxels a side does not count, because chance decides which voxels lie inside bone
+/// thinner than a voxel.
 struct Unmatched {
   std::uint64_t count = 0;
-  /// The largest of them; its size is its box's longest side. The first set is the voxels', the other the
-  /// mesh's.
+  /// The largest of the unmatched parts; its size is the longest side of its box.
   std::optional<WorstPlace> largest;
 };
-/// Both sets have the same universe. Cost: that of a few Booleans, and 20 bytes per run of voxels along x.
+/// `voxels` is the voxel kernel's set, `mesh` the digitised mesh. Precondition: both have the same universe.
+/// Cost: that of a few Booleans, and 20 bytes per run of voxels along x.
 Unmatched unmatched_parts(const voxel::Octree& voxels, const voxel::Octree& mesh);
 Unmatched unmatched_cavities(const voxel::Octree& voxels, const voxel::Octree& mesh);
 
-/// Adds both sets' parts and cavities, of which neither kernel may lose or add one that counts as unmatched,
-/// and their tunnels, which are told. `digitised` are the voxels whose centre lies inside of the mesh.
+/// Adds comparisons of parts, cavities and tunnels. A part or cavity that counts as unmatched fails; tunnels
+/// are reported without a verdict. `digitised` are the voxels whose centre lies inside the mesh.
 void compare_topology(Certificate& certificate, const voxel::Octree& octree, const voxel::Octree& digitised);
 
-/// Adds the Euler numbers and outer shells of an octree and of the surface of its own samples: equal ones.
+/// Adds comparisons of the Euler numbers and outer shells of an octree and of the isosurface of the same
+/// samples. Both must be equal.
 void compare_same_topology(Certificate& certificate, const voxel::Octree& octree, const brep::Solid& solid);
 
 }  // namespace octotomy::verify

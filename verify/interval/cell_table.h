@@ -9,12 +9,12 @@
 
 namespace octotomy::verify {
 
-/// What is gathered of a surface, by the cells of a lattice that name its parts. No cell's number is all
-/// ones.
+/// A hash table from the number of a lattice cell to a value. Precondition: no cell's number is all ones,
+/// because that marks an empty slot.
 template <typename Value>
 class CellTable {
  public:
-  /// The reference holds until the next call.
+  /// The value of a cell, created if it is new. The reference is valid until the next call.
   Value& at(std::uint64_t cell) {
     assert(cell != none);
     if (2 * count_ >= slots_.size()) grow();
@@ -44,7 +44,7 @@ class CellTable {
     Value value{};
   };
 
-  /// The cell's own slot, or the empty one where it belongs.
+  /// The cell's slot, or the empty slot at which the cell must be inserted.
   Slot& slot_of(std::uint64_t cell) {
     const std::size_t last = slots_.size() - 1;
     std::size_t at = (cell * 0x9E3779B97F4A7C15ULL) >> (64 - bits_);
@@ -59,7 +59,7 @@ class CellTable {
 
   int bits_ = 9;
   std::size_t count_ = 0;
-  std::vector<Slot> slots_;  ///< 2^bits_ of them, at least half of them empty; none at first
+  std::vector<Slot> slots_;  ///< 2^bits_ slots, at least half of them empty; no slots at first
 };
 
 }  // namespace octotomy::verify

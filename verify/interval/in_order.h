@@ -11,10 +11,10 @@
 
 namespace octotomy::verify {
 
-/// Calls take(i, item) for i from 0 in ascending order. Beforehand calls make(first, end, items) for runs of
-/// any length on all threads. So sums that take() adds to have the same bits on any number of threads.
-/// The next items are made while some are taken: make() must not read what take() writes, and must set every
-/// item, which may hold an earlier one.
+/// Calls take(i, item) for i from 0 in ascending order, so that sums in take() have the same bits on any
+/// number of threads. Before that, calls make(first, end, items) for runs of any length on all threads.
+/// make() runs at the same time as take() for earlier items, so make() must not read what take() writes. It
+/// must set every item, because an item's memory is reused.
 template <typename Item, typename Make, typename Take>
 void in_order_by_batch(std::size_t count, const Make& make, const Take& take) {
   constexpr std::size_t block = std::size_t{1} << 14, grain = 256;
@@ -39,7 +39,7 @@ void in_order_by_batch(std::size_t count, const Make& make, const Take& take) {
   }
 }
 
-/// The same for items that are made one by one: item i is make(i).
+/// The same with a make() for single items: item i is make(i).
 template <typename Item, typename Make, typename Take>
 void in_order(std::size_t count, const Make& make, const Take& take) {
   in_order_by_batch<Item>(

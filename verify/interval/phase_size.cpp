@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// A threshold's surface loses what is thinner than the blur (Prevrhal, Engelke and Kalender 1999, Accuracy
+// The surface of a threshold loses walls thinner than the blur (Prevrhal, Engelke and Kalender 1999, Accuracy
 // limits for the determination of cortical width and density; Dougherty and Newman 1999; Treece et al. 2010,
 // High resolution cortical bone thickness measurement from clinical CT data). Treece fits each wall's profile
-// with the density held; here the same model, one density and a blur, is summed over the whole solid.
+// with a fixed density. Here the same model, one density and a blur, is summed over the whole solid.
 //
-// u      a sample less the background, as a share of the contrast.
-// volume The sum of u near the solid. Blur, voxel means and the spacing of slices keep it: its error is
-//        noise, that of the background, and what is too faint to be found.
+// u      A sample minus the background, as a share of the contrast.
+// volume The sum of u near the solid. Blur, voxel means and the spacing of slices do not change it. Its error
+//        comes from noise, from the background, and from parts too faint to be found.
 // area   1 The sum of u - u^2, over the blur's deviation s, is the area over sqrt(pi) on a surface that is
 //          flat over the blur. Of thinner solids the sum of u^2 over that of u is the mean of the solid's
 //          covariogram (Porod 1951; Debye, Anderson and Brumberger 1957) under a Gaussian of variance 2 s^2.
 //          Sheets, rods and balls have closed or tabulated covariograms. Each is fitted, with its s, to the
-//          sums at four added blurs; the fits are weighed by how well they do.
-//        2 The half level's area after two added blurs, continued to no blur: what curvature and edges lose
-//          goes nearly as the variance.
-//        The value is between both; how far they differ and how far the fits differ is doubt.
+//          sums at four added blurs. The fits are weighted by their misfit.
+//        2 The half level's area after two added blurs, extrapolated to no blur. The loss at curvature and
+//          edges is nearly proportional to the variance of the blur.
+//        The value lies between both. Their difference and that of the fits are sources of doubt.
 #include "verify/interval/phase_size.h"
 
 #include <algorithm>
@@ -27,8 +27,8 @@
 namespace octotomy::verify {
 namespace {
 
-/// What is left of the sum of squares of a solid whose area is `ratio` times its volume under a blur of this
-/// deviation, both in samples: the mean covariogram.
+/// The remaining share of a sheet's sum of squares under a blur of this deviation, in samples: the mean
+/// covariogram. The sheet's area is `ratio` times its volume.
 double sheet_left(double ratio, double deviation) {
   const double thickness = 2.0 / ratio, q = std::numbers::sqrt2 * deviation;
   const double z = thickness / (q * std::numbers::sqrt2);
@@ -51,7 +51,7 @@ double ball_left(double ratio, double deviation) {
 /// Area per volume and the blur's deviation, in samples, by fits of sheets, rods and balls.
 struct Fitted {
   double log_ratio = 0.0, spread = 0.0, deviation = 0.0;
-  double misfit = 0.0;  ///< squared logarithms that the best fit leaves
+  double misfit = 0.0;  ///< residual of the best fit, in squared logarithms
 };
 Fitted fitted(const PhaseEvidence& found) {
   constexpr int deviations = 49, ratios = 241;
@@ -77,7 +77,7 @@ Fitted fitted(const PhaseEvidence& found) {
         blurs[shape] = deviation;
       }
     mean.misfit = std::min(mean.misfit, least);
-    // Even the right shape misses by about one per cent at each blur.
+    // Even the right shape has an error of about one per cent at each blur.
     weights[shape] = 1.0 / ((least + 2e-4) * (least + 2e-4));
   }
   const double all = weights[0] + weights[1] + weights[2];
@@ -96,18 +96,19 @@ struct LogRange {
   double best = 0.0, low = 0.0, high = 0.0;
 };
 
-/// The likeliest value with the farther of both bounds.
+/// The most likely value; the half-width is the distance to the farther bound.
 Interval interval_of(const LogRange& range, const std::string& name, const std::string& formula) {
   const double value = std::exp(range.best);
   const double half_width = std::max(std::exp(range.high) - value, value - std::exp(range.low));
   return {value, half_width, {{name, formula, half_width}}};
 }
 
-/// 99 of 100 normal errors are within so many deviations, and some room for noise's own doubt.
+/// In standard deviations. 99 of 100 normal errors are within 2.6; the rest allows for an error in the noise
+/// itself.
 constexpr double confidence = 2.8;
 
-/// The half level's area at two added blurs, continued to none by the variance or by the deviation; none
-/// where the two do not follow from one another.
+/// The half level's area at two added blurs, extrapolated to no blur by the variance and by the deviation.
+/// None if the two areas are not consistent.
 std::optional<LogRange> by_edges(const PhaseEvidence& found, const Fitted& fit) {
   const auto& level = found.level_mm2;
   if (!(level[2] > 0.0) || level[1] <= level[2] * 0.99 || level[1] >= 1.42 * level[2]) return std::nullopt;
@@ -116,7 +117,7 @@ std::optional<LogRange> by_edges(const PhaseEvidence& found, const Fitted& fit) 
   const double step = std::max(std::log(level[1] / level[2]), 0.0);
   const double least = near * near / (far * far - near * near) * step, most = near / (far - near) * step;
   const double apart = std::min(most - least, 0.6), middle = std::log(level[1]) + least + 0.3 * apart;
-  // Where the solid is nowhere thick, teeth and grooves as narrow as the blur may leave no half level.
+  // If the solid is thin everywhere, teeth and grooves as narrow as the blur may not reach the half level.
   const double lost = found.has_core ? 0.0 : 0.12;
   return LogRange{middle, middle - apart - 0.02, middle + apart + 0.02 + lost};
 }
@@ -143,19 +144,20 @@ Interval phase_volume(const PhaseEvidence& found, double sample_mm3) {
 
 std::optional<Interval> phase_area(const PhaseEvidence& found, const glm::dvec3& spacing_mm) {
   const Fitted fit = fitted(found);
-  // Blurred solids of one density miss by less; samples of a third one do not fit.
+  // Blurred solids of one density have a smaller misfit, samples of a third density a larger one.
   constexpr double most_misfit = 0.1;
   if (!(fit.misfit < most_misfit)) return std::nullopt;
   const double sample_mm3 = spacing_mm.x * spacing_mm.y * spacing_mm.z;
   const std::optional<LogRange> edges = by_edges(found, fit);
-  // A half level that loses over half of its area to the next blur is about to vanish and follows no power of
-  // the blur.
+  // A half level that loses over half of its area with the next blur is about to vanish. Its area follows no
+  // power of the blur.
   if (edges && found.level_mm2[3] >= 0.5 * found.level_mm2[2])
     return interval_of(
         *edges, "edges",
         "the half level's area at two blurs, continued to none by the variance or the deviation");
   const double middle = std::log(found.sum * sample_mm3 / std::cbrt(sample_mm3)) + fit.log_ratio + 0.05;
-  // Thin walls close together keep more of the sums than one wall does, and seem to have less surface.
+  // Thin walls close together keep a larger share of the sums than a single wall, so the fit underestimates
+  // their area.
   const double least_half = found.is_ambiguous ? 0.75 : 0.4;
   const double half = least_half + fit.spread + 0.06 / std::max(found.highest, 0.03);
   LogRange range{middle, middle - half, middle + half};

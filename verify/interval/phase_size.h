@@ -6,14 +6,14 @@
 
 #include "verify/interval/two_phase.h"
 
-// The size of a solid of one density from the sums of its samples. The source has the derivations.
+// Volume and area of a solid of one density, from sums over its samples. The source has the derivations.
 namespace octotomy::verify {
 
-/// The volume that the samples' shares of the contrast sum to.
+/// The volume: the sum of the samples' shares of the contrast times the volume of a sample.
 Interval phase_volume(const PhaseEvidence& found, double sample_mm3);
 
-/// The area that lets blurs of the samples leave these sums of squares and this half level; none where no
-/// blurred solid does. Cost: some ten thousand fits.
+/// The area, fitted to the sums of squares and the areas of the half level after each added blur. None: no
+/// blurred solid fits them. Cost: some ten thousand evaluations of the model.
 std::optional<Interval> phase_area(const PhaseEvidence& found, const glm::dvec3& spacing_mm);
 
 }  // namespace octotomy::verify

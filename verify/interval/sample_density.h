@@ -3,22 +3,23 @@
 
 #include <vector>
 
-// Densities that a scan's samples cluster about.
+// Densities around which a scan's samples cluster.
 namespace octotomy::verify {
 
-/// A density and its noise, in sample units.
+/// A density and the standard deviation of its noise, in sample units.
 struct SampleDensity {
   double value = 0.0, noise = 0.0;
 };
 
-/// The density that most of the values lie close to: the middle of the narrowest quarter of them, and the
-/// spread of those. Precondition: eight values or more. Sorts them.
+/// The most frequent density: the middle of the narrowest quarter of the values, with the noise from that
+/// quarter's width. Precondition: eight values or more. Sorts the values.
 SampleDensity densest(std::vector<float>& values);
 
-/// The same density from all values close to it; its noise only falls, so that the next density stays out.
+/// The same density, computed again from all values close to it. The noise never increases, so that values of
+/// the next density stay excluded.
 SampleDensity refined(const std::vector<float>& values, SampleDensity level);
 
-/// The middle of the values about the density that is nearest to this one.
+/// The centre of the cluster of values nearest to `level`.
 double nearest_mode(const std::vector<float>& values, SampleDensity level);
 
 }  // namespace octotomy::verify

@@ -37,7 +37,7 @@ void grow(const SampleGrid& grid, SampleMask& mask, std::size_t reach) {
     each_row(grid, axis, [&](std::size_t first, std::size_t stride, std::size_t length) {
       thread_local SampleMask line;
       line.assign(length, 0);
-      std::size_t until = 0;  // one beyond what the last set sample reaches
+      std::size_t until = 0;  // one beyond the reach of the last set sample
       for (std::size_t i = 0; i < length; ++i)
         if (mask[first + i * stride] != 0) {
           for (std::size_t k = std::max(until, i > reach ? i - reach : 0);

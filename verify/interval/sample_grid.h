@@ -31,7 +31,7 @@ struct SampleGrid {
   }
 };
 
-/// Sums in a fixed order whatever the threads: by planes of z, then over the planes.
+/// Sums in an order that does not depend on the threads: within planes of z, then over the planes.
 template <typename Sum, typename PerPlane>
 Sum by_planes(const SampleGrid& grid, const PerPlane& per_plane) {
   std::vector<Sum> planes(static_cast<std::size_t>(grid.dims.z));
@@ -41,7 +41,7 @@ Sum by_planes(const SampleGrid& grid, const PerPlane& per_plane) {
   return whole;
 }
 
-/// Rows along an axis: runs `along(first, stride, length)` for each, in parallel.
+/// Runs `along(first, stride, length)` for each row along an axis, in parallel.
 template <typename Along>
 void each_row(const SampleGrid& grid, int axis, const Along& along) {
   const int outer = axis == 2 ? grid.dims.y : grid.dims.z, inner = axis == 0 ? grid.dims.y : grid.dims.x;
@@ -55,16 +55,17 @@ void each_row(const SampleGrid& grid, int axis, const Along& along) {
   });
 }
 
-/// A Gaussian of so many samples along each axis; border samples go on outwards.
+/// A Gaussian blur with a deviation in samples along each axis. Beyond the border, samples repeat those of
+/// the border.
 SampleValues blurred(const SampleGrid& grid, SampleValues values, double deviation);
 
-/// The lowest, or highest, of the samples within so many along each axis.
+/// The lowest, or highest, of the samples within `reach` samples along each axis.
 SampleValues extremes(const SampleGrid& grid, SampleValues values, std::size_t reach, bool highest);
 
-/// Sets all within so many samples along each axis of one that is set.
+/// Sets all samples within `reach` samples along each axis of one that is set.
 void grow(const SampleGrid& grid, SampleMask& mask, std::size_t reach);
 
-/// The area of a level between samples, in cells parted into six tetrahedra about a diagonal.
+/// The area of the isosurface of `level`, with each cell divided into six tetrahedra around a diagonal.
 double level_mm2(const SampleGrid& grid, const SampleValues& values, float level);
 
 }  // namespace octotomy::verify

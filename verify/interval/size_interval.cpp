@@ -1,42 +1,44 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// What an isosurface loses of a solid, t a direction in the surface, s(t) the samples' spacing along it, k(t)
-// the curvature along it, d(t) = 1 / |t / s| the same spacing by its inverse squares:
+// The volume and area that an isosurface loses of a solid. t is a direction in the surface, s(t) the samples'
+// spacing along t, k(t) the curvature along t, d(t) = 1 / |t / s| the spacing by its inverse squares.
 //
-// volume   1 A sample is the mean over its voxel, a variance of s^2 / 12, and the scan has a blur of its own,
-//            b^2 s^2. Blur moves the half level of curved boundary inward by half the variance times k,
-//            summed over two directions: so V loses the integral of s(t)^2 k(t), B for short, times 1/12 +
-//            b^2. Where the variance differs by direction only the part that is independent of the normal's
-//            counts, which is d(t)^2: C, the integral of d(t)^2 k(t). What solids lose at spacings up to
-//            5:1:1 lies between both, so b^2 takes their mean.
-//          2 Triangles are chords between crossings on the lattice's edges: 0.2 C (0.21 by balls at 1:1:1 to
-//            5:1:1).
-//          3 An edge loses as the tangent of half its angle does, more than 1 and 2 take of a sharp one: the
-//            tangent's next term is its cube, F, s times the integral of (s H)^3 over the parts of E below.
-//            0.15 F, half of what edges lose at 1:1:1, as they lose less between coarse slices.
+// volume   1 A sample is the mean over its voxel, which is a blur of variance s^2 / 12. The scan adds a blur
+//            of variance b^2 s^2. Blur moves the half level of curved boundary inward by half the variance
+//            times k, summed over two directions. So V loses (1/12 + b^2) B, B the integral of s(t)^2 k(t).
+//            Where the variance depends on the direction, only its part independent of the normal's direction
+//            counts, which is d(t)^2. The integral of d(t)^2 k(t) is C. The loss of solids at spacings up to
+//            5:1:1 lies between that by B and that by C, so the term with b^2 uses their mean.
+//          2 Triangles are chords between crossings on the lattice's edges. They lose 0.2 C (0.21 for balls
+//            at 1:1:1 to 5:1:1).
+//          3 The loss at an edge grows with the tangent of half its angle. At a sharp edge that is more than
+//            terms 1 and 2. The tangent's next term is cubic: F, s times the integral of (s H)^3 over the
+//            parts of E below. The loss is 0.15 F, half of the loss of edges at 1:1:1, because edges lose
+//            less between coarse slices.
 // area     The same displacements times 2 H, H the mean curvature: 2 (0.29 + b^2) E on smooth boundary, E the
-//          integral of (s H)^2. Edges have no H; there E is taken over parts of six samples, over which blur
-//          spreads an edge, and (0.28 + b^2) E is what chamfers lose, too; what it takes less of smooth
-//          boundary is ripple's gain.
+//          integral of (s H)^2. An edge has no H. There E is computed over parts of six samples, because blur
+//          spreads an edge over that distance. Chamfers lose (0.28 + b^2) E as well. On smooth boundary this
+//          is less than the loss above, and ripple, which adds area, makes up for the difference.
 //
 // Integrals of curvature are sums over edges of length times angle (Cohen-Steiner and Morvan, 2003), by parts
-// of six samples along each axis and by the direction of the normal, so that ripple and noise cancel. What
-// they leave over the surface, R, is the area that one step of smoothing takes away.
+// of six samples along each axis and by the direction of the normal, so that ripple and noise cancel. The
+// area of ripple and noise is R, the area that one step of smoothing removes.
 //
-// None of this is added to a value, which is the triangles' own: it holds at the half level of a solid of one
-// density, and no threshold of a patient's scan is known to be one. Where a scan is known to have two
-// densities, two_phase.h has the value. The blur b^2 that samples show may be the object's own slope, too, as
-// that of a ramp or of spongy bone.
+// None of these losses is added to a value; the value is that of the triangles. The losses hold at the half
+// level of a solid of one density, and no threshold of a patient's scan is known to be a half level. Where a
+// scan is known to have two densities, two_phase.h computes the value. The blur b^2 measured in the samples
+// may also be a gradient of the object itself, such as a ramp or spongy bone.
 //
-// sources  interpolation: all that a half level would lose, or the difference to samples counted, which do
-//          not depend on how samples are joined: between coarse slices the surface of a low threshold bulges,
-//          and that of thin walls shrinks. digitisation, edges: a share of the former. blur: what blur would
-//          have taken, and a share of it. flat: a plane along the lattice lies between samples of shares 1, f
-//          and 0, and linear interpolation misplaces it by up to 0.086 s, the whole of it alike. Noise tilts
-//          its triangles, so that a part whose mean normal is along the lattice counts whole. sheet: the blur
-//          of its other side lowers a sheet's samples (step_share()). window: the surface's shift for ten
-//          sample units. The constants were calibrated with solids of all groups in poses of other seeds than
-//          interval_suite()'s, so that its 99th percentile is held.
+// sources  interpolation: the whole loss at a half level, or the difference from the volume by counting
+//          samples if that is larger. Counting does not depend on the interpolation: between coarse slices
+//          the surface of a low threshold bulges, and that of thin walls shrinks. digitisation, edges: a
+//          share of that loss. blur: the loss by blur, and a share of it. flat: a plane along the lattice
+//          lies between samples of shares 1, f and 0, and linear interpolation displaces the whole plane
+//          equally, by up to 0.086 s. Noise tilts its triangles, so a part whose mean normal is along the
+//          lattice counts with its whole area. sheet: the blur of the other side lowers a sheet's samples
+//          (step_share()). window: the surface's shift for ten sample units. The constants were calibrated
+//          with solids of all groups in poses of other seeds than those of interval_suite(), so that the
+//          intervals hold at its 99th percentile.
 #include "verify/interval/size_interval.h"
 
 #include <algorithm>
@@ -59,7 +61,7 @@ namespace {
 
 constexpr double voxel_mean = 1.0 / 12.0;
 constexpr double chords = 0.2;
-/// An isosurface chamfers an edge, so that its triangles meet at less than this.
+/// An isosurface chamfers edges, so the angle between its triangles is smaller than this.
 constexpr double sharpest_rad = 1.2;
 
 /// Curvature and area of one part.
@@ -71,7 +73,7 @@ struct Part {
   double flat_mm3 = 0.0;       ///< area of triangles along the lattice, each times the spacing across
 };
 
-/// What the intervals are made of.
+/// The integrals over the surface from which the intervals are computed.
 struct Shape {
   double area_mm2 = 0.0, volume_mm3 = 0.0;
   double bent_mm3 = 0.0, bent_without_sign_mm3 = 0.0;    ///< B
@@ -81,7 +83,8 @@ struct Shape {
   double ripple_mm2 = 0.0;                               ///< R
   double curvature_mm = 0.0;                             ///< integral of H without sign
   double flat_mm3 = 0.0;  ///< area along the lattice, each part times the spacing across
-  /// By how much samples counted differ from the triangles, along the axis where they differ most.
+  /// Difference between the volume by counting samples and that of the triangles, for the axis with the
+  /// largest difference.
   double between_mm3 = 0.0;
 };
 
@@ -94,7 +97,8 @@ class Measuring {
         has_cells_(from.along_lps_mm) {
     const glm::dmat3& edges = from.sample_edges;
     frame_.from_lps = glm::inverse(edges);
-    // Vertices have whole coordinates in samples: between such planes rounding moves none to the next part.
+    // Vertices have integer coordinates in samples. The borders of parts lie between those planes, so that
+    // rounding cannot move a vertex to the next part.
     frame_.origin_mm = from.sample_at_mm + edges * glm::dvec3(0.123, 0.147, 0.161);
     for (int axis = 0; axis < 3; ++axis) {
       frame_.spacing_mm[axis] = glm::length(edges[axis]);
@@ -132,8 +136,8 @@ class Measuring {
   const std::array<std::uint32_t, 3>& corners(std::size_t face) const { return triangles_.faces[face]; }
   const glm::dvec3& point(std::uint32_t number) const { return triangles_.points_mm[number]; }
 
-  /// The number of a lattice's cell, by the axis that a direction is nearest to and its sign. Cells are
-  /// numbered to half a million from the origin.
+  /// The key of a lattice cell and of a direction's nearest axis with its sign. Precondition: the cell's
+  /// indices are below half a million.
   static std::uint64_t numbered(const glm::dvec3& cell, const glm::dvec3& along) {
     int direction = 0;
     for (int axis = 1; axis < 3; ++axis)
@@ -179,15 +183,15 @@ class Measuring {
         });
   }
 
-  /// The size of an area along the lattice times the spacing across; zero for any other. `along` is the area
-  /// by the lattice's directions.
+  /// The size of an area whose normal is along an axis of the lattice, times the spacing along that axis;
+  /// zero for any other area. `along` is the vector area in the lattice's directions.
   double flat_mm3(double size, const glm::dvec3& along) const {
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(along[axis]) > flat_cosine * size) return size * frame_.spacing_mm[axis];
     return 0.0;
   }
 
-  /// What an edge adds: to its part, or its points to those of cuts; and to its cell.
+  /// The contribution of an edge. A bent edge adds to its part, a cut marks its points; both add to a cell.
   struct BentEdge {
     enum class Kind : std::uint8_t { None, Cut, Bent } kind = Kind::None;
     bool has_cell = false;
@@ -195,7 +199,8 @@ class Measuring {
     std::uint64_t part = 0, cell = 0;
     double mm = 0.0, spacing_mm = 0.0, inverse = 0.0;
   };
-  /// Of the first side of each edge; nothing of the second.
+  /// Sets the edges of sides `first` to `end`; empty for the second side of an edge, so that each counts
+  /// once.
   void make_edges(std::size_t first, std::size_t end, BentEdge* made) const {
     EdgeBatch edges;
     std::array<std::size_t, batch> sides;
@@ -263,7 +268,8 @@ class Measuring {
     shape_.curvature_mm = std::abs(shape_.curvature_mm);
   }
 
-  /// Where crossings lie on the lattice's edges, along each axis: counting samples sets them in the middle.
+  /// Computes `between_mm3`. Counting samples is equal to placing each crossing in the middle of its lattice
+  /// edge, so the difference is the sum of the crossings' distances from the middle.
   void find_between() {
     std::vector<glm::dvec3> across(triangles_.points_mm.size(), glm::dvec3(0.0));
     for (const auto& [a, b, c] : triangles_.faces) {
@@ -276,7 +282,7 @@ class Measuring {
     for (std::size_t v = 0; v < across.size(); ++v) {
       const glm::dvec3 q = frame_.from_lps * (triangles_.points_mm[v] - sample_at_mm_);
       const glm::dvec3 off = glm::abs(q - glm::round(q));
-      // Vertices keep a thousandth of an edge's distance from samples.
+      // Vertices are at least a thousandth of an edge away from samples.
       constexpr double on_line = 2e-4;
       for (int axis = 0; axis < 3; ++axis) {
         if (off[axis] <= on_line || off[(axis + 1) % 3] > on_line || off[(axis + 2) % 3] > on_line) continue;
@@ -288,8 +294,8 @@ class Measuring {
     shape_.between_mm3 = std::max({sum.x, sum.y, sum.z});
   }
 
-  /// Takes every point half-way to the mean of its neighbours; points of cuts stay. Each thread has points of
-  /// its own and looks at all triangles for them, so that a point's sum goes by the triangles' order.
+  /// Moves every point half-way to the mean of its neighbours; points of cuts stay. Each thread owns a range
+  /// of points and reads all triangles, so that a point's sum is in the order of the triangles.
   void smooth() {
     const std::vector<glm::dvec3>& p = triangles_.points_mm;
     std::vector<glm::dvec3, voxel::LargeAllocator<glm::dvec3>> moved(p.size());
@@ -322,7 +328,8 @@ class Measuring {
     shape_.ripple_mm2 = std::max(shape_.area_mm2 - area_mm2, 0.0);
   }
 
-  /// Within 2.5 degrees of the lattice: over six samples less than a quarter of a sample off.
+  /// The cosine of 2.5 degrees. A plane within that angle of the lattice deviates from it by about a quarter
+  /// of a sample over six samples.
   static constexpr double flat_cosine = 0.99905;
 
   const brep::Linked& linked_;
@@ -341,12 +348,12 @@ double normal_distribution(double z) {
   return 0.5 * std::erfc(-z / std::numbers::sqrt2);
 }
 
-/// How far beyond the surface nothing is left of it, in samples.
+/// Distance beyond the surface at which blur has no effect any more, in samples.
 constexpr double away = 2.5;
 
-/// The mean step across a face over distances of up to one sample on either side; `level` is taken at a
-/// depth in samples. Over a whole sample the ripple of linear interpolation cancels, which at a face along
-/// the lattice would hang on where between two samples the face lies.
+/// The mean step across a face over distances of up to one sample on either side. `level` returns the value
+/// at a depth in samples. The ripple of linear interpolation cancels over a whole sample. At a face along the
+/// lattice it would otherwise depend on the position of the face between two samples.
 template <typename Level>
 double mean_step(const Level& level) {
   constexpr int parts = 4;
@@ -390,7 +397,7 @@ void add(double share, const Interval& part, Interval& whole) {
   }
 }
 
-/// What a sheet's half level loses on either side because the other side's blur reaches it.
+/// The volume that a sheet's half level loses on both sides because the blur of each side reaches the other.
 double sheet_mm3(const Shape& shape, double blur_samples2, double sample_mm) {
   if (!(shape.area_mm2 > 0.0) || !(shape.volume_mm3 > 0.0)) return 0.0;
   const double deviation_mm = sample_mm * std::sqrt(blur_samples2 + voxel_mean);
@@ -468,7 +475,7 @@ double blur_of(const brep::Solid& solid, const glm::dmat3& sample_edges,
     const glm::dvec3 normal = glm::cross(q - p, r - p);
     const double length = glm::length(normal);
     if (!(length > 0.0)) continue;
-    // One sample along the normal. A sheet is deepest half-way through.
+    // `one` is one sample along the normal. The largest depth in a sheet is half its thickness.
     const glm::dvec3 n = normal / length, one = n * glm::length(glm::transpose(sample_edges) * n);
     const glm::dvec3 at = (p + q + r) / 3.0;
     const double half_thickness = half_thickness_mm / glm::length(one);

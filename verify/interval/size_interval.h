@@ -9,63 +9,65 @@
 
 #include "brep/mesh/solid.h"
 
-// One number for an object's volume and one for its area, each with the interval that holds the truth in 99
-// of 100 cases. The source has the derivations, phantom_suite() shows the coverage.
+// One value for an object's volume and one for its area, each with an interval that holds the truth in 99 of
+// 100 cases. The source has the derivations; interval_suite() measures the coverage.
 namespace octotomy::verify {
 
-/// One source of doubt.
+/// One source of uncertainty.
 struct DoubtSource {
   std::string name;     ///< "digitisation", "window", ...
   std::string formula;  ///< its size, in symbols that the source explains
   double half_width = 0.0;
-  bool is_bias = false;  ///< errs to one side, as blur does, and often by all of it
+  bool is_bias = false;  ///< the error is to one side, as with blur, and often as large as half_width
 };
 
 struct Interval {
-  double value = 0.0;  ///< recommended
+  double value = 0.0;  ///< the recommended value
+  /// The sum of the biases plus the root of the sum of squares of the other sources.
   double half_width = 0.0;
-  std::vector<DoubtSource> sources;  ///< the biases' sum, and the root of the others' squares
+  std::vector<DoubtSource> sources;
 };
-/// The share of cases that an interval's claim holds in.
+/// The share of cases whose interval must hold the truth.
 inline constexpr double claimed_coverage = 0.99;
 
-/// How a surface was found: the isosurface of samples, since carried by motions and cut by exact planes.
+/// The origin of a surface: an isosurface of samples that was then moved and cut by exact planes.
 struct SampledFrom {
   glm::dmat3 sample_edges{1.0};  ///< columns: the lattice's steps in LPS millimetres, after all motions
-  glm::dvec3 sample_at_mm{0.0};  ///< the place of a sample, after all motions
+  glm::dvec3 sample_at_mm{0.0};  ///< the position of a sample, LPS, after all motions
   double blur_samples2 = 0.0;    ///< blur_of()
-  /// How far the surface moves for the doubt about its window's bound; none: the bound is certain.
+  /// Shift of the surface within the uncertainty of its window's bound. None: the bound is certain.
   std::optional<double> window_shift_mm = {};
-  /// Spacing of the samples along the LPS axes; set: the curvature by such samples is wanted, too.
+  /// Spacing of the samples along the LPS axes. If it is set, the curvature is computed as well.
   std::optional<glm::dvec3> along_lps_mm = {};
 };
 
-/// Of the triangles as they are.
+/// Measures of the triangles themselves, without correction.
 struct AreaAndCurvature {
   double area_mm2 = 0.0;
-  double curvature_mm = 0.0;  ///< as BoundaryModel's; zero if it was not asked for
+  double curvature_mm = 0.0;  ///< as in BoundaryModel; zero unless along_lps_mm was set
 };
 
 struct SizeIntervals {
   Interval volume_mm3, area_mm2;
   AreaAndCurvature triangles;
 };
-/// Of a surface that samples were interpolated for; the value is the triangles'. An edge sharper than an
-/// isosurface has is a cut, which errs by nothing. Motions keep both; a part has the doubt of its own
-/// surface, so that parts of one whole add up to it. Cost: n log n in edges.
+/// The intervals of an isosurface of samples. Their values are the measures of the triangles. An edge sharper
+/// than an isosurface can have is a cut, which has no error. Motions do not change value and width. The width
+/// of a part comes from its own surface, so the widths of the parts add up to that of the whole. Cost: n log
+/// n in edges.
 SizeIntervals size_intervals(const brep::Solid& solid, const SampledFrom& from);
 
-/// Upper bounds of what could have been missed where nothing is found: a ball two samples across.
+/// The intervals of an empty object: upper bounds of what may have been missed, a ball two samples across.
 SizeIntervals nothing_found(const glm::dvec3& sample_mm);
 
-/// Of an object whose surface comes from several samplings, the intervals as if one had shown all of it, and
-/// that one's share of the surface.
+/// For an object whose surface comes from several samplings: the intervals as if one of them had sampled the
+/// whole surface, and its share of the surface.
 struct SharedIntervals {
   double share = 0.0;
   SizeIntervals intervals;
 };
-/// Values and half-widths by their shares: doubts of one piece may err to the same side as the other's.
-/// Precondition: the shares' sum is one.
+/// The mean of values and half-widths, weighted by the shares. The half-widths are added linearly because the
+/// errors may be to the same side. Precondition: the shares add up to one.
 SizeIntervals weighed(const std::vector<SharedIntervals>& parts);
 
 /// The variance of the scan's blur, in squared samples, from the steepness of the samples across the surface.

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// passes 1 Levels of most of the scan, of what lies beside the solid, and of the core. 2 Where both are
-// alike, the scan is read as one of two densities. Elsewhere, or where that fails, samples of a third density
-// below the surroundings, as of air about tissue, are taken for surroundings if they keep away from the
-// solid; where they meet it the scan is refused. A density between both is a doubt. 3 Samples near the solid:
-// those that rise above noise after a blur of one sample, and three samples about them. 4 Sums. 5 Fits.
+// Passes:
+// 1 Estimate the densities of most of the scan, of the samples beside the solid, and of the core.
+// 2 If the first two are equal, treat the scan as one of two densities. If they differ or that fails, samples
+//   of a third density below the surroundings, such as air around tissue, count as surroundings if they do
+//   not touch the solid. If they touch it the scan is rejected. A density between both makes the result
+//   ambiguous.
+// 3 Mark the samples near the solid: those that rise above noise after a blur of one sample, and all samples
+//   within three samples of them.
+// 4 Sum over the samples near the solid and over those away from it.
+// 5 Fit volume and area to the sums (phase_size.h).
 #include "verify/interval/two_phase.h"
 
 #include <algorithm>
@@ -19,7 +24,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// Two gigabytes of copies.
+/// Largest scan: the copies of its samples take two gigabytes.
 constexpr std::size_t most_samples = std::size_t{1} << 27;
 
 /// Sums over the samples near the solid and those away from it.
@@ -54,11 +59,12 @@ class Reading {
     grid_.spacing_mm = scan.lattice.spacing_mm();
   }
 
-  /// False: the solid and what is about it are not of two densities.
+  /// Returns false if the solid and its surroundings do not have two densities.
   bool run(PhaseEvidence& found) {
     if (scan_.padding || glm::any(glm::lessThan(grid_.dims, glm::ivec3(8))) || is_sheared()) return false;
     if (grid_.size() > most_samples || !look_about()) return false;
-    // Gaps between near walls have a density of their own too: the scan as one of two densities comes last.
+    // Gaps between adjacent walls also have a density of their own. So where the densities differ, two
+    // densities are tried last.
     const bool may_be_of_two = is_of_two_;
     const bool is_other = is_beside_ && std::abs(beside_.value - all_.value) > far();
     if (may_be_of_two && !is_other && run_in(all_, found)) return true;
@@ -73,7 +79,7 @@ class Reading {
   }
 
  private:
-  /// As run(), in surroundings of this density.
+  /// As run(), with `level` as the density of the surroundings.
   bool run_in(const SampleDensity& level, PhaseEvidence& found) {
     take(level);
     if (!(contrast_ > 0.0) || noise_ > 0.2 * contrast_) return false;
@@ -90,10 +96,10 @@ class Reading {
     find_core();
     Sums sums = summed(values_, true);
     if (!is_of_two_) sums.odd += odd_in(at_blur[2]);
-    // Samples that lie alone are noise; elsewhere they are a third density.
+    // A few odd samples are noise; more of them are a third density.
     if (sums.odd > sums.away_count / 500 + 2 || sums.border > 0 || sums.away_count < 100) return false;
     const double mean = sums.away / static_cast<double>(sums.away_count);
-    // A third density that no one sample shows moves the mean.
+    // A third density too faint to show in a single sample shifts the mean.
     if (!is_of_two_ &&
         std::abs(mean - background_) >
             0.005 * contrast_ + 0.1 * noise_ + 4.0 * noise_ / std::sqrt(static_cast<double>(sums.away_count)))
@@ -114,7 +120,7 @@ class Reading {
     for (std::size_t i = 0; i < 4; ++i) {
       const Sums shares = summed(at_blur[i], false);
       const double away = shares.away_square / static_cast<double>(shares.away_count);
-      // White noise keeps one part in 44.5 of its variance after a blur of one sample.
+      // A blur of one sample reduces the variance of white noise to 1 / 44.5.
       if (i == 2) found.correlation = std::sqrt(std::max(1.0, 44.5 * away / std::max(white_, 1e-9)));
       if (i == 0) white_ = away;
       found.squares[i] = shares.near_square - static_cast<double>(shares.band_count) * away;
@@ -131,8 +137,9 @@ class Reading {
     found.background = background_;
     found.contrast = contrast_;
     found.least_seen = least_seen_ / contrast_;
-    // Blur lowers walls that are thin everywhere. Where samples over the half level are a small part of the
-    // sum and some are hardly lowered, the rest is rather of a third density; beside a core it surely is.
+    // Blur lowers walls that are thin everywhere. If samples over the half level are a small part of the sum
+    // although some samples are hardly lowered, the rest probably has a third density. If there is a core, it
+    // certainly has.
     const bool is_much_more = found.highest > 0.8 && found.sum * sample_mm3() > 1.6 * found.counted_mm3;
     if (is_much_more && found.has_core) return false;
     found.is_ambiguous =
@@ -143,7 +150,7 @@ class Reading {
 
   double sample_mm3() const { return grid_.spacing_mm.x * grid_.spacing_mm.y * grid_.spacing_mm.z; }
 
-  /// Whether the scan's axes are not at right angles, as blurs and areas by spacing have them.
+  /// Whether the scan's axes are not at right angles, which blurs and areas require.
   bool is_sheared() const {
     const glm::dmat3 axes(scan_.lattice.lps_from_voxel);
     const auto cosine = [&](int a, int b) {
@@ -158,12 +165,13 @@ class Reading {
     contrast_ = 2.0 * (low_ - background_);
   }
 
-  /// How far below or above the surroundings a sample is of another density.
+  /// A sample that differs by more than this from the surroundings has another density.
   double far() const { return std::max(6.0 * noise_, 0.02 * contrast_); }
 
-  /// Finds the density of most of the scan below the bound, and that which the solid lies in: of samples
-  /// three samples from it. Where too few samples reach the bound, that is the higher of two common ones.
-  /// False: there is none.
+  /// Estimates the density of most of the scan below the bound, and that of the solid's surroundings, from
+  /// samples at a distance of three samples from the solid. If too few samples reach the bound, the density
+  /// of the surroundings is the higher of the two most frequent ones. False: too few samples are below the
+  /// bound.
   bool look_about() {
     std::vector<float> below, others, beside;
     std::visit(
@@ -183,7 +191,8 @@ class Reading {
     each_beside([&](double value) { beside.push_back(static_cast<float>(value)); });
     is_beside_ = beside.size() >= 100;
     if (is_beside_) {
-      // Blur widens what is beside the solid: noise is that of most of the scan, if that is of this density.
+      // Blur widens the distribution of the samples beside the solid. If most of the scan has the same
+      // density, its noise is used.
       beside_ = densest(beside);
       if (std::abs(beside_.value - all_.value) < 3.0 * beside_.noise)
         beside_.noise = std::min(beside_.noise, all_.noise);
@@ -196,8 +205,8 @@ class Reading {
     return true;
   }
 
-  /// Finds samples over the bound that have another beside them along x, y or z: one alone is noise. Of more
-  /// than 200,000 every so many.
+  /// Collects samples over the bound that have a neighbour over it along x, y or z; a single sample is noise.
+  /// Thins them out evenly to 200,000 at most.
   template <typename Samples>
   void find_over(const Samples& samples) {
     const auto is_over = [&](std::size_t i) { return static_cast<double>(samples[i]) >= low_; };
@@ -218,7 +227,8 @@ class Reading {
     over_.resize(kept);
   }
 
-  /// Runs `visit(value)` for samples below the bound that lie three samples along an axis from one over it.
+  /// Calls `visit(value)` for samples below the bound at a distance of three samples along an axis from one
+  /// over it.
   template <typename Visit>
   void each_beside(const Visit& visit) const {
     std::visit(
@@ -236,7 +246,8 @@ class Reading {
         scan_.samples);
   }
 
-  /// Whether samples beside the solid are of these surroundings, but for what blur and near walls add.
+  /// Whether the samples beside the solid have the density of the surroundings, apart from the effect of blur
+  /// and of adjacent walls.
   bool are_beside() {
     take(beside_);
     std::size_t all = 0, below = 0, lower = 0, higher = 0;
@@ -246,11 +257,12 @@ class Reading {
       lower += value < background_ - far() ? 1 : 0;
       higher += value > background_ + 0.1 * contrast_ ? 1 : 0;
     });
-    // One in fifteen normal values is 1.5 deviations below their mean.
+    // Of normal values one in fifteen is more than 1.5 deviations below the mean.
     return 5 * below <= all && 20 * lower <= all && 7 * higher <= 6 * all;
   }
 
-  /// Takes samples below the surroundings, and those beside them, for surroundings.
+  /// Replaces samples of a lower density than the surroundings, and their neighbours, by the density of the
+  /// surroundings.
   void fill_lower() {
     const auto bound = static_cast<float>(background_ - far());
     for (std::size_t i = 0; i < values_.size(); ++i) filled_[i] = values_[i] < bound ? 1 : 0;
@@ -263,8 +275,9 @@ class Reading {
     fill();
   }
 
-  /// Whether samples between both densities are alike over five along each axis: those of a third density, or
-  /// of thin walls close together. No wall and no edge alone is, after a blur of one sample.
+  /// Whether samples between both densities are nearly equal over five samples along each axis. That shows a
+  /// third density, or thin walls close together. After a blur of one sample a single wall or edge has no
+  /// such plateau.
   bool finds_plateau(const SampleValues& at_one) const {
     const SampleValues lowest = extremes(grid_, at_one, 2, false), highest = extremes(grid_, at_one, 2, true);
     const auto zero = static_cast<float>(background_), unit = static_cast<float>(contrast_);
@@ -287,14 +300,15 @@ class Reading {
     for (std::size_t i = 0; i < at_one.size(); i += stride)
       if (filled_[i] == 0 && std::abs(static_cast<double>(at_one[i]) - background_) <= 3.5 * noise_ + 1.0)
         values.push_back(at_one[i]);
-    // A blur of one sample leaves a seventh of white noise, and more of one that hangs together. Samples are
-    // whole numbers: where nothing varies, half a unit does.
+    // A blur of one sample reduces white noise to a seventh, and correlated noise less. The lower limit is
+    // for scans without noise, because samples are rounded to whole numbers.
     least_seen_ = 0.005 * contrast_;
     if (values.size() >= 100)
       least_seen_ = std::max(5.0 * refined(values, densest(values)).noise, least_seen_);
   }
 
-  /// False: nothing rises above noise, or a third density meets what does.
+  /// Marks the samples near the solid. False: nothing rises above noise, or a third density touches what
+  /// does.
   bool find_near(const SampleValues& at_one) {
     near_.resize(at_one.size());
     solid_.resize(at_one.size());
@@ -313,7 +327,7 @@ class Reading {
     beyond_ = near_;
     grow(grid_, beyond_, 2);
     if (!is_of_two_) {
-      // A third density may leave no more surroundings than those just beyond.
+      // Next to a third density there may be no other surroundings than the samples just beyond the solid.
       std::size_t away = 0;
       for (std::size_t i = 0; i < near_.size(); ++i) away += beyond_[i] == 0 && filled_[i] == 0 ? 1 : 0;
       if (away < 1000) beyond_ = near_;
@@ -321,7 +335,8 @@ class Reading {
     return risen > 0 && met <= risen / 500 + 2;
   }
 
-  /// Samples of the surroundings that differ from them by more than noise after a blur of one sample.
+  /// Number of samples in the surroundings that differ from their density by more than noise after a blur of
+  /// one sample.
   std::size_t odd_in(const SampleValues& at_one) const {
     std::size_t odd = 0;
     for (std::size_t i = 0; i < at_one.size(); ++i)
@@ -339,9 +354,10 @@ class Reading {
     for (std::uint8_t& one : deep_) one = one == 0 ? 1 : 0;
   }
 
-  /// Whether a solid without a core is too thick for its low samples: over half of the highest share, thin
-  /// walls blurred by up to 1.6 samples are five samples wide at most below a share of 0.45, and seven below
-  /// 0.7. The window's bound is not the half level then.
+  /// Whether a solid without a core is too thick for its low samples, so that the window's bound is not its
+  /// half level. The samples above half of the highest share are compared with those of thin walls under a
+  /// blur of up to 1.6 samples: these are at most five samples wide if the highest share is below 0.45, and
+  /// seven if it is below 0.7.
   bool has_lower_plateau(const SampleValues& at_one, double highest) {
     if (highest >= 0.7) return false;
     const auto half = static_cast<float>(background_ + 0.5 * highest * contrast_);
@@ -351,7 +367,8 @@ class Reading {
     return std::count(thin.begin(), thin.end(), std::uint8_t{0}) > 4;
   }
 
-  /// In sample units, or as shares of the contrast; a sample deep in the solid counts as one.
+  /// The sums in sample units, or in shares of the contrast. In `near` a sample deep in the solid counts as
+  /// one.
   Sums summed(const SampleValues& values, bool as_they_are) const {
     const double unit = as_they_are ? 1.0 : contrast_, zero = as_they_are ? 0.0 : background_;
     return by_planes<Sums>(grid_, [&](int z, Sums& sums) {
@@ -380,7 +397,6 @@ class Reading {
           if (as_they_are && std::abs(u - background_) > far()) ++sums.odd;
         }
       }
-      // The scan's outermost samples.
       for (int y = 0; y < grid_.dims.y; ++y)
         for (int x = 0; x < grid_.dims.x; ++x) {
           const bool is_border = x == 0 || y == 0 || z == 0 || x + 1 == grid_.dims.x ||
@@ -395,10 +411,10 @@ class Reading {
   SampleValues values_;
   std::vector<glm::ivec3> over_;  ///< samples over the bound
   SampleMask solid_, near_, beyond_, deep_;
-  SampleMask filled_;           ///< of a third density, taken for surroundings
-  SampleDensity all_, beside_;  ///< of most of the scan, and of what lies beside the solid
-  bool is_of_two_ = false;      ///< no third density is looked for
-  bool is_beside_ = false;      ///< enough samples reach the bound for those beside them to be known
+  SampleMask filled_;           ///< samples of a third density that count as surroundings
+  SampleDensity all_, beside_;  ///< of most of the scan, and of the samples beside the solid
+  bool is_of_two_ = false;      ///< treat the scan as one of two densities, without a third
+  bool is_beside_ = false;      ///< beside_ was measured, because enough samples reach the bound
   double low_ = 0.0, background_ = 0.0, contrast_ = 0.0, noise_ = 0.0, least_seen_ = 0.0, white_ = 0.0;
 };
 

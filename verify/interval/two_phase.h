@@ -9,32 +9,32 @@
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 
-// The size of a solid of one density in surroundings of another, from all samples near it and not from a
-// threshold's surface: blur moves samples' values about and keeps their sum, so that walls thinner than the
-// blur count whole. The source has the derivations.
+// Volume and area of a solid of one density in surroundings of another density. They are computed from all
+// samples near the solid and not from the surface of a threshold: blur redistributes the samples' values but
+// keeps their sum, so walls thinner than the blur count in full. The source has the derivations.
 namespace octotomy::verify {
 
 /// Deviations of the blurs that are added to the samples, in samples.
 inline constexpr std::array<double, 4> added_blur{0.0, 0.6, 1.0, 1.6};
 
-/// What a scan of two densities shows, in samples and shares of the contrast.
+/// Measurements of a scan of two densities, in samples and in shares of the contrast.
 struct PhaseEvidence {
-  double background = 0.0, contrast = 0.0;  ///< in sample units; the solid has their sum
-  double noise = 0.0;                       ///< deviation, in sample units
-  double correlation = 1.0;  ///< of the noise: by how much a sum's deviation exceeds white noise's
-  /// Thin walls that blur lowers and a thick solid of a lower density both explain the samples: the numbers
-  /// are what could be there, not what is.
+  double background = 0.0, contrast = 0.0;  ///< in sample units; their sum is the solid's density
+  double noise = 0.0;                       ///< standard deviation, in sample units
+  double correlation = 1.0;  ///< ratio of the deviation of a sum of samples to that with white noise
+  /// Thin walls that blur lowers and a thick solid of a lower density both explain the samples. The numbers
+  /// are then possible, not certain.
   bool is_ambiguous = false;
-  bool has_third = false;  ///< samples of a third density, away from the solid, were taken for surroundings
-  bool has_core = false;   ///< the contrast was measured; else the window's bound is taken for the half level
-  double least_seen = 0.0;            ///< share of the contrast that is told from noise
-  double highest = 0.0;               ///< the highest share, after a blur of one sample
-  double sum = 0.0;                   ///< of shares: the volume in samples
-  std::size_t band = 0;               ///< samples near the solid that are not deep in it
-  double tail = 0.0;                  ///< sum of shares just beyond
-  std::array<double, 4> squares{};    ///< sum of squared shares at added_blur
-  double counted_mm3 = 0.0;           ///< of samples over the half level
-  std::array<double, 4> level_mm2{};  ///< area of the half level at the same
+  bool has_third = false;   ///< samples of a third density, away from the solid, count as surroundings
+  bool has_core = false;    ///< the contrast was measured; otherwise the window's bound is the half level
+  double least_seen = 0.0;  ///< the least share of the contrast that differs from noise
+  double highest = 0.0;     ///< the highest share, after a blur of one sample
+  double sum = 0.0;         ///< sum of the shares: the volume in samples
+  std::size_t band = 0;     ///< samples near the solid that are not deep in it
+  double tail = 0.0;        ///< sum of shares of the samples just beyond those
+  std::array<double, 4> squares{};    ///< sum of squared shares at each added_blur
+  double counted_mm3 = 0.0;           ///< volume of the samples over the half level
+  std::array<double, 4> level_mm2{};  ///< area of the half level at each added_blur
 };
 
 struct TwoPhase {
@@ -42,17 +42,17 @@ struct TwoPhase {
   PhaseEvidence evidence;
 };
 
-/// The solid whose half level is `low`. None where the solid and what is about it are not of two densities:
-/// samples near it differ by more than noise, those deep in it are not as far above `low` as the background
-/// is below, nothing rises above noise, the solid meets the scan's border or a third density, the
-/// scan's axes are not at right angles, or parts of it were not measured (Scene::padding). Where the solid
-/// reaches `low`, the scan may have other densities away from it. Throws voxel::Stopped. Parallel; same bits
-/// on any thread count. Memory: four bytes a sample, five times. Cost: three blurs of the scan, and six where
-/// the first reading of it as two densities fails; a scan of many densities is left after one look at its
-/// samples.
+/// Measures the solid whose half level is `low`, in sample units. None if the solid and its surroundings do
+/// not have two densities: samples near it differ by more than noise; samples deep in it are not as far above
+/// `low` as the background is below; or nothing rises above noise. Also none if the solid meets the scan's
+/// border or a third density, if the scan's axes are not at right angles, or if parts of the scan were not
+/// measured (Scene::padding). Where the solid reaches `low`, the scan may have other densities away from it.
+/// Throws voxel::Stopped. Parallel; same bits on any thread count. Memory: five times four bytes a sample.
+/// Cost: three blurs of the scan, and six where the first attempt with two densities fails. A scan of many
+/// densities is rejected after one pass over its samples.
 std::optional<TwoPhase> two_phase(const voxel::Scene& scan, double low, const voxel::Progress& progress = {});
 
-/// Widens a surface's interval to hold the whole of an ambiguous one, by a source "faint".
+/// Widens the interval of a surface until it contains an ambiguous interval, by a source "faint".
 void widen_to(const Interval& ambiguous, Interval& by_surface);
 
 }  // namespace octotomy::verify

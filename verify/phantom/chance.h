@@ -5,14 +5,14 @@
 
 namespace octotomy::verify {
 
-/// Numbers by chance from a seed (splitmix64), the same on every machine.
+/// Random numbers from a seed (splitmix64), the same on every machine.
 class Chance {
  public:
   explicit Chance(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ULL + 1) {}
-  /// Evenly in -1/2..1/2.
+  /// Uniform in -1/2..1/2.
   double even();
   double between(double low, double high) { return low + (high - low) * (even() + 0.5); }
-  /// Normal of deviation 1 (Box and Muller).
+  /// Standard normal (Box and Muller).
   double normal();
 
  private:

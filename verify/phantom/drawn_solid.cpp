@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Every class is a function whose amount is a lower bound of the distance to its surface (Hart, Sphere
-// tracing, 1996): of polygons' prisms, boxes, balls, cones and tori the distance itself or the larger of two
-// distances; minimum and maximum keep the bound. Scans: each voxel is parted into 3 x 3 x 3 or more cells,
-// each cell's filled share comes from 2 x 2 x 2 points where the surface may meet it. Along each axis in turn
-// cells are blurred and averaged to voxels in one pass: a voxel weighs the cells about it by the Gaussian,
-// summed over the cells of the voxel.
+// Every class is a function whose absolute value is a lower bound of the distance to its surface (Hart,
+// Sphere tracing, 1996). For prisms of polygons, boxes, balls, cones and tori it is the distance itself or
+// the larger of two distances; minimum and maximum keep the bound. Scans: each voxel is divided into 3 x 3 x
+// 3 or more cells. Where the surface may meet a cell, its filled share comes from 2 x 2 x 2 points. Along
+// each axis in turn one pass blurs the cells and averages them to voxels: the weight of a cell is the
+// Gaussian summed over the cells of the voxel.
 #include "verify/phantom/drawn_solid.h"
 
 #include <algorithm>
@@ -92,7 +92,7 @@ class Drawing {
  public:
   explicit Drawing(Chance& chance) : chance_(chance) {}
 
-  /// Small sizes are as likely as large ones.
+  /// A random size with a uniform logarithm, so that small sizes are as likely as large ones.
   double size(double low, double high) { return low * std::exp(chance_.between(0.0, std::log(high / low))); }
   int count(int low, int high) {
     return std::min(high, low + static_cast<int>(chance_.between(0.0, high - low + 1.0)));
@@ -164,7 +164,7 @@ class Drawing {
     return prism(corners, size(2.0, 12.0));
   }
   DrawnSolid stack() {
-    // Plates of one height, each smaller than the one below it.
+    // A stack of plates of one height, each smaller than the one below it.
     const int steps = count(2, 6);
     const double height = size(1.0, 4.0), side = size(8.0, 24.0);
     std::vector<double> half;
@@ -325,10 +325,10 @@ class Drawing {
   }
 
  private:
-  /// Volume and area by lines of evenly spread places and directions (Cauchy and Crofton): the mean length
-  /// within and the mean number of crossings of a line that meets the ball of the reach. Places and
-  /// directions are an additive recurrence by the powers of the root of x^5 = x + 1 (Roberts 2018), which
-  /// spreads them more evenly than chance does.
+  /// Computes volume and area with lines of evenly spread positions and directions (Cauchy and Crofton), from
+  /// the mean length inside and the mean number of crossings of a line that meets the ball of radius
+  /// `reach_mm`. Positions and directions follow an additive recurrence by the powers of the root of
+  /// x^5 = x + 1 (Roberts 2018), which spreads them more evenly than random numbers.
   DrawnSolid counted(DrawnSolid solid) {
     constexpr int lines = 100000;
     constexpr double root = 1.1673039782614187;
@@ -404,7 +404,7 @@ constexpr Maker makers[] = {
     {"csg", true, &Drawing::csg},
 };
 
-/// Cells of a voxel along an axis.
+/// Number of cells of a voxel along each axis.
 glm::ivec3 cells_of(const dvec3& spacing_mm) {
   const double least = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   return glm::max(glm::ivec3(glm::round(3.0 * spacing_mm / least)), glm::ivec3(3));
@@ -413,8 +413,8 @@ glm::ivec3 cells_of(const dvec3& spacing_mm) {
 /// The filled share of a cell whose centre is `value` from the surface.
 double share_of(const DrawnSolid& solid, double value, const dvec3& centre, const dvec3& cell_mm) {
   if (std::abs(value) >= 0.5 * glm::length(cell_mm)) return value < 0.0 ? 1.0 : 0.0;
-  // Each of eight points stands for a part that a plane fills by its distance, so that planes along the
-  // lattice are shared out exactly.
+  // Each of eight points stands for an octant, whose filled share follows from the distance to the surface as
+  // if the surface were a plane. For planes along the lattice the sum is exact.
   const double width = 0.5 * std::cbrt(cell_mm.x * cell_mm.y * cell_mm.z);
   double inside = 0.0;
   for (int i = 0; i < 8; ++i) {
@@ -436,8 +436,8 @@ struct Block {
   }
 };
 
-/// Fills cells from `low` to below `high`: all alike where the surface is farther off than the corners, else
-/// by halves along the longest side.
+/// Fills cells from `low` to below `high`. If the surface is farther away than the corners, all cells get the
+/// same value; otherwise the block is halved along its longest side.
 void fill(const DrawnSolid& solid, const dvec3& cell_mm, const glm::ivec3& low, const glm::ivec3& high,
           Block& cells) {
   const dvec3 centre = 0.5 * (dvec3(low + high) - dvec3(cells.dims)) * cell_mm;
@@ -465,7 +465,7 @@ void fill(const DrawnSolid& solid, const dvec3& cell_mm, const glm::ivec3& low, 
   fill(solid, cell_mm, middle_low, high, cells);
 }
 
-/// Blurs along an axis and averages `parts` cells to one; cells beyond the ends are as the last ones.
+/// Blurs along an axis and averages `parts` cells to one. Beyond the ends, cells repeat the last ones.
 Block averaged(const Block& cells, int axis, int parts, double deviation) {
   const int reach = static_cast<int>(std::ceil(4.0 * deviation)), taps = parts + 2 * reach;
   std::vector<double> weights(static_cast<std::size_t>(taps), 0.0);
@@ -519,7 +519,7 @@ DrawnSolid drawn_solid(const std::string& group, Chance& chance) {
   Drawing drawing(chance);
   DrawnSolid solid = (drawing.*maker->make)();
   solid.group = group;
-  // A quarter lie along the lattice, as machined parts do.
+  // One solid in five lies along the lattice, as machined parts do.
   const bool is_along = chance.between(0.0, 1.0) < 0.2;
   const glm::dmat3 turn =
       is_along ? glm::dmat3(1.0)

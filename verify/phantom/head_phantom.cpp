@@ -4,9 +4,9 @@
 // 1 The lattice covers head_bounds(), tilted or not.
 // 2 Blocks of up to 4^3 voxels prune the solids of their brick to those that matter in the block. A field
 //   whose value exceeds the distance from the centre to the farthest sample is decided for the whole block.
-// 3 A voxel near a surface is halved three times. A part whose fields are decided counts at once; a part left
-//   after the third halving is one sample at its centre. The count equals that of 8^3 samples, as no decided
-//   part holds a surface.
+// 3 A voxel near a surface is halved three times along each axis. A part whose fields are decided counts at
+//   once. Any other part after the third halving is one sample at its centre. The count equals that of 8^3
+//   samples, because no decided part holds a surface.
 // 4 Blur, noise, rounding.
 
 #include "verify/phantom/head_phantom.h"
@@ -35,7 +35,8 @@ using Places = HeadBricks::Places;
 constexpr std::array scanned{HeadBricks::Skin, HeadBricks::Headrest, HeadBricks::Air, HeadBricks::ToothCore,
                              HeadBricks::Bone};
 
-// None if an undecided field matters. Evaluated at every sample, hence no loop over the fields.
+// The tissue, or none if it depends on an undecided field. There is no loop over the fields because the
+// function runs for every sample.
 inline std::optional<Tissue> tissue(const Places& places) {
   if (places[HeadBricks::Skin] == 0) {
     if (places[HeadBricks::Headrest] < 0) return std::nullopt;
@@ -57,7 +58,7 @@ class Scanner {
       half_diagonal_mm_ = std::max(half_diagonal_mm_, 0.5 * glm::length(edges_ * side));
   }
 
-  // Edge in voxels of the blocks that share a pruning: as large as bricks have a margin for.
+  // Edge in voxels of the blocks that are pruned together: the largest that fits the margin of the bricks.
   int block_side() const {
     return std::clamp(static_cast<int>(HeadBricks::margin_mm / half_diagonal_mm_), 1, 4);
   }
@@ -87,8 +88,8 @@ class Scanner {
   static constexpr int samples_per_voxel = 1 << (3 * halvings);
 
  private:
-  // From the centre of a cube, with its edge in voxels, to the samples at its corners: these lie at the
-  // centres of cubes of 2^-halvings.
+  // The distance from the centre of a cube to the samples at its corners. `edge` is the cube's edge in
+  // voxels. Samples lie at the centres of cubes with the edge 2^-halvings.
   double reach_mm(double edge) const { return half_diagonal_mm_ * (edge - 1.0 / (1 << halvings)); }
 
   using Halvings = std::array<HeadBricks::Fields, halvings>;
@@ -117,7 +118,8 @@ class Scanner {
     }
   }
 
-  // pruned[level] holds the steps for this part; those of the next level are overwritten octant by octant.
+  // Counts the tissues of a part. pruned[level] has the steps for this part. The steps of the next level are
+  // overwritten for each octant.
   void halve(const glm::dvec3& centre_mm, int level, const Places& places, Halvings& pruned,
              TissueCount& count) const {
     if (const std::optional<Tissue> found = tissue(places)) {
@@ -148,8 +150,8 @@ class Scanner {
   double half_diagonal_mm_ = 0.0;
 };
 
-// Rows and columns lie in the slices, which are turned about x by the tilt; slices follow each other along
-// the table, z, wherefore a tilted lattice is sheared. All of head_bounds() is covered.
+// The lattice of a scan, which covers head_bounds(). Rows and columns lie in the slices, which are turned
+// about x by the tilt. Slices follow each other along the table, z, so a tilted lattice is sheared.
 voxel::Lattice scan_lattice(const HeadOptions& options) {
   const voxel::Box box = head_bounds();
   const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
@@ -157,7 +159,7 @@ voxel::Lattice scan_lattice(const HeadOptions& options) {
   const double slice_mm = options.slice_mm.value_or(options.voxel_mm);
   const double along_mm = extent_mm.y / std::cos(tilt);
   const double table_mm = extent_mm.z + extent_mm.y * std::abs(std::tan(tilt));
-  // A millionth less, or an extent that is a whole number of voxels but for rounding takes one more.
+  // Without the millionth, rounding could add a voxel to an extent of a whole number of voxels.
   const auto count = [](double length_mm, double step_mm) {
     return static_cast<int>(std::ceil(length_mm / step_mm - 1e-6));
   };
@@ -186,7 +188,7 @@ void check_options(const HeadOptions& options) {
     refuse("point_spread_sigma_mm must not be negative", options.point_spread_sigma_mm);
   if (!(options.noise_sigma_hu >= 0.0) || !std::isfinite(options.noise_sigma_hu))
     refuse("noise_sigma_hu must not be negative", options.noise_sigma_hu);
-  // 2^31 samples are 8 GB while they are floats: beyond what the phantom is for.
+  // 2^31 samples would take 8 GB as floats, which no use of the phantom needs.
   const voxel::Box box = head_bounds();
   const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
   if (extent_mm.x / options.voxel_mm * (extent_mm.y / options.voxel_mm) * (extent_mm.z / slice_mm) >
@@ -227,8 +229,8 @@ voxel::FloatSamples scanned_samples(const voxel::Lattice& lattice, const HeadTis
   return samples;
 }
 
-// Gaussian along one axis of the lattice, cut off at 5 sigma, where a step of 4000 HU leaves less than a
-// thousandth of a Hounsfield unit. The border's sample repeats beyond the border.
+// Gaussian blur along one axis of the lattice, cut off at 5 sigma, where a step of 4000 HU contributes about
+// a thousandth of a Hounsfield unit. Beyond the border the border's sample repeats.
 void blur_axis(voxel::FloatSamples& samples, const glm::ivec3& dims, int axis, double sigma_voxels) {
   const int reach = static_cast<int>(std::ceil(5.0 * sigma_voxels));
   const int tap_count = 2 * reach + 1;
@@ -236,7 +238,7 @@ void blur_axis(voxel::FloatSamples& samples, const glm::ivec3& dims, int axis, d
   double sum = 0.0;
   for (int tap = 0; tap < tap_count; ++tap) {
     const int i = tap - reach;
-    // The mean of the Gaussian over the voxel, so that weights stay right below one voxel of sigma.
+    // The mean of the Gaussian over the voxel, so that weights are right for a sigma below one voxel.
     const auto below = [&](double t) { return std::erf(t / (sigma_voxels * glm::root_two<double>())); };
     const double weight = below(i + 0.5) - below(i - 0.5);
     weights[static_cast<std::size_t>(tap)] = weight;
@@ -262,7 +264,7 @@ void blur_axis(voxel::FloatSamples& samples, const glm::ivec3& dims, int axis, d
   });
 }
 
-// A counter-based generator: the value depends on the seed and the sample's index alone, on any thread.
+// A counter-based generator: the value depends only on the seed and the sample's index, not on the thread.
 // Source: the finaliser of SplitMix64 (Steele, Lea, Flood 2014), twice.
 std::uint64_t scrambled(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15ULL;
@@ -284,8 +286,8 @@ double normal_deviate(std::uint64_t seed, std::uint64_t index) {
 }  // namespace
 
 voxel::Box head_bounds() {
-  // Edges are even and the centre whole, so that scans and universes of 1 and 2 mm share their voxels, and
-  // planes at whole millimetres lie between them.
+  // The bounds are even and the centre is whole. So scans and universes of 1 and 2 mm have the same voxels,
+  // and planes at whole millimetres lie between voxels.
   return {{-100, -122, -136}, {100, 126, 116}};
 }
 
@@ -296,8 +298,8 @@ bool head_contains(HeadPart part, const glm::dvec3& p_mm) {
   if (part == HeadPart::Skin) field = HeadBricks::Skin;
   const HeadBricks::Brick& brick = HeadBricks::instance().at(p_mm);
   if (brick.places[field] >= 0) return brick.places[field] == 1;
-  // Points are often asked one beside the other: those in the ball that the last value decided lie where it
-  // did.
+  // Successive points are often neighbours. A point within the ball that the last value decided is on the
+  // same side as the last point.
   struct LastAsked {
     glm::dvec3 p_mm{0.0};
     double value = 0.0;

@@ -16,7 +16,7 @@ struct HeadTissues {
   double air = -1000.0;
   double soft = 40.0;
   double bone = 560.0;
-  double tooth_core = 1800.0;  ///< from two millimetres below a tooth's surface on; above it is `bone`
+  double tooth_core = 1800.0;  ///< deeper than two millimetres below a tooth's surface; the rest is `bone`
   double headrest = -150.0;
 };
 
@@ -37,7 +37,7 @@ struct HeadOptions {
 /// near surfaces, exact elsewhere; then blur, noise, rounding to int16. With a gantry tilt the lattice is
 /// sheared: rows lie in the slices, slices follow each other along z. Throws std::invalid_argument that names
 /// the option out of its range; voxel::Stopped. Parallel; same bits on any thread count. Cost: about five
-/// seconds of processor time at 1 mm, growing with the surface in voxels.
+/// seconds of processor time at 1 mm, proportional to the number of voxels at the surface.
 voxel::Scene head_phantom(const HeadOptions& options = {}, const voxel::Progress& progress = {});
 
 /// Parts of the head's closed form.

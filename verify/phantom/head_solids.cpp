@@ -122,8 +122,8 @@ ImplicitSolid swept_arch_left(double front_mm, double z_mm, double radius_mm, do
   return tube(stations, {1.0, 1.0, height}, 2);
 }
 
-// A cavity in front opens as the piriform aperture: narrow above, wide below. It is the nasal cavity with its
-// lining; air() leaves the lining.
+// The nasal cavity with its lining, which opens in front as the piriform aperture: narrow above, wide below.
+// air() subtracts the lining.
 ImplicitSolid piriform() {
   const ImplicitSolid upper = tapered_capsule({{0, -96, -9}, 5.0}, {{0, -90, -21}, 11.8}, {1.0, 1.4, 1.0});
   const ImplicitSolid lower = tapered_capsule({{0, -92, -21}, 11.8}, {{0, -30, -21}, 12.0}, {1.0, 1.0, 0.85});
@@ -143,8 +143,8 @@ ImplicitSolid maxilla() {
   const ImplicitSolid body = ellipsoid({22, -60, -20}, {20, 22, 19}, turned({0, 0, 20}));
   const ImplicitSolid alveolus = swept_arch_left(-82.0, -37.5, 6.2, 1.45, 27.5);
   const ImplicitSolid canine_ridge = tapered_capsule({{16, -80, -18}, 3.5}, {{16.5, -69, -42}, 5.5});
-  // Inclined, as in life: along a scan's slices its flat faces would err in step, by up to half a voxel of
-  // their area.
+  // Inclined, as in life. If its flat faces lay along a scan's slices, their error would be coherent: up to
+  // half a voxel times their area.
   const ImplicitSolid palate = rounded_box({0, -57, -33.5}, {24, 24, 2.2}, 2.0, turned({6, 0, 0}));
   const ImplicitSolid pterygoid =
       tapered_capsule({{15, -26, -14}, 5.0}, {{18, -31, -42}, 4.2}, {0.8, 1.3, 1.0});
@@ -186,7 +186,7 @@ ImplicitSolid tooth_row_left(const std::array<ToothShape, 7>& shapes, double fro
   double x_mm = 0.0;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     const ToothShape& shape = shapes[i];
-    // Half a tooth along the arch before and after its middle.
+    // Moves half a tooth along the arch; called before and after the tooth's middle.
     const auto advance = [&] {
       const double slope = 2.0 * x_mm / arch_width_mm;
       x_mm += 0.5 * shape.width_mm / std::sqrt(1.0 + slope * slope);
@@ -345,8 +345,8 @@ HeadSolids build() {
   HeadSolids head;
   head.air = air();
   head.skin = skin();
-  // Everywhere bone keeps its distance from the outside, the airways and, so that jaws stay apart, nothing
-  // else: forms never exceed the distance to their surface, so these intersections are at least so deep.
+  // Bone keeps a distance from the outside and from the airways. The values of forms never exceed the
+  // distance to their surface, so the lining is at least as thick as the growth.
   const ImplicitSolid lined = grown(head.skin, -3.0) - grown(head.air, 2.0);
   const ImplicitSolid orbits = both_sides(orbit_left());
   ImplicitSolid face = blended(brow(), both_sides(orbital_rim_left()), 3.0);
@@ -396,7 +396,7 @@ HeadBricks::HeadBricks() {
     const auto brick = static_cast<int>(i);
     const glm::ivec3 at(brick % dims_.x, brick / dims_.x % dims_.y, brick / (dims_.x * dims_.y));
     const dvec3 centre_mm = low_mm_ + (dvec3(at) + 0.5) * edge_mm;
-    // Pruning needs room for all steps and leaves few: keep a copy of the right size.
+    // Pruning reserves memory for all steps and keeps few of them, so a copy of the right size is stored.
     ImplicitSolid::Steps pruned;
     for (std::size_t field = 0; field < field_count; ++field) {
       bricks_[i].places[field] = place(prune(whole_.steps[field], centre_mm, radius_mm, pruned), radius_mm);

@@ -10,9 +10,10 @@
 
 namespace octotomy::verify {
 
-/// The solids of the head phantom. A point's tissue follows in this order: outside the skin headrest or air;
-/// then air within `air`, tooth within `tooth_core`, bone within `bone`, else soft. Bone keeps two
-/// millimetres or more from all air, and so does `tooth_core` from the surface of the teeth.
+/// The solids of the head phantom. The first of these rules that applies determines a point's tissue: outside
+/// the skin it is headrest or air; within `air` it is air, within `tooth_core` tooth, within `bone` bone;
+/// otherwise soft. Bone is two millimetres or more away from all air, and `tooth_core` from the surface of
+/// the teeth.
 struct HeadSolids {
   ImplicitSolid skin, bone, mandible, teeth, tooth_core, air, headrest;
 };
@@ -21,8 +22,8 @@ struct HeadSolids {
 /// exostosis at the angle of the mandible on the patient's left.
 const HeadSolids& head_solids();
 
-/// Where a ball lies in a field with a value at the ball's centre: inside (1), outside (0), or undecided (-1)
-/// if the value does not exceed the radius by a millionth, which covers rounding.
+/// Whether a ball lies inside (1) or outside (0) a field with this value at the ball's centre. Undecided (-1)
+/// if the value's amount does not exceed the radius by a millionth, which covers rounding.
 signed char place(double value, double radius_mm);
 
 /// The solids pruned to each of the bricks that fill head_bounds(), so that a point or a small block
@@ -31,7 +32,7 @@ class HeadBricks {
  public:
   enum Field { Skin, Bone, ToothCore, Air, Headrest, Mandible, Teeth, field_count };
   using Fields = std::array<ImplicitSolid::Steps, field_count>;
-  /// place() of a ball in each field.
+  /// The result of place() for a ball in each field.
   using Places = std::array<signed char, field_count>;
   struct Brick {
     Fields steps;
@@ -40,8 +41,8 @@ class HeadBricks {
 
   /// Built once and kept.
   static const HeadBricks& instance();
-  /// Steps and places valid in a ball: few steps if its radius is at most margin_mm and its centre within
-  /// head_bounds(); otherwise all, with nothing decided.
+  /// Steps and places that are valid in a ball. The steps are pruned if the radius is at most margin_mm and
+  /// the centre is within head_bounds(). Otherwise they are all steps, and no field is decided.
   const Brick& at(const glm::dvec3& p_mm, double radius_mm = 0.0) const;
   /// Edge of the cubic bricks.
   static constexpr double edge_mm = 8.0;

@@ -10,8 +10,8 @@
 namespace octotomy::verify {
 
 // A primitive is evaluated at q = local_from_lps (p - origin). Distances in a stretched frame are at most
-// |local_from_lps| times those in millimetres, so `scale` is the reciprocal of that norm times the reciprocal
-// of the primitive's own Lipschitz constant.
+// |local_from_lps| times those in millimetres. So `scale` is the reciprocal of that norm times the reciprocal
+// of the primitive's own Lipschitz constant, and the value times `scale` has Lipschitz constant 1.
 struct Primitive {
   enum class Kind { Ball, Capsule, Box, HalfSpace };
   Kind kind = Kind::Ball;
@@ -49,8 +49,8 @@ double value(const Primitive& form, const glm::dvec3& p_mm) {
   return 0.0;
 }
 
-// The polynomial smooth minimum: equal to the minimum where a and b are further apart than the width. Its
-// gradient is a convex combination of theirs, so it keeps their Lipschitz constant.
+// The polynomial smooth minimum. It equals the minimum where a and b differ by more than the width. Its
+// gradient is a convex combination of those of a and b, so it keeps their Lipschitz constant.
 double smooth_min(double a, double b, double width) {
   const double lesser = std::min(a, b), apart = std::abs(a - b);
   if (apart >= width) return lesser;
@@ -62,7 +62,7 @@ double combined(const ImplicitSolid::Step& step, double a, double b) {
   return step.kind == ImplicitSolid::Kind::Union ? smooth_min(a, b, step.mm) : -smooth_min(-a, -b, step.mm);
 }
 
-// Operands that a form holds open at once: unions are left-associative, so the depth is that of nesting.
+// Largest number of operands on the stack. Unions are left-associative, so it is the depth of nesting.
 constexpr std::size_t stack_depth = 32;
 
 glm::dvec3 catmull_rom(const glm::dvec3& before, const glm::dvec3& a, const glm::dvec3& b,
@@ -118,7 +118,7 @@ double prune(const ImplicitSolid::Steps& steps, const glm::dvec3& p_mm, double r
       const Operand b = stack[--top];
       Operand& a = stack[top - 1];
       const double excess = step.kind == ImplicitSolid::Kind::Union ? a.value - b.value : b.value - a.value;
-      // Twice the radius by the Lipschitz constants; a millionth of it more covers rounding by far.
+      // Twice the radius by the Lipschitz constants. A millionth of it in addition covers rounding by far.
       const double decided = 2.000001 * radius_mm + step.mm;
       a.value = combined(step, a.value, b.value);
       if (excess > decided)
@@ -233,7 +233,7 @@ ImplicitSolid tapered_capsule(const Station& from, const Station& to, const glm:
   capsule.extent2 = glm::dot(capsule.extent, capsule.extent);
   capsule.first = from.radius_mm;
   capsule.taper = to.radius_mm - from.radius_mm;
-  // Beside the axis the value changes by 1 across and by the taper's slope along.
+  // The value's gradient is 1 across the axis and the taper's slope along the axis.
   const double slope = capsule.taper / glm::length(capsule.extent);
   capsule.scale = std::min({stretch.x, stretch.y, stretch.z}) / std::sqrt(1.0 + slope * slope);
   return leaf(capsule);

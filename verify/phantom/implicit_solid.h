@@ -11,8 +11,8 @@ namespace octotomy::verify {
 struct Primitive;
 
 /// A solid as a closed form: a function of position in LPS millimetres, negative inside and positive outside,
-/// with Lipschitz constant 1. So |value| never exceeds the distance to the surface, and a ball of a smaller
-/// radius holds no surface. A value; copies share their primitives.
+/// with Lipschitz constant 1. So |value| never exceeds the distance to the surface, and a ball with a radius
+/// below |value| holds no surface. Copies share their primitives.
 class ImplicitSolid {
  public:
   enum class Kind { Leaf, Union, Intersection, Negation, Growth };
@@ -22,7 +22,7 @@ class ImplicitSolid {
     const Primitive* primitive = nullptr;  ///< of a leaf
     double mm = 0.0;                       ///< blending width of a union or intersection; growth
   };
-  /// The steps that matter within some ball. Valid as long as the solid that they come from.
+  /// A function, or the steps of it that matter within a ball. Valid as long as the solid that it comes from.
   using Steps = std::vector<Step>;
 
   double operator()(const glm::dvec3& p_mm) const;
@@ -31,10 +31,10 @@ class ImplicitSolid {
   friend ImplicitSolid operator|(ImplicitSolid a, const ImplicitSolid& b);
   friend ImplicitSolid operator&(ImplicitSolid a, const ImplicitSolid& b);
   friend ImplicitSolid operator-(ImplicitSolid a, const ImplicitSolid& b);
-  /// Union and difference with the edge rounded as far as the two values are within `width_mm` of each other.
+  /// Union and difference with a rounded edge, where the two values differ by less than `width_mm`.
   friend ImplicitSolid blended(ImplicitSolid a, const ImplicitSolid& b, double width_mm);
   friend ImplicitSolid carved(ImplicitSolid a, const ImplicitSolid& b, double width_mm);
-  /// Holds at least all points within `mm` of the solid. A negative growth shrinks it by at least that much.
+  /// Contains at least all points within `mm` of the solid. A negative `mm` shrinks it by at least that much.
   friend ImplicitSolid grown(ImplicitSolid a, double mm);
   /// The reflection in the plane x = 0.
   friend ImplicitSolid mirrored(const ImplicitSolid& a);
@@ -74,10 +74,10 @@ glm::dmat3 turned(const glm::dvec3& degrees);
 /// Value of steps at a point.
 double value(const ImplicitSolid::Steps& steps, const glm::dvec3& p_mm);
 
-/// Finds the steps that decide the value within `radius_mm` of a point, and returns the value at the point.
-/// An operand of a union is dropped if it exceeds the other by more than twice the radius plus the blending
-/// width, because neither changes by more than the radius. Source: Barbier et al., Lipschitz Pruning, 2025.
-/// Departure: a single ball instead of a hierarchy.
+/// Writes to `pruned` the steps that decide the value within `radius_mm` of a point, and returns the value at
+/// the point. An operand of a union is dropped if it exceeds the other by more than twice the radius plus the
+/// blending width, because neither operand changes by more than the radius. Source: Barbier et al., Lipschitz
+/// Pruning, 2025. Departure: a single ball instead of a hierarchy.
 double prune(const ImplicitSolid::Steps& steps, const glm::dvec3& p_mm, double radius_mm,
              ImplicitSolid::Steps& pruned);
 

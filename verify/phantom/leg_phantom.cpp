@@ -20,7 +20,7 @@ namespace {
 constexpr int sub_samples = 4;  ///< along each edge of a voxel near a surface
 const voxel::Box leg_box{{-60, -60, -150}, {60, 60, 150}};
 
-/// The least value of the leg's surfaces at a point, and the tissue there.
+/// The distance from a point to the nearest surface of the leg (a lower bound), and the tissue at the point.
 struct LegReading {
   double nearest_mm = 0.0;
   double hounsfield = 0.0;
@@ -98,7 +98,7 @@ voxel::Lattice lattice_of(double voxel_mm) {
   return voxel::axis_aligned_lattice(dims, glm::dvec3(voxel_mm), first_mm);
 }
 
-/// The mean over a voxel.
+/// The mean Hounsfield value over a voxel.
 double mean_at(const Leg& leg, const glm::dvec3& centre_mm, double voxel_mm) {
   const LegReading middle = leg.read(centre_mm);
   if (middle.nearest_mm > 0.5 * std::sqrt(3.0) * voxel_mm) return middle.hounsfield;

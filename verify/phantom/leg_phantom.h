@@ -19,20 +19,20 @@ struct LegOptions {
   HeadTissues tissues;  ///< a voxel half of bone and half of soft tissue has 300 HU
 };
 
-/// The fibula's shaft: an elliptic cylinder with a round canal of marrow, whose samples are soft tissue's.
+/// The fibula's shaft: an elliptic cylinder with a round canal of marrow, which has the value of soft tissue.
 /// Head and malleolus lie beyond its ends.
 struct LegFibula {
   glm::dvec3 from_mm{30.0, 12.0, 105.0};  ///< on its axis, below its head
   glm::dvec3 to_mm{33.0, 16.0, -105.0};   ///< on its axis, above the malleolus
   double across_mm = 8.5;                 ///< half its width, towards `face`
-  double other_mm = 6.5;                  ///< half its width, square to that
+  double other_mm = 6.5;                  ///< half its width, perpendicular to `face`
   double canal_mm = 2.5;                  ///< the canal's radius
 
   glm::dvec3 along() const;
-  /// Unit, square to the axis, to the patient's left.
+  /// A unit vector perpendicular to the axis, to the patient's left.
   glm::dvec3 face() const;
   double length_mm() const { return glm::distance(from_mm, to_mm); }
-  /// Of a square section, the canal left out.
+  /// The area of a section perpendicular to the axis, without the canal.
   double section_mm2() const;
 };
 
@@ -41,7 +41,7 @@ struct LegFibula {
 /// range; voxel::Stopped. Same bits on any thread count. Cost: about a second of processor time at 1 mm.
 voxel::Scene leg_phantom(const LegOptions& options = {}, const voxel::Progress& progress = {});
 
-/// Whether a point is in the bone of the shaft: between its ends, outside of the canal.
+/// Whether a point is in the bone of the shaft: between its ends and outside the canal.
 bool in_fibula_shaft(const glm::dvec3& p_mm);
 
 }  // namespace octotomy::verify

@@ -18,14 +18,14 @@ using voxel::HalfSpace;
 glm::dmat3 any_turn(Chance& chance) {
   return turned(360.0 * glm::dvec3(chance.even(), chance.even(), chance.even()));
 }
-/// Axes of the lattice in an order by chance, right-handed.
+/// Axes of the lattice in a random, right-handed order.
 glm::dmat3 any_axes(Chance& chance) {
   glm::dmat3 axes(1.0);
   const int first = static_cast<int>(chance.between(0.0, 3.0)) % 3;
   return {axes[first], axes[(first + 1) % 3], axes[(first + 2) % 3]};
 }
 
-/// What a solid is made in.
+/// The pose and size of a solid that is being built.
 struct Pose {
   SolidPhantom made;
   glm::dmat3 axes{1.0};  ///< columns: the solid's own axes in LPS
@@ -53,7 +53,7 @@ SolidPhantom box(Pose& pose) {
                  8.0 * (half.x * half.y + half.y * half.z + half.z * half.x));
 }
 
-/// What a plane across its z axis leaves of a ball.
+/// The part of a ball below a plane perpendicular to the pose's z axis.
 SolidPhantom cap(Pose& pose) {
   const double r = pose.radius_mm, h = pose.chance.between(0.8, 1.5) * r;
   return pose.is(Expression(voxel::Sphere{pose.at_mm, r}) & pose.below({0, 0, 1}, h - r),
@@ -69,7 +69,8 @@ SolidPhantom lune(Pose& pose) {
       2.0 / 3.0 * angle * r * r * r, 2.0 * angle * r * r + pi * r * r);
 }
 
-/// A cylinder halved by a plane through its centre, across the pose's z axis, that meets its wall alone.
+/// A cylinder halved by a plane through its centre, perpendicular to the pose's z axis, that meets only its
+/// wall.
 SolidPhantom halved_cylinder(Pose& pose) {
   const double r = 0.6 * pose.radius_mm, height = 1.6 * pose.radius_mm;
   const double tilt = pose.chance.between(0.1, 0.8) * std::atan(0.5 * height / r);
@@ -80,7 +81,7 @@ SolidPhantom halved_cylinder(Pose& pose) {
       0.5 * pi * r * r * height, pi * r * r + pi * r * height + pi * r * r / std::cos(tilt));
 }
 
-/// A box halved by a plane through its centre along its y axis, which is across the pose's z axis.
+/// A box halved by a plane through its centre and its y axis, perpendicular to the pose's z axis.
 SolidPhantom halved_box(Pose& pose) {
   const glm::dvec3 half = pose.radius_mm * glm::dvec3(0.7, pose.chance.between(0.6, 0.8), 0.8);
   const double tilt = pose.chance.between(0.1, 0.8) * std::atan(half.z / half.x);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // The volume of a predicate by regular sampling. The standard error of a point count on curved boundary of
-// area S is c h^2 sqrt(S) with c between 0.20 and 0.32 (the lattice-point problem: boundary cells err
-// independently, each by a fraction of h^3, and there are about S / h^2 of them). S is taken from the faces
-// between unequal neighbours, which overstate an isotropic boundary by 3/2.
+// area S is c h^2 sqrt(S) with c between 0.20 and 0.32 (the lattice-point problem: the errors of boundary
+// cells are independent, each a fraction of h^3, and there are about S / h^2 of them). S is estimated from
+// the faces between unequal neighbours, whose area is 3/2 of that of an isotropic boundary.
 
 #include "verify/phantom/sample_volume.h"
 
@@ -41,7 +41,8 @@ SampledVolume sample_volume(const voxel::Box& box, double step_mm,
     return bits;
   };
 
-  // Slabs of a fixed number of planes, each sampling one plane of its neighbour again to compare with.
+  // Slabs of a fixed number of planes. Each slab also samples the first plane of its neighbour, to compare
+  // both planes.
   constexpr int slab_planes = 16;
   const int slab_count = (dims.z + slab_planes - 1) / slab_planes;
   std::vector<Count> counts(static_cast<std::size_t>(slab_count));

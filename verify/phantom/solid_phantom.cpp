@@ -17,7 +17,7 @@ using std::numbers::pi;
 
 constexpr int chequers = 8;  // cells a side: the nodes of level 3 (thesis 3.3.3)
 
-/// Size and place for a kind's builder.
+/// Size and position of the solid that a kind's builder makes.
 struct Place {
   double radius_mm;
   glm::dvec3 centre_mm;
@@ -42,9 +42,9 @@ double cap_mm2(double radius_mm, double height_mm) {
 }
 
 /// Area of an ellipsoid: 2 pi c^2 + 2 pi a b / sin(phi) (E(phi, k) sin^2(phi) + F(phi, k) cos^2(phi)) for a
-/// >= b >= c, cos(phi) = c / a. The two elliptic integrals by Gauss-Legendre in 64 panels of 3 points: their
-/// integrands are analytic and smooth on [0, phi] for axes within a factor of ten, and the error falls with
-/// the sixth power of a panel.
+/// >= b >= c, cos(phi) = c / a. The two elliptic integrals are computed by Gauss-Legendre in 64 panels of 3
+/// points. Their integrands are analytic and smooth on [0, phi] for axes within a factor of ten, and the
+/// error falls with the sixth power of the panel's width.
 double ellipsoid_mm2(glm::dvec3 radii_mm) {
   std::array<double, 3> axes{radii_mm.x, radii_mm.y, radii_mm.z};
   std::sort(axes.rbegin(), axes.rend());
@@ -136,7 +136,7 @@ SolidPhantom cut_sphere(const Place& place) {
   const double height = r / 3.0;  // of the cap that is cut away
   const glm::dvec3 normal = place.lps_from_axes[2];
   const double volume = ball_mm3(r) - cap_mm3(r, height);
-  // The cap's centroid stands 3 (2 r - h)^2 / (4 (3 r - h)) from the ball's centre.
+  // The distance of the cap's centroid from the ball's centre is 3 (2 r - h)^2 / (4 (3 r - h)).
   const double cap_centre = 0.75 * (2 * r - height) * (2 * r - height) / (3 * r - height);
   return {place.universe,
           voxel::Expression(voxel::Sphere{place.centre_mm, r}) &
@@ -160,9 +160,10 @@ voxel::Octree chequerboard(const voxel::Universe& universe) {
   return voxel::combine(universe, *board);
 }
 
-/// A reflection in any axis swaps the board's cells and keeps the ball, so half of the volume and of the
-/// sphere is in. Any wall between two cells has one of them in: all the ball's discs in planes between cells
-/// are boundary. The centroid of the cells that are in is the middle's: two reflections keep the board.
+/// A reflection in any axis swaps the board's cells and maps the ball to itself, so half of the ball's volume
+/// and of the sphere's area belongs to the solid. Of two cells with a common wall exactly one belongs to it,
+/// so all the ball's discs in planes between cells are boundary. Two reflections map the board to itself, so
+/// the centroid is the middle.
 SolidPhantom chequered_sphere(const Place& place) {
   if (place.universe.side() < chequers)
     throw std::invalid_argument("a chequered sphere takes at least 8 voxels a side, for its 8 cells");
@@ -180,8 +181,8 @@ SolidPhantom chequered_sphere(const Place& place) {
   return solid;
 }
 
-/// The runs of ones that section 3.2.3 prints for figure 3.1's array of 4 x 4 x 4 voxels; in a larger
-/// universe every voxel is a cube of so many.
+/// The runs of ones that section 3.2.3 prints for figure 3.1's array of 4 x 4 x 4 voxels. In a larger
+/// universe each voxel of the figure is a cube of voxels.
 SolidPhantom figure_3_1(const Place& place) {
   constexpr std::array<int, 13> ones{8, 9, 12, 13, 23, 24, 25, 26, 28, 29, 41, 44, 57};
   const voxel::Box bounds = voxel::bounds(place.universe.lattice());
@@ -214,7 +215,7 @@ SolidPhantom figure_3_1(const Place& place) {
 struct BuiltKind {
   SolidPhantomKind said;
   Builder build;
-  double reach;  ///< farthest point from the centre, in radii; 0 for what fills its universe by itself
+  double reach;  ///< farthest point from the centre, in radii; 0 if the solid always fills its universe
   bool on_lattice = false;
 };
 

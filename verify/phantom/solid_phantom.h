@@ -21,7 +21,7 @@ struct SolidPhantomOptions {
   glm::dmat3 lps_from_axes{1.0};  ///< a turn of the solid about its centre
 };
 
-/// A solid of known volume and area. An octree in it stands for whole voxels of the universe.
+/// A solid of known volume and area. An octree in `shape` represents whole voxels of the universe.
 struct SolidPhantom {
   voxel::Universe universe;
   voxel::Expression shape;
@@ -39,11 +39,11 @@ const std::vector<SolidPhantomKind>& solid_phantom_kinds();
 
 /// A solid of that kind. Volume, area and centroid are closed forms; an ellipsoid's area is an integral with
 /// a relative error below 1e-9. Throws std::invalid_argument if the kind is unknown, an option is out of its
-/// range, or the solid does not fit its universe. `chequered_sphere` and `figure_3_1` are bound to the
-/// lattice: they take no turn and no other centre, and figure_3_1 no radius.
+/// range, or the solid does not fit its universe. `chequered_sphere` and `figure_3_1` are fixed to the
+/// lattice: a turn or another centre is out of range for both, and a radius for figure_3_1.
 SolidPhantom solid_phantom(std::string_view kind, const SolidPhantomOptions& options = {});
 
-/// Its voxels by one of D1 to D4, or with the share of every boundary voxel.
+/// The solid's voxels by one of D1 to D4, or with the filled share of every boundary voxel.
 inline voxel::Octree digitise(const SolidPhantom& solid, voxel::Digitisation digitisation) {
   return voxel::digitise(solid.universe, solid.shape, digitisation);
 }

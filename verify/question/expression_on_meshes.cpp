@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 Recursive descent over the expression's text, one function for each level of precedence, weakest first:
-// union,
-//   exclusive or, intersection, minus, then complement and parentheses, as in Python.
-// 2 An expression that names a solid twice would corefine its surface with itself: (a ^ b) & a has a twice.
-// If
-//   there is a read-once expression of the same function, that is evaluated instead.
-// 3 Corefinements from the leaves up; each gives a solid or the complement of one.
+// 1 Parse the text by recursive descent, with one function for each level of precedence, weakest first:
+//   union, exclusive or, intersection, minus, then complement and parentheses, as in Python.
+// 2 Replace an expression that names a solid twice, such as (a ^ b) & a, by a read-once expression of the
+//   same function if there is one. Otherwise a surface would be corefined with itself.
+// 3 Corefine from the leaves up. Each result is a solid or the complement of a solid.
 #include "verify/question/expression_on_meshes.h"
 
 #include <algorithm>
@@ -41,7 +39,7 @@ class Parser {
   ExpressionTree both() { return chain('&', &Parser::minus); }
   ExpressionTree minus() { return chain('-', &Parser::single); }
 
-  /// What one operator joins is one tree, so that a long chain is no deep one.
+  /// The operands that one operator joins are parts of one tree node, so that a long chain has little depth.
   ExpressionTree chain(char symbol, ExpressionTree (Parser::*part)()) {
     ExpressionTree first = (this->*part)();
     if (!take(symbol)) return first;
@@ -93,7 +91,7 @@ class Parser {
                                 what + " expected");
   }
 
-  /// Deeper than any plan's, and far from the end of the stack.
+  /// Largest depth of parentheses: deeper than in any plan, and far from a stack overflow.
   static constexpr int most_nested = 200;
 
   std::string_view text_;
@@ -114,13 +112,13 @@ struct Named {
   }
 
   bool repeats() const { return tree.leaf_count() > static_cast<int>(names.size()); }
-  /// Whether there is a read-once expression of the same function, which it then is.
+  /// Replaces the tree by a read-once tree of the same function. Returns false if there is none.
   bool read_once() {
     std::optional<ExpressionTree> once = verify::read_once(tree);
     if (once) tree = std::move(*once);
     return once.has_value();
   }
-  /// The same solid of those that its solids were made of, down to what no expression made.
+  /// The same solid, with each leaf replaced by its origin, down to solids without an origin.
   Named by_origins(const MeshExpressions::Origin& origin) const {
     Named made;
     made.tree = made.adopted(tree, names, origin);
@@ -128,10 +126,12 @@ struct Named {
   }
 
  private:
-  /// Far beyond what read_once() takes: an expression of expressions could grow without bound.
+  /// Limits the number of replaced leaves, because nested origins can grow exponentially. read_once() needs
+  /// far fewer leaves.
   static constexpr std::size_t most_leaves = 64;
 
-  /// A tree whose leaves are numbered by `its_names`, with this one's numbers and origins in place of leaves.
+  /// Converts a tree with leaves numbered by `its_names` to this expression's numbers, with origins in place
+  /// of leaves.
   ExpressionTree adopted(const ExpressionTree& other, const std::vector<std::string>& its_names,
                          const MeshExpressions::Origin& origin) {
     if (other.parts.empty()) {
@@ -174,7 +174,7 @@ brep::Solid MeshExpressions::evaluate(std::string_view text, const Lookup& looku
     if (std::optional<brep::Solid> made =
             less_parts(expression.tree, expression.names, lookup, origin, choice))
       return *made;
-  // Without a repeated name the expression stays as it is, so that earlier answers serve again.
+  // Without a repeated name the expression is not changed, so that the answers kept in `pairs_` can be used.
   if (origin) {
     Named by_origins = expression.by_origins(origin);
     if (by_origins.repeats() && by_origins.read_once()) expression = std::move(by_origins);
@@ -196,7 +196,7 @@ std::optional<brep::Solid> MeshExpressions::less_parts(const ExpressionTree& tre
   const std::string &whole = names[0], &part = names[1];
   const std::optional<PartsOf> parts = choice(part);
   if (!parts) return std::nullopt;
-  // All of what the parts were chosen from must lie in the whole.
+  // The solid from which the parts were chosen must be an intersection with `whole`.
   const std::string text = origin(parts->whole);
   if (text.empty()) return std::nullopt;
   const Named cut = Named::of(text);
@@ -246,7 +246,7 @@ MeshExpressions::Signed MeshExpressions::intersection(const Signed& a, const Sig
 
 brep::Solid MeshExpressions::boolean(const brep::Solid& a, brep::Operation operation, const brep::Solid& b) {
   using brep::Operation;
-  // Decided without geometry; corefinement wants two distinct surfaces.
+  // These cases need no geometry. Corefinement requires two distinct surfaces.
   if (a.is_same(b)) return operation == Operation::Difference ? brep::Solid() : a;
   if (a.empty()) return operation == Operation::Union ? b : a;
   if (b.empty()) return operation == Operation::Intersection ? b : a;
@@ -269,12 +269,13 @@ void MeshExpressions::corefine(brep::Operation operation, Pair& pair) {
     keep(Operation::Difference, answers.a_minus_b);
     findings_.insert(findings_.end(), answers.findings.begin(), answers.findings.end());
   };
-  // A plan that takes a piece out of a skull asks for the rest next, and one that merges for the overlap.
+  // All three answers are computed at once: a plan that cuts a piece out of a skull usually needs the rest
+  // next, and a plan that merges solids needs the overlap.
   try {
     learn(brep::booleans(pair.a, pair.b, {true, true, true, false}, stop_));
     if (pair.answers.contains(operation)) return;
   } catch (const brep::Error& error) {
-    // Perhaps only an answer that nobody asked for cannot be represented.
+    // Perhaps only one of the answers that are not needed cannot be represented.
     if (error.code() == brep::ErrorCode::Cancelled) throw;
   }
   learn(brep::booleans(pair.a, pair.b,

@@ -18,8 +18,8 @@ int strength(const ExpressionTree& tree) {
   return static_cast<int>(weakest_first.find(tree.symbol));
 }
 
-/// The truth table of a function of six leaves: bit v is its value if exactly the leaves i with bit i of v
-/// are inside.
+/// The truth table of a function of six leaves. Bit v is its value for a point that is inside leaf i if and
+/// only if bit i of v is set.
 using Table = std::uint64_t;
 constexpr std::array<Table, 6> leaf_tables{0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc, 0xf0f0f0f0f0f0f0f0,
                                            0xff00ff00ff00ff00, 0xffff0000ffff0000, 0xffffffff00000000};
@@ -73,8 +73,9 @@ std::optional<ExpressionTree> decomposed(Table table) {
     const ExpressionTree leaf{0, static_cast<int>(support[0]), {}};
     return table == leaf_tables[support[0]] ? leaf : ExpressionTree{'~', 0, {leaf}};
   }
-  // Every way to part the leaves in two; those in `part` are the left's. For each side: do some values of the
-  // other's leaves make the function true, do all, and what is it with the other's leaves outside?
+  // Tries every way to divide the leaves in two; those in `part` belong to the left side. As functions of one
+  // side's leaves: `any` is true if some values of the other side's leaves make the function true, `all` if
+  // all values do; `alone` is the function with the other side's leaves outside.
   struct Side {
     Table any, all, alone;
     void forget(std::size_t leaf) {

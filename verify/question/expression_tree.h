@@ -25,10 +25,10 @@ std::string text(const ExpressionTree& tree, const std::function<std::string(int
 /// have two parts at most.
 std::vector<ExpressionTree> simpler(const ExpressionTree& tree);
 
-/// A read-once tree of the same function: each leaf occurs once at most. None if there is no such tree, or a
-/// leaf is numbered above five. A constant function becomes a - a or ~(a - a). Cost: the function's 64 values
-/// times the ways to part its leaves in two. Source: disjoint decomposition, Ashenhurst, "The decomposition
-/// of switching functions", 1957.
+/// A read-once tree of the same function: each leaf occurs at most once. None if there is no such tree, or if
+/// a leaf's number is above five. A constant function becomes a - a or ~(a - a). Cost: the function's 64
+/// values times the number of ways to divide its leaves in two. Source: disjoint decomposition, Ashenhurst,
+/// "The decomposition of switching functions", 1957.
 std::optional<ExpressionTree> read_once(const ExpressionTree& tree);
 
 }  // namespace octotomy::verify

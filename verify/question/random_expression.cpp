@@ -15,7 +15,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// Noise of a larger set would be nothing but surface.
+/// Noise is limited to this side, because its surface is as large as its volume.
 constexpr int largest_noise_side = 16;
 
 /// A tree of exactly `leaves` leaves, at most `depth` deep. Precondition: leaves <= 2^depth.
@@ -37,7 +37,7 @@ ExpressionTree tree_of(Random& random, int leaves, int depth, int names, int& xo
   return tree;
 }
 
-/// The voxels below `side` whose index is wanted.
+/// The voxels below `side` for whose index `wanted` returns true.
 template <typename Wanted>
 voxel::Octree where(const voxel::Universe& universe, int side, const Wanted& wanted) {
   return voxel::octree_of_blocks(universe, [&](const glm::ivec3& block) {
@@ -107,7 +107,8 @@ voxel::Octree solid(Random& random, const voxel::Universe& universe, int side, i
   }
 }
 
-/// The head at voxels of six millimetres, by closed form; a part of it for a smaller side.
+/// The bone of the head phantom's closed form in voxels of six millimetres; a random part of it for a smaller
+/// side.
 voxel::Octree head(Random& random, const voxel::Universe& universe, int side) {
   constexpr int head_side = largest_random_side;
   static const std::vector<bool> bone = [] {

@@ -21,7 +21,7 @@ double random_real(Random& random, double low, double high);
 
 struct RandomTreeOptions {
   int depth = 6;   ///< operators from the root to the deepest leaf, at most
-  int leaves = 7;  ///< occurrences at most
+  int leaves = 7;  ///< occurrences, at most
   int names = 7;   ///< a leaf is numbered 0..names-1; a number may occur several times
   int xors = 2;    ///< at most
 };
@@ -34,9 +34,10 @@ struct RandomSet {
   std::string recipe;
 };
 inline constexpr int largest_random_side = 48;
-/// White noise, blobs, ellipsoids, boxes, rings, rods or the bone of the head phantom, in voxels of the
-/// universe below `side` along each axis. Never empty. Noise, whose surface is its volume, only up to 16 a
-/// side. Throws std::invalid_argument if the side is larger than the universe's or largest_random_side.
+/// A random set of one kind: white noise, blobs, ellipsoids, boxes, rings, rods or the bone of the head
+/// phantom, in voxels of the universe below `side` along each axis. Never empty. Noise is drawn only up to 16
+/// voxels a side, because its surface is as large as its volume. Throws std::invalid_argument if the side is
+/// larger than the universe's or largest_random_side.
 RandomSet random_set(Random& random, const voxel::Universe& universe, int side);
 
 }  // namespace octotomy::verify

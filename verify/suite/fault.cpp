@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 A subject is a scan; the question is (window - box) under a rigid motion. Making holds the question's
-//   parameters, so a misunderstanding is a kernel with another Making.
-// 2 Both kernels answer the clean question. For a misunderstanding one of them answers again; faults of
-// execution
-//   change the clean mesh or octree.
-// 3 Each pair is certified like any other.
-// 4 Errors by chance are drawn in the same answers, and in those to blocks of scans.
-// The subjects serve both, which makes the source long.
+// 1 A subject is a scan; the question is (window - box) under a rigid motion. Making holds the parameters
+//   with which a kernel answers. A misunderstanding is one kernel with a different Making.
+// 2 Both kernels answer the clean question. For a misunderstanding one of them answers again. Faults of
+//   execution change the clean mesh or octree.
+// 3 Each pair is certified like any other pair.
+// 4 Random alterations are applied to the same answers, and to answers for blocks of scans.
+// The source is long because trials and alterations use the same subjects.
 #include "verify/suite/fault.h"
 
 #include <algorithm>
@@ -47,14 +46,14 @@
 namespace octotomy::verify {
 namespace {
 
-/// The question as one kernel understands it.
+/// The parameters with which one kernel answers the question.
 struct Making {
   double low = 0.0;           ///< of the window
-  double slices_apart = 1.0;  ///< times the true distance
-  bool swapped = false;       ///< box less window
+  double slices_apart = 1.0;  ///< slice distance, as a multiple of the true distance
+  bool swapped = false;       ///< box - window instead of window - box
   glm::dvec3 box_shift_mm{0.0};
-  bool pivot_forgotten = false;  ///< turned about the origin
-  bool not_moved = false;        ///< as it was before the motion
+  bool pivot_forgotten = false;  ///< turned about the origin instead of the pivot
+  bool not_moved = false;        ///< the motion is left out
 };
 
 struct Subject {
@@ -64,7 +63,7 @@ struct Subject {
   voxel::Box box;
   voxel::Motion motion;
   double low = 0.0;       ///< half way between outside and inside
-  double contrast = 1.0;  ///< inside less outside
+  double contrast = 1.0;  ///< inside minus outside
 };
 
 /// Edge of the universe's voxels.
@@ -73,19 +72,19 @@ double edge_mm(const Subject& subject);
 voxel::Octree voxel_answer(const Subject& subject, const Making& making);
 brep::Triangles mesh_answer(const Subject& subject, const Making& making);
 Witness witness_of(const Subject& subject, const Making& making);
-/// The certificate of two answers, spoiled by `fault` if it has a name.
+/// The certificate of two answers. `fault` is the name of the fault in them, or empty.
 Certificate certified(const Subject& subject, const std::string& fault, const voxel::Octree& octree,
                       const brep::Triangles& triangles, const Witness& witness);
 
-/// An answer with a box or without it.
+/// An answer with a box added or removed.
 voxel::Octree changed(const voxel::Octree& octree, const voxel::Box& box, brep::Operation operation);
 brep::Triangles changed(const brep::Triangles& triangles, const voxel::Box& box, brep::Operation operation);
 brep::Triangles shifted(brep::Triangles triangles, const glm::dvec3& by_mm);
-/// The triangles and, beside them, those of another surface.
+/// The triangles together with those of another surface.
 brep::Triangles with_shell_again(brep::Triangles triangles, const brep::Triangles& again);
 
-/// Subjects without a symmetry that would hide a mirrored axis or swapped operands: off the middle, askew,
-/// cut. The ellipsoid or the ring; and the head.
+/// Subjects without symmetry: off centre, oblique and cut. A symmetry would hide a mirrored axis or swapped
+/// operands. The name is that of the ellipsoid or the ring.
 Subject shape_subject(const std::string& name, int voxels);
 Subject head_subject(int voxels);
 
@@ -262,14 +261,14 @@ brep::Triangles with_shell_twice(brep::Triangles triangles) {
   }
   return triangles;
 }
-/// Mirrored in x about the universe's middle, still turned outward: as a reader with the wrong axis would.
+/// Mirrored in x about the universe's middle, with outward normals, as by a reader with a wrong axis.
 brep::Triangles mirrored(brep::Triangles triangles, const voxel::Universe& universe) {
   const double middle_mm = universe.lattice().lps_mm(glm::dvec3(0.5 * (universe.side() - 1))).x;
   for (glm::dvec3& p : triangles.points_mm) p.x = 2.0 * middle_mm - p.x;
   return turned_inside_out(std::move(triangles));
 }
 
-/// The octree as if its lattice were another.
+/// The octree's voxels on another lattice, resampled in its own universe.
 voxel::Octree on_lattice(const voxel::Octree& octree, const glm::dmat4& index_from_true_index) {
   voxel::Universe other = octree.universe();
   other.lps_from_voxel = other.lps_from_voxel * index_from_true_index;
@@ -303,7 +302,7 @@ constexpr const char* shell_thrice = "shell three times";
 constexpr const char* both_empty = "both kernels empty";
 constexpr const char* lost_by_both = "half lost by both kernels";
 
-/// One clean question's pair, and how to spoil it.
+/// The clean answers to one question, and the faults that are applied to them.
 class Trials {
  public:
   Trials(const Subject& subject, int voxels) : subject_(subject), voxels_(voxels) {
@@ -380,12 +379,13 @@ class Trials {
   std::vector<FaultTrial> trials_;
 };
 
-/// Faults for the exact tier, whose answers have integer coordinates: a shift is by one refined voxel.
+/// Trials in tier Exact. Its answers have integer coordinates, so a shift is by one refined voxel.
 std::vector<FaultTrial> exact_trials(int voxels) {
   voxel::Universe universe;
   while ((1 << universe.depth) > voxels) --universe.depth;
   Random random(static_cast<std::uint64_t>(voxels));
-  // Not noise, whose surface is its volume. Each must have a part of its own and one in common.
+  // No noise, because its surface is as large as its volume. Each set must have voxels of its own and voxels
+  // in common with the other.
   const auto drawn = [&] {
     RandomSet set = random_set(random, universe, std::min(voxels, largest_random_side));
     while (set.recipe.starts_with("noise") || set.recipe.starts_with("head"))
@@ -479,7 +479,7 @@ std::vector<FaultTrial> try_faults(const FaultOptions& options) {
   }
   std::vector<std::vector<FaultTrial>> parts(work.size());
   voxel::SharedProgress work_done(options.progress, work.size());
-  // The large ones first, so that the last ones end together.
+  // Large subjects start first, so that the last ones end at about the same time.
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, work.size(), 1),
       [&](const tbb::blocked_range<std::size_t>& range) {
@@ -575,7 +575,7 @@ double volume_mm3(const brep::Triangles& triangles) {
                                  : brep::trusted_solid(triangles, brep::Proof::Connection).size().volume_mm3;
 }
 
-/// Clean answers to one question, and errors in them.
+/// The clean answers to one question, and random alterations of them.
 class Alterations {
  public:
   explicit Alterations(const Subject& subject)
@@ -600,7 +600,7 @@ class Alterations {
         whole_number(chance, static_cast<int>(triangles_.points_mm.size())))];
   }
 
-  /// A box of one to a sixth of the universe's voxels a side, about a vertex of the mesh.
+  /// A box around a random vertex of the mesh, with sides from one voxel to a sixth of the universe's side.
   voxel::Box box_by_chance(Chance& chance) const {
     const glm::dvec3 middle_mm = vertex_by_chance(chance);
     glm::dvec3 half_mm;
@@ -609,7 +609,7 @@ class Alterations {
     return {middle_mm - half_mm, middle_mm + half_mm};
   }
 
-  /// All that lies beyond a vertex of the mesh along an axis.
+  /// The half of the universe beyond a random vertex of the mesh along a random axis.
   voxel::Box end_by_chance(Chance& chance) const {
     const voxel::Box world = voxel::bounds(subject_.universe.lattice());
     const glm::dvec3 at_mm = vertex_by_chance(chance);
@@ -676,7 +676,8 @@ class Alterations {
   brep::Triangles triangles_;
 };
 
-/// A block of a scan that fits in so many voxels a side, a box in it and a motion, by chance.
+/// A random block of a scan that fits into `voxels` voxels a side, with a random box in it and a random
+/// motion.
 Subject block_subject(const ScanToAlter& from, int voxels, Chance& chance) {
   const voxel::Lattice& lattice = from.scan->lattice;
   const glm::dvec3 spacing_mm = lattice.spacing_mm();
@@ -696,7 +697,7 @@ Subject block_subject(const ScanToAlter& from, int voxels, Chance& chance) {
   const voxel::Box bounds = voxel::bounds(subject.scan.lattice);
   const glm::dvec3 extent_mm = bounds.high_mm - bounds.low_mm,
                    middle_mm = 0.5 * (bounds.low_mm + bounds.high_mm);
-  // Room about the block for the motion.
+  // Space around the block for the motion.
   subject.universe =
       voxel::universe_around({bounds.low_mm - 0.2 * extent_mm, bounds.high_mm + 0.2 * extent_mm}, voxel_mm);
   for (int axis = 0; axis < 3; ++axis) {
@@ -708,7 +709,7 @@ Subject block_subject(const ScanToAlter& from, int voxels, Chance& chance) {
   return subject;
 }
 
-/// Draws blocks until one has an object that is more than crumbs.
+/// Draws blocks until one has an object that is not only crumbs, and alters its answers.
 std::vector<Alteration> altered_block(const ScanToAlter& from, int voxels, int count, Chance& chance) {
   constexpr int most_tries = 50;
   for (int tries = 0; tries < most_tries; ++tries) {

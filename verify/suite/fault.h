@@ -10,14 +10,14 @@
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 
-// Faults injected into one kernel's answer: certificates must show them.
+// Injects faults into one kernel's answer. The certificates must detect them.
 namespace octotomy::verify {
 
-/// A fault of the library. The name says its size if it has one.
+/// A fault of the library. The name includes its size if it has one.
 struct Fault {
   std::string name;
-  std::string what;  ///< a sentence: what it does, and to which kernel
-  /// Must be caught from resolved_size on. The other, smaller faults measure the detection limit.
+  std::string what;  ///< a sentence: its effect, and the kernel
+  /// Must be detected from resolved_size on. The other, smaller faults measure the detection limit.
   bool must_be_caught = true;
 };
 const std::vector<Fault>& faults();
@@ -31,7 +31,7 @@ struct FaultTrial {
   bool must_be_caught = false;
   Certificate certificate;
 
-  /// Only FAIL counts.
+  /// Whether the fault was detected. Only FAIL counts.
   bool caught() const { return certificate.verdict == Verdict::Fail; }
 };
 
@@ -40,14 +40,15 @@ struct FaultOptions {
   voxel::Progress progress{};
 };
 
-/// The size, in voxels a side, from which every fault must be caught.
+/// The size, in voxels a side, from which every fault with `must_be_caught` must be detected.
 inline constexpr int resolved_size = 64;
 
-/// Asks both kernels one question for each subject and size: a window on a scan, minus a box, turned and
-/// moved; and for sets of voxels the exact tier's a - b, up to 64 a side. Then spoils one of the answers by
-/// each fault and certifies the pair again. The head phantom joins from resolved_size on; below, all its bone
-/// is thinner than a voxel. Same trials, in the same order, on any thread count. Throws std::invalid_argument
-/// if a size is not a power of two from 8 on; voxel::Stopped. Cost: about a minute of processor time.
+/// Evaluates one question in both kernels for each subject and size: a window on a scan, minus a box, turned
+/// and moved; and for sets of voxels a - b in tier Exact, up to 64 voxels a side. Then applies each fault to
+/// one of the answers and certifies the pair again. The head phantom is used from resolved_size on; below
+/// that size all its bone is thinner than a voxel. Same trials, in the same order, on any thread count.
+/// Throws std::invalid_argument if a size is not a power of two from 8 on; voxel::Stopped. Cost: about a
+/// minute of processor time.
 std::vector<FaultTrial> try_faults(const FaultOptions& options = {});
 
 /// Trials of one fault at one size.
@@ -58,27 +59,27 @@ struct DetectionPower {
   int caught = 0;   ///< FAIL; of clean twins these are false alarms
   int doubted = 0;  ///< WARN
 };
-/// By fault in the library's order, clean first, then by size.
+/// Sorted by fault in the order of faults(), the clean trials first, then by size.
 std::vector<DetectionPower> detection_power(const std::vector<FaultTrial>& trials);
 
-/// Every clean trial passes, and from resolved_size on its object is resolved and every fault that must be
-/// caught is.
+/// Whether every clean trial passes, and from resolved_size on every clean object is resolved and every fault
+/// with `must_be_caught` is detected.
 bool detection_holds(const std::vector<FaultTrial>& trials);
 
-/// An answer altered by chance in kind, place and size, and the verdict on it.
+/// An alteration of an answer, random in kind, place and size, and the verdict on the altered answer.
 struct Alteration {
-  std::string kind;     ///< "box lost by both kernels"; `unaltered` of a twin
-  std::string subject;  ///< and its voxels a side
+  std::string kind;     ///< "box lost by both kernels"; `unaltered` for an answer without alteration
+  std::string subject;  ///< name and voxels a side
   double altered_mm3 = 0.0;
   bool is_over_limit = false;  ///< larger than the clean certificate's detection limit
   Verdict verdict = Verdict::Pass;
   Verdict clean_verdict = Verdict::Pass;  ///< of the right answers
-  /// Over the limit and passed: there must be none.
+  /// Whether the alteration is over the limit and passed, which must not happen.
   bool is_missed() const { return is_over_limit && verdict == Verdict::Pass; }
 };
 inline constexpr const char* unaltered = "nothing altered";
 
-/// A scan to draw objects from: those of the window from `low` on.
+/// A scan from which objects are drawn: the window from `low` on.
 struct ScanToAlter {
   std::string name;
   std::shared_ptr<const voxel::Scene> scan;
@@ -87,18 +88,18 @@ struct ScanToAlter {
 
 struct AlterationOptions {
   std::uint64_t seed = 1;
-  int count = 60;                  ///< shared out among the subjects
+  int count = 60;                  ///< of alterations, divided among the subjects
   int voxels = 64;                 ///< a side; a power of two from 32 on
   std::vector<ScanToAlter> scans;  ///< none: the phantoms
-  int objects_of_scan = 8;         ///< blocks of each scan, drawn by chance, at one to two samples a voxel
+  int objects_of_scan = 8;         ///< random blocks of each scan, at one to two samples a voxel
   voxel::Progress progress{};
 };
 
-/// Alters the clean answers of the ellipsoid, the ring and the head, or those of objects of scans: boxes lost
-/// and added by either kernel or both, ends clipped, a part lost, pieces of the mesh that are there several
-/// times, shifts of the mesh, empty answers, nothing at all. A block of a scan that has no object is drawn
-/// again. Same alterations for a seed. Throws std::invalid_argument where no block of a scan has an object;
-/// voxel::Stopped. Cost: about a second of processor time each at 64 voxels a side.
+/// Alters the clean answers for the ellipsoid, the ring and the head, or those for objects of scans. The
+/// alterations are boxes lost and added by one kernel or both, clipped ends, a lost part, repeated pieces of
+/// the mesh, shifts of the mesh, empty answers, and none. A block of a scan without an object is replaced by
+/// another one. Same alterations for a seed. Throws std::invalid_argument if no block of a scan has an
+/// object; voxel::Stopped. Cost: about a second of processor time each at 64 voxels a side.
 std::vector<Alteration> try_alterations(const AlterationOptions& options = {});
 
 }  // namespace octotomy::verify

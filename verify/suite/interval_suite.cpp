@@ -29,7 +29,7 @@ const std::array<SpacingName, 4> spacings{
     {{{1, 1, 1}, "1:1:1"}, {{1, 1, 2}, "2:1:1"}, {{1, 1, 3}, "3:1:1"}, {{1, 1, 5}, "5:1:1"}}};
 constexpr std::array<const char*, 3> samplings{"shares", "blurred, noise", "tilted, noise"};
 
-/// An error over the truth, and over its half-width.
+/// An error relative to the truth, and as a share of the half-width.
 struct Error {
   double relative = 0.0, share = 0.0, width = 0.0;
 };
@@ -46,7 +46,7 @@ Error error_of(const Interval& found, double truth) {
       found.half_width / truth};
 }
 
-/// The samples, interpolated linearly; beyond the outermost ones the nearest.
+/// The trilinear interpolant of the samples. Beyond the outermost samples it has the nearest value.
 std::function<double(const glm::dvec3&)> sampler_of(const voxel::Scene& scan) {
   const auto& samples = std::get<voxel::Int16Samples>(scan.samples);
   return [&samples, lattice = scan.lattice](const glm::dvec3& p_mm) {
@@ -67,13 +67,13 @@ std::function<double(const glm::dvec3&)> sampler_of(const voxel::Scene& scan) {
   };
 }
 
-/// The same solid in slices that lean by 5 to 25 degrees in a direction by chance, about the same middle.
+/// The same solid in slices that lean by 5 to 25 degrees in a random direction, with the same middle.
 SolidPhantom with_tilted_slices(SolidPhantom solid, Chance& chance) {
   voxel::Universe& universe = solid.universe;
   const double lean = std::tan(glm::radians(chance.between(5.0, 25.0))), towards = chance.between(0.0, 6.3);
   glm::dmat4& axes = universe.lps_from_voxel;
   axes[2] += glm::dvec4(std::cos(towards), std::sin(towards), 0.0, 0.0) * lean * axes[2].z;
-  ++universe.depth;  // leaning slices take more room
+  ++universe.depth;  // leaning slices need a larger universe
   axes[3] = glm::dvec4(-0.5 * (universe.side() - 1) * glm::dvec3(axes[0] + axes[1] + axes[2]), 1.0);
   return solid;
 }
@@ -145,7 +145,7 @@ SizeIntervals sizes_of(const voxel::Scene& scan, double low) {
   return found;
 }
 
-/// The errors of a solid drawn by chance.
+/// The errors for a random solid.
 Errors drawn_errors_of(std::uint64_t seed, std::size_t number, const MeasureSizes& measure) {
   Errors errors;
   errors.group = number % drawn_groups().size();
@@ -162,7 +162,7 @@ Errors drawn_errors_of(std::uint64_t seed, std::size_t number, const MeasureSize
 
 bool is_likely(const IntervalCoverage& row, double least) {
   const double missed = (1.0 - row.held) * row.cases, expected = (1.0 - least) * row.cases;
-  // The chance of at least so many misses, by the binomial distribution from none upwards.
+  // The probability of at least this number of misses, from the binomial distribution.
   double probability = std::pow(least, row.cases), fewer = 0.0;
   for (int i = 0; i < std::lround(missed); ++i) {
     fewer += probability;

@@ -4,8 +4,8 @@
 // bounded certificate of voxels and mesh; 5 the closed-form certificate of both against the truth.
 //
 // A Gaussian blur of deviation b moves the half level of a smooth boundary inward by b^2 times its mean
-// curvature. So both kernels lose a volume of b^2 M, M the mean curvature integral, without an error of their
-// own.
+// curvature. So both kernels lose a volume of b^2 M, M the mean curvature integral. That is no error of a
+// kernel.
 #include "verify/suite/phantom_suite.h"
 
 #include <algorithm>
@@ -42,8 +42,8 @@ struct Kind {
   std::string name;
   const char* solid;       // of solid_phantom(), or null for a plate
   double radius;           // in the least spacing
-  bool turned = true;      // by chance; otherwise along the lattice
-  double thickness = 0.0;  // of a plate, in the longest spacing: a voxel whichever way it lies
+  bool turned = true;      // at random; otherwise along the lattice
+  double thickness = 0.0;  // of a plate, in the longest spacing, so that it does not depend on the pose
 };
 
 const std::vector<Kind>& kinds() {
@@ -66,8 +66,8 @@ double longest(const glm::dvec3& edges_mm) {
   return std::max({edges_mm.x, edges_mm.y, edges_mm.z});
 }
 
-/// A solid in a random position and orientation, its size random within half a voxel. In spacings of five it
-/// is twice as large, so that it is six voxels across along that axis too.
+/// A solid in a random position and orientation, with a size that is random within half a voxel. With a
+/// spacing of five it is twice as large, so that it is also six voxels across along that axis.
 SolidPhantom posed(const Kind& kind, const glm::dvec3& spacing_mm, Chance& chance) {
   const bool coarse = spacing_mm.z > 2.0;
   SolidPhantomOptions options;
@@ -109,7 +109,7 @@ struct Answers {
   std::optional<double> shares_mm3;  // volume by filled shares, if the voxels have them
   brep::Solid solid;
   double blur_mm2 = 0.0;                          // deviation squared along the coarsest axis
-  std::shared_ptr<const voxel::Scene> scan = {};  // whose window both answers are; none: they share no scan
+  std::shared_ptr<const voxel::Scene> scan = {};  // both answers are its window; null: they share no scan
 };
 
 constexpr double half_level = 0.0, highest_sample = 32767.0;
@@ -155,9 +155,10 @@ Certificate bounded_of(const SolidPhantom& solid, const Answers& answers, const 
   return certify_bounded(answers.octree, answers.solid, inputs);
 }
 
-/// The share of its thickness that a plate loses at the half level of its blurred samples, for a thickness in
-/// deviations of the blur; 1 if no sample reaches the half. Across the plate samples are Phi(x + t / 2) -
-/// Phi(x - t / 2), Phi the normal distribution, which falls from the middle. Noise may raise the level.
+/// The share of its thickness that a plate loses at the half level of its blurred samples; 1 if no sample
+/// reaches the half level. The thickness t is in deviations of the blur. Across the plate samples are
+/// Phi(x + t / 2) - Phi(x - t / 2) with Phi the normal distribution, largest in the middle. Noise may raise
+/// the level.
 double lost_by_blur(double deviations) {
   const auto above_half = [&](double x) {
     const auto phi = [](double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); };
@@ -172,7 +173,7 @@ double lost_by_blur(double deviations) {
   return std::clamp(1.0 - 2.0 * inside / deviations, 0.0, 1.0);
 }
 
-/// Both answers against the truth. `difference_mm3` is that of the voxels.
+/// Compares both answers with the truth. `difference_mm3` is the difference of the voxels.
 Certificate closed_form_of(const SolidPhantom& solid, const Answers& answers, const Certificate& bounded,
                            double plate_voxels) {
   const glm::dvec3 spacing_mm = solid.universe.lattice().spacing_mm();
@@ -248,7 +249,7 @@ double percentile(std::vector<double> values, double share) {
   return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
 }
 
-/// The suite in progress.
+/// Runs the suite.
 class Suite {
  public:
   explicit Suite(const PhantomSuiteOptions& options) : options_(options) {
@@ -290,7 +291,7 @@ class Suite {
               boundary_model(answers.solid, {solid.universe.lattice(), spacings[s].mm, solid.centroid_mm});
           const double voxels_mm3 =
               static_cast<double>(answers.octree.voxel_count()) * solid.universe.lattice().voxel_mm3();
-          // Along the lattice what the rims hide is not of this kind.
+          // Solids along the lattice are left out, because rims add errors that these constants do not model.
           if (kinds()[k].turned)
             counts.push_back(std::abs(voxels_mm3 - solid.volume_mm3) / std::sqrt(model.count_mm6));
           if (kinds()[k].turned)
@@ -341,7 +342,7 @@ class Suite {
     one.bounded = bounded_of(solid, answers, one);
     one.closed_form = closed_form_of(solid, answers, one.bounded, kinds()[k].thickness);
     if (kinds()[k].thickness == 0.0) keep_worse(suite_.worst, {one.bounded, answers.octree, answers.solid});
-    // A box around a plate that is turned does not show how thin it is; the truth is known.
+    // The box around a turned plate does not show its thickness, so the known thickness is used.
     if (kinds()[k].thickness > 0.0)
       for (Certificate* certificate : {&one.bounded, &one.closed_form})
         certificate->unresolved = {
@@ -352,7 +353,7 @@ class Suite {
     suite_.cases.push_back(std::move(one));
   }
 
-  /// Errors of one sphere in a pose by chance, in per cent.
+  /// Errors for one solid in a random pose, in per cent.
   struct Errors {
     double voxels = 0.0, shares = 0.0, surface = 0.0, area = 0.0;
   };

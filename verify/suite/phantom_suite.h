@@ -9,13 +9,14 @@
 #include "verify/certificate/certificate.h"
 #include "voxel/space/progress.h"
 
-// Both kernels on solids of known volume and area: do the certificates' bounds hold, and are they tight?
+// Tests both kernels on solids of known volume and area: whether the certificates' bounds hold, and whether
+// they are tight.
 namespace octotomy::verify {
 
 struct PhantomSuiteOptions {
-  int poses = 6;  ///< of each solid at each spacing and sampling, 1..1000; calibration uses as many others
+  int poses = 6;  ///< of each solid at each spacing and sampling, 1..1000; calibration uses the same number
   std::uint64_t seed = 1;
-  std::optional<std::string> solid = {};  ///< this kind only: "sphere", "box, turned", ...
+  std::optional<std::string> solid = {};  ///< only this kind: "sphere", "box, turned", ...
   voxel::Progress progress = {};
 };
 
@@ -26,19 +27,20 @@ struct PhantomCase {
   Certificate bounded, closed_form;
 };
 
-/// The bounded tolerances of the cases of one spacing and sampling, beside what was observed.
+/// The bounded tolerances of the cases of one spacing and sampling, compared with the observed differences.
 struct Tightness {
   std::string spacing, sampling;
   int cases = 0;             ///< resolved ones: at least six voxels across
-  double worst_share = 0.0;  ///< the largest |difference| / tolerance; above 1 it is no PASS
-  double p99_share = 0.0;    ///< the 99th percentile; from 1/3 on, the tolerance is at most three times it
+  double worst_share = 0.0;  ///< the largest |difference| / tolerance; above 1 the case does not pass
+  double p99_share = 0.0;    ///< its 99th percentile; the tolerance is 1 / p99_share times that difference
 };
 
-/// A constant of the tolerances, and the value that poses of other seeds than the cases' ask for.
+/// A constant of the tolerances, and the value that is needed for poses of other seeds than those of the
+/// cases.
 struct Calibration {
   std::string constant;
   double in_use = 0.0;
-  double p99 = 0.0;  ///< enough for 99 of 100 calibration poses
+  double p99 = 0.0;  ///< the value that suffices for 99 of 100 calibration poses
   int poses = 0;
 };
 
@@ -48,10 +50,10 @@ struct Convergence {
   std::string quantity;
   std::vector<double> radii_voxels, errors_percent;
   double order = 0.0;
-  double least_order = 0.0;  ///< the order of theory less the scatter of a fit over few poses
+  double least_order = 0.0;  ///< the order in theory minus the scatter of a fit over few poses
 };
 
-/// A sentence that is true or not.
+/// A statement and whether it holds.
 struct SuiteCheck {
   std::string statement;
   double found = 0.0, allowed = 0.0;
@@ -65,7 +67,8 @@ struct PhantomSuite {
   std::vector<Convergence> convergences;
   std::vector<SuiteCheck> checks;
   std::optional<Contested> worst;  ///< of the bounded certificates
-  /// The largest error of area on solids with edges at a radius of six voxels. Not judged: edges are cut off.
+  /// The largest error of area on solids with edges at a radius of six voxels. It is reported without a
+  /// check, because edges are chamfered.
   double area_with_edges_percent = 0.0;
 };
 

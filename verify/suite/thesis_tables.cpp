@@ -57,7 +57,7 @@ std::vector<ThesisEntry> figure_3_1() {
            text(voxel::linear_octree(object))}};
 }
 
-/// The sphere of radius 64 in the middle of 256^3, a boundary voxel counting as Full.
+/// The sphere of radius 64 in the middle of 256^3 voxels. A boundary voxel counts as Full.
 std::vector<ThesisEntry> table_3_1() {
   static constexpr std::array<std::array<std::uint64_t, 3>, 8> printed{{{8, 0, 0},
                                                                         {8, 0, 56},
@@ -81,7 +81,8 @@ std::vector<ThesisEntry> table_3_1() {
   return entries;
 }
 
-/// The node 734 of a world of 16 voxels, and its ancestors; the thesis's origin is the world's middle.
+/// The node 734 of a world of 16 voxels a side, and its ancestors. The origin is in the world's middle, as in
+/// the thesis.
 std::vector<ThesisEntry> figure_4_6() {
   const voxel::OctalCode node(3, 0734);
   struct Row {
@@ -108,7 +109,7 @@ std::vector<ThesisEntry> figure_4_6() {
   return entries;
 }
 
-/// The 16 states of four neighbours and the case of each: cases are the slopes 1, 1/2, 0, -1/2 and -1.
+/// The case of each of the 16 states of four neighbours. The cases are the slopes 1, 1/2, 0, -1/2 and -1.
 std::vector<ThesisEntry> table_5_1() {
   struct Row {
     const char* state;  // DE, D, UE, U; x: either
@@ -136,7 +137,7 @@ std::vector<ThesisEntry> table_5_1() {
     int multiplicity = 0;
     for (unsigned state = 0; state < 16; ++state) {
       bool meant = true;
-      // The voxel, and its neighbours of the surface to the South and North.
+      // The voxel, and its neighbours on the surface to the south and north.
       Expression object = Expression(at({3, 3, 3})) | at({3, 2, 3}) | at({3, 4, 3});
       for (std::size_t i = 0; i < 4; ++i) {
         const bool full = (state >> i) & 1;
@@ -156,8 +157,8 @@ std::vector<ThesisEntry> table_5_1() {
   return entries;
 }
 
-/// Statuses that a Boolean of two trees may have, over trees that complete, exclude, repeat and cross each
-/// other.
+/// The possible statuses of a Boolean of two trees, from pairs of trees that are complementary, disjoint,
+/// equal or crossing.
 std::vector<ThesisEntry> table_7_1() {
   voxel::Universe universe;
   universe.depth = 5;

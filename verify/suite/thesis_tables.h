@@ -12,7 +12,7 @@ struct ThesisEntry {
   std::string item;     ///< "level 4, Partial"
   std::string printed;  ///< as printed, without blanks and commas in numbers
   std::string ours;
-  std::string note = {};  ///< how the print was read, if that is not obvious
+  std::string note = {};  ///< how the printed value was interpreted, if that is not obvious
 
   bool agrees() const { return printed == ours; }
 };
@@ -25,7 +25,7 @@ struct ThesisGap {
 
 /// Recomputes the tables and worked examples whose inputs are printed: figure 3.1's object in every
 /// representation, the sphere of table 3.1, the octal codes of figure 4.6, the shading cases of table 5.1 and
-/// the Boolean rules of table 7.1. Cost: a second, for the sphere's fractions.
+/// the Boolean rules of table 7.1. Cost: about a second, most of it for the sphere's fractions.
 std::vector<ThesisEntry> thesis_tables();
 const std::vector<ThesisGap>& thesis_gaps();
 

@@ -5,7 +5,7 @@
 
 namespace octotomy::verify {
 
-/// An affine map, without the products that a matrix of four rows has beyond it.
+/// An affine map. Skips the products with the constant fourth row of a 4 x 4 matrix.
 struct Affine {
   glm::dvec3 x, y, z, at;
 

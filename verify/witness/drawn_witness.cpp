@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Witnesses of what a plan draws: regions, boxes, blades, and surfaces of imported solids.
+// Witnesses of shapes from a plan: regions, boxes, blades, and surfaces of imported solids.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,8 +18,8 @@
 namespace octotomy::verify {
 namespace {
 
-/// A vertex on a plane of the plan lies this share of its coordinates away after several Booleans and
-/// motions.
+/// Largest distance of a vertex from its plane of the plan after several Booleans and motions, relative to
+/// its coordinates.
 constexpr double on_plane = 1e-8;
 
 /// Right and up of a view's picture, from its name or its two angles.
@@ -37,14 +37,13 @@ std::array<glm::dvec3, 2> picture_axes(const std::string& view) {
     throw std::invalid_argument("no view '" + view + "'");
   azimuth *= std::numbers::pi / 180.0;
   elevation *= std::numbers::pi / 180.0;
-  // The observer's place on the unit sphere, and what is right and up for somebody who looks from there to
-  // the centre.
+  // The directions right and up for an observer on the unit sphere who looks towards the centre.
   const glm::dvec3 level = std::sin(azimuth) * left - std::cos(azimuth) * back;
   const glm::dvec3 right = std::cos(azimuth) * left + std::sin(azimuth) * back;
   return {right, std::cos(elevation) * head - std::sin(elevation) * level};
 }
 
-/// The polygons of one region, their edges by rows of the picture.
+/// The polygons of one region, with their edges sorted into rows of the picture.
 class RegionWitness {
  public:
   explicit RegionWitness(const DrawnRegion& region) : axes_(picture_axes(region.view)) {
@@ -56,7 +55,7 @@ class RegionWitness {
       high_ = std::max({high_, a.y, b.y});
       reach_mm_ = std::max({reach_mm_, glm::length(a), glm::length(b)});
     }
-    // Rows much lower than the slack would each list the same edges.
+    // Rows much lower than the slack would all hold the same edges.
     const double most_rows = high_ > low_ ? 4.0 * (high_ - low_) / most_slack_mm : 0.0;
     rows_.resize(std::max<std::size_t>(
         1, static_cast<std::size_t>(std::min(static_cast<double>(edges_.size()), most_rows))));
@@ -89,7 +88,7 @@ class RegionWitness {
   }
 
  private:
-  /// An edge is looked for in the rows that it reaches with this much slack.
+  /// An edge is stored in all rows within this distance.
   static constexpr double most_slack_mm = 0.25;
 
   double near_mm(double p_mm) const { return on_plane * (reach_mm_ + p_mm); }
@@ -104,12 +103,12 @@ class RegionWitness {
   double low_ = std::numeric_limits<double>::infinity(), high_ = -low_, reach_mm_ = 0.0;
 };
 
-/// A straight piece of a blade: planes where the blade ends, and those through which it goes on in the next
-/// piece.
+/// A straight piece of a blade. `ends` are the planes at which the blade ends, `joints` those at which the
+/// next piece begins.
 struct BladePiece {
   std::vector<HalfSpace> ends, joints;
 
-  /// Farthest beyond one of the planes, in millimetres; negative inside of all.
+  /// The largest distance beyond one of the planes, in millimetres; negative inside all of them.
   static double beyond_mm(const std::vector<HalfSpace>& planes, const glm::dvec3& p_mm) {
     double most = -std::numeric_limits<double>::infinity();
     for (const HalfSpace& plane : planes)

@@ -3,7 +3,7 @@
 
 #include "verify/witness/reading.h"
 
-// Readings of several operands as one.
+// Combines the readings of several operands into the reading of a Boolean.
 namespace octotomy::verify {
 
 inline Word negated(const Word& a) {
@@ -15,7 +15,7 @@ inline Word conjunction(const Word& a, const Word& b) {
   return {word.in, word.out, word.in && word.out && ((a.near && b.in) || (b.near && a.in))};
 }
 
-/// A surface is met where one operand's surface is and the other does not decide.
+/// Has a surface wherever one of the operands has one.
 inline Word exclusive(const Word& a, const Word& b) {
   return {(a.in && b.out) || (a.out && b.in), (a.in && b.in) || (a.out && b.out), a.near || b.near};
 }

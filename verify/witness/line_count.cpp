@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t directions = 12;
 
-/// Directions spread evenly over a hemisphere by the golden angle, turned by chance.
+/// Directions spread evenly over a hemisphere by the golden angle, then turned at random.
 std::array<glm::dvec3, directions> spread_directions(Chance& chance) {
   // A turn by a random unit quaternion (Shoemake 1992).
   const double s = chance.between(0.0, 1.0), a = 2.0 * std::numbers::pi * chance.between(0.0, 1.0),
@@ -34,7 +34,7 @@ std::array<glm::dvec3, directions> spread_directions(Chance& chance) {
   return made;
 }
 
-/// The picture of a box seen along a direction, and the lines through it.
+/// The projection of a box along a direction, and the lines through it.
 struct Bundle {
   glm::dvec3 along, right, up;
   glm::dvec3 low{0.0};  ///< in coordinates right, up, along
@@ -72,7 +72,7 @@ Bundle bundle_of(const voxel::Box& box, const glm::dvec3& along, double lines, C
   return made;
 }
 
-/// What one line has inside.
+/// Length inside the object and number of crossings of one line.
 struct Reached {
   double length_mm = 0.0;
   std::uint64_t crossings = 0;

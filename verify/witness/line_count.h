@@ -8,7 +8,7 @@
 
 namespace octotomy::verify {
 
-/// Amounts of an object by lines through it.
+/// Volume and area of an object, measured along lines through it.
 struct LineCount {
   double volume_mm3 = 0.0;
   double deviation_mm3 = 0.0;  ///< the volume's standard deviation, from the scatter over directions
@@ -18,17 +18,17 @@ struct LineCount {
 
 struct LineCountOptions {
   std::uint64_t seed = 1;
-  std::uint64_t lines = 12000;  ///< about so many: accuracy grows a little faster than with their root
-  voxel::Box world_mm{};        ///< where an object without an end of its own ends
+  std::uint64_t lines = 12000;  ///< approximate; accuracy grows a little faster than the root of this number
+  voxel::Box world_mm{};        ///< bounds an object that is unbounded itself
   voxel::Progress progress{};
 };
 
 /// Volume and area by the Cauchy-Crofton formula: parallel lines in twelve directions spread over a
-/// hemisphere, turned as a whole by chance; in each direction on a square grid whose place is chance, too.
-/// The volume is the mean over directions of the lengths inside times the grid's cell, the area twice that of
-/// the crossings. Deterministic for a seed, on any thread count. Throws voxel::Stopped. Cost: that of reading
-/// the lines. Precondition: `reading` is not empty. Source: Santalo, Integral Geometry and Geometric
-/// Probability, 1976, chapter 14.
+/// hemisphere. The hemisphere is turned at random; the lines of a direction lie on a square grid with a
+/// random offset. The volume is the mean over directions of the lengths inside times the area of a grid cell;
+/// the area is twice the mean of the number of crossings times the area of a grid cell. Deterministic for a
+/// seed, on any thread count. Throws voxel::Stopped. Cost: that of reading the lines. Precondition: `reading`
+/// is not empty. Source: Santalo, Integral Geometry and Geometric Probability, 1976, chapter 14.
 LineCount count_along_lines(const LineReading& reading, const LineCountOptions& options);
 
 }  // namespace octotomy::verify

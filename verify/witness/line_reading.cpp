@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Windows: a line is followed through the scan in steps of half a sample. The interpolant counts as linear
-// within a step, so a stretch's ends are good to a few hundredths of a sample, and layers thinner than half a
-// sample may be missed where the interpolant bends. Bricks of 4 cells a side whose samples all lie inside or
-// all outside of the window are passed in one step. Steps lie at multiples of their length from where the
-// line begins, so that a stretch's ends do not depend on which part of the line is read: an object without
-// itself holds nothing. Expressions: operators and names are put into postfix order by two stacks
-// (Dijkstra's shunting yard), then joined.
+// within a step. So the ends of a span have an error of a few hundredths of a sample, and layers thinner than
+// half a sample may be missed where the interpolant bends. Bricks of 4 cells a side whose samples all lie
+// inside or all outside the window are passed in one step. Steps lie at multiples of their length from the
+// line's start. So the ends of a span do not depend on which part of the line is read, and an object minus
+// itself is empty. Expressions: two stacks put operators and names into postfix order (Dijkstra's shunting
+// yard); then the readings are joined.
 #include "verify/witness/line_reading.h"
 
 #include <algorithm>
@@ -29,7 +29,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const voxel::Box everywhere{glm::dvec3(-infinity), glm::dvec3(infinity)};
 
-/// Adds a stretch that begins no sooner than the last one; joins them where they touch.
+/// Appends a span, or extends the last span if both touch. Precondition: it begins no sooner than the last
+/// span.
 void append(Spans& spans, double low_mm, double high_mm) {
   if (!(high_mm > low_mm)) return;
   constexpr double touching_mm = 1e-9;
@@ -39,7 +40,7 @@ void append(Spans& spans, double low_mm, double high_mm) {
     spans.push_back({low_mm, high_mm});
 }
 
-/// The stretches of `within` between two places.
+/// The parts of `within` between two positions on the line.
 Spans clipped(const Spans& within, double low_mm, double high_mm) {
   Spans made;
   for (const Span& span : within)
@@ -71,7 +72,7 @@ Spans joined(const Spans& a, const Spans& b) {
   return made;
 }
 
-/// Where a line is on the inner side of planes: from and to, crossed over where it is nowhere.
+/// Start and end of the part of a line on the inner side of all planes. Start exceeds end if there is none.
 template <typename Sides>
 std::pair<double, double> between(const Line& line, const Sides& sides) {
   double low_mm = -infinity, high_mm = infinity;
@@ -109,7 +110,7 @@ voxel::Box moved_box(const voxel::Box& box, const glm::dmat4& by) {
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column) {
       const double share = by[column][row];
-      if (share == 0.0) continue;  // an infinite side times nothing
+      if (share == 0.0) continue;  // zero times an infinite side is NaN
       const double a = share * box.low_mm[column], b = share * box.high_mm[column];
       made.low_mm[row] += std::min(a, b);
       made.high_mm[row] += std::max(a, b);
@@ -117,7 +118,7 @@ voxel::Box moved_box(const voxel::Box& box, const glm::dmat4& by) {
   return made;
 }
 
-/// The window of a scan along lines.
+/// Computes the parts of lines inside the window of a scan.
 template <typename Sample>
 class WindowAlong {
  public:
@@ -174,7 +175,7 @@ class WindowAlong {
                 static_cast<std::size_t>(dims_.y) * static_cast<std::size_t>(z));
   }
 
-  /// The samples of a brick, its neighbours' first ones included.
+  /// The range of a brick's samples, including the first samples of the next bricks.
   struct Range {
     Sample least = std::numeric_limits<Sample>::max(), most = std::numeric_limits<Sample>::lowest();
     bool is_finite = true;
@@ -186,7 +187,7 @@ class WindowAlong {
     }
   };
 
-  /// The states of one layer of bricks.
+  /// Sets the states of one layer of bricks.
   void set_states(int z) {
     std::vector<Range> layer(static_cast<std::size_t>(bricks_.x) * static_cast<std::size_t>(bricks_.y));
     for (int slice = z * brick; slice <= std::min((z + 1) * brick, dims_.z - 1); ++slice)
@@ -229,7 +230,7 @@ class WindowAlong {
     return b;
   }
 
-  /// Where a line leaves a brick; outermost bricks reach beyond the samples.
+  /// The position at which a line leaves a brick. The outermost bricks extend beyond the samples without end.
   double leaves_mm(const glm::dvec3& u0, const glm::dvec3& du, const glm::ivec3& b) const {
     double at_mm = infinity;
     for (int axis = 0; axis < 3; ++axis) {
@@ -272,19 +273,20 @@ class WindowAlong {
     return false;
   }
 
-  /// The nearest sample: nothing lies between a sample and padding. No number where that is padding.
+  /// The value of the nearest sample, because there is no interpolation between a sample and padding. NaN if
+  /// the nearest sample is padding.
   double nearest(const glm::ivec3& first, const glm::dvec3& part, const glm::ivec3& next) const {
     const auto value = static_cast<double>(*sample(
         part.x < 0.5 ? first.x : next.x, part.y < 0.5 ? first.y : next.y, part.z < 0.5 ? first.z : next.z));
     return value == *scan_->padding ? std::numeric_limits<double>::quiet_NaN() : value;
   }
 
-  /// A step of a line: from one place to the next, and the values there.
+  /// A step of a line: its start and end, and the interpolant's values there.
   struct Step {
     double low_mm, high_mm, f0, f1;
   };
 
-  /// Adds what lies in the window of the part of a step within `part`.
+  /// Adds the part of a step that lies within `part` and in the window.
   void add_step(const Step& step, const Span& part, Spans& inside) const {
     const auto [low_mm, high_mm, f0, f1] = step;
     if (!std::isfinite(f0) || !std::isfinite(f1)) return;
@@ -300,12 +302,12 @@ class WindowAlong {
            std::min(low_mm + to * (high_mm - low_mm), part.high_mm));
   }
 
-  /// The value at the place of this number along a line.
+  /// The interpolant's value after a number of steps from the line's start.
   struct Known {
     double number, value;
   };
 
-  /// Reads a part of a line step by step. `last` is the place that was read last, if any.
+  /// Reads a part of a line step by step. `last` holds the last position and its value, if there is one.
   void follow_steps(const glm::dvec3& u0, const glm::dvec3& du, double step_mm, const Span& part,
                     std::optional<Known>& last, Spans& inside) const {
     for (double number = std::floor(part.low_mm / step_mm); number * step_mm < part.high_mm; ++number) {
@@ -320,7 +322,8 @@ class WindowAlong {
               Spans& inside) const {
     std::optional<Known> last;
     for (double at_mm = span.low_mm; at_mm < span.high_mm;) {
-      // A little onward, so that a place between two bricks belongs to the next one.
+      // The position is moved a little forward, so that a boundary between two bricks belongs to the next
+      // one.
       const glm::ivec3 b = brick_of(u0 + (at_mm + 1e-6 * step_mm) * du);
       const double out_mm = std::min(std::max(leaves_mm(u0, du, b), at_mm + 1e-3 * step_mm), span.high_mm);
       const State state = states_[index_of(b)];
@@ -346,11 +349,12 @@ LineReading window_reading(std::shared_ptr<const voxel::Scene> scan, double low,
           [window](const voxel::Box& part) { return window->may_meet(part); }, box, 100.0};
 }
 
-/// Two hundred windows. An expression of more, or one that a plan's steps double over and over, has no
-/// reading: a line would take seconds, and its operands call each other as deep as they are many.
+/// The cost of two hundred windows. An expression of more has no reading, nor has one whose size a plan's
+/// steps double repeatedly. A line would take seconds, and the recursion would be as deep as the number of
+/// operands.
 constexpr double most_cost = 2e4;
 
-/// Operands that are not cheap to read are asked last, and only where the answer still depends on them.
+/// The more expensive operand is read last, and only where the answer still depends on it.
 LineReading intersection(LineReading a, LineReading b) {
   if (!a || !b) return {};
   if (b.cost < a.cost) std::swap(a, b);
@@ -456,7 +460,8 @@ LineReading lines_in_region(const glm::dvec3& right, const glm::dvec3& up,
   const auto inside = [right, up, edges](const Line& line, const Spans& within) {
     const glm::dvec2 from(glm::dot(line.from_mm, right), glm::dot(line.from_mm, up));
     const glm::dvec2 along(glm::dot(line.along, right), glm::dot(line.along, up));
-    // Edges that the line's picture crosses, and for the side on which it begins those behind it.
+    // Positions at which the projected line crosses edges, also behind its start. By the even-odd rule each
+    // pair of successive crossings bounds an inside part.
     const glm::dvec2 across(-along.y, along.x);
     std::vector<double> at_mm;
     bool is_point = glm::dot(along, along) < 1e-24, holds_point = false;

@@ -10,37 +10,38 @@
 
 #include "verify/witness/line_reading.h"
 
-// A third reading of a plan's objects, at single points: neither octrees nor meshes, but the scan's samples
-// and the plan's own numbers, by code that neither kernel uses. It decides which of two kernels that differ
-// is wrong.
+// A third evaluation of a plan's objects, at single points. It reads the scan's samples and the plan's own
+// numbers, not octrees or meshes, by code that neither kernel uses. Where the kernels differ, it decides
+// which one is wrong.
 namespace octotomy::verify {
 
-/// What a kernel may answer at a point.
+/// The answers that are allowed for a kernel at a point.
 struct Word {
-  bool in = false;    ///< it may say inside
-  bool out = false;   ///< it may say outside
-  bool near = false;  ///< both, because a surface passes within its rounding of the point
+  bool in = false;    ///< inside is allowed
+  bool out = false;   ///< outside is allowed
+  bool near = false;  ///< a surface passes within rounding of the point
 
   bool allows(bool inside) const { return inside ? in : out; }
   bool operator==(const Word&) const = default;
 };
 inline constexpr Word certainly_in{true, false, false};
 inline constexpr Word certainly_out{false, true, false};
-/// On a surface, as far as a kernel's interpolation and rounding go.
+/// On a surface, within a kernel's interpolation and rounding.
 inline constexpr Word on_surface{true, true, true};
-/// Away from any surface; the witness does not know on which side.
+/// Away from any surface, and the witness cannot decide the side.
 inline constexpr Word untold{true, true, false};
 
-/// What each kernel may answer at a point: their interpolations differ.
+/// The allowed answers of each kernel at a point. They differ because the kernels interpolate differently.
 struct Reading {
   Word voxel, mesh;
-  /// Surfaces that meet at the point, by which a mesh may have a vertex there: two that cross, or one that
-  /// has a vertex of its own there and counts twice.
+  /// Number of surfaces that meet at the point. A surface with a vertex of its own there counts twice. A mesh
+  /// may have a vertex at the point if the number is two or more.
   int surfaces = 0;
 };
 
-/// What of a reading is needed. Words without surfaces cost less: an operand that decides alone spares the
-/// others.
+/// The parts of a reading that the caller needs: both words and the surfaces, the mesh's word and the
+/// surfaces, both words, or the mesh's word. Words without surfaces cost less, because one operand that
+/// decides alone makes the others unnecessary.
 enum class Asked { Both, MeshOnly, BothWords, MeshWord };
 constexpr bool needs_voxels(Asked asked) {
   return asked == Asked::Both || asked == Asked::BothWords;
@@ -50,21 +51,22 @@ constexpr bool needs_surfaces(Asked asked) {
 }
 
 class Necks;
-/// Some of an object's connected parts, as both kernels chose them on the way, and the motion since, LPS to
-/// LPS. Without necks the kernels' answers are not known.
+/// A step of the plan at which both kernels chose some of an object's connected parts, and the motion of the
+/// object since then, LPS to LPS. `necks` is null if the kernels' answers at that step are not available.
 struct PartChoice {
   std::shared_ptr<const Necks> necks = {};
   glm::dmat4 chosen_from_made{1.0};
 };
 
-/// Answers for one object at a point, LPS millimetres, whose surfaces may lie `slack_mm` elsewhere. Empty:
-/// the object has no witness. Safe to call from several threads.
+/// Computes the reading of one object at a point, LPS millimetres. The object's surfaces may be off by
+/// `slack_mm`. Empty: the object has no witness. Safe to call from several threads.
 class Witness {
  public:
   using Read = std::function<Reading(const glm::dvec3& p_mm, double slack_mm, Asked asked)>;
 
   Witness() = default;
-  /// `read` answers both words and the surfaces, or takes what is needed as well and may leave out the rest.
+  /// `read` returns the whole reading; with a third parameter of type Asked it may leave out what is not
+  /// needed.
   template <typename Reader>
   requires std::is_invocable_v<const Reader&, const glm::dvec3&, double> ||
       std::is_invocable_v<const Reader&, const glm::dvec3&, double, Asked>
@@ -81,21 +83,22 @@ class Witness {
   Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked = Asked::Both) const {
     return read_(p_mm, slack_mm, asked);
   }
-  /// The same object along lines, by code of its own; may be empty.
+  /// The same object's reading along lines, which separate code computes; may be empty.
   const LineReading& lines() const { return lines_; }
   Witness with_lines(LineReading lines) && {
     lines_ = std::move(lines);
     return std::move(*this);
   }
-  /// The choices of connected parts that the object is made of, where a thin neck decides what belongs to it.
+  /// The choices of connected parts among the steps that computed the object. At each of them a thin neck may
+  /// decide which parts belong to the object.
   const std::vector<PartChoice>& choices() const { return choices_; }
   Witness with_choices(std::vector<PartChoice> choices) && {
     choices_ = std::move(choices);
     return std::move(*this);
   }
-  /// The mesh's word and the surfaces alone, at a fraction of the cost; nothing is said of the voxels.
+  /// The mesh's word and the surfaces, at a fraction of the cost. The voxel kernel's word is not computed.
   Reading of_mesh(const glm::dvec3& p_mm) const { return read_(p_mm, 0.0, Asked::MeshOnly); }
-  /// Both words, nothing of the surfaces.
+  /// Both words, without the surfaces.
   Reading words(const glm::dvec3& p_mm) const { return read_(p_mm, 0.0, Asked::BothWords); }
   Word mesh_word(const glm::dvec3& p_mm) const { return read_(p_mm, 0.0, Asked::MeshWord).mesh; }
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// How far a triangulated surface may stray from the trilinear interpolant f of the samples it is made from:
-// in each cell the part that the mesh calls outside is a polyhedron whose corners are outside samples (f <=
-// t) and crossings of edges (f = t). Each of its points p is a mean of those corners, so the mean of f over
-// them is at most t, and f(p) differs from that mean by the terms of f that are not linear: with f = a +
-// linear terms + b_xy xy + b_yz yz + b_zx zx + b_xyz xyz in the cell's unit coordinates,
+// The bound of the distance, in values of f, between a triangulated isosurface and the trilinear interpolant
+// f of its samples: in each cell the part outside the mesh is a polyhedron whose corners are outside samples
+// (f <= t) and crossings of edges (f = t). Each point p of the polyhedron is a mean of those corners, so the
+// mean of f over them is at most t. f(p) differs from that mean by the terms of f that are not linear: with
+// f = a + linear terms + b_xy xy + b_yz yz + b_zx zx + b_xyz xyz in the cell's unit coordinates,
 //   f(p) - mean f = -sum of b (mean of the product - product of the means).
 // The mean of xy over points of mean x and y lies between max(0, x + y - 1) and min(x, y), that of xyz
-// between max(0, x + y + z - 2) and min(x, y, z) (Frechet's bounds). The part that it calls inside strays
-// likewise to the other side. No triangulation of the cell between its crossings can break this, whatever it
-// does with ambiguous faces; at samples and on edges nothing strays.
+// between max(0, x + y + z - 2) and min(x, y, z) (Frechet's bounds). The same bound holds with the opposite
+// sign for the part inside the mesh. It holds for every triangulation of the cell between its crossings,
+// however ambiguous faces are resolved. At samples and on edges the difference is zero.
 //
-// The voxel kernel's value is f, rounded at the centres of voxels: it is computed here from the samples
-// again.
+// The voxel kernel's value is f, rounded at the centres of voxels. This file computes it again from the
+// samples.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,13 +30,13 @@
 namespace octotomy::verify {
 namespace {
 
-/// Rounding of numbers and of a few sums of them: a share of the largest magnitude.
+/// Bound of rounding errors in values and in sums of a few values, relative to the largest magnitude.
 constexpr double rounding = 1e-9;
 
 /// The vertices of an isosurface keep a thousandth of an edge from its ends (convert/surface/isosurface.h).
 constexpr double kept_from_samples = 1e-3;
 
-/// How far f may exceed a bound where the mesh is outside, and fall short of it where the mesh is inside.
+/// How far f may lie above a bound where the mesh is outside, and below the bound where the mesh is inside.
 struct Stray {
   double above = 0.0, below = 0.0;
 };
@@ -75,7 +75,7 @@ class WindowWitness {
   }
 
  private:
-  /// The samples about a position, and where it lies between them.
+  /// The eight samples around a position, and the position between them in shares of the cell.
   struct Cell {
     std::array<double, 8> v{};
     std::array<double, 3> t{};
@@ -89,7 +89,7 @@ class WindowWitness {
     }
   };
 
-  /// Positions beyond the outermost samples take the nearest value.
+  /// Positions beyond the outermost samples are clamped to them.
   Cell cell(const glm::dvec3& u) const {
     Cell made;
     const Sample* corner = samples_;
@@ -138,17 +138,18 @@ class WindowWitness {
     return found;
   }
 
-  /// Where f exceeds the lower bound by more than `above` the mesh cannot call it outside, where it is short
-  /// of it by more than `below` not inside; mirrored for the upper bound. A value that is no number allows
-  /// both answers.
+  /// The word for the value f at a point. If f is more than `above` over the lower bound, the answer must be
+  /// inside; if it is more than `below` under it, outside. The upper bound is treated in the same way with
+  /// the opposite sign. NaN allows both answers.
   Word word(double value, double above, double below) const {
     const bool surely_in = value >= low_ + above && value <= high_ - below;
     const bool surely_out = value < low_ - below || value > high_ + above;
     return surely_in ? certainly_in : surely_out ? certainly_out : on_surface;
   }
 
-  /// The word of a cell whose samples are so far from the window's bounds that no stray reaches them: of the
-  /// four terms of stray_of() three are at most half the samples' range each, the last 1.6 times it.
+  /// The word of a cell whose samples are so far from the window's bounds that the stray cannot matter. Of
+  /// the four terms of stray_of(), three are at most half the samples' range each, the last at most 1.6 times
+  /// it.
   std::optional<Word> clear_word(const Cell& at, double slack) const {
     const double reach =
         (3.2 + 3.0 * slack) * (at.high - at.low) + rounding * std::max(std::abs(at.low), std::abs(at.high));
@@ -165,10 +166,10 @@ class WindowWitness {
     return most;
   }
 
-  /// Beyond the outermost samples the mesh ends half a sample away from each that is inside. In a cell there,
-  /// with p_i the distances beyond along the axes in samples, that is the plane where they add up to a half:
-  /// the surface where all of the cell's own samples are inside, and the farthest that it reaches where some
-  /// are.
+  /// Beyond the outermost samples the mesh ends half a sample away from each inside sample. In a cell there,
+  /// let p_i be the distances beyond the samples along the axes, in samples. If all of the cell's own samples
+  /// are inside, the surface is the plane where the p_i add up to a half. If some are inside, the surface
+  /// does not reach beyond that plane.
   Word word_beyond(const glm::dvec3& u, double slack) const {
     double past = 0.0;
     for (int axis = 0; axis < 3; ++axis)
@@ -183,8 +184,8 @@ class WindowWitness {
     return any_out || past > 0.5 - near ? on_surface : certainly_in;
   }
 
-  /// The samples of the cell that holds a position beyond the outermost ones, each maybe several times; of
-  /// its neighbours, too, where the position lies within `slack` of them.
+  /// The samples of the cell that holds a position beyond the outermost samples, and those of the
+  /// neighbouring cells within `slack` of the position. A sample may occur several times.
   std::vector<double> own_corners(const glm::dvec3& u, double slack) const {
     const double by = std::max(slack, 1e-6);
     const Cell low = cell(u - by), high = cell(u + by);
@@ -202,8 +203,8 @@ class WindowWitness {
     return samples;
   }
 
-  /// Padding is outside, and the surface closes half way to it from each sample inside: in any way in a cell
-  /// that has both, and within `slack` of one. None: no padding is near.
+  /// Padding is outside. The surface closes half way between an inside sample and padding, so both answers
+  /// are allowed in a cell that has both, and within `slack` of such a cell. None: no padding is near.
   std::optional<Word> word_at_padding(const Cell& at, const glm::dvec3& u, double slack) const {
     if (slack == 0.0 && at.low != padding_) return std::nullopt;
     bool is_near = false, any_in = false;
@@ -219,7 +220,7 @@ class WindowWitness {
     return any_in ? on_surface : certainly_out;
   }
 
-  /// The mesh's answer, beyond the outermost samples as word_beyond() has it.
+  /// The mesh's word; word_beyond() computes it beyond the outermost samples.
   Word mesh_word(const glm::dvec3& u, double slack) const {
     const double past = beyond(u);
     if (past >= 1.0) return certainly_out;
@@ -229,15 +230,17 @@ class WindowWitness {
       if (const std::optional<Word> word = word_at_padding(at, u, slack)) return *word;
     if (const std::optional<Word> clear = clear_word(at, slack)) return *clear;
     const Stray stray = stray_of(at);
-    // In a cell f changes by its samples' range a sample along each axis at most.
+    // Within a cell f changes by at most the samples' range per sample along each axis.
     const double moved = 3.0 * slack * (at.high - at.low);
     Word answer = word(at.value(), stray.above + moved, stray.below + moved);
-    // A cell with samples below and above the window has outside parts that are no mean of like corners.
+    // In a cell with samples both below and above the window, the outside part may have corners of both
+    // kinds, and the bound does not hold.
     if (answer == certainly_in && at.low < low_ && at.high > high_) answer = on_surface;
     return answer;
   }
 
-  /// Where it is near, the surface has vertices on the edges between samples alone.
+  /// Number of surfaces at a point near the surface: two on an edge between samples, where the surface may
+  /// have a vertex, and one elsewhere.
   int surfaces(const glm::dvec3& u, double slack) const {
     const double on_edge = 1e-6 + slack;
     int whole = 0;
@@ -245,8 +248,9 @@ class WindowWitness {
     return whole >= 2 ? 2 : 1;
   }
 
-  /// At a voxel's centre, the voxel's own sample; elsewhere the scan's samples about the position, those that
-  /// are measured standing for the others as far as the nearest one is measured.
+  /// The voxel kernel's word, at a voxel's centre from the voxel's own sample. Elsewhere it is interpolated
+  /// from the scan's samples around the position. Samples that were not measured are left out of the mean,
+  /// provided that the nearest sample was measured.
   Word voxel_word(const glm::dvec3& q, const glm::dvec3& u) const {
     const glm::dvec3 nearest = glm::round(q), off = glm::abs(q - nearest);
     if (std::max({off.x, off.y, off.z}) < 1e-7) {
@@ -273,7 +277,7 @@ class WindowWitness {
     return word(value / weights, rounded_, rounded_);
   }
 
-  /// A measured sample of the scan; none beyond it and where it is padding.
+  /// A measured sample of the scan. None beyond the scan and for padding.
   std::optional<double> sample_at(const glm::dvec3& index) const {
     if (glm::any(glm::lessThan(index, glm::dvec3(0.0))) ||
         glm::any(glm::greaterThanEqual(index, glm::dvec3(dims_))))
@@ -285,7 +289,7 @@ class WindowWitness {
     return sample == padding_ ? std::nullopt : std::optional(sample);
   }
 
-  /// A voxel's sample, none where the scan has none for it, and whether that is sure.
+  /// A voxel's sample. None: the scan has none for the voxel. `sure` is false where rounding decides that.
   struct Measured {
     std::optional<double> value;
     bool sure = true;
@@ -308,7 +312,7 @@ class WindowWitness {
   const Sample* samples_;
   glm::ivec3 dims_;
   double low_, high_;
-  double rounded_;  ///< a voxel's sample is rounded to a step, and so is a window's bound
+  double rounded_;  ///< error of a voxel's sample and of the window's bound, which are rounded to a step
   double padding_;  ///< below every measured sample; NaN without padding
   std::array<std::size_t, 3> strides_{};
   Affine scan_from_lps_, universe_from_lps_, scan_from_universe_;

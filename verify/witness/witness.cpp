@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What operations make of witnesses: intersections, motions, expressions.
+// Witnesses of the results of operations: intersections, motions, expressions.
 #include "verify/witness/witness.h"
 
 #include <algorithm>
@@ -15,13 +15,14 @@
 namespace octotomy::verify {
 namespace {
 
-/// Operands that decide alone spare the others, the cheap ones come first.
+/// Cost of reading a witness. Cheap operands are read first, because one that decides alone makes the others
+/// unnecessary.
 double cost_of(const Witness& witness) {
   constexpr double of_a_window = 100.0;
   return witness.lines() ? witness.lines().cost : of_a_window;
 }
 
-/// Whether no further operand of an intersection changes what is needed of the reading.
+/// Whether no further operand of an intersection can change the needed parts of the reading.
 bool decides(const Reading& a, Asked asked) {
   return !needs_surfaces(asked) && a.mesh == certainly_out &&
          (!needs_voxels(asked) || a.voxel == certainly_out);
@@ -46,7 +47,7 @@ Witness intersection(Operand a, Operand b) {
       };
 }
 
-/// Those of all operands, each once.
+/// The choices of all operands, without duplicates.
 std::vector<PartChoice> choices_of(const std::vector<Witness>& operands) {
   std::vector<PartChoice> all;
   for (const Witness& operand : operands)
@@ -58,7 +59,7 @@ std::vector<PartChoice> choices_of(const std::vector<Witness>& operands) {
   return all;
 }
 
-/// An expression's operands, numbered as its leaves.
+/// Reads an expression. The operands have the numbers of the tree's leaves.
 class ReadExpression {
  public:
   ReadExpression(const ExpressionTree& tree, std::vector<Witness> leaves)
@@ -79,7 +80,7 @@ class ReadExpression {
   }
 
  private:
-  /// A leaf, or what joins parts: an intersection, or where they are exclusive.
+  /// A leaf, or an intersection or exclusive or of parts; complemented if `is_complement`.
   struct Joint {
     bool is_complement = false, is_exclusive = false;
     std::size_t leaf = 0;
@@ -111,7 +112,8 @@ class ReadExpression {
     return made;
   }
 
-  /// Recursion is as deep as the text's parentheses, not as long as a row of operands.
+  /// The recursion depth is that of the text's parentheses. It does not grow with the number of operands in a
+  /// row.
   template <typename ReadLeaf>
   static Reading read(const Joint& joint, const ReadLeaf& leaf, Asked asked) {
     if (joint.parts.empty()) return joint.is_complement ? negated(leaf(joint.leaf)) : leaf(joint.leaf);

@@ -14,7 +14,8 @@
 #include "voxel/space/scene.h"
 #include "voxel/tree/octree.h"
 
-// Witnesses of windows, regions and what operations make of them. Each reads the scan and the plan by itself.
+// Witnesses of windows and regions, and of the results of operations on them. Each reads the scan and the
+// plan with its own code.
 namespace octotomy::verify {
 
 /// The window low..high of a scan, both bounds included. The mesh kernel's surface lies in the scan's own
@@ -29,44 +30,48 @@ struct DrawnRegion {
   std::string view;                                  ///< "anterior", "35,15"
   std::vector<std::vector<glm::dvec2>> polygons_mm;  ///< by the even-odd rule
 };
-/// The points whose projection lies inside of every region. Throws std::invalid_argument for an unknown view.
+/// The points whose projection lies inside every region. Throws std::invalid_argument for an unknown view.
 Witness witness_of_regions(const std::vector<DrawnRegion>& regions);
 Witness witness_of_box(const voxel::Box& box);
-/// What a saw takes away along a line of straight pieces.
+/// The cut of a saw along a line of straight pieces.
 struct DrawnBlade {
   std::vector<glm::dvec3> line_mm;      ///< LPS
-  glm::dvec3 direction{0.0, 1.0, 0.0};  ///< in which the blade goes in; of any length
-  double depth_mm = 100.0;              ///< from that of the line's points which the blade meets first
-  double kerf_mm = 1.0;                 ///< half on either side of the line
+  glm::dvec3 direction{0.0, 1.0, 0.0};  ///< in which the blade enters; of any length, LPS
+  double depth_mm = 100.0;              ///< from the line's point that comes first along `direction`
+  double kerf_mm = 1.0;                 ///< width of the cut, half on either side of the line
 };
-/// Each piece by its half-spaces; pieces meet in the planes that halve their corners, the line's ends are
-/// square. Throws std::invalid_argument for a line without two points apart as seen along the direction.
+/// Each piece is an intersection of half-spaces. Adjacent pieces meet in the plane that bisects their corner;
+/// the line's ends are square. Throws std::invalid_argument unless two points of the line are apart as seen
+/// along the direction.
 Witness witness_of_blade(const DrawnBlade& blade);
-/// Knows where the surface is and not which side is inside: for solids that come from no scan.
+/// For solids that come from no scan. Decides whether a point is near the surface, but not which side is
+/// inside.
 Witness witness_of_surface(brep::Solid solid);
 
 Witness both(Witness a, Witness b);
 Witness without(Witness a, Witness b);
 /// The object under a rigid motion or reflection, LPS to LPS.
 Witness carried(Witness still, const glm::dmat4& moved_from_still);
-/// The object whose surfaces may lie `by_mm` elsewhere, as corefinement moves operands that touch.
+/// The object with surfaces that may be off by `by_mm`, because corefinement moves operands that touch.
 Witness loosened(Witness tight, double by_mm);
-/// Some of the object's connected parts: a point inside may belong to none of them.
+/// Some of the object's connected parts. For a point inside the object both answers are allowed, because its
+/// part may not be chosen.
 Witness witness_of_parts(Witness whole);
-/// What both kernels chose of the object's connected parts, the places of necks that the plan keeps or cuts,
-/// LPS, and the spacing of the scan's samples.
+/// The connected parts that each kernel chose, the places of necks that the plan keeps or cuts (LPS
+/// millimetres), and the spacing of the scan's samples.
 struct ChosenParts {
   voxel::Octree voxels;
   brep::Solid mesh;
   std::vector<glm::dvec3> decided_mm = {};
   glm::dvec3 sample_mm{0.0};
 };
-/// The same. Where the choices differ beyond a thin neck, so may all that is made of them.
+/// The same. Where the choices differ beyond a thin neck, all objects computed from them may differ as well.
 Witness witness_of_parts(Witness whole, ChosenParts chosen);
-/// The object with some of its cavities filled: a point outside may lie in one of them.
+/// The object with some of its cavities filled. For a point outside the object both answers are allowed,
+/// because it may lie in a filled cavity.
 Witness witness_of_filled(Witness hollow);
-/// The object that an expression makes. `lookup` answers a name; an empty answer leaves the whole without a
-/// witness. Throws std::invalid_argument as MeshExpressions::evaluate().
+/// The object of an expression. `lookup` returns the witness of a name; if it is empty for one of the names,
+/// the result is empty. Throws std::invalid_argument as MeshExpressions::evaluate().
 Witness witness_of_expression(std::string_view text,
                               const std::function<Witness(const std::string&)>& lookup);
 
