@@ -10,17 +10,16 @@
 #include "voxel/solid/postfix_expression.h"
 #include "voxel/solid/target_expression.h"
 
-// One walk over the target's blocks, all operands at once. Children are joined in ascending order, so the
-// result does not depend on threads.
+// One walk over the target's blocks handles all operands at once. Children are joined in ascending order, so
+// the result does not depend on the number of threads.
 
 namespace octotomy::voxel {
 namespace {
 
 using EnteredBlock = ExpressionBlocks::EnteredBlock;
 
-// Blocks of this height and up, 256 voxels a side, are shared out to threads child by child: a child of 64
-// voxels a side is some ten to a hundred microseconds of work if a boundary passes it, far above the cost of
-// a task.
+// Blocks of this height and up, 256 voxels a side, are split among threads child by child: a child of 64
+// voxels a side that a boundary crosses takes ten to a hundred microseconds, far more than starting a task.
 constexpr int parallel_height = 4;
 
 class Combiner {
@@ -60,7 +59,7 @@ class Combiner {
     for (std::uint64_t rest = undecided; rest != 0; rest &= rest - 1)
       numbers[next++] = std::countr_zero(rest);
 
-    // The child, or the node that it shares, which is not retained yet.
+    // Evaluates a child, or returns the octree node that equals it, which is not retained yet.
     const auto child_block = [&](std::size_t slot, EnteredBlock& inner) -> const Node* {
       const Node* shared = blocks_.enter(block, numbers[slot], inner);
       if (shared == nullptr) children[slot] = evaluate(inner).detach();

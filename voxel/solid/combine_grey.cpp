@@ -11,8 +11,8 @@
 #include "voxel/solid/term_walk.h"
 #include "voxel/tree/octree_node.h"
 
-// Passes: 1 the expression's voxels, as an octree; 2 its leaves, by brick; 3 the bricks' samples, each voxel
-// asking the windows in their order.
+// Passes: 1 compute the expression's voxels as an octree; 2 collect its leaves by brick; 3 fill the bricks'
+// samples, testing the windows in their order for each voxel.
 
 namespace octotomy::voxel {
 namespace {
@@ -21,11 +21,11 @@ namespace {
 struct Source {
   const Window* window = nullptr;
   glm::dmat4 source_from_target{1.0};
-  std::optional<glm::ivec3> offset;  ///< if it is a translation by whole voxels
+  std::optional<glm::ivec3> offset;  ///< if source_from_target is a translation by whole voxels
   bool positive = true;              ///< under an even number of complements
 };
 
-// The windows of an expression in reading order, each with whether it adds or takes away.
+// The windows of an expression in reading order, each with its position in the target and its sign.
 std::vector<Source> sources_of(const Universe& target, const Expression& expression) {
   std::vector<Source> found;
   std::vector<glm::dmat4> motions{glm::dmat4(1.0)};
@@ -45,7 +45,7 @@ std::vector<Source> sources_of(const Universe& target, const Expression& express
     } else if (term.kind == Kind::Moved) {
       motions.pop_back();
     }
-    // A leaf is met once.
+    // A leaf is visited once, the other terms before and after their operands.
     if (turns && (!met.before || term.kind == Kind::Leaf)) positive = !positive;
   });
   return found;
@@ -59,11 +59,11 @@ std::int16_t rounded(double value) {
 
 class Sampler {
  public:
-  // `filled` is what no source fills, as samples count.
+  // `filled`: sample of the voxels that no source fills, in steps.
   Sampler(std::vector<Source> sources, const GreyResult& options, std::int16_t filled)
       : sources_(std::move(sources)), options_(options), filled_(filled) {}
 
-  // The sample of a voxel that the expression holds.
+  // Returns the sample of a voxel that the expression contains.
   std::int16_t operator()(const glm::ivec3& voxel) const {
     const double nothing = std::numeric_limits<double>::quiet_NaN();
     double complement = nothing;
@@ -79,7 +79,7 @@ class Sampler {
  private:
   struct Value {
     double value = 0.0;
-    bool scanned = false;  ///< the nearest sample is the scan's
+    bool scanned = false;  ///< the nearest sample belongs to the scan
   };
   Value value_at(const Source& source, const glm::ivec3& voxel) const {
     const GreyOctree& grey = source.window->grey;

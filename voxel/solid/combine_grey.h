@@ -9,20 +9,22 @@
 namespace octotomy::voxel {
 
 struct GreyResult {
-  /// Sample of the voxels that the expression does not hold: they are beyond the result's scan.
+  /// Sample of the voxels that the expression does not contain. These voxels are not part of the result's
+  /// scan.
   std::int16_t background = -1024;
-  /// Sample of the voxels that only objects without samples fill: octrees, masks, primitives. Default: the
-  /// brightest of 12-bit scanners.
+  /// Sample of the voxels that only objects without samples (octrees, masks, primitives) fill. Default: the
+  /// largest sample of 12-bit scanners.
   std::int16_t filled = 3071;
   Resampling resampling;
 };
 
-/// The voxels of an expression with their samples, as a grey octree whose ranges are its own. A voxel has the
-/// sample of the first window of the expression, in reading order, that holds it and is not under a
-/// complement or to the right of a minus. Failing that, the sample of a window whose complement holds it;
-/// else `filled`. Samples of moved windows are interpolated once, halves upward, and the voxels are those of
-/// combine(). Parallel; same bits on any thread count. Memory: the samples of the blocks that hold a voxel.
-/// Source: thesis 7.2 for grey operands.
+/// The voxels of an expression with their samples, as a grey octree whose ranges are computed from the
+/// result. A voxel's sample is that of the first window of the expression, in reading order, that contains
+/// the voxel and is not under a complement or to the right of a minus. If there is none, it is the sample of
+/// the first window whose complement contains the voxel, and otherwise `filled`. Samples of moved windows are
+/// interpolated once and rounded, halves upward. The voxels are those of combine(). Throws
+/// std::invalid_argument if the windows' samples have different steps. Parallel; same bits on any thread
+/// count. Memory: the samples of the blocks that contain a voxel. Source: thesis 7.2 for grey operands.
 GreyOctree combine_grey(const Universe& universe, const Expression& expression,
                         const GreyResult& options = {});
 

@@ -1,8 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-//
-// Each operation: 1 which voxels are certain and which are touched, by combine(); 2 of the voxels between
-// them, the bounds from those of both operands. Source: Frechet, "Généralisation du théorème des probabilités
-// totales", 1935: a voxel is the probability space, a share a probability.
+// For each operation: 1 combine() computes the voxels wholly inside and those touched; 2 the bounds of the
+// voxels between them follow from the bounds of both operands. Source: Frechet, "Généralisation du théorème
+// des probabilités totales", 1935: a voxel is the probability space, a share a probability.
 #include "voxel/solid/combine_shares.h"
 
 #include <algorithm>
@@ -24,7 +22,7 @@ struct Bounds {
   int high = 0;
 };
 
-/// The bounds of any voxel of a bracket.
+/// Looks up the bounds of any voxel of a bracket.
 class Shares {
  public:
   explicit Shares(const ShareBracket& bracket) : bracket_(bracket) {
@@ -130,7 +128,7 @@ ShareBracket bracket_of(const PartialOctree& partial) {
 }
 
 ShareBracket combine_shares(const Expression& expression, const std::vector<ShareOperand>& operands) {
-  // Copies of an expression share its term, so a symbol is known by that.
+  // Copies of an expression share its term, so the term's address identifies a symbol.
   std::unordered_map<const Expression::Term*, const ShareBracket*> shares;
   for (const ShareOperand& operand : operands) shares.emplace(&operand.symbol.term(), &operand.shares);
   using Term = Expression::Term;

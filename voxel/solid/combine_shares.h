@@ -9,33 +9,34 @@
 
 namespace octotomy::voxel {
 
-/// What is known of the share of every voxel that a solid fills: at least `low` and at most `high` of it. The
-/// shares of two solids do not tell how they overlap within a voxel, so a Boolean of them is known between
-/// two bounds. Both are the same in voxels wholly in or out, and in voxels with the boundary of only one
-/// solid.
+/// Bounds of the share of every voxel that a solid fills: at least `low` and at most `high`. The shares of
+/// two solids do not determine how the solids overlap within a voxel, so the share of their Boolean lies
+/// between two bounds. The bounds coincide in voxels wholly inside or outside, and in voxels that only one
+/// solid's boundary crosses.
 struct ShareBracket {
   Octree inside;    ///< filled for certain
   Octree touching;  ///< perhaps filled in part
-  /// Of the voxels of touching - inside, in tree order as PartialOctree::fractions; of PartialOctree::whole.
+  /// Bounds for the voxels of touching - inside, in tree order as PartialOctree::fractions.
+  /// PartialOctree::whole stands for a share of 1.
   std::vector<std::uint16_t> low, high;
 };
 
-/// Shares that are known: both bounds the same. Throws as check(PartialOctree).
+/// The shares of a partial octree as exact bounds, low = high. Throws as check(PartialOctree).
 ShareBracket bracket_of(const PartialOctree& partial);
 
-/// A symbol of an expression and what it stands for.
+/// A leaf of an expression and the shares that replace it.
 struct ShareOperand {
   Expression symbol;
   ShareBracket shares;
 };
 
-/// Evaluates an expression of such symbols, voxel by voxel, with the bounds of Frechet: a share of a & b is
-/// from max(0, a + b - 1) to min(a, b), of a | b from max(a, b) to min(1, a + b), of a ^ b from |a - b| to
-/// min(a + b, 2 - a - b); a - b is a & ~b. They are the tightest for two solids of known shares; if one
-/// operand occurs twice, or three have their boundary in one voxel, they are wider than need be and never
-/// wrong. Exact but for the shares' own rounding to 1 / 65535. Throws std::invalid_argument if the universes
-/// differ, a leaf is none of the symbols, or the expression moves a part: shares do not turn with a lattice.
-/// Cost: n log n of the operands' boundary voxels.
+/// Evaluates an expression of such symbols voxel by voxel with Frechet's bounds: the share of a & b lies
+/// between max(0, a + b - 1) and min(a, b), of a | b between max(a, b) and min(1, a + b), and of a ^ b
+/// between |a - b| and min(a + b, 2 - a - b); a - b is a & ~b. The bounds are the tightest for two solids of
+/// known shares. They remain valid but become wider than necessary if an operand occurs twice or three
+/// boundaries cross one voxel. Exact except for the rounding of the shares to 1 / 65535. Throws
+/// std::invalid_argument if the universes differ, a leaf is none of the symbols, or the expression moves a
+/// part: shares cannot be carried to a rotated lattice. Cost: n log n of the operands' boundary voxels.
 ShareBracket combine_shares(const Expression& expression, const std::vector<ShareOperand>& operands);
 
 /// The volume is from low to high, in cubic millimetres.

@@ -5,16 +5,17 @@
 
 #include "voxel/tree/octree_node.h"
 
-// What a cube of index space holds of a solid. Decisions are those of regular sets: a cube is inside if no
-// open part of it lies outside, and is met if an open part of it lies inside. So a surface that only brushes
-// a cube from without does not meet it, and a solid and its complement swap the two answers exactly.
+// Whether a cube of index space has parts inside and outside a solid. Decisions follow regular sets: a cube
+// is inside if no open part of it lies outside, and it meets the solid if an open part of it lies inside. So
+// a surface that only touches a cube from outside does not meet it, and replacing a solid by its complement
+// swaps the two answers exactly.
 
 namespace octotomy::voxel {
 
 /// A cube of index space.
 struct Cube {
   glm::dvec3 centre{0.0};
-  double half = 0.5;  ///< of its edge; above 0
+  double half = 0.5;  ///< half the edge length, in voxels; above 0
 
   Cube octant(int number) const {
     const glm::dvec3 way(number & 1 ? 1 : -1, number & 2 ? 1 : -1, number & 4 ? 1 : -1);
@@ -23,8 +24,8 @@ struct Cube {
 };
 
 /// Whether open parts of a cube lie inside and outside a solid. Conservative: `in` may be wrongly true unless
-/// `sure_in` is set, and `out` unless `sure_out` is. Operators are those of solids; two surfaces in one cube
-/// leave open where they meet.
+/// `sure_in` is set, and `out` unless `sure_out` is. The operators combine solids. Where the surfaces of both
+/// run through the cube, the result may stay undecided.
 struct Meets {
   bool in = true;
   bool out = true;
@@ -32,7 +33,7 @@ struct Meets {
   bool sure_out = false;
 
   static Meets exactly(bool in, bool out) { return {in, out, in, out}; }
-  /// Of a status that is right if Full or Empty.
+  /// From a block status that is exact if Full or Empty and conservative if Partial.
   static Meets of(Status status) {
     return status == Status::Partial ? Meets{} : exactly(status == Status::Full, status == Status::Empty);
   }
@@ -58,7 +59,8 @@ struct Tangent {
   double value = 0.0;
 };
 
-/// Surfaces of an operand within a cube: how many, and one of them. Two or more meet in an edge.
+/// The number of smooth surfaces of an operand within a cube, and the tangent plane of one of them. Two or
+/// more count as meeting in an edge.
 struct Sheets {
   int count = 0;
   Tangent first;

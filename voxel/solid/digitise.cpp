@@ -11,11 +11,11 @@
 #include "voxel/solid/combine.h"
 #include "voxel/solid/target_expression.h"
 
-// The walk of combine() decides blocks by their cubes, whole voxels included. What it leaves open comes here
-// leaf by leaf:
-//   1 eight cubes of 2 x 2 x 2 voxels are looked at, and the voxels of those that are undecided are resolved;
-//   2 of the voxels that are neither in nor out, fractions are taken.
-// A partial octree walks twice, over the same leaves: the second walk reads what the first one found.
+// The walk of combine() decides blocks by their cubes, whole voxels included. Leaves that it leaves undecided
+// are decided here:
+//   1 eight cubes of 2 x 2 x 2 voxels are tested, and the voxels of undecided cubes are resolved;
+//   2 fractions are computed for voxels that are neither wholly inside nor outside.
+// A partial octree takes two walks over the same leaves; the second reads the words that the first computed.
 
 namespace octotomy::voxel {
 namespace {
@@ -25,7 +25,7 @@ struct Leaf {
   std::uint64_t touching = 0;
 };
 
-// The cube of the voxels from `first` on.
+// The cube of side^3 voxels from `first` on.
 Cube cube_at(const glm::ivec3& first, int side) {
   return {glm::dvec3(first) + 0.5 * (side - 1), 0.5 * side};
 }

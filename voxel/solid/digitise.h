@@ -7,24 +7,24 @@
 
 namespace octotomy::voxel {
 
-/// Which voxels a solid becomes (thesis 2.1.2, D1 to D4): those wholly inside, those any of it touches, those
-/// whose centre is inside, those at least half inside.
+/// Rule that selects a solid's voxels (thesis 2.1.2, D1 to D4): voxels wholly inside it, voxels that it
+/// touches, voxels whose centre is inside, voxels at least half inside.
 enum class Digitisation { Inside, Touching, Centre, Half };
 
-/// The voxels of the universe that a solid becomes. A voxel is a cuboid half an edge around its centre, taken
-/// as a regular set: a surface that only brushes a voxel from without does not touch it, so Inside of a solid
-/// is exactly the complement of Touching of its complement. Decided by closed forms
-/// (operand_closed_form.cpp), in double precision. An oblique torus, a mask of slices, a resampled octree and
-/// edges where surfaces intersect are refined to 2^-6 of a voxel, and count as boundary if that leaves them
-/// open. An octree operand of the same universe stands for its whole voxels. Half is decided by fractions,
-/// with their error; Centre is combine(). Throws std::invalid_argument if the solid holds a window of
-/// samples, unless by Centre. Parallel; same bits on any thread count. Cost: grows with the solid's boundary,
-/// not with its volume.
+/// The voxels of the universe that the rule selects for a solid. A voxel is a cube that extends half an edge
+/// around its centre, taken as a regular set: a surface that only touches a voxel from outside does not count
+/// as touching, so Inside of a solid is exactly the complement of Touching of its complement. Most operands
+/// are decided by closed forms (operand_closed_form.cpp), in double precision. Oblique tori, slice masks,
+/// resampled octrees and edges where surfaces intersect are refined to 2^-6 of a voxel; voxels still
+/// undecided then count as boundary. An octree operand of the same universe stands for its whole voxels. Half
+/// compares digitise_partial()'s shares, with their error, to one half. Centre is combine(). Throws
+/// std::invalid_argument if the solid contains a window of samples, except with Centre. Parallel; same bits
+/// on any thread count. Cost: grows with the solid's boundary, not with its volume.
 Octree digitise(const Universe& universe, const Expression& solid, Digitisation digitisation);
 
-/// The solid with the share of every boundary voxel that it fills. Errors of a share: rounding to 1 / 65535;
-/// on smooth surface 2^-9 if its curvature is at most 1/3 a voxel; if an edge runs through the voxel, 2^-4 of
-/// its length there. Throws as digitise().
+/// The solid with the share that it fills of every boundary voxel. Error of a share: 1 / 65535 by rounding;
+/// 2^-9 on a smooth surface whose curvature is at most 1/3 per voxel; if an edge runs through the voxel, 2^-4
+/// of the edge's length in it. Throws as digitise().
 PartialOctree digitise_partial(const Universe& universe, const Expression& solid);
 
 }  // namespace octotomy::voxel

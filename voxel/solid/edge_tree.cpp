@@ -1,9 +1,8 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 boxes over runs of each polygon's edges, halved along the polygon; 2 boxes over whole polygons, halved
-// across the longer side of their middles' box. A run that lies wholly beyond a ray's start is crossed oddly
-// if its two ends lie on different sides of the ray, and whole polygons evenly, so the even-odd rule needs
-// only the boxes about the point. Boxes hold what rounding makes of the edges' points, so that what they
-// spare could not have changed an answer.
+// Steps: 1 build boxes over runs of each polygon's edges, halved along the polygon; 2 build boxes over whole
+// polygons, halved across the longer side of their middles' box. Queries use only the boxes near the point: a
+// ray crosses a run wholly beyond its start an odd number of times if the run's ends lie on different sides
+// of the ray, and whole polygons an even number of times. Boxes include the rounding of points computed on
+// the edges, so skipping a box cannot change a result.
 #include "voxel/solid/edge_tree.h"
 
 #include <algorithm>
@@ -26,8 +25,9 @@ struct Box {
   }
 };
 
-/// Of the points of an edge as square_to_segment() and crosses_ray_from() round them. Both go from `a` by a
-/// part of the way to `b`, in steps that rounding keeps monotone, so the ends of the way bound the rest.
+/// Extends the box by the points that square_to_segment() and crosses_ray_from() compute on an edge, with
+/// their rounding. Both compute a + t * (b - a) for t from 0 to 1, and rounding keeps this monotone in t, so
+/// the two ends bound all points between.
 void add_edge(const glm::dvec2& a, const glm::dvec2& b, Box& box) {
   const glm::dvec2 along = b - a;
   box.add(a);

@@ -10,10 +10,10 @@ namespace octotomy::voxel {
 
 using Edge = std::array<glm::dvec2, 2>;
 
-/// Boxes over the edges of closed polygons in a plane, so that a question about a place does not go over all
-/// edges. Answers are those of the definitions over all edges, to the bit. Building: n log n, about 50 bytes
-/// an edge. A question costs log n about contours; edges whose boxes overlap at the place are asked one by
-/// one.
+/// A tree of boxes over the edges of closed polygons in a plane, so that a query at a point does not visit
+/// all edges. Results equal those computed over all edges, to the bit. Building costs n log n and takes about
+/// 50 bytes an edge. A query costs about log n on contours; edges whose boxes overlap at the point are
+/// visited one by one.
 class EdgeTree {
  public:
   /// The closing edges are implied; a polygon without points has none.
@@ -21,18 +21,20 @@ class EdgeTree {
 
   /// The least square_to_segment() of all edges; infinity without any.
   double square_to(const glm::dvec2& p_mm) const;
-  /// By the even-odd rule, as contains() of the polygons.
+  /// Whether the point is inside by the even-odd rule, as contains() in region_mask.h.
   bool contains(const glm::dvec2& p_mm) const;
-  /// Edges that decide which points of a rectangle are inside, and where the region's border meets it: those
-  /// of the polygons about it, and upright ones beyond it that stand for whole runs. A ray from the rectangle
-  /// towards growing x crosses them as often as the polygons, or an even number of times more or less.
+  /// Edges that decide which points of a rectangle are inside, and where the region's border meets the
+  /// rectangle. These are edges of the polygons near the rectangle, and upright edges at larger x each of
+  /// which replaces a whole run of edges. A ray from the rectangle towards growing x crosses the polygons and
+  /// these edges equally often, modulo two.
   std::vector<Edge> edges_about(const glm::dvec2& low_mm, const glm::dvec2& high_mm) const;
 
-  /// The largest coordinate, without its sign; 0 without edges.
+  /// The largest absolute coordinate; 0 without edges.
   double farthest_mm() const;
 
-  /// Calls visit(from, to, number) for the edges about a rectangle, in no order: all that meet it, and some
-  /// more. Numbers are in the polygons' order, each polygon's closing edge first.
+  /// Calls visit(from, to, number), in no particular order, for all edges that meet a rectangle and some
+  /// others near it. Numbers follow the polygons' order, each polygon's closing edge first; a polygon of n
+  /// points takes n + 1 numbers.
   template <typename Visit>
   void visit(const glm::dvec2& low_mm, const glm::dvec2& high_mm, const Visit& visit_edge) const {
     if (!nodes_.empty()) visit_node(0, low_mm, high_mm, visit_edge);
@@ -41,8 +43,8 @@ class EdgeTree {
  private:
   static constexpr std::uint32_t leaf_size = 4;
 
-  /// A run of edges, points from..to; or whole polygons, with `from` and `to` the same. An inner node's
-  /// children are the next one and `second`.
+  /// A run of edges, from point `from` to point `to`; or whole polygons, with `from` equal to `to`. An inner
+  /// node's children are the next node and `second`.
   struct Node {
     glm::dvec2 low, high;
     std::uint32_t from = 0, to = 0, second = 0;
@@ -82,7 +84,7 @@ class EdgeTree {
     visit_node(node.second, low_mm, high_mm, visit_edge);
   }
 
-  std::vector<glm::dvec2> points_;  ///< polygon after polygon, each from its last point to its last
+  std::vector<glm::dvec2> points_;  ///< polygon after polygon; each begins and ends with its last point
   std::vector<Node> nodes_;         ///< a parent before its children
 };
 

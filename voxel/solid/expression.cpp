@@ -14,18 +14,15 @@
 namespace octotomy::voxel {
 namespace {
 
-// Whether the matrix keeps lengths: it is rigid if its determinant is also positive.
+// Whether the matrix is affine and keeps lengths. It is rigid if its determinant is also positive.
 bool is_affine_isometry(const glm::dmat4& matrix) {
   for (int row = 0; row < 3; ++row)
     if (matrix[row][3] != 0.0 || !std::isfinite(matrix[3][row])) return false;
   return matrix[3][3] == 1.0 && is_isometry(glm::dmat3(matrix));
 }
 
-// The grammar, weakest binding first:
-//   union = exclusive { "|" exclusive }    exclusive = intersection { "^" intersection }
-//   intersection = difference { "&" difference }    difference = unary { "-" unary }
-//   unary = "~" unary | "(" union ")" | "move" "(" union "," name ")" | name
-// Every rule calls back with what it recognised, so that one parser serves evaluation and the list of names.
+// Every rule passes what it recognised to a callback, so that one parser serves evaluation and the list of
+// names.
 template <typename Value, typename Object, typename Moved, typename Apply, typename Complement>
 class Parser {
  public:
@@ -45,7 +42,7 @@ class Parser {
 
  private:
   static constexpr std::string_view operators = "|^&-";
-  // Deeper nesting than any plan's, and far from the end of the stack.
+  // Deeper than any plan nests, and far below what would exhaust the stack.
   static constexpr int max_nesting = 200;
 
   Value binary(std::size_t strength) {
@@ -113,7 +110,7 @@ class Parser {
   }
 
   [[noreturn]] void fail(const std::string& reason) const {
-    // A long text is quoted about the place alone.
+    // Of a long text only the part around the error is quoted.
     constexpr std::size_t most_quoted = 200;
     const bool whole = text_.size() <= most_quoted;
     const std::size_t from = whole ? 0 : std::max(at_, most_quoted / 2) - most_quoted / 2;
@@ -138,7 +135,7 @@ Value parse(std::string_view text, Actions... actions) {
 
 }  // namespace
 
-// Terms that nobody else holds are taken apart one by one.
+// Destroys terms without other owners one by one, without recursion.
 Expression::Term::~Term() {
   std::vector<std::shared_ptr<const Term>> open;
   const auto take = [&](std::shared_ptr<const Term>& operand) {
@@ -149,7 +146,7 @@ Expression::Term::~Term() {
   while (!open.empty()) {
     const std::shared_ptr<const Term> last = std::move(open.back());
     open.pop_back();
-    // Every term is made as a Term that can be changed, and nobody else holds this one.
+    // Allowed because every term is created as a non-const Term, and this one has no other owner.
     auto& term = const_cast<Term&>(*last);
     take(term.left);
     take(term.right);
@@ -241,7 +238,8 @@ Expression parse_expression(std::string_view text, const Names& names) {
 
 namespace {
 
-// How strongly a kind binds, as the grammar's levels: what binds less than its place asks for is bracketed.
+// How strongly a kind binds, as in the grammar. An operand that binds less than its place requires gets
+// parentheses.
 int strength(Expression::Kind kind) {
   switch (kind) {
     case Expression::Kind::Or:
@@ -259,7 +257,7 @@ int strength(Expression::Kind kind) {
 
 constexpr std::array<std::string_view, 4> symbols{" | ", " ^ ", " & ", " - "};
 
-// A part still to be printed: a term and how strongly it must bind to go without brackets, or a text.
+// A part still to be printed: a term with the strength that it needs to go without parentheses, or a text.
 struct Unprinted {
   const Expression::Term* term = nullptr;
   int at_least = 0;
@@ -299,7 +297,7 @@ std::string print_expression(const Expression& expression, const Labels& labels)
         rest.push_back({term.left.get(), 0});
         break;
       default:
-        // From the left: the right side of an operator of the same strength needs brackets.
+        // Operators group from the left, so a right operand of the same strength needs parentheses.
         rest.push_back({term.right.get(), own + 1});
         rest.push_back({nullptr, 0, std::string(symbols[static_cast<std::size_t>(own)])});
         rest.push_back({term.left.get(), own});

@@ -19,13 +19,14 @@
 
 namespace octotomy::voxel {
 
-/// The samples of a grey octree from low to high, both included; in steps of its samples.
+/// The voxels of a grey octree whose samples lie in low..high, both included. The limits count steps of its
+/// samples.
 struct Window {
   GreyOctree grey;
   double low = 0.0;
   double high = 32767.0;
 };
-/// The samples of a scan from one value to another, in the scan's unit.
+/// The window between two values in the scan's unit; without `high`, all samples from `low` up.
 inline Window window_of(const GreyOctree& grey, double low,
                         const std::optional<double>& high = std::nullopt) {
   Window window{grey, grey.in_steps(low)};
@@ -49,7 +50,7 @@ class Expression {
     Term() = default;
     Term(const Term&) = delete;
     Term& operator=(const Term&) = delete;
-    ~Term();  ///< no recursion: a term of any depth can go
+    ~Term();  ///< iterative: deep terms cannot exhaust the stack
   };
 
   /// A leaf. Each throws std::invalid_argument as check() of its type: a mask that holds nothing, a length
@@ -101,28 +102,29 @@ struct Motion {
 /// Throws std::invalid_argument if a number is not finite or the axis has no length.
 glm::dmat4 moved_from_still(const Motion& motion);
 
-/// The meanings of names in an expression's text. Each throws std::invalid_argument for an unknown name.
+/// Look-ups for the names in an expression's text. Each throws std::invalid_argument for an unknown name.
 struct Names {
   std::function<Expression(std::string_view name)> object;
-  std::function<glm::dmat4(std::string_view name)> motion;  ///< may be empty: `move` is then refused
+  std::function<glm::dmat4(std::string_view name)> motion;  ///< may be empty: `move` is then an error
 };
 
 /// Parses `a & b`, `a | b`, `a - b`, `a ^ b`, `~a`, `move(a, m)` and parentheses. As in Python, `~` binds
-/// strongest, then `-`, `&`, `^` and `|`, each from the left. Throws std::invalid_argument with the
-/// position, what it found and what it expected. A name's own refusal comes through with the name's position.
+/// strongest, then `-`, `&`, `^` and `|`; operators of one kind group from the left. Throws
+/// std::invalid_argument with the position, what stands there and what was expected. If a look-up throws, the
+/// exception carries the name's position.
 Expression parse_expression(std::string_view text, const Names& names);
 
-/// What the leaves and motions of an expression are called in its text: names as parse_expression() takes
-/// them.
+/// Names for the leaves and motions of an expression in its text, in the form that parse_expression() reads.
 struct Labels {
   std::function<std::string(const Expression::Leaf& leaf)> object;
   std::function<std::string(const glm::dmat4& moved_from_still)> motion;
 };
-/// The expression as text with no more parentheses than it takes: parsed again with names that undo the
-/// labels, it is the same expression, term by term.
+/// The expression as text with as few parentheses as possible. Parsing it with names that invert the labels
+/// yields the same expression, term by term.
 std::string print_expression(const Expression& expression, const Labels& labels);
 
-/// The objects named in an expression's text, each once, in order. Throws as parse_expression.
+/// The names of the objects in an expression's text, each once, in order of first use. Throws as
+/// parse_expression().
 std::vector<std::string> names_in(std::string_view text);
 
 }  // namespace octotomy::voxel

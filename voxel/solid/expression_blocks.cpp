@@ -6,16 +6,17 @@
 #include <memory>
 
 // At a block:
-//   1 every operand says which of the 64 children are Full, and which are not Empty;
-//   2 the expression is run over these covers in three-valued logic, 64 children at a time: most are decided;
-//   3 operands that are Full or Empty in an undecided child drop out of the expression there. If one octree
-//     alone is left, its node is the answer;
-//   4 otherwise the walk goes into the child, or, at the leaves, runs the expression over words of 64 voxels.
+//   1 every operand reports which of the 64 children are Full, and which are not Empty;
+//   2 the expression is evaluated on these covers in three-valued logic, 64 children at a time, which decides
+//   most; 3 operands that are Full or Empty in an undecided child drop out of the expression there. If a
+//   single octree
+//     remains, its node is the result;
+//   4 otherwise the walk enters the child or, at the leaves, evaluates the expression on words of 64 voxels.
 
 namespace octotomy::voxel {
 namespace {
 
-// What an expression comes down to when some operands are known.
+// The form to which an expression reduces when some operands are Full or Empty.
 struct Reduced {
   enum class Form : std::uint8_t { Empty, Full, Operand, Complement, Complex };
   Form form = Form::Empty;
@@ -52,7 +53,7 @@ struct Reduced {
   }
 };
 
-// Adds to an operand's cover the leaves whose words are empty or full. False if there are none.
+// Adds to an operand's cover the leaves whose words are empty or full. Returns false if there are none.
 bool settle(Cover& cover, const std::array<std::uint64_t, 64>& words, std::uint64_t wanted) {
   const std::uint64_t open = wanted & cover.undecided();
   std::uint64_t full = 0, empty = 0;
@@ -76,7 +77,7 @@ ExpressionBlocks::ExpressionBlocks(const Universe& universe, const TargetExpress
       depth_(universe.depth),
       margin_(margin) {}
 
-// The expression over what get() says of its operands.
+// Evaluates the expression on the values that get() returns for its operands.
 template <typename Value, typename Get>
 Value ExpressionBlocks::run(const Get& get) const {
   std::array<Value, 8> few;
@@ -156,7 +157,7 @@ void ExpressionBlocks::ask_words(EnteredBlock& block, std::uint64_t wanted) cons
     if (i + 1 == operands_.size() || block.operations[i].node != nullptr ||
         !settle(block.covers[i], block.operand_words[i], open))
       continue;
-    // What these words decide, the other operands are not asked.
+    // Leaves that these words decide need no words of the other operands.
     const Cover settled = run_covers(block);
     block.cover.full |= open & settled.full;
     block.cover.some &= settled.some | ~open;
@@ -168,7 +169,7 @@ void ExpressionBlocks::ask_words(EnteredBlock& block, std::uint64_t wanted) cons
   }
 }
 
-// Words of an operand for the wanted leaves of a block.
+// Fetches an operand's words for the wanted leaves of a block.
 void ExpressionBlocks::fetch_words(std::size_t operand, std::uint64_t wanted, EnteredBlock& block) const {
   const Cover& cover = block.covers[operand];
   std::array<std::uint64_t, 64>& words = block.operand_words[operand];

@@ -10,41 +10,41 @@
 
 namespace octotomy::voxel {
 
-/// An expression over a universe, one block at a time: for walks that build all of it, and for those that
-/// look at a few blocks only. Nothing is kept between questions: what a walk knows of a block is in its
-/// EnteredBlock, so threads may ask at once. Thesis 7.2 does so for three operands, this for any number.
+/// Evaluates an expression over a universe one block at a time, both for walks that build all of it and for
+/// walks that visit a few blocks only. All state of a walk is in its EnteredBlock and none in this object, so
+/// several threads may call it at once. Thesis 7.2 does this for three operands; here their number is free.
 class ExpressionBlocks {
  public:
-  /// The expression must outlive it. `margin` as TargetBlock's.
+  /// The expression must outlive this object. `margin` as in TargetBlock.
   ExpressionBlocks(const Universe& universe, const TargetExpression& expression,
                    double margin = TargetBlock::centres);
 
   /// An operand within one block.
   struct Operation {
     Status status = Status::Empty;
-    const Node* node = nullptr;  ///< of an aligned octree that is Partial
+    const Node* node = nullptr;  ///< the block's node, for an aligned octree that is Partial here
   };
 
-  /// A block that a walk went into. One may be reused for blocks of the same height.
+  /// A block that a walk has entered. An EnteredBlock may be reused for other blocks of the same height.
   struct EnteredBlock {
     int height = 0;        ///< 2 and up
     glm::ivec3 origin{0};  ///< its first voxel
-    Cover cover;           ///< of its children; at height 2 words narrow it
+    Cover cover;           ///< of its children; at height 2 ask_words() decides more of them
     // At height 2 only:
-    std::array<std::uint64_t, 64> words;  ///< of the leaves asked for that `cover` leaves undecided
-    // Of the operands:
+    std::array<std::uint64_t, 64> words;  ///< of the wanted leaves that `cover` leaves undecided
+    // One entry an operand:
     std::vector<Operation> operations;
     std::vector<Cover> covers;
     std::vector<std::array<std::uint64_t, 64>> operand_words;
   };
 
-  /// Goes into the block that holds the whole universe.
+  /// Enters the block that contains the whole universe.
   void enter_root(EnteredBlock& root) const;
-  /// Goes into a child that the outer block's cover leaves undecided. If one octree alone decides there,
-  /// returns its node and enters nothing. Precondition: the outer block's height is 3 or more.
+  /// Enters a child that the outer block's cover leaves undecided. If one octree alone decides there, returns
+  /// its node and leaves `inner` without a cover. Precondition: the outer block's height is 3 or more.
   const Node* enter(const EnteredBlock& outer, int child, EnteredBlock& inner) const;
-  /// Asks for the words of the leaves of a mask that are undecided. A leaf that the first operands decide
-  /// has no word afterwards: `cover` tells it. Precondition: the block's height is 2.
+  /// Computes the words of the undecided leaves of `wanted`. A leaf that the first operands already decide
+  /// gets no word; `block.cover` holds its status. Precondition: the block's height is 2.
   void ask_words(EnteredBlock& block, std::uint64_t wanted) const;
 
  private:

@@ -5,7 +5,8 @@
 
 namespace octotomy::voxel {
 
-// The target is the patient frame itself, a voxel a millimetre, of a depth that no scan has.
+// The target lattice is the patient frame itself, with voxels of 1 mm. Its depth of 0 makes it differ from
+// every scan's universe, so windows are interpolated.
 struct Membership::Known {
   Known(const Universe& universe, Expression asked)
       : expression(std::move(asked)),

@@ -7,12 +7,12 @@
 
 namespace octotomy::voxel {
 
-/// Tells which points an expression contains: a window is its interpolated samples, an octree its whole
-/// voxels. Copies share what they know; any number of threads may ask one.
+/// Whether an expression contains a point. A window contains the points whose interpolated sample lies in it;
+/// an octree contains its whole voxels. Copies share their data; any number of threads may call one object.
 class Membership {
  public:
-  /// `universe` is where the expression is evaluated: a window at rest on its lattice ends where its samples
-  /// do, any other one with its scan (postfix_expression.h).
+  /// A window at rest on the lattice of `universe` that excludes the background ends where its samples leave
+  /// the window; any other window also ends with its scan (postfix_expression.h).
   Membership(const Universe& universe, Expression expression);
   bool operator()(const glm::dvec3& p_mm) const;
 

@@ -10,9 +10,9 @@
 namespace octotomy::voxel {
 namespace {
 
-// How far f may be wrong over a universe: a dot product of four terms of at most 2^12 times the gradient. The
-// walk must leave to the leaf what rounding could decide either way, or the answer would depend on the tree's
-// shape.
+// Bounds the rounding error of f over a universe: a dot product of four terms of at most 2^12 times the
+// gradient. A walk must not decide a block if rounding could change the answer at one of its voxels; the
+// result would then depend on the tree's shape.
 double rounding_slack(const Linear& f) {
   const double largest = (1 << Universe::max_depth) *
                              (std::abs(f.gradient.x) + std::abs(f.gradient.y) + std::abs(f.gradient.z)) +
@@ -61,7 +61,8 @@ Operand operand_of(const PostfixExpression::Operand& operand, const Universe& ta
       const glm::dmat4 source_from_target = source(octree.universe());
       if (const std::optional<glm::ivec3> offset = whole_voxel_offset(source_from_target))
         return ShiftedOctreeOperand(octree, *offset);
-      // A window holds the points that are nearest to a sample of its scan.
+      // A window contains the points whose nearest sample belongs to its scan, so the scan is never resampled
+      // by halves.
       if (resampling.voxels == Resampling::Voxels::Half && !operand.is_scan)
         return HalfOctreeOperand(octree, source_from_target);
       return SampledOctreeOperand(octree, source_from_target);

@@ -12,21 +12,21 @@
 #include "voxel/solid/resampling.h"
 #include "voxel/tree/window_bits.h"
 
-// Operands as a walk over a target universe meets them. Positions are the target's voxel indices. An operand
-// answers three questions: what a cube holds of it (meets), whether a point is inside (contains), and which
-// voxels of a leaf are inside: those whose centre is (D3). The answer about a cube may leave open what it
-// holds; the others are exact. Operands with faster answers about a block's 64 children or about leaves have
-// cover() and words() of their own.
+// Operands in the form that a walk over a target universe uses. Positions are the target's voxel indices. An
+// operand answers three queries: whether a cube has parts inside and outside (meets), whether a point is
+// inside (contains), and which voxels of a leaf have their centre inside (words; D3). The answer about a cube
+// may be undecided; the others are exact. Operands that can answer faster for a block's 64 children or for
+// leaves have their own cover() and words().
 
 namespace octotomy::voxel {
 
-/// A block of the target: 64 children of `child_side` voxels a side from `origin` on. `margin` is how far a
-/// child's cube reaches beyond the centres of its voxels.
+/// A block of the target: 64 children of `child_side` voxels a side, from voxel `origin` on. A child's cube
+/// extends `margin` voxels beyond the centres of its voxels.
 struct TargetBlock {
-  /// Holds the centres with what rounding adds to them: coordinates up to 2^36 voxels away round to 2^-16 of
-  /// a voxel.
+  /// Covers the voxel centres and their rounding: coordinates of up to 2^36 voxels are rounded to 2^-16 of a
+  /// voxel.
   static constexpr double centres = 0x1p-16;
-  static constexpr double cuboids = 0.5;  ///< holds whole voxels
+  static constexpr double cuboids = 0.5;  ///< covers whole voxels
 
   glm::ivec3 origin{0};
   int child_side = 4;
@@ -41,7 +41,8 @@ struct TargetBlock {
   }
 };
 
-/// Words of the leaves named by the bits of `wanted` of a block of height 2, written at their child numbers.
+/// Output of words(): the words of the leaves whose bits are set in `wanted`, of a block of height 2, written
+/// at their child numbers.
 struct WantedLeaves {
   glm::ivec3 origin{0};  ///< of the block
   std::uint64_t wanted = 0;
@@ -69,7 +70,7 @@ class MaskOperand {
  private:
   struct Projected {
     EdgeTree edges;
-    Linear u, v;  ///< the view's millimetres
+    Linear u, v;  ///< coordinates in the view, in millimetres
     LocalFrame frame() const;
   };
   std::vector<Projected> regions_;
@@ -84,7 +85,7 @@ class SliceMaskOperand {
 
  private:
   SliceDistance distance_;
-  Linear u_, v_, w_;  ///< the view's millimetres, and the slices' position
+  Linear u_, v_, w_;  ///< coordinates in the view and along the slices, in millimetres
 };
 
 /// A grey octree's window on the target's own lattice.
@@ -116,7 +117,7 @@ class ShiftedOctreeOperand {
 };
 
 /// An octree on another lattice or under a motion. Positions are rounded to 2^-24 of a voxel, so a centre
-/// closer than that to the face between two voxels may be given to either.
+/// closer than that to the face between two voxels may be assigned to either.
 class SampledOctreeOperand {
  public:
   SampledOctreeOperand(const Octree& octree, const glm::dmat4& source_from_target);
@@ -131,7 +132,8 @@ class SampledOctreeOperand {
 
   const Octree* octree_;
   glm::dmat4 source_from_target_;
-  /// From a leaf's first voxel to each of its voxels, in the source, fixed point; and their bounds.
+  /// Offsets from a leaf's first voxel to each of its voxels, in the source's voxels, fixed point; and their
+  /// bounds.
   std::array<Offsets, 3> offsets_;
   glm::ivec3 lowest_{0}, highest_{0};
 };
@@ -147,13 +149,13 @@ class HalfOctreeOperand {
  private:
   const Octree* octree_;
   glm::dmat4 source_from_target_;
-  std::array<glm::dvec3, 125> points_;  ///< from a voxel's centre, in the source
-  glm::dvec3 reach_{0.0};               ///< of the points from the centre
+  std::array<glm::dvec3, 125> points_;  ///< offsets from a voxel's centre, in the source
+  glm::dvec3 reach_{0.0};               ///< largest offset along each axis
 };
 
 /// A grey octree's window on another lattice or under a motion: samples on the scan's own lattice are
-/// interpolated, then compared. Under a translation by whole voxels centres have samples of their own, and
-/// words are shifted into place.
+/// interpolated, then compared with the window. Under a translation by whole voxels every centre has a sample
+/// of its own, and words are shifted into place.
 class SampledWindowOperand {
  public:
   SampledWindowOperand(const Window& window, const glm::dmat4& still_from_target,
@@ -173,7 +175,8 @@ class SampledWindowOperand {
   Interpolation interpolation_;
 };
 
-/// An octree on the target's own lattice: a walk over blocks follows its nodes instead of asking.
+/// An octree on the target's own lattice. A walk over blocks follows its nodes and does not call these
+/// functions.
 struct AlignedOctreeOperand {
   const Octree* octree;
   Meets meets(const Cube& cube) const { return ShiftedOctreeOperand(*octree, glm::ivec3(0)).meets(cube); }
@@ -187,18 +190,21 @@ using Operand =
                  WindowOperand, SampledWindowOperand, MaskOperand, SliceMaskOperand, HalfSpaceOperand,
                  BallOperand, BoxOperand, CylinderOperand, TorusOperand>;
 
-/// The operand for a walk over `target`; it refers to the expression behind it.
+/// The operand for a walk over `target`. It refers to the expression, which must outlive it.
 Operand operand_of(const PostfixExpression::Operand& operand, const Universe& target,
                    const Resampling& resampling);
 
-/// What is known of the children of a block. Children of 4 voxels a side may be left to words().
+/// The status of the children of a block, as far as it is decided here. Children of 4 voxels a side may be
+/// left undecided for words().
 Cover cover(const Operand& operand, const TargetBlock& block);
 void words(const Operand& operand, const WantedLeaves& leaves);
-/// Preconditions, of this and the next two: the operand is no WindowOperand and no HalfOctreeOperand.
+/// Precondition of meets(), contains() and sheets(): the operand is no WindowOperand and no
+/// HalfOctreeOperand.
 Meets meets(const Operand& operand, const Cube& cube);
 bool contains(const Operand& operand, const glm::dvec3& p_voxel);
-/// Surfaces within a cube that the operand's surface cuts. An operand without tangents claims an edge between
-/// none.
+/// The operand's surfaces within a cube. Precondition: its surface cuts the cube. An operand without tangents
+/// returns two surfaces with a zero gradient, so that the cube is split further and then counted by its
+/// centre.
 Sheets sheets(const Operand& operand, const Cube& cube);
 
 }  // namespace octotomy::voxel

@@ -10,22 +10,27 @@
 #include "voxel/solid/operand.h"
 
 // Closed forms of the operands. A cube of index space is a parallelepiped in a primitive's own frame.
-//   Ball: the farthest point is a corner (distance is convex). The nearest is clamped edge by edge if the
-//     edges are at right angles, otherwise it is the least of the minima of the cube's 27 faces.
+//   Ball: the farthest point is a corner, because distance is convex. The nearest point is clamped edge by
+//   edge if the
+//     edges are at right angles; otherwise its distance is the least of the minima over the cube's 27 faces.
 //   Half-space: the value at the centre and its reach over the cube.
-//   Box: outside parts at a corner (convexity); inside parts unless one of 15 axes separates (Gottschalk,
-//     Lin, Manocha 1996), three of them if the edges run along the box's.
-//   Cylinder, region of a mask: the cube is clipped to the range along the axis and projected along it to a
-//     convex polygon. The polygon meets the cross-section exactly if the cube meets the solid: both are
-//     swept.
-//   Torus: the cube's ranges of distance from the axis and of place along it make a rectangle that has to
-//     meet a disc. If the lattice stands upright to the axis the rectangle is the cube's image. Otherwise it
-//     is a bound, and the cube's corners and centre are witnesses.
+//   Box: the cube has a part outside if a corner is outside (convexity). It has a part inside unless one of
+//   15 axes
+//     separates the two (Gottschalk, Lin, Manocha 1996); three axes suffice if the cube's edges run along the
+//     box's.
+//   Cylinder, region of a mask: the cube is clipped to the range along the axis and projected along the axis
+//   to a
+//     convex polygon. As the solid is swept along the axis, the polygon meets the cross-section exactly if
+//     the cube meets the solid.
+//   Torus: the cube's ranges of distance from the axis and of position along it form a rectangle, which is
+//   compared
+//     with the tube's disc. If the lattice is upright to the axis, the rectangle is the cube's image.
+//     Otherwise it is a bound, and the cube's corners and centre are witnesses.
 
 namespace octotomy::voxel {
 namespace {
 
-// Directions shorter than 2^-40 of what they were made of are rounding.
+// Directions shorter than 2^-40 of the vectors from which they were computed are rounding.
 constexpr double vanishing = 0x1p-40;
 
 glm::dvec3 corner(int number) {
@@ -38,8 +43,8 @@ double square(double x) {
 
 // Least |c + columns t|^2 over -1 <= t <= 1.
 double nearest_square(const glm::dmat3& columns, const glm::dvec3& c) {
-  // Each coordinate stays at an end or is free; the least over the feasible stationary points is the minimum,
-  // as the function is convex.
+  // Each coordinate is fixed at an end or free. The function is convex, so its minimum is the least value at
+  // the feasible stationary points.
   double least = std::numeric_limits<double>::infinity();
   for (int face = 0; face < 27; ++face) {
     const std::array<int, 3> state{face % 3 - 1, (face / 3) % 3 - 1, face / 9 - 1};
@@ -74,7 +79,7 @@ struct CornerSquares {
   double most = 0.0;
 };
 
-// Of the corners' distances from the origin.
+// Squares of the least and the largest distance of the corners from the origin.
 CornerSquares corner_squares(const glm::dmat3& columns, const glm::dvec3& c) {
   CornerSquares squares;
   for (int number = 0; number < 8; ++number) {
@@ -85,12 +90,13 @@ CornerSquares corner_squares(const glm::dmat3& columns, const glm::dvec3& c) {
   return squares;
 }
 
-// Whether the parallelepiped comes nearer to the origin than a radius. Most do by their centre or a corner,
-// or lie beyond a plane across the way to their centre; the others, and those too near to call, are searched.
+// Whether the parallelepiped comes nearer to the origin than a radius. The centre or a corner within the
+// radius proves it; a plane across the direction to the centre disproves it. Other cases, and those within
+// rounding, are searched.
 bool comes_within(double radius, const glm::dmat3& columns, const glm::dvec3& c, double nearest_corner2) {
   const double centre2 = glm::dot(c, c), radius2 = square(radius);
   if (std::min(centre2, nearest_corner2) < radius2 * (1.0 - vanishing)) return true;
-  double along = centre2;  // the least along the way to the centre, times the way's length
+  double along = centre2;  // least projection on the direction to the centre, times the centre's distance
   for (int i = 0; i < 3; ++i) along -= std::abs(glm::dot(columns[i], c));
   if (along > radius * std::sqrt(centre2) + vanishing * centre2) return false;
   return nearest_square(columns, c) < radius2;
@@ -100,8 +106,8 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-// A convex polygon, counter-clockwise. A cube clipped by two planes has at most 8 corners within and 2 x 6
-// cuts.
+// A convex polygon, counter-clockwise. A cube clipped by two planes has at most 8 corners between them and 2
+// x 6 cut points.
 struct Polygon {
   std::array<glm::dvec2, 48> points;
   int count = 0;
@@ -128,14 +134,14 @@ Polygon hull_of(Polygon cloud) {
   return hull;
 }
 
-// The planes across a frame's third axis between which a solid lies.
+// Limits of a solid along its frame's third axis.
 struct Range {
   double low_mm = -std::numeric_limits<double>::infinity();
   double high_mm = std::numeric_limits<double>::infinity();
 };
 
-// A cube in a frame: its range along the third axis, and the outline across it of the cube's part within the
-// solid's range, empty if that has no volume.
+// A cube in a frame: its range along the third axis, and the outline, projected along that axis, of its part
+// within the solid's range. The outline is empty if that part has no volume.
 struct SweptCube {
   double low = 0.0;
   double high = 0.0;
@@ -205,8 +211,8 @@ bool runs_through(const glm::dvec2& a, const glm::dvec2& b, const Polygon& hull)
   return true;
 }
 
-// Visits the edges that may run through the outline, and some more. runs_through() is wrong by a few
-// roundings of the largest coordinate, so the outline's box is widened by far more than that.
+// Visits all edges that may run through the outline, and some others. The rounding error of runs_through() is
+// a few units in the last place of the largest coordinate; the outline's box is widened by far more.
 template <typename Visit>
 void visit_about(const EdgeTree& edges, const Polygon& outline, const Visit& visit) {
   glm::dvec2 low = outline[0], high = low;
@@ -232,7 +238,7 @@ glm::dvec2 middle(const Polygon& hull) {
   return sum / static_cast<double>(hull.count);
 }
 
-// Adds the two ends of a solid along an axis of its frame that cut the cube, as planes of index space.
+// Adds those of a solid's two end planes across an axis of its frame that cut the cube, in index space.
 void add_ends(const LocalFrame& local, int axis, const Range& range, const Cube& cube, Sheets& sheets) {
   const glm::dvec3 gradient(local.map[0][axis], local.map[1][axis], local.map[2][axis]);
   const double along = local(cube.centre)[axis];
@@ -253,13 +259,14 @@ double shortest(const glm::dmat3& columns) {
   return std::min({glm::length(columns[0]), glm::length(columns[1]), glm::length(columns[2])});
 }
 
-// A surface leaves its tangent plane by d^2 / 2r at distance d; the tangent is taken over the cube's centre,
-// so that d is the radius of the ball around the cube.
+// A surface deviates from its tangent plane by d^2 / 2r at distance d. The tangent point lies nearest to the
+// cube's centre, so d is the radius of the sphere around the cube. The result is in voxels.
 double off_tangent(const glm::dmat3& map, const Cube& cube, double radius_of_curvature) {
   return square(cube.half * radius_of(map)) / (2.0 * radius_of_curvature) / shortest(map);
 }
 
-// Any right-handed frame whose third axis is the given one; with a lattice's own axis, the lattice's frame.
+// A right-handed frame whose third axis is the given one. For an axis of the lattice, all axes are the
+// lattice's.
 glm::dmat3 frame_along(const glm::dvec3& axis) {
   const glm::dvec3 size = glm::abs(axis);
   glm::dvec3 other(0.0);
@@ -280,7 +287,7 @@ LocalFrame frame_of(const Ellipsoid& ellipsoid, const glm::dmat4& still_from_tar
   return frame_of(unit_from_still, ellipsoid.centre_mm, still_from_target);
 }
 
-// The direction of a cylinder from its first end.
+// Unit vector from a cylinder's first end to its second.
 glm::dvec3 axis_of(const Cylinder& cylinder) {
   return (cylinder.to_mm - cylinder.from_mm) / glm::distance(cylinder.from_mm, cylinder.to_mm);
 }
@@ -292,7 +299,7 @@ double share_below(const Tangent& tangent, double half) {
   glm::dvec3 m = glm::abs(tangent.gradient);
   const double sum = m.x + m.y + m.z;
   if (sum == 0.0) return tangent.value <= 0.0 ? 1.0 : 0.0;
-  // Place of the plane from the innermost corner to the opposite one.
+  // Position of the plane between the innermost corner, 0, and the opposite one, 1.
   const double alpha = 0.5 - tangent.value / (2.0 * half * sum);
   if (alpha <= 0.0) return 0.0;
   if (alpha >= 1.0) return 1.0;
@@ -300,8 +307,8 @@ double share_below(const Tangent& tangent, double half) {
   if (m.x > m.y) std::swap(m.x, m.y);
   if (m.y > m.z) std::swap(m.y, m.z);
   if (m.x > m.y) std::swap(m.x, m.y);
-  // The cubic cases divide by m.x what has cancelled down to it: below the square root of the machine's
-  // epsilon the plane counts as parallel to that axis, which moves the share by less than m.x.
+  // The cubic cases divide a difference, in which digits cancel, by m.x. Below the square root of the
+  // machine's epsilon the plane counts as parallel to that axis, which changes the share by less than m.x.
   if (m.x < 0x1p-26) m.x = 0.0;
   const double a = std::min(alpha, 1.0 - alpha);
   const double pair = m.x + m.y;
@@ -407,7 +414,7 @@ Meets BoxOperand::meets(const Cube& cube) const {
   if (straight_) return Meets::exactly(true, true);
   const glm::dmat3 columns = local_.map * cube.half;
   const auto separates = [&](const glm::dvec3& way, double size) {
-    // Parallel edges span no further axis.
+    // The cross product of parallel edges is no axis.
     if (glm::dot(way, way) <= square(vanishing * size)) return false;
     const double box = glm::dot(half_mm_, glm::abs(way));
     const double reach = std::abs(glm::dot(columns[0], way)) + std::abs(glm::dot(columns[1], way)) +
@@ -461,7 +468,7 @@ Sheets CylinderOperand::sheets(const Cube& cube) const {
   return sheets;
 }
 
-// A region is the cross-section of a solid without ends: the frame's third axis has no range.
+// A region is the cross-section of an unbounded solid, so positions along the frame's third axis are all 0.
 LocalFrame MaskOperand::Projected::frame() const {
   LocalFrame frame{glm::dmat3(0.0), glm::dvec3(u.constant, v.constant, 0.0)};
   for (int axis = 0; axis < 3; ++axis) frame.map[axis] = {u.gradient[axis], v.gradient[axis], 0.0};
@@ -500,13 +507,14 @@ Sheets MaskOperand::sheets(const Cube& cube) const {
     visit_about(projected.edges, outline,
                 [&](const glm::dvec2& a, const glm::dvec2& b, std::uint32_t number) {
                   if (!runs_through(a, b, outline)) return;
-                  // An edge that ends within is a corner of the region, and so is its neighbour.
+                  // An edge's end inside the outline is a corner of the region, where the neighbouring edge
+                  // adds a surface.
                   sheets.count += 1 + strictly_within(a, outline) + strictly_within(b, outline);
-                  // The last in the polygons' order stands for all.
+                  // Of several edges, the last in the polygons' order supplies the tangent.
                   if (taken && *taken > number) return;
                   taken = number;
                   const glm::dvec2 way = glm::normalize(glm::dvec2(b.y - a.y, a.x - b.x));
-                  // Whether the outline's middle is inside tells which side of the edge is.
+                  // Whether the outline's middle is inside decides which side of the edge is inside.
                   const glm::dvec2 probe = middle(outline);
                   const double at_probe = glm::dot(way, probe - a);
                   const double sign = (at_probe <= 0.0) == projected.edges.contains(probe) ? 1.0 : -1.0;
@@ -561,7 +569,7 @@ Sheets TorusOperand::sheets(const Cube& cube) const {
   glm::dvec3 way(0, 0, 1);
   if (length > 0.0 && across > 0.0)
     way = glm::dvec3(c.x / across * from_ring.x, c.y / across * from_ring.x, from_ring.y) / length;
-  // The tightest curve is the tube's, or the hole's rim.
+  // The smallest radius of curvature is the tube's or that of the hole's rim.
   const double bend_mm = std::min(tube_radius_mm_, ring_radius_mm_ - tube_radius_mm_);
   return {1,
           {glm::transpose(local_.map) * way, length - tube_radius_mm_},

@@ -9,12 +9,11 @@
 #include "voxel/solid/operand.h"
 #include "voxel/tree/octree_node.h"
 
-// What the operands' sources share: children and voxels of a block, and how far a linear map strays over a
-// cube.
+// Shared by the operands' sources: children and voxels of a block, and bounds of linear maps over a cube.
 
 namespace octotomy::voxel {
 
-/// Cover of a block from what each child's cube holds.
+/// Cover of a block from the meets() of each child's cube.
 template <typename ChildMeets>
 Cover cover_of_children(const TargetBlock& block, const ChildMeets& child_meets) {
   Cover cover;
@@ -27,7 +26,8 @@ Cover cover_of_children(const TargetBlock& block, const ChildMeets& child_meets)
   return cover;
 }
 
-/// Words of the wanted leaves from the word of a leaf at its first voxel.
+/// Writes the words of the wanted leaves; `leaf` computes the word of the leaf whose first voxel it is
+/// passed.
 template <typename Leaf>
 void for_each_wanted(const WantedLeaves& leaves, const Leaf& leaf) {
   for (std::uint64_t rest = leaves.wanted; rest != 0; rest &= rest - 1) {
@@ -36,7 +36,7 @@ void for_each_wanted(const WantedLeaves& leaves, const Leaf& leaf) {
   }
 }
 
-/// The same from whether each voxel's centre is inside.
+/// Likewise; `inside` returns whether a voxel's centre is inside.
 template <typename Inside>
 void for_each_wanted_voxel(const WantedLeaves& leaves, const Inside& inside) {
   for_each_wanted(leaves, [&](const glm::ivec3& origin) {
@@ -47,16 +47,17 @@ void for_each_wanted_voxel(const WantedLeaves& leaves, const Inside& inside) {
   });
 }
 
-/// How far f may stray over a cube from its value at the cube's centre, with what rounding could add: the
-/// walk must leave to the words what rounding could decide either way, or the answer would depend on the
-/// tree's shape.
+/// Bounds how far f differs, over a cube, from its value at the centre, rounding included. A walk must not
+/// decide a block if rounding could change the answer at one of its voxels; the result would then depend on
+/// the tree's shape.
 double reach(const Linear& f, double half);
 
-/// Row `row` of an affine map, and the map followed by a projection onto a direction, less an offset.
+/// component(): row `row` of an affine map. along(): the map's image projected onto a direction, minus
+/// `offset`.
 Linear component(const glm::dmat4& map, int row);
 Linear along(const glm::dmat4& map, const glm::dvec3& direction, double offset);
 
-/// A box in another frame that holds the image of a cube.
+/// A box in another frame that contains the image of a cube.
 struct ImageBox {
   glm::dvec3 low, high;
 };
@@ -67,7 +68,7 @@ inline ImageBox image_of(const glm::dmat4& map, const Cube& cube) {
   return {p - half, p + half};
 }
 
-/// The voxel that holds a point.
+/// The voxel that contains a point.
 inline glm::ivec3 nearest_voxel(const glm::dvec3& p_voxel) {
   return glm::ivec3(glm::floor(p_voxel + 0.5));
 }
@@ -77,8 +78,9 @@ struct VoxelBox {
   glm::ivec3 low, high;
 };
 
-/// The source leaves first..last that the leaves of a block of height 2 lie in, and the voxels before them in
-/// the first, under a translation by whole voxels. `source` is the block's first voxel in the source.
+/// Under a translation by whole voxels: the source leaves first..last that a block of height 2 overlaps, and
+/// the number of voxels, `shift`, that precede the block in the first of them. `source` is the block's first
+/// voxel in the source.
 struct ShiftedLeaves {
   explicit ShiftedLeaves(const glm::ivec3& source)
       : first(source >> 2),

@@ -13,11 +13,12 @@
 namespace octotomy::voxel {
 namespace {
 
-// Range of samples over a box of voxels, from blocks of 16 voxels a side.
+// Range of the samples in a box of voxels, from the ranges of blocks of at least 16 voxels a side; may be too
+// wide.
 MinMax range_within(const GreyOctree& grey, const VoxelBox& box) {
   const int last = grey.universe().side() - 1;
   const VoxelBox clipped{glm::clamp(box.low, 0, last), glm::clamp(box.high, 0, last)};
-  // The coarsest height at which the box still spans at most three blocks an axis keeps the work bounded.
+  // The least height at which the box spans at most four blocks an axis, which bounds the work.
   int height = 2;
   const glm::ivec3 extent = clipped.high - clipped.low;
   while ((std::max({extent.x, extent.y, extent.z}) >> (2 * height)) > 2) ++height;
@@ -35,7 +36,7 @@ MinMax range_within(const GreyOctree& grey, const VoxelBox& box) {
   return range;
 }
 
-// The samples that values within the image of a cube may depend on.
+// The box of samples on which values within the image of a cube may depend.
 VoxelBox support(const glm::dmat4& source_from_target, const Cube& cube, Interpolation interpolation) {
   const ImageBox box = image_of(source_from_target, cube);
   const Margin around = margin(interpolation);
@@ -53,7 +54,7 @@ class NearSamples {
   static constexpr int leaves = 4;
   static constexpr int side = 4 * leaves;
 
-  // Chooses the leaves first..last, both included, and gives the range of what is in them.
+  // Selects the leaves first..last, both included, and returns the range of their samples.
   MinMax choose(const GreyOctree& grey, const glm::ivec3& first, const glm::ivec3& last) {
     first_ = first;
     count_ = last - first + 1;
@@ -77,7 +78,7 @@ class NearSamples {
     return range;
   }
 
-  // Copies the chosen leaves' samples.
+  // Copies the selected leaves' samples.
   void fetch(std::int16_t background) {
     std::size_t next = 0;
     for (int z = 0; z < count_.z; ++z)
@@ -94,8 +95,8 @@ class NearSamples {
         }
   }
 
-  // The value at a position of the source. None: one of its samples has the background's value, as those
-  // beyond the scan do, which no measurement may be mixed with.
+  // The value at a position of the source. Linear returns none if one of its samples equals the background,
+  // as samples beyond the scan do: these must not be mixed with measured ones.
   std::optional<double> interpolate(const glm::dvec3& position, Interpolation interpolation,
                                     std::int16_t background) const {
     if (interpolation == Interpolation::Linear) return trilinear(position, background);
@@ -224,7 +225,8 @@ void SampledWindowOperand::interpolated_words(const WantedLeaves& leaves) const 
     std::uint64_t word = 0;
     for (int voxel = 0; voxel < 64; ++voxel) {
       const glm::dvec3 p(source_from_target_ * glm::dvec4(glm::dvec3(origin + child_place(voxel)), 1.0));
-      // A lattice so coarse that a leaf's surroundings are many is read from the octree itself.
+      // If a leaf's image spans too many source leaves, or a sample equals the background, the value is read
+      // from the octree.
       const std::optional<double> quick =
           is_near ? near.interpolate(p, interpolation_, grey_.background()) : std::nullopt;
       const double value = quick ? *quick : value_at(grey_, p, interpolation_);

@@ -24,7 +24,7 @@ bool meets_rectangle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2&
   return across <= half.x * std::abs(arm.y) + half.y * std::abs(arm.x);
 }
 
-/// A rectangle of a view's millimetres that holds the voxels of a block.
+/// A rectangle in a view, in millimetres, that contains the projection of a cube.
 struct Patch {
   glm::dvec2 centre, half;
 };
@@ -40,8 +40,8 @@ bool within_reach(const Edge& edge, const Patch& patch) {
          std::max(a.x, b.x) >= patch.centre.x - patch.half.x;
 }
 
-/// The edges that decide about a patch: those within reach, of which a part of the patch needs no others, and
-/// those that are level and meet it, which no ray crosses.
+/// The edges that decide which points of a patch are inside: those that rays from the patch may cross, and
+/// level edges, which no ray crosses, that meet the patch. They suffice for every part of the patch too.
 std::vector<Edge> edges_about(const EdgeTree& tree, const Patch& patch) {
   std::vector<Edge> edges = tree.edges_about(patch.centre - patch.half, patch.centre + patch.half);
   std::erase_if(edges, [&](const Edge& edge) {
@@ -71,7 +71,7 @@ OCTOTOMY_VECTOR_CLONES void values_at(const Linear& f, const glm::dvec3& first, 
     along_y[i] = f.gradient.y * (first.y + i * step);
     along_z[i] = f.gradient.z * (first.z + i * step);
   }
-  // In Linear's order of summation, so that a voxel on an edge is on the same side for every caller.
+  // Summed in Linear's order, so that a voxel on an edge is on the same side for every caller.
   double* to = values.data();
   for (int z = 0; z < 4; ++z)
     for (int y = 0; y < 4; ++y, to += 4)
@@ -119,7 +119,7 @@ OCTOTOMY_VECTOR_CLONES std::uint64_t places_of(const Values& counts, std::int32_
   return word;
 }
 
-/// Status by status_of() of the patches about the centres of a block's children.
+/// The status of the patches around the centres of a block's children, as status_of() computes it.
 Cover cover_of_patches(const std::vector<Edge>& edges, const glm::dvec2& half, const Values& u,
                        const Values& v) {
   Values meetings{}, crossings{};
@@ -170,7 +170,7 @@ void MaskOperand::words(const WantedLeaves& leaves) const {
       if (word == 0) continue;
       const glm::dvec3 centre = block.child(child).centre;
       const Patch patch{{projected.u(centre), projected.v(centre)}, half};
-      // Only a leaf that an edge passes is asked voxel by voxel.
+      // Only a leaf that an edge crosses is tested voxel by voxel.
       const Status status = status_of(edges, patch);
       if (status == Status::Empty) word = 0;
       if (status != Status::Partial) continue;

@@ -33,11 +33,11 @@ void ShiftedOctreeOperand::words(const WantedLeaves& leaves) const {
 
 namespace {
 
-// Fixed point within a region of 32 voxels an axis: 5 bits of voxels and 24 of fraction stay clear of the
-// sign.
+// Fixed point within a region of 32 voxels an axis: 5 bits of voxels and 24 bits of fraction stay below the
+// sign bit.
 constexpr int fraction_bits = 24;
 
-// How far a base and an offset, each rounded to half a unit, move a position.
+// Exceeds the error of a base plus an offset, each rounded by at most half a unit.
 const double fixed_slack = std::ldexp(1.0, 1 - fraction_bits);
 
 std::int32_t fixed(double voxels) {
@@ -49,10 +49,11 @@ glm::ivec3 fixed(const glm::dvec3& p) {
   return {fixed(p.x), fixed(p.y), fixed(p.z)};
 }
 
-/// A leaf's word from the words of a region's leaves: each voxel lies in the region at base and its offset.
+/// A leaf's word from the words of a region's leaves. Voxel i of the leaf lies at base + offsets[i] in the
+/// region.
 OCTOTOMY_VECTOR_CLONES std::uint64_t looked_up(const std::uint64_t* words, const glm::ivec3& base,
                                                const std::array<std::array<std::int32_t, 64>, 3>& offsets) {
-  // Places first, by arithmetic that vectorises; then the look-ups.
+  // The places are computed first, because that arithmetic vectorises; the look-ups follow.
   std::array<std::uint64_t, 64> place;
   for (std::size_t i = 0; i < 64; ++i) {
     const auto x = static_cast<std::uint32_t>(base.x + offsets[0][i]) >> fraction_bits;
@@ -72,7 +73,8 @@ OCTOTOMY_VECTOR_CLONES std::uint64_t looked_up(const std::uint64_t* words, const
 SampledOctreeOperand::SampledOctreeOperand(const Octree& octree, const glm::dmat4& source_from_target)
     : octree_(&octree), source_from_target_(source_from_target) {
   const glm::dmat3 linear(source_from_target);
-  // A source much finer than the target leaves the fixed point's range, and words() does without.
+  // A source much finer than the target exceeds the fixed point's range; words() then does not use the
+  // offsets.
   const double longest = std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
   if (longest > 4.0) return;
   for (int voxel = 0; voxel < 64; ++voxel) {
@@ -93,8 +95,8 @@ bool SampledOctreeOperand::contains(const glm::dvec3& p_voxel) const {
   return octree_->contains(nearest_voxel(glm::dvec3(source_from_target_ * glm::dvec4(p_voxel, 1.0))));
 }
 
-// The source leaves around the block are fetched once; each wanted leaf is then looked up voxel by voxel in
-// them, unless the leaves about it are all full or all empty.
+// Fetches the source leaves around the block once. Each wanted leaf is then looked up voxel by voxel in them,
+// unless the leaves around it are all full or all empty.
 void SampledOctreeOperand::words(const WantedLeaves& leaves) const {
   const ImageBox box = image_of(source_from_target_, TargetBlock{leaves.origin, 4}.whole());
   const glm::ivec3 first = nearest_voxel(box.low - fixed_slack) >> 2;
@@ -107,7 +109,7 @@ void SampledOctreeOperand::words(const WantedLeaves& leaves) const {
     return for_each_wanted(leaves, [&](const glm::ivec3&) { return region.every(); });
   for_each_wanted(leaves, [&](const glm::ivec3& origin) {
     const glm::dvec3 p(source_from_target_ * glm::dvec4(glm::dvec3(origin), 1.0));
-    // Half a voxel more, so that truncation finds the voxel.
+    // Half a voxel is added, so that truncation rounds to the nearest voxel.
     return leaf(region, fixed(p - glm::dvec3(4 * first) + 0.5));
   });
 }

@@ -9,11 +9,13 @@
 namespace octotomy::voxel {
 namespace {
 
-// Odd, so that there are no ties: with 4 a face that runs along the grid halves a voxel exactly in one
-// position of four, and counting those as inside lets an object grow by an eighth of a voxel a move.
+// Odd, so that no voxel has exactly half of its points inside. With 4, a face parallel to the grid would
+// split the points evenly in one position out of four; counting such voxels as inside would grow an object by
+// an eighth of a voxel at every move.
 constexpr int points_an_axis = 5;
 
-// Voxels of the source that the points of a cube's voxels may lie in, if the cube holds their centres.
+// Voxels of the source in which the points of a cube's voxels may lie. Precondition: the cube contains the
+// voxels' centres.
 VoxelBox reached(const glm::dmat4& source_from_target, const Cube& cube) {
   const ImageBox box = image_of(source_from_target, {cube.centre, cube.half + 0.5});
   return {nearest_voxel(box.low), nearest_voxel(box.high)};
@@ -54,7 +56,8 @@ void HalfOctreeOperand::words(const WantedLeaves& leaves) const {
       const glm::ivec3 bit = voxel & 3;
       return ((region.word(leaf.x, leaf.y, leaf.z) >> child_index(bit.x, bit.y, bit.z)) & 1) != 0;
     };
-    // Of most voxels all that their points may meet is in, or all out: a few look-ups spare the many.
+    // For most voxels all source voxels within reach are inside, or all are outside. A few look-ups then
+    // replace one per point.
     const auto agreed = [&](const glm::ivec3& low, const glm::ivec3& high, bool inside) {
       for (int z = low.z; z <= high.z; ++z)
         for (int y = low.y; y <= high.y; ++y)

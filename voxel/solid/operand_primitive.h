@@ -7,9 +7,9 @@
 #include "voxel/solid/cube.h"
 #include "voxel/solid/primitive.h"
 
-// Primitives as operands of a walk. Each decides a cube by a closed form, in double precision; only a torus
-// whose axis is oblique to the lattice is bounded. `still_from_target` goes from the target's voxel indices
-// to the millimetres in which the primitive was made. Sources: operand_closed_form.cpp.
+// Primitives as operands of a walk. Each decides a cube by a closed form in double precision; only for a
+// torus whose axis is oblique to the lattice is the answer a bound. `still_from_target` maps the target's
+// voxel indices to the primitive's LPS millimetres before its motion. Sources: operand_closed_form.cpp.
 
 namespace octotomy::voxel {
 
@@ -74,7 +74,7 @@ class BoxOperand {
   bool straight_;        ///< each edge of a voxel runs along an axis of the box
 };
 
-/// Frames with two axes across and one along a direction.
+/// The frame's third axis is the cylinder's; its origin is the cylinder's first end.
 class CylinderOperand {
  public:
   CylinderOperand(const Cylinder& cylinder, const glm::dmat4& still_from_target);

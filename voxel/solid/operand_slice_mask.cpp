@@ -6,9 +6,9 @@ namespace octotomy::voxel {
 
 namespace {
 
-/// Moves places off borders that run through voxel centres: farther than coordinates round, and less than any
-/// border is known. Such a centre is inside where the region goes on towards growing u, v or position, so
-/// that it counts once among regions that share the border.
+/// Shifts positions off borders that run through voxel centres. The shift exceeds the rounding of coordinates
+/// and is smaller than the precision of any border. Such a centre is inside if the region continues towards
+/// growing u, v or position, so that it counts once among regions that share the border.
 constexpr double off_border_mm = 0x1p-20;
 
 }  // namespace

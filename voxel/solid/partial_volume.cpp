@@ -11,10 +11,10 @@
 #include "voxel/solid/status_within.h"
 #include "voxel/space/vector_clones.h"
 
-// A cell is the cube between eight neighbouring voxel centres. Cells are taken in blocks of 16 x 16 x 16 by
-// their first corner; blocks one before the universe's first hold the cells that reach into it from outside.
-// Passes: 1 each block sums the shares of its cells, most settled by the range of samples it can see; 2 the
-// blocks' sums are added in order.
+// A cell is the cube between eight neighbouring voxel centres. Cells are processed in blocks of 16 x 16 x 16,
+// numbered by their first corner. Blocks with an index of -1 contain the cells that reach into the universe
+// from outside. Passes: 1 each block sums the shares of its cells, most of which the range of their samples
+// decides; 2 the blocks' sums are added in order.
 
 namespace octotomy::voxel {
 namespace {
@@ -23,8 +23,8 @@ constexpr int block_side = 16;
 constexpr int corner_side = block_side + 1;
 constexpr int lines_an_axis = 4;
 
-// Length of the part of 0..1 over which a value that changes linearly from `from` to `to` lies in the window.
-// Without branches, so that several are found at once.
+// Length of the part of 0..1 in which a value that changes linearly from `from` to `to` lies in the window.
+// Free of branches, so that the compiler vectorises it.
 double length_within(double from, double to, double low, double high) {
   const double first = from > to ? to : from;
   const double last = from > to ? from : to;
@@ -36,7 +36,7 @@ double length_within(double from, double to, double low, double high) {
 
 constexpr int line_count = lines_an_axis * lines_an_axis;
 
-// The ends of a cell's lines along z, and the lengths of the parts of them in the window.
+// Values at the ends of a cell's lines along z, and the length of each line's part in the window.
 struct Lines {
   std::array<double, line_count> from, to, length;
 };
@@ -61,7 +61,7 @@ OCTOTOMY_VECTOR_CLONES void find_lines(const std::array<double, 8>& c, double lo
 // The samples at the corners of a block's cells, x fastest.
 using Corners = std::array<std::int16_t, corner_side * corner_side * corner_side>;
 
-// The least and greatest of each cell's corners, where the cell's first corner stands.
+// The least and the greatest sample of each cell's corners, stored at the cell's first corner.
 OCTOTOMY_VECTOR_CLONES void find_cell_ranges(const Corners& corners, Corners& low, Corners& high) {
   low = high = corners;
   for (const std::size_t step : {1, corner_side, corner_side * corner_side})
@@ -71,12 +71,12 @@ OCTOTOMY_VECTOR_CLONES void find_cell_ranges(const Corners& corners, Corners& lo
     }
 }
 
-// Which of the 8 corners of a cell, x + 2y + 4z, are the scan's.
+// The corners x + 2y + 4z of a cell that belong to the scan.
 using CornerBits = std::uint8_t;
 constexpr CornerBits all_corners = 0xff;
 
-// Gives the corners of a cell that are not the scan's the mean of the nearest ones that are: up to half a
-// sample beyond its last ones the scan keeps their values, as both kernels' surfaces have it.
+// Sets each corner of a cell outside the scan to the mean of its nearest corners in the scan. So the scan's
+// last samples extend their values by up to half a sample, as in the surfaces of both kernels.
 void extend(std::array<double, 8>& c, CornerBits scanned) {
   const std::array<double, 8> own = c;
   for (unsigned k = 0; k < 8; ++k) {
@@ -97,7 +97,7 @@ class BlockSum {
  public:
   explicit BlockSum(const Window& window) : grey_(window.grey), low_(window.low), high_(window.high) {}
 
-  // Cells' volumes, in voxels, of block number `block`, -1 and up.
+  // Volume of the window in block number `block`, -1 and up, in voxels.
   double operator()(const glm::ivec3& block) const {
     const MinMax range = range_around(block);
     if (range.high < low_ || range.low > high_) return 0.0;
@@ -147,7 +147,8 @@ class BlockSum {
     return range;
   }
 
-  // A row of a brick's samples at a time; the last corner of a row is the first sample of the next brick.
+  // Copies up to four samples of a brick at a time. The last corner of a row is the first sample of the next
+  // brick.
   void fetch(const glm::ivec3& block, Corners& corners) const {
     const int blocks = (grey_.universe().side() + block_side - 1) / block_side;
     for (int next = 0; next < 8; ++next) {
@@ -180,8 +181,8 @@ class BlockSum {
     return static_cast<CornerBits>(bits);
   }
 
-  // The part of a cell in the window and in the scan; `corner` is its first one. Some of its corners are in
-  // the window and some are not.
+  // The share of a cell that lies in the window and in the scan; `corner` is its first corner. Called for
+  // cells with corners inside and outside the window.
   double share(const std::int16_t* corner, CornerBits scanned) const {
     constexpr int along_y = corner_side;
     constexpr int along_z = corner_side * corner_side;
@@ -203,7 +204,7 @@ class BlockSum {
         sum += lines.length[i];
         continue;
       }
-      // Either half of the line is nearest to one corner.
+      // Each half of the line is nearest to one corner.
       const int nearest = (line % lines_an_axis < lines_an_axis / 2 ? 0 : 1) +
                           (line / lines_an_axis < lines_an_axis / 2 ? 0 : 2);
       const double middle = 0.5 * (lines.from[i] + lines.to[i]);

@@ -1,10 +1,8 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-//
-// Repeated: 1 measure every polygon; 2 sort by one number in which the same lines differ by no more than the
-// rounding allows; 3 of those near in it, ask points against edges.
-// Crossing: 1 find edges that touch, by boxes; 2 of two polygons that touch, ask whether either lies on both
-// sides of the other by more than the rounding, at its corners and between its touches; 3 at a crossing of a
-// polygon with itself, ask by areas whether the two loops overlap or stand side by side.
+// Repeated polygons: 1 measure every polygon; 2 sort them by one number in which equal lines differ by no
+// more than the rounding allows; 3 compare points with edges for polygons with nearby numbers.
+// Crossing polygons: 1 find edges that touch, by boxes; 2 for two polygons that touch, check whether each
+// lies on both sides of the other by more than the rounding, at its corners and between its touches; 3 where
+// a polygon crosses itself, check by areas whether the two loops overlap or lie side by side.
 #include "voxel/solid/polygon_overlaps.h"
 
 #include <algorithm>
@@ -43,7 +41,7 @@ Measures measures_of(const Polygon& polygon) {
   return measures;
 }
 
-/// What counts as rounding of a polygon so large.
+/// The rounding to allow for a polygon: `rounding_mm`, but at most a thousandth of its size.
 double rounding_of(const Measures& measures, double rounding_mm) {
   return std::min(rounding_mm, 1e-3 * measures.size_mm());
 }
@@ -57,7 +55,7 @@ bool lies_along(const Polygon& polygon, const EdgeTree& edges, double distance_m
                      [&](const glm::dvec2& p) { return edges.square_to(p) <= distance_mm * distance_mm; });
 }
 
-/// The polygons' trees, each built when it is first asked.
+/// The polygons' trees, each built at its first use.
 class Trees {
  public:
   explicit Trees(const std::vector<Polygon>& polygons) : polygons_(polygons), trees_(polygons.size()) {}
@@ -76,7 +74,7 @@ double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
   return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-/// Where two edges cross within both, none where they only touch.
+/// The point where two edges cross inside both; none if they only touch.
 std::optional<glm::dvec2> crossing_of(const Edge& a, const Edge& b) {
   const double from = turn(a[0], a[1], b[0]), to = turn(a[0], a[1], b[1]);
   if (!((from < 0.0 && to > 0.0) || (from > 0.0 && to < 0.0))) return std::nullopt;
@@ -84,7 +82,7 @@ std::optional<glm::dvec2> crossing_of(const Edge& a, const Edge& b) {
   return b[0] + from / (from - to) * (b[1] - b[0]);
 }
 
-/// Whether two edges share a point, or all but do.
+/// Whether two edges come within a distance of each other.
 bool touch(const Edge& a, const Edge& b, double distance_mm) {
   const double square = distance_mm * distance_mm;
   return square_to_segment(a[0], b[0], b[1]) <= square || square_to_segment(a[1], b[0], b[1]) <= square ||
@@ -103,7 +101,7 @@ class Crossings {
         asked_(polygons.size(), polygons.size()) {
     for (const Polygon& polygon : polygons) {
       measures_.push_back(measures_of(polygon));
-      // As EdgeTree numbers edges: a polygon of n points takes n + 1 of its own.
+      // Edges are numbered as in EdgeTree: a polygon of n points takes n + 1 numbers.
       first_.push_back(edge_count_);
       if (!polygon.empty()) edge_count_ += polygon.size() + 1;
     }
@@ -120,7 +118,7 @@ class Crossings {
   }
 
  private:
-  /// Of polygon `number`'s edges, that which ends in point `i`.
+  /// The edge of polygon `number` that ends in point `i`.
   Edge edge(std::size_t number, std::size_t i) const {
     const Polygon& polygon = polygons_[number];
     return {polygon[i == 0 ? polygon.size() - 1 : i - 1], polygon[i]};
@@ -150,14 +148,15 @@ class Crossings {
     }
   }
 
-  /// An earlier polygon that crosses none was held against all that it touches.
+  /// Whether two polygons were compared already. An earlier polygon without crossings was compared with all
+  /// that it touches.
   bool is_asked(std::size_t number, std::size_t other) const {
     return asked_[other] == number || (other < number && !at_[other]);
   }
 
   void ask_pair(std::size_t number, std::size_t other, const Edge& touching) {
     asked_[other] = number;
-    // The one of fewer points tells most pairs that only touch.
+    // Testing the polygon of fewer points first settles most pairs that only touch.
     const auto [few, many] = polygons_[number].size() < polygons_[other].size() ? std::pair(number, other)
                                                                                 : std::pair(other, number);
     if (!is_on_both_sides(few, many) || !is_on_both_sides(many, few)) return;
@@ -169,12 +168,12 @@ class Crossings {
     const EdgeTree& edges = trees_[other];
     const Measures &one = measures_[number], &two = measures_[other];
     const double margin_mm = std::min(rounding_of(one, rounding_mm_), rounding_of(two, rounding_mm_));
-    // Edges that the box about the other leaves out lie outside.
+    // Edges outside the box around the other polygon lie outside that polygon.
     const glm::dvec2 low = two.low - margin_mm, high = two.high + margin_mm;
     bool is_inside = false;
     bool is_outside = glm::any(glm::lessThan(one.low, low)) || glm::any(glm::greaterThan(one.high, high));
     const auto see = [&](const glm::dvec2& p) {
-      // The distance is asked only of a side that is not known yet.
+      // The distance is computed only while that side is still unknown.
       bool& known = edges.contains(p) ? is_inside : is_outside;
       if (!known) known = edges.square_to(p) > margin_mm * margin_mm;
     };
@@ -189,8 +188,8 @@ class Crossings {
     return is_inside && is_outside;
   }
 
-  /// Where other edges may meet an edge, from 0 to 1 along it, ascending. None of an edge as short as the
-  /// rounding.
+  /// Positions where other edges may meet an edge, from 0 to 1 along it, ascending. Empty for an edge shorter
+  /// than the rounding.
   void part_at_touches(const Edge& one, const EdgeTree& others, double margin_mm,
                        std::vector<double>& parts) {
     parts.clear();
@@ -212,7 +211,8 @@ class Crossings {
     std::sort(parts.begin(), parts.end());
   }
 
-  /// Sums along the polygon, by which a loop between two of its edges is measured at once.
+  /// Cumulative areas and lengths along the polygon, which give the area and length of any loop in constant
+  /// time.
   void begin_sums(const Polygon& polygon) {
     twice_areas_.assign(1, 0.0);
     lengths_.assign(1, 0.0);
@@ -238,13 +238,13 @@ class Crossings {
     const double loop_mm = lengths_[b - 1] - lengths_[a] + glm::length(first - x) + glm::length(x - last);
     const double rest_mm = measures_[number].perimeter_mm - loop_mm;
     const double margin_mm = rounding_of(measures_[number], rounding_mm_);
-    // A strip as wide as the rounding holds its length times that.
+    // A loop within a strip as wide as the rounding encloses at most length times width.
     if (!(std::abs(twice_loop) > margin_mm * loop_mm && std::abs(twice_rest) > margin_mm * rest_mm)) return;
     if ((twice_loop > 0.0) == (twice_rest > 0.0) || is_side_by_side(polygon, a, b, *met)) at_[number] = *met;
   }
 
-  /// Whether two loops of opposite directions lie outside of each other: no hole of a keyhole. Each answer
-  /// walks the polygon; after a few, loops count as holes.
+  /// Whether two loops of opposite directions lie outside each other, unlike the hole of a keyhole. Each call
+  /// costs a pass over the polygon, so after `most_walked` calls loops count as holes.
   bool is_side_by_side(const Polygon& polygon, std::size_t a, std::size_t b, const glm::dvec2& met) {
     constexpr int most_walked = 16;
     if (++loops_walked_ > most_walked) return false;
@@ -266,10 +266,10 @@ class Crossings {
   EdgeTree all_;
   Trees trees_;
   std::vector<Measures> measures_;
-  std::vector<std::size_t> first_;  ///< of each polygon, the number of its first edge
+  std::vector<std::size_t> first_;  ///< number of each polygon's first edge
   std::size_t edge_count_ = 0, pairs_left_ = 0;
-  std::vector<std::optional<glm::dvec2>> at_;  ///< of each polygon that crosses
-  std::vector<std::size_t> asked_;             ///< of each polygon, which one was held against it last
+  std::vector<std::optional<glm::dvec2>> at_;  ///< for each polygon that crosses, a point near the crossing
+  std::vector<std::size_t> asked_;             ///< for each polygon, the last one compared with it
   std::vector<double> twice_areas_, lengths_;
   int loops_walked_ = 0;
 };
@@ -281,7 +281,7 @@ std::vector<std::size_t> repeated_polygons(const std::vector<Polygon>& polygons_
   std::vector<std::size_t> repeated;
   std::vector<Measures> measures;
   Trees trees(polygons_mm);
-  // Weights without a common measure: bounds that differ seldom sum to the same.
+  // Incommensurable weights: different bounds rarely have equal sums.
   const auto sum_of = [](const Measures& of) {
     return of.low.x + 1.2720196 * of.low.y + 1.4142136 * of.high.x + 1.6180340 * of.high.y;
   };
@@ -293,7 +293,7 @@ std::vector<std::size_t> repeated_polygons(const std::vector<Polygon>& polygons_
     const Measures& of = measures.back();
     const double off_mm = rounding_of(of, rounding_mm);
     const double sum = sum_of(of);
-    // A line moved by the rounding changes the area by no more than a strip along it.
+    // Moving a line by the rounding changes the area by no more than a strip along it.
     const auto is_same = [&](const auto& near) {
       const Measures& other = measures[near.second];
       return within(of.low, other.low, off_mm) && within(of.high, other.high, off_mm) &&

@@ -5,15 +5,15 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-// Polygons of one plane of which the even-odd rule makes something else than was drawn. Nested polygons and
-// keyholes are none of these.
+// Finds polygons in one plane for which the even-odd rule yields another region than was drawn: repeated and
+// crossing ones. Nested polygons and keyholes are not reported.
 namespace octotomy::voxel {
 
-/// Numbers, ascending, of the polygons that are the same closed line as an earlier one: each one's points lie
-/// within the rounding of the other's edges, from any first point and in either direction. `rounding_mm` is
-/// how far a coordinate may be off; of a polygon less than a thousand times as large, a thousandth of its
-/// size. Preconditions: all coordinates finite. Cost: n log n in the points, and the pairs of polygons that
-/// share bounds, area and centre.
+/// Ascending numbers of the polygons that repeat an earlier one: the points of each lie within the rounding
+/// of the other's edges, whatever the first point and direction. `rounding_mm` is the largest error of a
+/// coordinate; a polygon smaller than 1000 times that uses a thousandth of its size. Precondition: all
+/// coordinates are finite. Cost: n log n in the points, and the pairs of polygons that share bounds, area and
+/// centre.
 std::vector<std::size_t> repeated_polygons(const std::vector<std::vector<glm::dvec2>>& polygons_mm,
                                            double rounding_mm);
 
@@ -25,14 +25,15 @@ struct CrossingPolygon {
 
 struct CrossingPolygons {
   std::vector<CrossingPolygon> all;  ///< each polygon once, ascending
-  bool is_complete = true;           ///< false: too many edges lie over each other, and some were not asked
+  bool is_complete = true;           ///< false if the search stopped at its limit, with some pairs of edges
+                                     ///< unchecked
 };
 
-/// Polygons of which a part further than the rounding lies within another polygon and a part outside of it,
-/// and the other way round; and polygons whose own line encloses a part twice or two parts in a figure of
-/// eight. `rounding_mm` and preconditions as of repeated_polygons(), whose polygons are left out beforehand.
-/// Cost: n log n in the edges where few of their boxes overlap; it ends, incomplete, after a fixed number of
-/// pairs of edges for each edge.
+/// Polygons that cross another: each of the two has a part inside and a part outside the other, both farther
+/// than the rounding from its line. Also polygons that cross themselves, by enclosing a part twice or as a
+/// figure of eight. `rounding_mm` and preconditions as in repeated_polygons(); the caller removes the
+/// polygons that it returns first. Cost: n log n in the edges where few of their boxes overlap. The search
+/// stops, incomplete, after a fixed number of pairs of edges per edge.
 CrossingPolygons crossing_polygons(const std::vector<std::vector<glm::dvec2>>& polygons_mm,
                                    double rounding_mm);
 

@@ -35,13 +35,13 @@ Code code_of(Kind kind) {
   return Code::Push;
 }
 
-/// Lays the steps out and leaves out what says nothing new: a value joined again into the row of | or & that
-/// has it, or subtracted again. Equal values have equal numbers.
+/// Builds the steps and omits redundant ones: a value joined again to a chain of | or & that already contains
+/// it, or subtracted again. Equal values have equal numbers.
 class Layout {
  public:
   explicit Layout(std::vector<PostfixExpression::Step>& steps) : steps_(steps) {}
 
-  /// The values on the stack, at most so far.
+  /// The largest stack size so far.
   std::size_t most() const { return most_; }
 
   void push(std::uint32_t operand) {
@@ -77,8 +77,8 @@ class Layout {
   struct Entry {
     std::size_t first_step = 0;
     std::uint32_t number = 0;
-    Code row = Code::Push;                      ///< the operator of its row
-    std::unordered_set<std::uint32_t> members;  ///< of a row: numbers of what is joined or subtracted
+    Code row = Code::Push;                      ///< operator of the chain that the value ends
+    std::unordered_set<std::uint32_t> members;  ///< numbers of the values joined or subtracted in the chain
   };
 
   std::uint32_t number_of(Code code, std::uint32_t left, std::uint32_t right) {
@@ -98,9 +98,9 @@ PostfixExpression postfix_of(const Expression& expression, const std::optional<U
   PostfixExpression postfix;
   // Motions are composed before anything is sampled, so that a piece moved twice is sampled once.
   std::vector<glm::dmat4> motions{glm::dmat4(1.0)};
-  int moved_depth = 0;  // motions above that do move
+  int moved_depth = 0;  // number of enclosing motions other than the identity
   std::unordered_multimap<const Expression::Leaf*, std::uint32_t> known;
-  // By the universe's address, which windows on the same samples share.
+  // Keyed by the universe's address, which windows on the same samples share.
   std::unordered_map<const Universe*, const Expression::Leaf*> scans;
   Layout layout(postfix.steps);
   const auto push = [&](const Expression::Leaf& leaf, bool is_scan) {
@@ -120,7 +120,7 @@ PostfixExpression postfix_of(const Expression& expression, const std::optional<U
   const auto push_scan_of = [&](const Window& window) {
     const bool aligned = moved_depth == 0 && target && window.grey.universe() == *target;
     if (aligned && !window.grey.window_meets_background(window.low, window.high)) return;
-    // The scan of the samples that the window is read from (SampledWindowOperand).
+    // The scan on the lattice from which the window's samples are read (SampledWindowOperand).
     const bool on_voxels =
         target && whole_voxel_offset(glm::inverse(motions.back() * window.grey.universe().lps_from_voxel) *
                                      target->lps_from_voxel);

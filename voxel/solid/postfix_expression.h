@@ -10,9 +10,9 @@
 
 namespace octotomy::voxel {
 
-/// What is known of 64 children at once: those of `full` are Full, those outside `some` are Empty, the others
-/// undecided. Precondition: full lies within some. Operators follow Kleene's three-valued logic, bit by bit:
-/// exact for children that both sides decide.
+/// Three-valued status of 64 children at once: those of `full` are Full, those outside `some` are Empty, the
+/// others undecided. Precondition: full is a subset of some. Operators follow Kleene's three-valued logic,
+/// bit by bit: exact for children that both sides decide.
 struct Cover {
   std::uint64_t full = 0;
   std::uint64_t some = 0;
@@ -27,14 +27,14 @@ struct Cover {
   }
 };
 
-/// An expression laid out for a walk: its leaves with the motions above each composed into one matrix, and
-/// its operators in postfix order.
+/// An expression arranged for a walk: its leaves, each with the product of the motions above it, and its
+/// operators in postfix order.
 struct PostfixExpression {
   struct Operand {
     const Expression::Leaf* leaf = nullptr;  ///< owned by the expression
     glm::dmat4 moved_from_still{1.0};        ///< LPS to LPS
-    bool still = true;                       ///< under no motion at all
-    bool is_scan = false;                    ///< the scan of a window, which stands beside it
+    bool still = true;                       ///< under no motion other than the identity
+    bool is_scan = false;                    ///< the scan of a window, pushed right after the window
   };
   enum class Code : std::uint8_t { Push, And, Or, Minus, Xor, Not };
   struct Step {
@@ -44,10 +44,10 @@ struct PostfixExpression {
   std::vector<Operand> operands;
   std::vector<std::shared_ptr<const Expression::Leaf>> scans;  ///< leaves of the operands that are scans
   std::vector<Step> steps;
-  std::size_t stack_size = 0;  ///< values that run() holds at most
+  std::size_t stack_size = 0;  ///< largest number of values on run()'s stack
 
-  /// Runs the operators over any type that has them. `value(i)` is operand i; `stack` holds stack_size
-  /// values.
+  /// Evaluates the expression over any type that has the operators. `value(i)` returns operand i; `stack` has
+  /// room for stack_size values.
   template <typename Value, typename Get>
   Value run(const Get& value, Value* stack) const {
     Value* top = stack;
@@ -78,11 +78,11 @@ struct PostfixExpression {
   }
 };
 
-/// Refers to the expression's leaves: the expression must outlive it. The same leaf under the same motion
-/// becomes one operand, however often it occurs, and takes no further step where it joins a row of | or &
-/// that has it, or is subtracted again. A window becomes an intersection with its scan, unless it is at rest
-/// on the lattice of `target` and misses the background: then no voxel beyond the scan is in it anyway.
-/// Throws as for_each_term().
+/// The result refers to the expression's leaves; the expression must outlive it. A leaf that occurs
+/// repeatedly under the same motion becomes one operand. It adds no step where it joins a chain of | or &
+/// that already contains it, or is subtracted a second time. A window becomes an intersection with its scan,
+/// unless it is at rest on the lattice of `target` and excludes the background: then it contains no voxel
+/// beyond the scan anyway. Throws as for_each_term().
 PostfixExpression postfix_of(const Expression& expression, const std::optional<Universe>& target = {});
 
 }  // namespace octotomy::voxel

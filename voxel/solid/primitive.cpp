@@ -17,9 +17,9 @@ bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// A product of a few rotations keeps its columns orthonormal to a few units in the last place, and numbers
-// read from text with nine digits to 1e-9. A scale or shear that moves anything in a head by a micrometre
-// over 300 mm is 3e-9. Half of the digits separate them.
+// A product of a few rotations has columns orthonormal to a few units in the last place; numbers read from
+// text with nine digits are accurate to 1e-9. A scale or shear that moves anything in a head by a micrometre
+// over 300 mm is 3e-9. Half of the digits lie between the two.
 double unit_slack() {
   return std::sqrt(std::numeric_limits<double>::epsilon());
 }

@@ -10,7 +10,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Twice the area that triangles from the first point cover, without signs: zero only where all points lie on
+/// Twice the sum of the absolute areas of the triangles from the first point: zero only if all points lie on
 /// a line.
 double covered_area(const std::vector<glm::dvec2>& polygon) {
   double area = 0.0;
@@ -37,7 +37,7 @@ void check(const RegionMask& mask) {
       for (const glm::dvec2& point : polygon)
         if (!std::isfinite(point.x) || !std::isfinite(point.y))
           throw std::invalid_argument(which + " has a coordinate that is not a finite number");
-      // Halves of a polygon that crosses itself may cancel: it encloses both.
+      // The signed areas of a self-crossing polygon's loops may cancel although it encloses both.
       if (covered_area(polygon) == 0.0) throw std::invalid_argument(which + " encloses no area");
     }
   }

@@ -22,12 +22,13 @@ struct RegionMask {
   std::vector<Region> regions;
 };
 
-/// Throws std::invalid_argument saying which region and polygon: none at all, fewer than three points,
-/// a coordinate that is not finite, no area.
+/// Throws std::invalid_argument that names the region and polygon: no regions or polygons, fewer than three
+/// points, a coordinate that is not finite, no area.
 void check(const RegionMask& mask);
 
-/// Whether an edge from a to b crosses the ray from p towards growing x: the even-odd rule counts these. Half
-/// open in y, so that a ray through a vertex meets exactly one of its two edges.
+/// Whether an edge from a to b crosses the ray from p towards growing x. The even-odd rule counts these
+/// crossings. The edge is half open in y, so that a ray through a vertex crosses exactly one of two edges
+/// that pass it.
 inline bool crosses_ray_from(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p_mm) {
   return (a.y > p_mm.y) != (b.y > p_mm.y) && p_mm.x < (b.x - a.x) * (p_mm.y - a.y) / (b.y - a.y) + a.x;
 }
@@ -40,7 +41,8 @@ void for_each_edge(const std::vector<std::vector<glm::dvec2>>& polygons_mm, cons
       visit(polygon[last], polygon[i]);
 }
 
-/// By the even-odd rule over all polygons.
+/// Whether a point is inside, by the even-odd rule over all polygons of a region and in every region of a
+/// mask.
 bool contains(const std::vector<std::vector<glm::dvec2>>& polygons_mm, const glm::dvec2& p_mm);
 bool contains(const Region& region, const glm::dvec2& p_mm);
 bool contains(const RegionMask& mask, const glm::dvec3& p_mm);

@@ -5,14 +5,14 @@
 
 namespace octotomy::voxel {
 
-/// How operands that do not lie on the target's lattice are carried to it: those under a motion, and those of
-/// another universe.
+/// How operands that do not lie on the target's lattice are resampled on it: those under a motion, and those
+/// of another universe.
 struct Resampling {
-  /// Which voxels an octree becomes: those whose centre it holds (D3), or those it fills at least to the half
-  /// (D4), counted on a grid of 5 x 5 x 5 points a voxel.
+  /// Voxels of the target that an octree fills: those whose centre it contains (D3), or those of which it
+  /// fills at least half (D4), counted on a grid of 5 x 5 x 5 points a voxel.
   enum class Voxels { Centre, Half };
   Voxels voxels = Voxels::Centre;
-  /// How a grey octree's samples are read between them, before its window is taken.
+  /// Interpolation between a grey octree's samples, before they are compared with its window.
   Interpolation samples = Interpolation::Linear;
 };
 

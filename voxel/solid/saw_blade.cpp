@@ -9,7 +9,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A view along the direction; its other axes are any.
+/// A view along the direction, with arbitrary other axes.
 View view_along(const glm::dvec3& direction) {
   View view;
   view.look = glm::normalize(direction);
@@ -27,7 +27,7 @@ View view_along(const glm::dvec3& direction) {
 glm::dvec2 mitre(const glm::dvec2& before, const glm::dvec2& after, double half_kerf_mm) {
   const glm::dvec2 sum = before + after;
   const double square = glm::dot(sum, sum);
-  // The lines run antiparallel if the sum vanishes, up to the rounding of unit vectors.
+  // A zero sum, up to the rounding of unit vectors, means that the pieces run in opposite directions.
   if (!(square > 64.0 * std::numeric_limits<double>::epsilon()))
     throw std::invalid_argument("the saw's line turns back on itself: leave out the point where it does");
   return sum * (2.0 * half_kerf_mm / square);

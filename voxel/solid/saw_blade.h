@@ -9,7 +9,7 @@
 
 namespace octotomy::voxel {
 
-/// A cut as a saw makes it: along a line of straight pieces, swept in one direction.
+/// A saw cut along a polyline, swept in one direction.
 struct SawLine {
   std::vector<glm::dvec3> line_mm;  ///< LPS; at least two points
   glm::dvec3 direction{0, 1, 0};    ///< of the blade into the bone; any length but zero
@@ -18,11 +18,11 @@ struct SawLine {
 };
 
 /// The volume that the saw removes. Pieces of the line meet in mitres; its ends are square. Throws
-/// std::invalid_argument if the line has fewer than two points apart as seen along the direction, or turns
-/// back on itself.
+/// std::invalid_argument if the direction is zero, the line has fewer than two distinct points in the
+/// projection along the direction, or it turns back on itself.
 Expression saw_blade(const SawLine& saw);
 
-/// The blade without its ends in depth: the region whose edges are its sides. Throws as saw_blade().
+/// The blade without limits in depth, as a mask of one region. Throws as saw_blade().
 RegionMask saw_blade_sides(const SawLine& saw);
 
 }  // namespace octotomy::voxel

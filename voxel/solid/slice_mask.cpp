@@ -48,7 +48,8 @@ double SliceDistance::distance_mm(std::size_t slice, const glm::dvec2& p_mm) con
   return edges_[slice].contains(p_mm) ? -distance : distance;
 }
 
-// Over a stretch of the gap after slice `below`, at one point of the plane, from the distances there.
+// Bounds over a stretch of the gap after slice `below`, at one point of the plane, from the distances to the
+// two slices' outlines there.
 SliceDistance::Bounds SliceDistance::in_gap(std::size_t below, double at_a, double at_b,
                                             const Stretch& stretch) const {
   const auto [from_mm, to_mm] = stretch;
@@ -94,7 +95,7 @@ SliceDistance::Bounds SliceDistance::operator()(const glm::dvec2& p_mm, double p
   const auto take = [&](const Bounds& part) {
     bounds = {std::min(bounds.low, part.low), std::max(bounds.high, part.high)};
   };
-  // The slices from the last before the stretch to the first behind it, or as far as there are any.
+  // Visits the slices from the last one before the stretch to the first one behind it, as far as they exist.
   std::size_t below = static_cast<std::size_t>(
       std::lower_bound(slices.begin(), slices.end(), from_mm,
                        [](const SliceMask::Slice& slice, double mm) { return slice.position_mm < mm; }) -
@@ -110,7 +111,7 @@ SliceDistance::Bounds SliceDistance::operator()(const glm::dvec2& p_mm, double p
     at_below = at_above;
   }
   if (to_mm > last_mm) take({at_below, at_below});
-  // A distance changes no faster than the point it is measured from.
+  // A distance changes by no more than the point moves.
   bounds.low -= in_plane_mm;
   bounds.high += in_plane_mm;
   if (from_mm < lowest_mm || to_mm > highest_mm) bounds.high = outside_mm;

@@ -9,7 +9,7 @@
 namespace octotomy::voxel {
 namespace {
 
-// Children of a block that voxels low..high of it touch, from 4^height voxels a side.
+// The children, of 2^child_log2 voxels a side, that a box of the block's voxels overlaps.
 std::uint64_t children_within(const VoxelBox& box, int child_log2) {
   assert(glm::all(glm::greaterThanEqual(box.low, glm::ivec3(0))) &&
          glm::all(glm::lessThan(box.high >> child_log2, glm::ivec3(4))));

@@ -6,8 +6,8 @@
 
 namespace octotomy::voxel {
 
-/// Whether a box of voxels of the octree's lattice is Full, Empty or neither; it may leave the universe,
-/// beyond which all is Empty. Cost: the nodes along the box's faces, and none below a child that settles it.
+/// Status of a box of voxels of the octree's lattice. The box may extend beyond the universe, where all
+/// voxels are Empty. Cost: the nodes along the box's faces, without those below a child that already decides.
 Status status_within(const Octree& octree, const VoxelBox& box);
 
 }  // namespace octotomy::voxel

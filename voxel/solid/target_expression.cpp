@@ -8,10 +8,10 @@
 namespace octotomy::voxel {
 namespace {
 
-// What is left of a cube after the surfaces that run through it, taken as independent.
+// The share of a cube inside, with the surfaces that cross the cube combined as independent.
 struct Share {
   double share = 0.0;
-  int sheets = 0;  ///< none: the share is 0 or 1 for certain
+  int sheets = 0;  ///< 0: the share is exactly 0 or 1
   double off_voxels = 0.0;
 
   friend Share operator~(const Share& a) { return {1.0 - a.share, a.sheets, a.off_voxels}; }
@@ -42,7 +42,7 @@ TargetExpression::TargetExpression(PostfixExpression postfix, const Universe& ta
     operands_.push_back(operand_of(operand, target, resampling));
 }
 
-// Runs the operators over what `get` says of each operand.
+// Evaluates the expression on the values that `get` returns for its operands.
 template <typename Value, typename Get>
 Value TargetExpression::run(const Get& get) const {
   if (postfix_.steps.size() == 1) return get(operands_.front());

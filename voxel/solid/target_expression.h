@@ -9,8 +9,9 @@
 
 namespace octotomy::voxel {
 
-/// An expression in a target's index space: its operands, and what cubes and points hold of all of them at
-/// once. The expression must outlive it. Preconditions of its questions: those of the operands' (operand.h).
+/// An expression in a target's index space: its operands, and the result of the expression for cubes and
+/// points. Precondition: the Expression outlives this object. Preconditions of its queries: those of the
+/// operands (operand.h).
 class TargetExpression {
  public:
   TargetExpression(PostfixExpression postfix, const Universe& target, const Resampling& resampling = {});
@@ -18,17 +19,18 @@ class TargetExpression {
   const PostfixExpression& postfix() const { return postfix_; }
   const std::vector<Operand>& operands() const { return operands_; }
 
-  /// Bounds at the cost of one look at each operand.
+  /// Bounds, at the cost of one query to each operand.
   Meets meets(const Cube& cube) const;
-  /// The same, with undecided cubes halved until they are decided or 2^-6 of the cube wide. What is left then
-  /// counts as met, in and out: a thin end that comes as close as that to a voxel may make it a boundary
-  /// voxel.
+  /// The same, with undecided cubes split into octants until they are decided or 2^-6 of the cube wide. Cubes
+  /// still undecided then count as having parts inside and outside, so a thin part of the solid within that
+  /// distance of a voxel may make it a boundary voxel.
   Meets resolve(const Cube& cube) const;
   bool contains(const glm::dvec3& p_voxel) const;
-  /// The share of the cube that lies inside. The cube is halved until at most one surface cuts each piece, no
-  /// more than 2^-9 of a voxel from its tangent plane, whose cut is a closed form. Pieces of 2^-4 of the cube
-  /// that an edge still runs through take the shares of their surfaces as independent. Error: within 2^-9 on
-  /// a surface of curvature up to 1/3 a voxel, within 2^-4 of the length of edges through the cube.
+  /// The share of the cube that lies inside. The cube is split into octants until at most one surface cuts
+  /// each piece and deviates by at most 2^-9 of a voxel from its tangent plane, for which the share is a
+  /// closed form. In pieces 2^-4 of the cube wide that an edge still crosses, the shares of the surfaces are
+  /// combined as independent. Error: within 2^-9 on a surface of curvature up to 1/3 per voxel, within 2^-4
+  /// of the length of edges through the cube.
   double fraction(const Cube& cube) const;
 
  private:
@@ -41,14 +43,15 @@ class TargetExpression {
   std::vector<Operand> operands_;
 };
 
-/// Decides the voxels of leaves otherwise than by their centres.
+/// Replaces the decision by voxel centres in leaves that blocks leave undecided.
 struct LeafRule {
-  double margin = TargetBlock::cuboids;                         ///< as TargetBlock's
-  std::function<std::uint64_t(const glm::ivec3& origin)> word;  ///< of a leaf; called from several threads
+  double margin = TargetBlock::cuboids;                         ///< as in TargetBlock
+  std::function<std::uint64_t(const glm::ivec3& origin)> word;  ///< returns the word of the leaf at `origin`;
+                                                                ///< called from several threads
 };
 
-/// The walk behind combine(), digitise() and digitise_partial(). A rule is asked about the leaves that the
-/// covers of blocks leave open; without one, voxels are decided by their centres. Cost: as combine().
+/// The walk behind combine(), digitise() and digitise_partial(). `rule` decides the leaves that the covers of
+/// blocks leave undecided; without one, voxel centres decide. Cost: as combine().
 Octree walk(const Universe& universe, const TargetExpression& expression, const LeafRule* rule = nullptr);
 
 }  // namespace octotomy::voxel

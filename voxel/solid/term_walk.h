@@ -19,7 +19,8 @@ struct MetTerm {
   bool subtracted;  ///< the right operand of a minus
 };
 
-/// Most leaves, repeated ones included, that a walk meets: a part that occurs twice is walked twice.
+/// Largest number of leaves that a walk visits. Repeated ones count: a part that occurs twice is walked
+/// twice.
 inline constexpr std::size_t most_leaves = std::size_t{1} << 22;
 
 /// Calls `met` for every term in reading order. Throws Error with the code Input if the expression has

@@ -8,20 +8,20 @@
 
 namespace octotomy::voxel {
 
-/// An expression's blocks from the root down to a height, entered once for several walks that go on from
-/// there, each in a part of its own.
+/// An expression's blocks from the root down to a height, entered once. Several walks may continue from
+/// there, each in its own part.
 class TopBlocks {
  public:
   struct TopBlock {
     ExpressionBlocks::EnteredBlock entered;
-    /// Of the undecided children of the least height or more: a node that stands for the child, or the child
-    /// itself.
+    /// For each undecided child: the octree node that equals it, or else the entered child. Both null in
+    /// blocks of `least_height` or lower.
     std::array<const Node*, 64> nodes{};
     std::array<std::unique_ptr<TopBlock>, 64> children;
   };
 
-  /// Refers to the expression's leaves: the expression must outlive it. Parallel. Cost: the boundary's
-  /// blocks.
+  /// The expression must outlive this object, which refers to its leaves. Parallel. Cost: the blocks along
+  /// the boundary.
   TopBlocks(const Universe& universe, const Expression& expression, int least_height);
   TopBlocks(const TopBlocks&) = delete;
   TopBlocks& operator=(const TopBlocks&) = delete;
