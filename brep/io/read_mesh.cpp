@@ -16,20 +16,26 @@
 namespace octotomy::brep {
 namespace {
 
+/// Its points lie in another file beside it, or in its text as base 64.
+MeshContent refuse_gltf_text(std::string_view /*bytes*/) {
+  throw Error(ErrorCode::Input, "is glTF as text, which is not read: save it as .glb, its binary form");
+}
+
 struct Format {
   std::string_view extension;
   MeshContent (*read)(std::string_view bytes);
   bool is_text;  ///< or may be
 };
-constexpr std::array<Format, 9> formats{{{".stl", read_stl, true},
-                                         {".ply", read_ply, true},
-                                         {".obj", read_obj, true},
-                                         {".off", read_off, true},
-                                         {".vtk", read_vtk, true},
-                                         {".vtp", read_vtk_xml, true},
-                                         {".vtu", read_vtk_xml, true},
-                                         {".glb", read_glb, false},
-                                         {".3mf", read_3mf, false}}};
+constexpr std::array<Format, 10> formats{{{".stl", read_stl, true},
+                                          {".ply", read_ply, true},
+                                          {".obj", read_obj, true},
+                                          {".off", read_off, true},
+                                          {".vtk", read_vtk, true},
+                                          {".vtp", read_vtk_xml, true},
+                                          {".vtu", read_vtk_xml, true},
+                                          {".glb", read_glb, false},
+                                          {".gltf", refuse_gltf_text, false},
+                                          {".3mf", read_3mf, false}}};
 
 const Format* format_of(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
