@@ -191,6 +191,10 @@ void check_drawn(const DrawnRegion& drawn, const std::string& where) {
 
 DrawnRegion read_drawn_region(const std::string& text) {
   const auto colon = text.find(':');
+  if (voxel::extension_of(text) == ".svgz")
+    refuse("--region", "'" + text +
+                           "' is a packed SVG drawing, which is not read: save it as plain .svg, or unpack "
+                           "it by 'gunzip -S .svgz'");
   const bool is_drawing = voxel::extension_of(text) == ".svg";
   std::optional<voxel::View> view;
   fs::path path = text;
