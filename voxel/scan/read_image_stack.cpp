@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -124,6 +125,84 @@ std::string skipped(const std::vector<fs::path>& files) {
   return std::to_string(missing) + " numbers are skipped, first between " + files[at].filename().string() +
          " and " + files[at + 1].filename().string() +
          ": if slices are missing there, those above them lie too low";
+}
+
+/// A file's name with # in the place of each number, and its numbers, zeros before them left out.
+struct NumberedName {
+  std::string pattern, numbers;
+};
+NumberedName numbered_name(const fs::path& file) {
+  NumberedName made;
+  const std::string name = file.filename().string();
+  const fs::path stem = file.stem();
+  for (std::size_t at = 0; at < name.size();) {
+    if (at >= stem.string().size() || !is_digit(name[at])) {
+      made.pattern += name[at++];
+      continue;
+    }
+    std::size_t end = at;
+    while (end < name.size() && is_digit(name[end])) ++end;
+    while (at + 1 < end && name[at] == '0') ++at;
+    made.pattern += '#';
+    made.numbers += name.substr(at, end - at) + ' ';
+    at = end;
+  }
+  return made;
+}
+
+/// The stacks of files whose names differ by more than numbers and have the same numbers: "ct_#.png (5
+/// files) and mask_#.png (5 files)". Empty where the names are those of one stack.
+std::string stacks_named(const std::vector<fs::path>& files) {
+  std::map<std::string, std::set<std::string>> patterns_of;  // by numbers
+  std::map<std::string, std::size_t> count_of;               // by pattern
+  for (const fs::path& file : files) {
+    const NumberedName name = numbered_name(file);
+    if (!name.numbers.empty()) patterns_of[name.numbers].insert(name.pattern);
+    ++count_of[name.pattern];
+  }
+  std::set<std::string> doubled;
+  for (const auto& [numbers, patterns] : patterns_of)
+    if (patterns.size() > 1) doubled.insert(patterns.begin(), patterns.end());
+  std::string text;
+  std::size_t named = 0;
+  constexpr std::size_t most_named = 3;
+  for (const std::string& pattern : doubled) {
+    if (++named > most_named) return text + " and " + std::to_string(doubled.size() - most_named) + " more";
+    const std::size_t count = count_of[pattern];
+    text += (named == 1                ? ""
+             : named == doubled.size() ? " and "
+                                       : ", ") +
+            pattern + " (" + std::to_string(count) + (count == 1 ? " file)" : " files)");
+  }
+  return text;
+}
+
+/// A sentence on names that have the same last numbers behind different numbers ("s1_000" and "s2_000"):
+/// stacks in one folder, or the blocks of one stack. Empty where the last numbers are those of one stack.
+std::string numbered_alike(const std::vector<fs::path>& files) {
+  std::map<std::string, std::set<long>> numbers_of;  // by what stands before the last number
+  for (const fs::path& file : files) {
+    const std::string stem = file.stem().string();
+    const std::size_t last = stem.find_last_of("0123456789");
+    const std::size_t before = last == std::string::npos ? last : stem.find_last_not_of("0123456789", last);
+    if (const std::optional<long> number = number_in(file); number && before != std::string::npos)
+      numbers_of[stem.substr(0, before + 1)].insert(*number);
+  }
+  const std::set<long>* first = nullptr;
+  std::string first_name;
+  for (const auto& [name, numbers] : numbers_of) {
+    const auto is_first_too = [&](long number) { return first->contains(number); };
+    if (numbers.size() < 2) continue;
+    if (first == nullptr) {
+      first = &numbers;
+      first_name = name;
+    } else if (std::count_if(numbers.begin(), numbers.end(), is_first_too) > 1) {
+      return "names that begin with '" + first_name + "' and with '" + name +
+             "' have the same last numbers, and their pictures are taken as slices of one stack: if they are "
+             "several, put each into a folder of its own";
+    }
+  }
+  return {};
 }
 
 /// The number behind a key in a description: "spacing=1.5", "SizeT=\"7\"".
@@ -269,6 +348,11 @@ std::vector<fs::path> image_files(const fs::path& path) {
 Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
   const std::vector<fs::path> files = image_files(path);
   if (files.empty()) refuse(path, "matches no image");
+  const std::string stacks = stacks_named(files);
+  if (std::error_code error; !stacks.empty() && fs::is_directory(path, error))
+    refuse(path,
+           "holds the pictures of several stacks, whose names have the same numbers: " + stacks +
+               ": put each stack into a folder of its own, or name one by a pattern such as 'ct_*.png'");
   std::vector<char> bytes;
   glm::ivec3 dims(0);
   SampleType type = SampleType::UInt8;
@@ -298,6 +382,13 @@ Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
                          std::to_string(dims.z) + " slices of " + std::to_string(files.size()) +
                              " files in the order of the numbers in their names, from " +
                              files.front().filename().string() + " to " + files.back().filename().string()});
+  if (!stacks.empty())
+    scene.audit.push_back({"stacks", Verdict::Fail,
+                           "the pattern takes the pictures of several stacks, whose names have the same "
+                           "numbers, as slices of one: " +
+                               stacks + ": let it name one of them"});
+  else if (const std::string alike = numbered_alike(files); !alike.empty())
+    scene.audit.push_back({"stacks", Verdict::Warn, alike});
   if (const std::string missing = skipped(files); !missing.empty())
     scene.audit.push_back({"missing_slices", Verdict::Warn, missing});
   if (orientations != std::set{1})

@@ -14,7 +14,10 @@ std::vector<std::filesystem::path> image_files(const std::filesystem::path& path
 /// file is a slice. All must have the same size and type. Images hold neither patient frame nor unit: the
 /// audit states the assumed ones. What pictures state of themselves is held against the options: sizes of
 /// pixels and slices (picture_spacing; ImageJ's, OME's or the format's own), times and channels
-/// (picture_axes), WhiteIsZero (polarity), JPEG's losses (compression). Throws as read_scene().
+/// (picture_axes), WhiteIsZero (polarity), JPEG's losses (compression). A folder whose names are those of
+/// several stacks ("ct_001.png", "mask_001.png") is refused; a pattern that takes several is a FAIL, and
+/// names that differ by numbers alone
+/// ("s1_001.png", "s2_001.png") a WARN (stacks). Throws as read_scene().
 Scene read_image_stack(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace octotomy::voxel
