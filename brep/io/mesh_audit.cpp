@@ -104,12 +104,15 @@ std::optional<LengthUnit> length_unit(std::string_view word) {
     std::vector<std::string> words;
   };
   static const std::vector<Named> known{
+      {{"nm", 1e-6}, {"nm", "nanometer", "nanometers", "nanometre", "nanometres"}},
       {{"um", 1e-3},
        {"um", "micron", "microns", "micrometer", "micrometers", "micrometre", "micrometres", "\u00b5m",
         "\u03bcm"}},
       {{"mm", 1.0}, {"mm", "millimeter", "millimeters", "millimetre", "millimetres"}},
       {{"cm", 10.0}, {"cm", "centimeter", "centimeters", "centimetre", "centimetres"}},
+      {{"dm", 100.0}, {"dm", "decimeter", "decimeters", "decimetre", "decimetres"}},
       {{"m", 1000.0}, {"m", "meter", "meters", "metre", "metres"}},
+      {{"mil", 0.0254}, {"mil", "mils", "thou"}},
       {{"inch", 25.4}, {"inch", "inches", "in"}},
       {{"foot", 304.8}, {"foot", "feet", "ft"}}};
   const std::string wanted = lower_case(word);

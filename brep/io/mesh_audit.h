@@ -38,8 +38,8 @@ struct LengthUnit {
   std::string name;
   double mm = 1.0;
 };
-/// The unit of a word in any case: um, mm, cm, m, inch, foot, their plurals and long forms ("millimetres",
-/// "microns"); none where the word is no unit.
+/// The unit of a word in any case: nm, um, mm, cm, dm, m, mil, inch, foot, their plurals and long forms
+/// ("millimetres", "microns"); none where the word is no unit.
 std::optional<LengthUnit> length_unit(std::string_view word);
 
 /// Coordinates along the axes.

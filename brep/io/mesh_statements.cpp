@@ -5,42 +5,12 @@
 #include "brep/io/mesh_statements.h"
 
 #include <algorithm>
-#include <cctype>
 
-#include "brep/io/mesh_scanner.h"
+#include "brep/io/free_text.h"
 #include "brep/mesh/error.h"
 
 namespace octotomy::brep {
 namespace {
-
-bool is_word_letter(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' ||
-         (static_cast<unsigned char>(c) & 0x80);
-}
-
-/// Calls f with the words behind each occurrence of a key that stands alone, and with the = or : between,
-/// else 0; a letter before or behind the key makes it another word.
-template <typename F>
-void behind_key(std::string_view text, std::string_view key, const F& f) {
-  const std::string folded = lower_case(text);
-  for (std::size_t at = folded.find(key); at != std::string::npos; at = folded.find(key, at + 1)) {
-    const std::size_t end = at + key.size();
-    if ((at > 0 && (is_word_letter(text[at - 1]) || text[at - 1] == '_')) ||
-        (end < text.size() && is_word_letter(text[end])))
-      continue;
-    std::size_t begin = text.find_first_not_of(" \t\"'", end);
-    if (begin == std::string_view::npos) return;
-    const char sign = text[begin] == '=' || text[begin] == ':' ? text[begin] : '\0';
-    if (sign != '\0') begin = text.find_first_not_of(" \t\"'", begin + 1);
-    f(begin == std::string_view::npos ? std::string_view{} : text.substr(begin), sign);
-  }
-}
-
-std::string_view first_word(std::string_view text) {
-  std::size_t end = 0;
-  while (end < text.size() && is_word_letter(text[end])) ++end;
-  return text.substr(0, end);
-}
 
 /// As far as it can be printed, blanks at the ends left out, at most 80 characters.
 std::string printable(std::string_view text) {
@@ -79,41 +49,28 @@ void MeshStatements::add_writer(std::string_view text) {
   if (writer_.empty()) writer_ = printable(text);
 }
 
-void MeshStatements::read_frame(std::string_view text, const std::string& where) {
-  for (const std::string_view key : {"space", "coordinate system", "coordinatesystem"})
-    behind_key(text, key, [&](std::string_view rest, char sign) {
-      const std::string_view word = first_word(rest);
-      // Without = only a frame's name makes it a statement: "3D space" is none, nor "colour space: sRGB".
-      if (sign == '=' || frame_named(word))
-        add_frame(std::string(word),
-                  (key == "space" ? "SPACE=" : "coordinate system ") + printable(word) + " in " + where);
-    });
+void MeshStatements::read_text(std::string_view text, const std::string& where) {
+  const auto unclear = [&](const char* check, const TextStatement& each) {
+    warn(check, "'" + printable(each.words) + "' in " + where + " can be read in more than one way and was " +
+                    "not followed: give --" + check);
+  };
+  for (const TextStatement& each : stated_frames(text))
+    if (each.kind == TextStatement::Kind::Unclear)
+      unclear("frame", each);
+    else
+      add_frame(each.words, (each.key == "space" ? "SPACE=" : "coordinate system ") + printable(each.words) +
+                                " in " + where);
   if (text.find("LPS millimetres") != std::string_view::npos) {
     add_frame("LPS", "'LPS millimetres' in " + where);
     add_unit("mm", "'LPS millimetres' in " + where);
   }
-}
-
-void MeshStatements::read_unit(std::string_view text, const std::string& where) {
-  for (const std::string_view key : {"unit", "units"})
-    behind_key(text, key, [&](std::string_view rest, char sign) {
-      std::string_view word = first_word(rest);
-      if (const std::string filler = lower_case(word);
-          sign == '\0' && (filler == "is" || filler == "are" || filler == "in")) {
-        rest = rest.substr(word.size());
-        rest.remove_prefix(std::min(rest.find_first_not_of(" \t\"'"), rest.size()));
-        word = first_word(rest);
-      }
-      if (length_unit(word))
-        add_unit(std::string(word), "unit " + printable(word) + " in " + where);
-      else if (sign == '=')
-        warn("unit", "'" + printable(rest.substr(0, 20)) + "' in " + where + " is no unit that is known");
-    });
-}
-
-void MeshStatements::read_text(std::string_view text, const std::string& where) {
-  read_frame(text, where);
-  read_unit(text, where);
+  for (const TextStatement& each : stated_units(text))
+    if (each.kind == TextStatement::Kind::Stated)
+      add_unit(each.words, "unit " + printable(each.words) + " in " + where);
+    else if (each.kind == TextStatement::Kind::Unclear)
+      unclear("unit", each);
+    else
+      warn("unit", "'" + printable(each.words) + "' in " + where + " is no unit of length that is known");
 }
 
 MeshStatements::Resolved MeshStatements::resolved(const std::optional<std::string>& frame,
@@ -129,6 +86,10 @@ MeshStatements::Resolved MeshStatements::resolved(const std::optional<std::strin
   };
   const auto guess = [&](const char* check, const std::string& detail) {
     made.audit.push_back({check, MeshVerdict::Warn, detail});
+  };
+  const auto is_doubted = [&](const char* check) {
+    return std::any_of(doubts_.begin(), doubts_.end(),
+                       [&](const MeshFinding& doubt) { return doubt.check == check; });
   };
   // What was given against what the file says.
   const auto override_by = [&](const char* check, const std::string& name,
@@ -158,9 +119,11 @@ MeshStatements::Resolved MeshStatements::resolved(const std::optional<std::strin
                                     : ": turned to LPS") +
              (is_mirrored ? ", and the triangles' sides with it, as this frame is left-handed" : ""));
   } else {
-    guess("frame", silent_frame_.empty()
-                       ? "the file names no frame: LPS is assumed; --frame RAS where its program means that"
-                       : silent_frame_);
+    guess("frame", !silent_frame_.empty() ? silent_frame_
+                   : is_doubted("frame")
+                       ? "no frame could be taken from the file: LPS is assumed; --frame RAS where its "
+                         "program means that"
+                       : "the file names no frame: LPS is assumed; --frame RAS where its program means that");
   }
 
   if (unit) {
@@ -174,7 +137,8 @@ MeshStatements::Resolved MeshStatements::resolved(const std::optional<std::strin
     made.unit = *length_unit(units_.front().name);
     pass("unit", units_.front().words);
   } else {
-    guess("unit", "the file names no unit: mm is assumed");
+    guess("unit", is_doubted("unit") ? "no unit could be taken from the file: mm is assumed"
+                                     : "the file names no unit: mm is assumed");
   }
   pass("writer", writer_.empty() ? "not stated" : writer_);
   made.audit.insert(made.audit.end(), doubts_.begin(), doubts_.end());

@@ -15,10 +15,8 @@ namespace octotomy::brep {
 /// What a file states about its frame and unit, gathered while it is read.
 class MeshStatements {
  public:
-  /// Looks into a header, comment or title, which `where` names ("the header"), for
-  /// - a frame: SPACE=RAS, as 3D Slicer writes it, with = or : and blanks about it, and any name of
-  ///   frame_named(); "coordinate system" and "coordinateSystem" mean the same; "LPS millimetres" is our own;
-  /// - a unit: unit, units or "file units" followed by a unit, with =, :, is or in between.
+  /// Takes the statements of stated_frames() and stated_units() (free_text.h) in a header, comment or title,
+  /// which `where` names ("the header"); "LPS millimetres" is our own.
   void read_text(std::string_view text, const std::string& where);
   /// A statement of the format itself or of a field.
   void add_frame(const std::string& name, const std::string& words);
@@ -49,9 +47,6 @@ class MeshStatements {
     std::string name;   ///< the frame or the unit
     std::string words;  ///< "SPACE=RAS in the header"
   };
-  void read_frame(std::string_view text, const std::string& where);
-  void read_unit(std::string_view text, const std::string& where);
-
   std::vector<Statement> frames_, units_;
   std::vector<MeshFinding> doubts_;
   std::string writer_, silent_frame_;

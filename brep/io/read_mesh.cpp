@@ -17,21 +17,27 @@
 namespace octotomy::brep {
 namespace {
 
+/// Its points lie in another file beside it, or in its text as base 64.
+MeshContent refuse_gltf_text(std::string_view /*bytes*/) {
+  throw Error(ErrorCode::Input, "is glTF as text, which is not read: save it as .glb, its binary form");
+}
+
 struct Format {
   std::string_view extension;
   MeshContent (*read)(std::string_view bytes);
   bool is_text;         ///< or may be
   bool repeats_points;  ///< where attributes of a point differ from triangle to triangle
 };
-constexpr std::array<Format, 9> formats{{{".stl", read_stl, true, false},
-                                         {".ply", read_ply, true, true},
-                                         {".obj", read_obj, true, true},
-                                         {".off", read_off, true, false},
-                                         {".vtk", read_vtk, true, true},
-                                         {".vtp", read_vtk_xml, true, true},
-                                         {".vtu", read_vtk_xml, true, true},
-                                         {".glb", read_glb, false, false},
-                                         {".3mf", read_3mf, false, false}}};
+constexpr std::array<Format, 10> formats{{{".stl", read_stl, true, false},
+                                          {".ply", read_ply, true, true},
+                                          {".obj", read_obj, true, true},
+                                          {".off", read_off, true, false},
+                                          {".vtk", read_vtk, true, true},
+                                          {".vtp", read_vtk_xml, true, true},
+                                          {".vtu", read_vtk_xml, true, true},
+                                          {".glb", read_glb, false, false},
+                                          {".gltf", refuse_gltf_text, false, false},
+                                          {".3mf", read_3mf, false, false}}};
 
 const Format* format_of(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Wavefront's OBJ and Geomview's OFF, as text.
+// Wavefront's OBJ and Geomview's OFF, as text. Sources: Wavefront, Advanced Visualizer, appendix B1 (Object
+// Files), whose free-form surfaces (surf, or bzp, bsp and cdc of its version 2.11) are no polygons.
 #include <stdexcept>
 
 #include "brep/io/mesh_scanner.h"
@@ -31,6 +32,36 @@ void on_line(const MeshScanner& scanner, const Add& add) {
     scanner.fail(e.what());
   }
 }
+
+/// What an OBJ file has beside its polygons.
+struct ObjLeftOut {
+  std::size_t surfaces = 0, curves = 0, lines = 0, points = 0, files = 0;
+
+  void count(std::string_view key) {
+    surfaces += key == "surf" || key == "bzp" || key == "bsp" || key == "cdc";
+    curves += key == "curv";
+    lines += key == "l";
+    points += key == "p";
+    files += key == "call";
+  }
+  void report(MeshStatements& says) const {
+    const auto named = [](std::size_t number, const char* one, const char* many) {
+      return std::to_string(number) + (number == 1 ? one : many);
+    };
+    if (surfaces > 0)
+      says.warn("file", named(surfaces, " free-form surface is", " free-form surfaces are") +
+                            " left out, as only polygons are read: have its program export it as triangles");
+    if (files > 0)
+      says.warn("file", named(files, " other file is", " other files are") +
+                            " called (call) and left out: have its program export all as one file");
+    const auto tell = [&](std::size_t number, const char* one, const char* many) {
+      if (number > 0) says.tell("file", named(number, one, many) + " left out");
+    };
+    tell(curves, " free-form curve is", " free-form curves are");
+    tell(lines, " line is", " lines are");
+    tell(points, " element of points is", " elements of points are");
+  }
+};
 
 glm::dvec3 point(MeshScanner& scanner) {
   glm::dvec3 p;
@@ -71,8 +102,10 @@ MeshContent read_obj(std::string_view bytes) {
   Triangles& triangles = made.triangles;
   PolygonSplitter polygons(triangles, made.polygons);
   std::vector<long long> corners;
+  ObjLeftOut left_out;
   while (!scanner.at_end()) {
     const std::string_view key = scanner.word();
+    left_out.count(key);
     if (key == "v") {
       triangles.points_mm.push_back(point(scanner));
     } else if (key == "f") {
@@ -94,6 +127,7 @@ MeshContent read_obj(std::string_view bytes) {
     }
     scanner.line();
   }
+  left_out.report(made.says);
   return made;
 }
 

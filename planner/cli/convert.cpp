@@ -8,6 +8,7 @@
 
 #include "planner/cli/verbs.h"
 #include "planner/file/label_table.h"
+#include "planner/file/write_label_table.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
@@ -218,6 +219,18 @@ int convert_labels(const Program& program, const ConvertText& text) {
   return done;
 }
 
+/// The names of a label map's labels, which another file is to keep; none of other scans.
+LabelTable names_of_labels(const voxel::Scene& scene, const fs::path& in) {
+  if (scene.meaning != voxel::Meaning::Label || !fs::is_regular_file(in)) return {};
+  std::set<int> occurring;
+  try {
+    for (const voxel::Label& label : voxel::labels(scene)) occurring.insert(label.number);
+  } catch (const std::invalid_argument&) {  // samples between labels
+    return {};
+  }
+  return label_table_of(in, occurring);
+}
+
 int convert(const Program& program, const ConvertText& text) {
   if (text.out.extension() == ".dcm" && !text.dicom) return convert_labels(program, text);
   const bool folder = text.dicom || !text.out.has_extension();
@@ -229,10 +242,16 @@ int convert(const Program& program, const ConvertText& text) {
   Timings timings;
   const voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
   if (program.stop.stop_requested()) throw Stopped("stopped before " + text.out.string() + " was written");
-  std::vector<std::string> findings;
+  const LabelTable table = names_of_labels(scene, text.in);
+  std::vector<std::string> findings = table.passed_over;
+  if (!folder && !table.names.empty()) need_label_table(text.out, table.names);
   {
     const Stopwatch watch(timings, "write");
     if (folder) {
+      if (!table.names.empty())
+        findings.push_back(
+            "the names of the labels are left out, as a DICOM series of images has no place "
+            "for them: a DICOM segmentation (.dcm without --dicom) keeps them");
       voxel::DicomOptions options;
       options.series_description = "Octotomy, derived";
       if (scene.modality.empty())
@@ -256,6 +275,9 @@ int convert(const Program& program, const ConvertText& text) {
       voxel::write_dicom_series(scene, text.out, options);
     } else {
       voxel::write_scene(scene, text.out);
+      if (!table.names.empty())
+        for (std::string& finding : write_label_table(text.out, table.names))
+          findings.push_back(std::move(finding));
     }
   }
   Json json = scan_answer(scene, timings);

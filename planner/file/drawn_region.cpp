@@ -152,6 +152,14 @@ DrawnRegion of_markups(const voxel::View& view, const fs::path& path) {
     } catch (const std::runtime_error& error) {
       refuse(where, error.what());
     }
+    if (!list.contains("coordinateSystem"))
+      findings.push_back(
+          path.filename().string() +
+          ": WARN, frame: the file names no coordinateSystem: LPS is assumed; where its program "
+          "means RAS, left and right are exchanged");
+    if (!list.contains("coordinateUnits"))
+      findings.push_back(path.filename().string() +
+                         ": WARN, unit: the file names no coordinateUnits: mm is assumed");
     std::vector<glm::dvec3> points;
     const SortedJson& controls = need(list, "controlPoints", where);
     for (std::size_t i = 0; i < controls.size(); ++i) {
@@ -191,6 +199,10 @@ void check_drawn(const DrawnRegion& drawn, const std::string& where) {
 
 DrawnRegion read_drawn_region(const std::string& text) {
   const auto colon = text.find(':');
+  if (voxel::extension_of(text) == ".svgz")
+    refuse("--region", "'" + text +
+                           "' is a packed SVG drawing, which is not read: save it as plain .svg, or unpack "
+                           "it by 'gunzip -S .svgz'");
   const bool is_drawing = voxel::extension_of(text) == ".svg";
   std::optional<voxel::View> view;
   fs::path path = text;

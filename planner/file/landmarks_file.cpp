@@ -7,11 +7,11 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "planner/file/mesh_in.h"
@@ -70,14 +70,9 @@ glm::dvec3 lps_of_system(const std::string& system) {
 }
 
 double mm_of_unit(const std::string& unit) {
-  static const std::map<std::string, double> known{
-      {"mm", 1.0},  {"millimeter", 1.0}, {"millimetre", 1.0}, {"cm", 10.0},     {"centimeter", 10.0},
-      {"m", 1e3},   {"meter", 1e3},      {"metre", 1e3},      {"um", 1e-3},     {"micrometer", 1e-3},
-      {"in", 25.4}, {"inch", 25.4},      {"[in_i]", 25.4},    {"\u00b5m", 1e-3}};
-  const auto found = known.find(unit);
-  if (found == known.end())
-    throw std::runtime_error("the unit '" + unit + "' is not known: write points in mm");
-  return found->second;
+  const std::optional<brep::LengthUnit> known = brep::length_unit(unit == "[in_i]" ? "inch" : unit);
+  if (!known) throw std::runtime_error("the unit '" + unit + "' is not known: write points in mm");
+  return known->mm;
 }
 
 /// "mm"; or one for all or for each axis as ["mm", "UCUM", "millimeter"], whose first word is the unit.
@@ -204,7 +199,10 @@ std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) throw std::runtime_error(path.string() + ": cannot be read");
   try {
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    // Some editors begin a text with a mark of its byte order.
+    constexpr std::string_view mark = "\xef\xbb\xbf";
+    if (text.starts_with(mark)) text.erase(0, mark.size());
     Audit audit;
     std::vector<brep::Landmark> landmarks;
     const auto read = [&] {

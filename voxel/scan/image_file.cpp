@@ -11,6 +11,7 @@
 #include "voxel/scan/image_file_oiio.h"
 #include "voxel/scan/picture_header.h"
 #include "voxel/scan/png_chunk.h"
+#include "voxel/scan/portable_map.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/helper_file.h"
 #include "voxel/space/quiet_errors.h"
@@ -69,8 +70,12 @@ std::vector<StoredImage> read_images(const fs::path& path) {
   const std::size_t most_bytes =
       std::max(std::size_t{4096} * 4096 * 4, 1100 * static_cast<std::size_t>(fs::file_size(path)));
   PictureHeader header;
+  // OpenImageIO multiplies samples by 65535 in 32 bits with a sign, which those above 32768 overflow.
+  constexpr std::uint32_t largest_of_library = 32767;
   try {
     header = read_picture_header(picture_header_bytes(path), most_bytes);
+    if (header.format == "pnm" && header.largest_sample > largest_of_library)
+      return {read_portable_map(file_bytes(path), most_bytes)};
   } catch (const std::invalid_argument& error) {
     refuse(path, error.what());
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -106,6 +107,11 @@ std::vector<fs::path> image_files(const fs::path& path) {
 Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
   const std::vector<fs::path> files = image_files(path);
   if (files.empty()) refuse(path, "matches no image");
+  const std::string stacks = stacks_named(files);
+  if (std::error_code error; !stacks.empty() && fs::is_directory(path, error))
+    refuse(path,
+           "holds the pictures of several stacks, whose names have the same numbers: " + stacks +
+               ": put each stack into a folder of its own, or name one by a pattern such as 'ct_*.png'");
   std::vector<char> bytes;
   glm::ivec3 dims(0);
   SampleType type = SampleType::UInt8;
@@ -140,6 +146,13 @@ Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
                              files.front().filename().string() + " to " + files.back().filename().string()});
   const SliceNames names = ordered_by_name(files);
   for (const std::string& doubt : names.doubts) scene.audit.push_back({"slice_names", Verdict::Warn, doubt});
+  if (!stacks.empty())
+    scene.audit.push_back({"stacks", Verdict::Fail,
+                           "the pattern takes the pictures of several stacks, whose names have the same "
+                           "numbers, as slices of one: " +
+                               stacks + ": let it name one of them"});
+  else if (const std::string alike = numbered_alike(names); !alike.empty())
+    scene.audit.push_back({"stacks", Verdict::Warn, alike});
   if (const std::string missing = skipped(names); !missing.empty())
     scene.audit.push_back({"missing_slices", Verdict::Warn, missing});
   if (orientations != std::set{1})

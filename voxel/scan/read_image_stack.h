@@ -16,7 +16,9 @@ std::vector<std::filesystem::path> image_files(const std::filesystem::path& path
 /// size and type. Images hold no patient frame: the audit states the assumed one, and what their names leave
 /// open (slice_names). What pictures state of themselves is held against the options: sizes of pixels and
 /// slices (picture_spacing), times and channels (picture_axes), WhiteIsZero (polarity), JPEG's losses
-/// (compression). Throws as read_scene().
+/// (compression). A folder whose names are those of several stacks ("ct_001.png", "mask_001.png") is refused;
+/// a pattern that takes several is a FAIL, and names that differ by numbers alone ("s1_001.png",
+/// "s2_001.png") are a WARN (stacks). Throws as read_scene().
 Scene read_image_stack(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace octotomy::voxel

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 
 namespace octotomy::voxel {
@@ -193,6 +194,89 @@ SliceNames ordered_by_name(const std::vector<fs::path>& files) {
         "a dot in numbers is taken as the decimal point, so that 1.25 comes before 1.5: where it separates "
         "two numbers, the slices are out of order; rename the files");
   return made;
+}
+
+namespace {
+
+/// A file's name with # in the place of each number and its sign, and its numbers, zeros before them left
+/// out.
+struct NumberedName {
+  std::string pattern, numbers;
+};
+NumberedName numbered_name(const fs::path& file) {
+  NumberedName made;
+  const std::string name = file.filename().string();
+  const fs::path stem = file.stem();
+  for (std::size_t at = 0; at < name.size();) {
+    if (at >= stem.string().size() || !is_digit_at(name, at)) {
+      made.pattern += name[at++];
+      continue;
+    }
+    std::size_t end = at;
+    while (is_digit_at(name, end)) ++end;
+    while (at + 1 < end && name[at] == '0') ++at;
+    if (!made.pattern.empty() && (made.pattern.back() == '-' || made.pattern.back() == '+')) {
+      made.numbers += made.pattern.back();
+      made.pattern.pop_back();
+    }
+    made.pattern += '#';
+    made.numbers += name.substr(at, end - at) + ' ';
+    at = end;
+  }
+  return made;
+}
+
+}  // namespace
+
+std::string stacks_named(const std::vector<fs::path>& files) {
+  std::map<std::string, std::set<std::string>> patterns_of;  // by numbers
+  std::map<std::string, std::size_t> count_of;               // by pattern
+  for (const fs::path& file : files) {
+    const NumberedName name = numbered_name(file);
+    if (!name.numbers.empty()) patterns_of[name.numbers].insert(name.pattern);
+    ++count_of[name.pattern];
+  }
+  std::set<std::string> doubled;
+  for (const auto& [numbers, patterns] : patterns_of)
+    if (patterns.size() > 1) doubled.insert(patterns.begin(), patterns.end());
+  std::string text;
+  std::size_t named = 0;
+  constexpr std::size_t most_named = 3;
+  for (const std::string& pattern : doubled) {
+    if (++named > most_named) return text + " and " + std::to_string(doubled.size() - most_named) + " more";
+    const std::size_t count = count_of[pattern];
+    text += (named == 1                ? ""
+             : named == doubled.size() ? " and "
+                                       : ", ") +
+            pattern + " (" + std::to_string(count) + (count == 1 ? " file)" : " files)");
+  }
+  return text;
+}
+
+std::string numbered_alike(const SliceNames& names) {
+  std::map<std::string, std::set<double>> numbers_of;  // by what stands before the last number
+  for (std::size_t i = 0; i < names.files.size(); ++i) {
+    const std::string stem = names.files[i].stem().string();
+    const std::size_t last = stem.find_last_of("0123456789");
+    const std::size_t before = last == std::string::npos ? last : stem.find_last_not_of("0123456789", last);
+    if (names.number[i] && before != std::string::npos)
+      numbers_of[stem.substr(0, before + 1)].insert(*names.number[i]);
+  }
+  const std::set<double>* first = nullptr;
+  std::string first_name;
+  for (const auto& [name, numbers] : numbers_of) {
+    const auto is_first_too = [&](double number) { return first->contains(number); };
+    if (numbers.size() < 2) continue;
+    if (first == nullptr) {
+      first = &numbers;
+      first_name = name;
+    } else if (std::count_if(numbers.begin(), numbers.end(), is_first_too) > 1) {
+      return "names that begin with '" + first_name + "' and with '" + name +
+             "' have the same last numbers, and their pictures are taken as slices of one stack: if they are "
+             "several, put each into a folder of its own";
+    }
+  }
+  return {};
 }
 
 }  // namespace octotomy::voxel

@@ -22,4 +22,12 @@ struct SliceNames {
 /// Cost: n log n. Equal numbers are in the order of their names' letters.
 SliceNames ordered_by_name(const std::vector<std::filesystem::path>& files);
 
+/// The stacks of files whose names differ by more than numbers and have the same numbers: "ct_#.png (5 files)
+/// and mask_#.png (5 files)". Empty where the names are those of one stack.
+std::string stacks_named(const std::vector<std::filesystem::path>& files);
+
+/// A sentence on names that have the same last numbers behind different numbers ("s1_000" and "s2_000"):
+/// stacks in one folder, or the blocks of one stack. Empty where the last numbers are those of one stack.
+std::string numbered_alike(const SliceNames& names);
+
 }  // namespace octotomy::voxel

@@ -117,6 +117,8 @@ std::string name_of_code(int code) {
       return "Talairach's coordinates";
     case NIFTI_XFORM_MNI_152:
       return "the coordinates of the template MNI 152";
+    case NIFTI_XFORM_TEMPLATE_OTHER:
+      return "the coordinates of a template";
     default:
       return print("code %d", code);
   }
@@ -155,7 +157,7 @@ class NiftiReader {
   }
 
  private:
-  static constexpr int most_code = 5;             ///< template coordinates of another kind
+  static constexpr int most_code = NIFTI_XFORM_TEMPLATE_OTHER;
   static constexpr std::size_t most_read = 4096;  ///< the header, and our own extension behind it
 
   void read_fields() {
@@ -309,7 +311,7 @@ class NiftiReader {
       geometry.file_from_voxel[3] = glm::dvec4(-centre, 1.0);
     }
     const int code = has_sform ? fields_.sform_code : fields_.qform_code;
-    if (code == NIFTI_XFORM_TALAIRACH || code == NIFTI_XFORM_MNI_152)
+    if (code == NIFTI_XFORM_TALAIRACH || code == NIFTI_XFORM_MNI_152 || code == NIFTI_XFORM_TEMPLATE_OTHER)
       header_.audit.push_back({"form_code", Verdict::Warn,
                                "places are " + name_of_code(code) +
                                    ": lengths and volumes are the template's, not the patient's"});

@@ -195,6 +195,12 @@ std::vector<Row> rows() {
        pass},
       {"OBJ comment, File units = inches", "a.obj", obj(in_file("LPS", 25.4), "File units = inches"), warn,
        pass},
+      {"OBJ comment, Units are in mm", "a.obj", obj(lps, "Units are in mm"), warn, pass},
+      {"PLY comment, unit of length in cm", "a.ply", ply(in_file("LPS", 10), "unit of length in cm"), warn,
+       pass},
+      {"PLY comment, units: dm", "a.ply", ply(in_file("LPS", 100), "units: dm"), warn, pass},
+      {"PLY comment, unit: m^3", "a.ply", ply(lps, "unit: m^3"), warn, warn},
+      {"PLY comment, coordinate system is RAS", "a.ply", ply(ras, "the coordinate system is RAS")},
       {"OFF comment, SPACE=RAS UNITS=um", "a.off", off(in_file("RAS", 1e-3), "SPACE=RAS UNITS=um"), pass,
        pass},
       {"OFF, our own comment", "a.off", off(lps, "octotomy, LPS millimetres"), pass, pass},
@@ -321,6 +327,98 @@ TEST(MeshConventions, WhatIsNoFrameOrUnitIsNoStatement) {
   EXPECT_NE(refusal(wrong).find("'up' is no frame"), std::string::npos);
   wrong.options = {{}, "ell"};
   EXPECT_NE(refusal(wrong).find("'ell' is no unit"), std::string::npos);
+}
+
+/// The millimetres of a length of 1 in a file with that comment, or 0 where it is refused.
+double mm_by(const std::string& comment) {
+  try {
+    const Extent extent = read_row({"", "a.ply", ply(in_file("LPS", 1), comment)}).extent();
+    return (extent.high_mm.x - extent.low_mm.x) / 10.0;
+  } catch (const std::runtime_error&) {
+    return 0.0;
+  }
+}
+MeshVerdict unit_verdict(const std::string& comment) {
+  return finding(read_row({"", "a.ply", ply(in_file("LPS", 1), comment)}), "unit").verdict;
+}
+
+TEST(MeshConventions, ASentenceStatesItsUnitAndNoPrepositionDoes) {
+  for (const char* words :
+       {"Units are in mm", "Units: in mm", "units in mm", "Skull surface, units are in millimeters",
+        "unit in mm", "All units in millimeters", "coordinates in units of mm", "units (mm)", "units [mm]",
+        "units: in (mm)", "Units: Millimeters (mm)", "units: mm (scaled from m)", "1 unit = 1 mm",
+        "units=\"mm\"", "<unit>mm</unit>", "unit: mm, velocity unit: m/s"}) {
+    EXPECT_NEAR(mm_by(words), 1.0, 1e-9) << words;
+    EXPECT_EQ(unit_verdict(words), MeshVerdict::Pass) << words;
+  }
+  const std::vector<std::pair<const char*, double>> others{
+      {"Units are in inches", 25.4},  {"Units: in", 25.4},
+      {"UNITS=in SPACE=LPS", 25.4},   {"unit: inch (was mm)", 25.4},
+      {"Units: in, z up", 25.4},      {"Unit is the meter", 1000.0},
+      {"units, m", 1000.0},           {"unit m", 1000.0},
+      {"numpy-stl units m", 1000.0},  {"XYZ unit: m, RGB", 1000.0},
+      {"Units in metres", 1000.0},    {"units of length in cm", 10.0},
+      {"scale: 1 unit = 1 cm", 10.0}, {"length_unit: cm", 10.0},
+      {"units: dm", 100.0},           {"units: nm", 1e-6},
+      {"units: mil", 0.0254},         {"Mesh units: cm  Angle units: deg", 10.0}};
+  for (const auto& [words, mm] : others) {
+    EXPECT_NEAR(mm_by(words) / mm, 1.0, 1e-9) << words;
+    EXPECT_EQ(unit_verdict(words), MeshVerdict::Pass) << words;
+  }
+}
+
+TEST(MeshConventions, AUnitOfSomethingElseOrANameIsNoUnitOfLength) {
+  for (const char* words : {"unit m/s",
+                            "unit: m^3",
+                            "volume unit: m^3",
+                            "Dental Unit M, Dr. X",
+                            "velocity unit: m",
+                            "unit m s-1",
+                            "units: m squared",
+                            "Units m/pixel 0.5",
+                            "time unit: m",
+                            "unit of volume: m^3",
+                            "unit in the machine",
+                            "made by unit in Berlin",
+                            "unit M2 of the hospital",
+                            "units are not m",
+                            "units mm to m",
+                            "10 units = 1 cm",
+                            "0.1 units = 1 cm",
+                            "units per meter: 1000",
+                            "units unknown, probably cm",
+                            "Units are in",
+                            "volume_unit: cm"}) {
+    EXPECT_NEAR(mm_by(words), 1.0, 1e-9) << words;
+    EXPECT_EQ(unit_verdict(words), MeshVerdict::Warn) << words;
+  }
+  // What names a unit all the same is reported with its words.
+  for (const char* words : {"units mm to m", "units unknown, probably cm", "10 units = 1 cm",
+                            "units: furlong", "Units: 1 = 1m", "unit: m^3"}) {
+    const MeshFile file = read_row({"", "a.ply", ply(in_file("LPS", 1), words)});
+    std::size_t told = 0;
+    for (const MeshFinding& each : file.audit) told += each.check == "unit";
+    EXPECT_EQ(told, 2u) << words;
+    EXPECT_NE(finding(file, "unit").detail.find("no unit could be taken"), std::string::npos) << words;
+  }
+  const MeshFile silent = read_row({"", "a.ply", ply(in_file("LPS", 1), "unit normals in world space")});
+  EXPECT_EQ(finding(silent, "unit").detail, "the file names no unit: mm is assumed");
+}
+
+TEST(MeshConventions, AFrameIsAStatementAndNoWordOfThreeLetters) {
+  const auto frame_of = [](const std::string& comment) {
+    const MeshFinding made = finding(read_row({"", "a.ply", ply(in_file("LPS", 1), comment)}), "frame");
+    return to_string(made.verdict) + " " + made.detail;
+  };
+  for (const char* words : {"SPACE=RAS", "space: ras", "space RAS", "coordinate system is RAS",
+                            "coordinate system (RAS)", "SPACE=RAS but written otherwise"})
+    EXPECT_EQ(frame_of(words).find("PASS"), 0u) << words << ": " << frame_of(words);
+  for (const char* words : {"space lip to chin", "the space air takes", "SPACE AIR", "color_SPACE=RAS",
+                            "3D space, RAS unknown", "unit normals in world space"})
+    EXPECT_EQ(frame_of(words).find("WARN"), 0u) << words << ": " << frame_of(words);
+  for (const char* words : {"space: LPS to RAS converted", "coordinate system converted from RAS to LPS",
+                            "coordinate system: RAS -> LPS", "space: lip"})
+    EXPECT_EQ(frame_of(words).find("WARN no frame could be taken"), 0u) << words << ": " << frame_of(words);
 }
 
 TEST(MeshConventions, WhatWeWriteStatesItsFrameAndComesBackToItsPlace) {

@@ -76,6 +76,26 @@ TEST(ReadMesh, ObjTakesTexturesNegativeNumbersAndPolygons) {
            "g side\r\nf 1/1/1 2//1 -2 -1\r\nl 1 2\r\n"));
 }
 
+TEST(ReadMesh, ObjNamesTheSurfacesLinesAndFilesThatItLeavesOut) {
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const auto of_file = [&](const std::string& more) {
+    std::string found;
+    for (const MeshFinding& each : read_mesh(file("left.obj", triangle + more)).audit)
+      if (each.check == "file") found += to_string(each.verdict) + " " + each.detail + "\n";
+    return found;
+  };
+  EXPECT_EQ(of_file("cstype bspline\ndeg 1 1\nsurf 0 1 0 1 1 2 3 3\nparm u 0 0 1 1\nparm v 0 0 1 1\nend\n"),
+            "WARN 1 free-form surface is left out, as only polygons are read: have its program export it as "
+            "triangles\n");
+  EXPECT_NE(of_file("bzp 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1\nbsp 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1\n")
+                .find("WARN 2 free-form surfaces are"),
+            std::string::npos);
+  EXPECT_NE(of_file("call other.obj\n").find("WARN 1 other file is"), std::string::npos);
+  EXPECT_EQ(of_file("l 1 2\nl 2 3\np 1\n"),
+            "PASS 2 lines are left out\nPASS 1 element of points is left out\n");
+  EXPECT_EQ(of_file("vn 0 0 1\nusemtl surf\ng surf\n"), "");
+}
+
 TEST(ReadMesh, OffTakesCommentsColoursAndPolygons) {
   expect_square(read(
       "a.off", "OFF # square\n\n4 1 4\n0 0 0.5\n1 0 0.5\n# half\n1 1 0.5\n0 1 0.5\n4 0 1 2 3 255 0 0\n"));
@@ -156,6 +176,8 @@ TEST(ReadMesh, WhatIsBadIsToldWithPathAndPlace) {
                 .find("line 4: a face refers to point 4, and 3 stand before it"),
             std::string::npos);
   EXPECT_NE(refusal_of("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n").find("polygon of 2"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("x.gltf", "{\"asset\":{\"version\":\"2.0\"}}").find("save it as .glb"),
             std::string::npos);
   EXPECT_NE(refusal_of("x.obj", "v 0 0 nan\n").find("number"), std::string::npos);
   EXPECT_NE(

@@ -305,6 +305,32 @@ TEST_F(Segments, SeveralBecomeADicomSegmentationAndComeBackUnshiftedUnderTheirNa
   expect_refused(run("convert " + at("scan.nrrd") + " -o " + at("x.dcm")), "label");
 }
 
+TEST_F(Segments, NamesOfLabelsStayBesideALabelMapThatIsConverted) {
+  EXPECT_EQ(run(segment("map.nrrd") + "--window 600: --window 200:600").status, 0);
+  write("map.json", R"({"Balls": 1, "Cube": 2})");
+  EXPECT_EQ(run("convert " + at("map.nrrd") + " -o " + at("named.dcm")).status, 0);
+  for (const char* name : {"out.nrrd", "other.nii.gz", "third.mha"}) {
+    SCOPED_TRACE(name);
+    const SortedJson made = json("convert " + at("named.dcm") + " -o " + at(name));
+    const std::string stem = std::string(name).substr(0, std::string(name).find('.'));
+    EXPECT_NE(made["findings"].dump().find(stem + ".tsv"), std::string::npos) << made["findings"];
+    EXPECT_EQ(json("segment " + at(name) + " --named Cube -o " + at("back.nrrd"))["labels"][0]["samples"],
+              20 * 8 * 8);
+  }
+  EXPECT_EQ(tests::bytes_of(folder_ / "out.tsv"), "index\tname\n1\tBalls\n2\tCube\n");
+  // Once more: the table is there. Another table there is not replaced, and nothing is written.
+  EXPECT_EQ(run("convert " + at("named.dcm") + " -o " + at("out.nrrd")).status, 0);
+  write("mine.tsv", "index\tname\n1\tCube\n2\tBalls\n");
+  expect_refused(run("convert " + at("named.dcm") + " -o " + at("mine.nrrd")), "mine.tsv");
+  EXPECT_EQ(tests::bytes_of(folder_ / "mine.tsv"), "index\tname\n1\tCube\n2\tBalls\n");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "mine.nrrd"));
+  // A map beside the table that it was named by needs no other, and one without names makes none.
+  EXPECT_EQ(json("convert " + at("map.nrrd") + " -o " + at("map.mha"))["findings"], SortedJson::array());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "map.tsv"));
+  EXPECT_EQ(run("convert " + at("scan.nrrd") + " -o " + at("plain.mha")).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "plain.tsv"));
+}
+
 TEST_F(Segments, ContoursComeBackAsTheMaskTheyBound) {
   const SortedJson followed =
       json("segment " + at("scan.nrrd") + " --window=-50: --contours " + at("regions.json"));

@@ -153,6 +153,8 @@ TEST_F(DrawnRegionFile, RefusalsSayWhatAndWhere) {
   EXPECT_NE(pixels("0,0 1,0 1,1").find("give PICTURE.png"), std::string::npos);
   const auto file = [&](const std::string& text) { return refusal([&] { read_drawn_region(text); }); };
   EXPECT_NE(file("cut.json").find("give VIEW:FILE"), std::string::npos);
+  EXPECT_NE(file("front:cut.svgz").find("save it as plain .svg"), std::string::npos);
+  EXPECT_NE(file("cut.svgz").find("save it as plain .svg"), std::string::npos);
   EXPECT_NE(file("front:cut.json").find("no view 'front'"), std::string::npos);
   const std::string rectangle = R"(<rect width="5" height="5"/></svg>)";
   EXPECT_NE(file(write("a.svg", "<svg>" + rectangle)).find("say the view it is drawn in"), std::string::npos);

@@ -74,6 +74,8 @@ TEST_F(LandmarksFile, SlicersMarkupsStateTheirSystemAsANumberTooAndTheirUnit) {
   EXPECT_EQ(place(R"("coordinateUnits":[["m","UCUM","meter"],["m","UCUM","meter"],["m","UCUM","meter"]],)"),
             glm::dvec3(1000, 2000, 3000));
   EXPECT_EQ(place(R"("coordinateUnits":["mm","UCUM","millimeter"],)"), glm::dvec3(1, 2, 3));
+  EXPECT_EQ(place(R"("coordinateUnits":"millimeters",)"), glm::dvec3(1, 2, 3));
+  EXPECT_EQ(place(R"("coordinateUnits":"[in_i]",)"), glm::dvec3(25.4, 2 * 25.4, 3 * 25.4));
   EXPECT_NE(refusal(R"({"markups":[{"coordinateUnits":"furlong","controlPoints":[]}]})").find("furlong"),
             std::string::npos);
   EXPECT_NE(refusal(R"({"markups":[{"coordinateUnits":["mm","cm","mm"],"controlPoints":[]}]})")
@@ -103,6 +105,13 @@ TEST_F(LandmarksFile, SlicersLinesOfCommasAreTurnedToLps) {
   EXPECT_EQ(marks("# CoordinateSystem = LPS\n# CoordinateSystem = 1\n").size(), 2u);
   std::ofstream(folder_ / "old.fcsv") << "# name = F\n# columns = label,x,y,z,sel,vis\nA,1,2,3,1,1\n";
   EXPECT_EQ(read_landmarks(folder_ / "old.fcsv").at(0).p_mm, glm::dvec3(-1, -2, 3));
+  // A mark of the byte order, before a comment and before the first point.
+  std::ofstream(folder_ / "marked.fcsv")
+      << "\xef\xbb\xbf# CoordinateSystem = LPS\n1,1,2,3,0,0,0,1,1,1,0,A,,\n";
+  EXPECT_EQ(read_landmarks(folder_ / "marked.fcsv").at(0).p_mm, glm::dvec3(1, 2, 3));
+  std::ofstream(folder_ / "marked.fcsv") << "\xef\xbb\xbf"
+                                            "1,1,2,3,0,0,0,1,1,1,0,A,,\n";
+  EXPECT_EQ(read_landmarks(folder_ / "marked.fcsv").at(0).p_mm, glm::dvec3(-1, -2, 3));
   std::ofstream(folder_ / "bad.fcsv") << "1,x,2,3,0,0,0,1,1,1,0,A,,\n";
   EXPECT_THROW(read_landmarks(folder_ / "bad.fcsv"), std::runtime_error);
 }

@@ -160,6 +160,28 @@ TEST(ReadImages, SamplesOfAnyDepthKeepTheirValues) {
     EXPECT_EQ(samples_of(tests::pgm(largest)), every([=](std::uint32_t i) { return 37 * i % (largest + 1); }))
         << largest;
 
+  // Samples up to the largest: in binary and in text, grey and of equal channels.
+  for (const std::uint32_t largest : {255u, 1000u, 32767u, 32768u, 40000u, 65534u, 65535u}) {
+    const auto sample = [=](std::uint32_t i) { return largest - (i * 343) % largest; };
+    const std::string size = "16 12\n# a comment\n" + std::to_string(largest) + "\n";
+    std::string grey, grey_text, colours, colour_text;
+    for (std::uint32_t i = 0; i < 16 * 12; ++i) {
+      std::string bytes;
+      if (largest > 255) bytes += static_cast<char>(sample(i) >> 8);
+      bytes += static_cast<char>(sample(i));
+      const std::string text = std::to_string(sample(i)) + (i % 16 == 15 ? "\n" : " ");
+      grey += bytes;
+      grey_text += text;
+      colours += bytes + bytes + bytes;
+      colour_text += text + text + text;
+    }
+    EXPECT_EQ(sample(0), largest);
+    EXPECT_EQ(samples_of("P5\n" + size + grey), every(sample)) << largest;
+    EXPECT_EQ(samples_of("P2\n" + size + grey_text), every(sample)) << largest;
+    EXPECT_EQ(samples_of("P6\n" + size + colours), every(sample)) << largest;
+    EXPECT_EQ(samples_of("P3\n" + size + colour_text), every(sample)) << largest;
+  }
+
   std::string rows, covered;
   for (std::uint32_t i = 0; i < 16 * 12; ++i) {
     if (i % 16 == 0) rows += '\0', covered += '\0';  // the row's filter: none

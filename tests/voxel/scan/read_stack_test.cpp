@@ -82,6 +82,46 @@ TEST(ReadImageStack, TakesTheFilesOfAFolderInTheOrderOfTheirNumbers) {
   EXPECT_NE(reason_of(folder / "none*.png", spaced()).find("no such file"), std::string::npos);
 }
 
+TEST(ReadImageStack, TwoStacksInOneFolderAreNotOneOfTwiceTheHeight) {
+  const ScratchFolder folder;
+  const auto write = [&](const std::string& name) {
+    write_page<std::uint16_t>(folder / name, OIIO::TypeDesc::UINT16, 0, 700);
+  };
+  for (int z = 0; z < 3; ++z) {
+    write("ct_00" + std::to_string(z) + ".png");
+    write("mask_" + std::to_string(z) + ".png");  // zeros before a number do not matter
+  }
+  const std::string reason = reason_of(folder.path(), spaced());
+  EXPECT_NE(reason.find("ct_#.png (3 files) and mask_#.png (3 files)"), std::string::npos) << reason;
+  EXPECT_NE(reason.find("a folder of its own"), std::string::npos) << reason;
+  const Scene both = read_scene(folder / "*.png", spaced());
+  EXPECT_EQ(both.lattice.dims.z, 6);
+  EXPECT_EQ(verdict(both, "stacks"), Verdict::Fail);
+  const Scene one = read_scene(folder / "ct_*.png", spaced());
+  EXPECT_EQ(one.lattice.dims.z, 3);
+  for (const Finding& line : one.audit) EXPECT_NE(line.check, "stacks") << line.detail;
+}
+
+TEST(ReadImageStack, NumbersThatOccurTwiceAreTold) {
+  const auto doubts = [](const std::vector<std::string>& names) {
+    const ScratchFolder folder;
+    for (const std::string& name : names)
+      write_page<std::uint16_t>(folder / name, OIIO::TypeDesc::UINT16, 0, 700);
+    std::string found;
+    for (const Finding& line : read_scene(folder.path(), spaced()).audit)
+      if (line.check == "stacks")
+        found += std::string(line.verdict == Verdict::Warn ? "WARN " : "") + line.detail;
+    return found;
+  };
+  const std::string twice = doubts({"s1_000.png", "s1_001.png", "s2_000.png", "s2_001.png"});
+  EXPECT_NE(twice.find("'s1_' and with 's2_'"), std::string::npos) << twice;
+  EXPECT_EQ(twice.find("WARN"), 0u) << twice;
+  // One stack: numbers that go on, an equal number behind each slice's own, halves of different names.
+  EXPECT_EQ(doubts({"a1.png", "a2.png", "a10.png"}), "");
+  EXPECT_EQ(doubts({"z1_c0.png", "z2_c0.png", "z3_c0.png"}), "");
+  EXPECT_EQ(doubts({"low_1.png", "low_2.png", "top_3.png", "top_4.png"}), "");
+}
+
 TEST(ReadImageStack, TakesThePagesOfOneTiffWithTheirSigns) {
   const ScratchFolder folder;
   const fs::path path = folder / "stack.tif";

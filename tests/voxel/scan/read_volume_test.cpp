@@ -106,6 +106,19 @@ TEST(ReadVolume, StatementsThatAreNoPatientsAreTold) {
   EXPECT_FALSE(nifti_warnings([](auto&) {}).contains("form_code"));
   EXPECT_NE(nifti_warnings([](auto& h) { h.sform_code = 4; })["form_code"].find("template"),
             std::string::npos);
+  for (const short form : {short{3}, short{4}, short{5}}) {
+    EXPECT_NE(nifti_warnings([&](auto& h) { h.sform_code = form; })["form_code"].find("not the patient's"),
+              std::string::npos)
+        << form;
+    EXPECT_NE(nifti_warnings([&](auto& h) {
+                h.sform_code = 0;
+                h.qform_code = form;
+              })["form_code"]
+                  .find("not the patient's"),
+              std::string::npos)
+        << form;
+  }
+  EXPECT_FALSE(nifti_warnings([](auto& h) { h.sform_code = 2; }).contains("form_code"));
   EXPECT_NE(nifti_warnings([](auto& h) { h.sform_code = 7; })["form_code"].find("does not define"),
             std::string::npos);
   EXPECT_NE(nifti_warnings([](auto& h) { h.sform_code = -1; })["form_code"].find("as none"),
