@@ -25,7 +25,7 @@ struct Run {
 struct Runs {
   int side = 0;
   std::vector<Run> runs;
-  std::vector<std::size_t> row_start;  ///< one more than there are rows
+  std::vector<std::size_t> row_start;  ///< one entry more than there are rows
 
   std::size_t begin(int y, int z) const { return row_start[index(y, z)]; }
   std::size_t end(int y, int z) const { return row_start[index(y, z) + 1]; }
@@ -59,7 +59,7 @@ class DisjointSets {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  // The smaller number stays the root: the number of a component is that of its first run.
+  // The smaller number stays the root, so a component's number is that of its first run.
   void join(std::uint32_t a, std::uint32_t b) {
     assert(a < parent_.size() && b < parent_.size());
     a = find(a);
@@ -98,7 +98,7 @@ Parts parts_of(const Octree& octree, Neighbours neighbours) {
   Parts parts{runs_of(octree), {}, {}};
   const Runs& runs = parts.runs;
   DisjointSets sets(runs.runs.size());
-  // The difference in x that the neighbourhood leaves between rows that share a face, and an edge.
+  // Differences in x at which runs still join, for rows that share a face and for rows that share an edge.
   const int across_face = neighbours == Neighbours::Faces ? 0 : 1;
   const int across_edge = neighbours == Neighbours::Corners ? 1 : 0;
   for (int z = 0; z < runs.side; ++z)

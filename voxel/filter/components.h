@@ -21,14 +21,14 @@ struct Components {
 /// Memory, here and below: 20 bytes per run of voxels along x; the number of runs grows with the boundary.
 Components components(const Octree& octree, Neighbours neighbours = Neighbours::Faces);
 
-/// How many connected components there are; none is built.
+/// The number of connected components, without building them.
 std::size_t component_count(const Octree& octree, Neighbours neighbours = Neighbours::Faces);
 
 /// The components that contain a seed. Seeds outside the object are ignored.
 Octree components_at(const Octree& octree, const std::vector<glm::ivec3>& seeds,
                      Neighbours neighbours = Neighbours::Faces);
 
-/// The components that hold a voxel of another octree, which has the same universe.
+/// The components that contain a voxel of another octree. Precondition: both have the same universe.
 Octree components_that_meet(const Octree& octree, const Octree& other,
                             Neighbours neighbours = Neighbours::Faces);
 

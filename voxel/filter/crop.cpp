@@ -12,7 +12,7 @@
 namespace octotomy::voxel {
 namespace {
 
-// A scene without samples whose first sample lies at `first_voxel` of another.
+// A scene without samples whose first sample lies at index `first_voxel` of another scene.
 Scene empty_part(const Scene& scene, const glm::ivec3& dims, const glm::dvec3& first_voxel) {
   Lattice lattice{dims, scene.lattice.lps_from_voxel};
   lattice.lps_from_voxel[3] = glm::dvec4(scene.lattice.lps_mm(first_voxel), 1.0);
@@ -26,8 +26,7 @@ std::string text_of(const glm::ivec3& v) {
 }  // namespace
 
 VoxelRange range_within(const Lattice& lattice, const Box& box) {
-  // A centre on the box's face lies in the box in spite of rounding, which stays far below this part of a
-  // voxel.
+  // A tolerance, in voxels, far above rounding: a centre on the box's face counts as inside.
   constexpr double rounding = 1e-3;
   VoxelRange range{glm::ivec3(0), lattice.dims - 1};
   glm::dvec3 low(INFINITY), high(-INFINITY);

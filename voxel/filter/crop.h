@@ -8,11 +8,11 @@
 // Smaller scenes: a part, or fewer samples (thesis 2.2.1: sub-regioning).
 namespace octotomy::voxel {
 
-/// The smallest range of indices that holds every sample centre in a box, bounds included. On a turned
-/// lattice it holds others too. Empty if no centre lies in the box.
+/// The smallest range of indices that contains every sample centre in a box, bounds included. On a rotated
+/// lattice it contains others too. Empty if no centre lies in the box.
 VoxelRange range_within(const Lattice& lattice, const Box& box);
 
-/// The part of a scene in a range of indices; its samples keep their positions in millimetres. Throws
+/// The part of a scene in a range of indices; samples keep their positions in millimetres. Throws
 /// std::invalid_argument if the range is empty or leaves the scene. Memory: the part.
 Scene crop(const Scene& scene, const VoxelRange& range);
 

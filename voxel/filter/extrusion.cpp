@@ -1,10 +1,9 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 Estimate how the table is inclined to the lattice: the slope for which edges of a coarse copy line up
-// best. 2 Take the median of each column along the table, over all slices and then over shorter windows. 3 A
-// column is extruded where its samples are material and stay near the medians of its neighbourhood. 4 Join
+// Steps: 1 estimate the table's inclination to the lattice: the slope at which edges of a coarse copy line up
+// best. 2 Compute the median of each column along the table, over all slices and then over shorter windows. 3
+// A column is extruded where its samples are material and stay near the medians of its neighbourhood. 4 Join
 // extruded columns to parts; a part that is compact, narrow, enclosed, or thick without air around it belongs
-// to the body. 5 Follow each part
-// beyond its window, slice by slice, while most of its samples still agree; mark them.
+// to the body. 5 Follow each part beyond its window, slice by slice, while most of its samples still agree,
+// and mark them.
 #include "voxel/filter/extrusion.h"
 
 #include <algorithm>
@@ -19,16 +18,17 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr double above_air = 50.0;  ///< HU: the noise of air stays below it, the lightest foam lies there
-constexpr double least_width_mm = 40.0;  ///< less is a strap, a tube or an arm
+constexpr double above_air = 50.0;       ///< HU; above the noise of air, below the lightest foam
+constexpr double least_width_mm = 40.0;  ///< narrower parts are straps, tubes or arms
 constexpr double limb_mm = 10.0;         ///< radius of discs that fit into a child's arm
-constexpr double limb_edge_mm = 2.5;     ///< its blurred edge
+constexpr double limb_edge_mm = 2.5;     ///< width of a limb's blurred edge
 constexpr double least_length = 2.5;  ///< of a board or couch, in its thicknesses; a head has 1.6, an arm 1.3
 constexpr double fringe_mm = 8.0;     ///< a body's outline beyond the discs that fit into it
 constexpr double least_window_mm = 60.0;  ///< a head's outline changes over less
 constexpr int slices_per_median = 48;
-constexpr double lies_off_mm = 0.75;  ///< how far a part may leave its columns
-constexpr double calm_mm = 4.0;       ///< samples are averaged so far along the table, against noise
+constexpr double lies_off_mm = 0.75;  ///< largest deviation of a part from its columns
+constexpr double calm_mm = 4.0;       ///< samples are averaged over this length along the table, against
+                                      ///< noise
 constexpr double steepest = 0.45;
 
 /// Samples by side, back and along, in any order of the lattice's axes.
@@ -85,8 +85,8 @@ class Slope {
     });
   }
 
-  /// Of the edges across `axis` (0: side, 1: back), in mm per mm. Zero unless another slope is clearly
-  /// better.
+  /// The slope of the edges across `axis` (0: side, 1: back), in mm per mm. Zero unless another slope is
+  /// clearly better.
   double along(std::size_t axis) const {
     if (coarse_.empty()) return 0.0;
     const double cell = view_.mm[axis] * factor_[axis];
@@ -165,7 +165,7 @@ struct Window {
   int first, end;
 };
 
-/// What a column holds over a window.
+/// Statistics of a column's samples over a window.
 struct Column {
   float median = 0.0F, spread = 0.0F;   ///< median, and median distance from it
   float material = 0.0F, solid = 0.0F;  ///< shares of the samples
@@ -204,7 +204,7 @@ class Finder {
   }
 
  private:
-  /// The place of a column in a slice; it may lie outside.
+  /// The position of a column in a slice; it may lie outside.
   glm::ivec2 place(const glm::ivec2& column, int along) const {
     return column + shifts_[static_cast<std::size_t>(along)];
   }
@@ -217,13 +217,13 @@ class Finder {
     });
     const DistanceMap depth = distances([&](std::size_t i) { return !is_solid(i); });
     without_compact(lasting, depth);
-    // A slab thicker than thick_mm is a couch only where air surrounds nearly all of it.
+    // A slab thicker than thick_mm is a couch only if air surrounds nearly all of it.
     take(lasting, depth, 0.8, window);
     without_thick(lasting, depth);
     take(lasting, depth, 0.4, window);
   }
 
-  /// Marks the supports among the lasting columns, and takes their columns out.
+  /// Marks the supports among the lasting columns and removes their columns from `lasting`.
   void take(std::vector<std::uint8_t>& lasting, const DistanceMap& depth, double least_free,
             const Window& window) {
     for (const Part& part : parts_of(lasting)) {
@@ -235,7 +235,7 @@ class Finder {
 
   bool is_solid(std::size_t column) const { return columns_[column].solid >= 0.9F; }
 
-  /// The radius of the largest disc of solid columns around a column; the scan's border ends it.
+  /// The radius of the largest disc of solid columns around a column, limited by the scan's border.
   double disc_mm(const glm::ivec2& p, const DistanceMap& depth) const {
     const glm::dvec2 border = glm::dvec2(glm::min(p + 1, glm::ivec2(view_.size[0], view_.size[1]) - p)) *
                               glm::dvec2(view_.mm[0], view_.mm[1]);
@@ -258,8 +258,8 @@ class Finder {
     return glm::dvec2(high - low + 1) * glm::dvec2(view_.mm[0], view_.mm[1]);
   }
 
-  /// Takes out the columns of discs of limb_mm where these discs together are little longer than wide, as in
-  /// a head, a neck or an arm, which may lie on a couch.
+  /// Removes the columns of discs of limb_mm if these discs together are little longer than wide, as in a
+  /// head, a neck or an arm, which may lie on a couch.
   void without_compact(std::vector<std::uint8_t>& lasting, const DistanceMap& depth) const {
     std::vector<std::uint8_t> inner(lasting.size(), 0), compact(lasting.size(), 0);
     for (int y = 0; y < view_.size[1]; ++y)
@@ -274,8 +274,8 @@ class Finder {
       if (static_cast<double>(away.square_mm2[i]) <= reach * reach) lasting[i] = 0;
   }
 
-  /// Fills columns_ for a window: of at most slices_per_median slices, evenly chosen, without what is marked.
-  /// A column that is marked over more than a fifth holds nothing new.
+  /// Fills columns_ for a window from at most slices_per_median evenly spaced slices, without marked samples.
+  /// A column of which more than a fifth is marked stays empty.
   void gather(const Window& window) {
     columns_.assign(view_.columns(), {});
     const int length = window.end - window.first, used = std::min(length, slices_per_median);
@@ -307,7 +307,7 @@ class Finder {
     });
   }
 
-  /// Sorts the samples.
+  /// Computes a column's statistics. Reorders the samples.
   Column column_of(std::int16_t* samples, int count) const {
     Column column;
     for (int i = 0; i < count; ++i) {
@@ -327,8 +327,8 @@ class Finder {
     return column;
   }
 
-  /// The values that a column's samples may have: its median's, and with `is_wide` those between it and its
-  /// neighbours', as far as a part may lie off.
+  /// The range allowed for a column's samples: its median and, with `is_wide`, values between it and the
+  /// neighbours' medians in proportion to the allowed deviation of a part.
   std::pair<float, float> allowed(const glm::ivec2& p, bool is_wide) const {
     const Column& own = columns_[view_.column(p.x, p.y)];
     float low = own.median, high = own.median;
@@ -373,7 +373,7 @@ class Finder {
     return 20 * agree >= 17 * all;
   }
 
-  /// Distances in mm, squared, to the columns that a function chooses.
+  /// Squared distances in mm^2 to the columns for which `chosen` returns true.
   template <typename Chosen>
   DistanceMap distances(const Chosen& chosen) const {
     DistanceMap map{{glm::ivec3(0), glm::ivec3(view_.size[0] - 1, view_.size[1] - 1, 0)}, {}};
@@ -386,7 +386,7 @@ class Finder {
     return map;
   }
 
-  /// Takes out the columns of discs wider than thick_mm that are solid, with the fringe that is left of them.
+  /// Removes the columns of solid discs wider than thick_mm, with the fringe around them.
   void without_thick(std::vector<std::uint8_t>& lasting, const DistanceMap& depth) const {
     const double radius = 0.5 * options_.thick_mm, reach = radius + fringe_mm;
     const auto centre = [&](std::size_t i) {
@@ -418,15 +418,15 @@ class Finder {
     return parts;
   }
 
-  /// Whether a part is wide, and a share of its neighbours is free of solid samples.
+  /// Whether a part is wide and at least a share `least_free` of its neighbours is free of solid samples.
   bool is_support(const Part& part, const std::vector<std::uint8_t>& lasting, double least_free) const {
     int free = 0, border = 0;
     for (const glm::ivec2& p : part.columns) {
       for (const glm::ivec2& step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
         const glm::ivec2 beside = p + step;
         if (view_.holds(beside) && lasting[view_.column(beside.x, beside.y)] != 0) continue;
-        // Two columns on, because the blurred edge of a part is solid on some slices. Such edges run within
-        // parts, too, as between a cradle and its foam.
+        // Tests the column two steps away, because the blurred edge of a part is solid on some slices. Such
+        // edges also occur within parts, as between a cradle and its foam.
         const glm::ivec2 next = beside + step;
         if (view_.holds(next) && lasting[view_.column(next.x, next.y)] != 0) continue;
         ++border;
@@ -436,7 +436,7 @@ class Finder {
     return glm::length(size_mm(part)) >= least_width_mm && free >= least_free * border;
   }
 
-  /// Marks a part's samples in its window, and beyond it while they are still the part's.
+  /// Marks a part's samples in its window, and beyond it as long as they still belong to the part.
   void mark(const Part& part, const Window& window) {
     std::vector<std::pair<float, float>> wide, narrow;
     for (const glm::ivec2& p : part.columns) {
@@ -473,8 +473,7 @@ class Finder {
     ++found_.parts;
   }
 
-  /// Where something solid that is not the part's touches it, a sample that differs from its column is not
-  /// the part's either.
+  /// Unmarks samples that differ from their column where a solid sample outside the part touches them.
   void unmark_at_contact(const Part& part, int along, const std::vector<std::size_t>& unsure) {
     std::vector<std::size_t> taken;
     for (const std::size_t i : unsure) {
@@ -496,7 +495,7 @@ class Finder {
   Extrusion& found_;
   glm::vec2 lies_off_{1.0F};        ///< in columns
   std::vector<glm::ivec2> shifts_;  ///< of the columns, for each slice
-  int calm_ = 0;                    ///< slices before and behind that are averaged
+  int calm_ = 0;                    ///< number of slices averaged before and behind
   std::vector<Column> columns_;
 };
 
@@ -540,7 +539,7 @@ double air_level(const Scene& scene, const Int16Samples& samples) {
               high = std::max(high, sample);
             }
         const double mean = sum / (block.x * block.y * block.z);
-        // One value throughout is padding, unless a sample is a block.
+        // A block of a single value is padding, unless a block is one sample.
         if ((low == high && block != glm::ivec3(1) && low <= -1024) || mean < -1100.0 || mean >= -850.0)
           continue;
         ++counts[static_cast<std::size_t>((mean + 1100.0) / 5.0)];

@@ -9,41 +9,41 @@
 
 namespace octotomy::voxel {
 
-/// The lattice's axes that lie nearest to the patient's: along the table, to the back, and to a side.
+/// The lattice's axes nearest to the patient's: along the table, to the back, and to a side.
 struct PatientAxes {
   int along = 2, back = 1, side = 0;
 };
 PatientAxes patient_axes(const Lattice& lattice);
 
-/// The level of air in HU, to 2.5: the most frequent mean, from -1100 to -850, of blocks of six millimetres,
-/// which noise moves little; -1000 where there is none. Blocks that hold nothing but -1024 or less are
-/// padding.
+/// The level of air in HU, accurate to 2.5: the most frequent mean, from -1100 to -850, of blocks of six
+/// millimetres, on which noise has little effect; -1000 if there is none. Blocks of a single value of -1024
+/// or less are padding.
 double air_level(const Scene& scene, const Int16Samples& samples);
 
 struct ExtrusionOptions {
   double threshold = -300.0;  ///< samples of at least this value are solid
   double air = -1000.0;       ///< samples up to 50 above this value are air
-  /// Above 0: what holds a wider disc of solid samples across the table is the body's. A slab may be twice as
-  /// thick if air borders four fifths of its outline.
+  /// Above 0: parts that contain a wider disc of solid samples across the table belong to the body. A slab
+  /// may be twice as thick if air borders four fifths of its outline.
   double thick_mm = 40.0;
   Progress progress{};
 };
 
-/// What repeats along the table: boards, couches, cradles, rails, with their foam.
+/// Parts whose cross-section repeats along the table: boards, couches, cradles, rails, with their foam.
 struct Extrusion {
   std::vector<std::uint8_t> marks;  ///< 1 for each sample of an extruded part, in the scene's order
-  glm::dvec2 slope{0.0};   ///< how far the parts shift per millimetre along the table: to the side, back
-  int parts = 0;           ///< cross-sections found
+  glm::dvec2 slope{0.0};   ///< shift of the parts per millimetre along the table: to the side, to the back
+  int parts = 0;           ///< number of cross-sections found
   double solid_mm3 = 0.0;  ///< of marked samples from the threshold on
 };
 
 /// Finds parts whose samples keep their values over at least 60 mm, or a third of the scan, along the
 /// lattice's axis nearest to the table's. The parts may be inclined to that axis by up to 24 degrees. A part
 /// is at least 40 mm wide, at most thick_mm thick where it is solid, and borders air along two fifths of its
-/// outline; a body's core does not. What is thicker than 20 mm is 2.5 times as long as thick, too; a head, a
-/// neck and a limb are not. A part that the patient's tissue covers is cut off where its samples change.
-/// Throws std::invalid_argument if samples are not int16; Stopped. Same bits on any thread count. Cost:
-/// linear; memory: one byte per sample.
+/// outline, which the core of a body does not. A part thicker than 20 mm must also be 2.5 times as long as
+/// thick, which a head, a neck or a limb is not. A part that the patient's tissue covers ends where its
+/// samples change. Throws std::invalid_argument if samples are not int16; Stopped. Same bits on any thread
+/// count. Cost: linear; memory: one byte per sample.
 Extrusion extrusion_of(const Scene& scene, const ExtrusionOptions& options);
 
 }  // namespace octotomy::voxel

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-//
-// Parts the patient from supports, keeps the supports' samples as a grey octree and overwrites them with air.
+// Separates the patient from supports, keeps the supports' samples as a grey octree and overwrites them with
+// air.
 #include "voxel/filter/headrest.h"
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 #include "voxel/tree/grey_octree.h"
 #include "voxel/tree/octree.h"
 
-// Removal of the table, the headrest and other things scanned beside the patient.
+// Removal of the table, the headrest and other things scanned with the patient.
 namespace octotomy::voxel {
 
 struct HeadrestOptions {
@@ -18,8 +18,8 @@ struct HeadrestOptions {
 
 struct HeadrestRemoval {
   Scene scene;
-  /// The removed samples, on a universe of the scene's own voxels (universe_on()). The background is a value
-  /// that no removed sample has. restore() undoes the removal with it.
+  /// The removed samples, on a universe of the scene's own voxels (universe_on()), with a background that no
+  /// removed sample equals. restore() undoes the removal with them.
   GreyOctree removed;
   Octree solid;              ///< the removed voxels of at least the threshold
   std::uint64_t parts = 0;   ///< of `solid`, joined by faces
@@ -30,8 +30,8 @@ struct HeadrestRemoval {
   double middle_y_mm = 0.0;  ///< the patient's coronal middle, LPS; nothing in front of it is removed
   double front_mm3 = 0.0, behind_mm3 = 0.0, extruded_front_mm3 = 0.0;  ///< as in PatientParts
 };
-/// Overwrites with air what is a support by patient_parts(): nothing in front of the patient's coronal
-/// middle, and nothing that the patient's skin or bone encloses. Throws as patient_parts();
+/// Overwrites with air the samples that patient_parts() classes as supports: none in front of the patient's
+/// coronal middle, and none that the patient's skin or bone encloses. Throws as patient_parts();
 /// std::runtime_error if nothing is solid. Same bits on any thread count. Memory: the result, and that of
 /// patient_parts().
 HeadrestRemoval remove_headrest(Scene scene, const HeadrestOptions& options = {});

@@ -20,10 +20,10 @@ struct Histogram {
   double lower_edge(std::size_t bin) const { return low + (static_cast<double>(bin) - 0.5) * width(); }
 };
 
-/// Of the measured samples, from the 0.1st to the 99.9th percentile, so that metal does not fill the bins;
-/// over the whole range if these are equal. Percentiles of float samples are taken from a million of them.
-/// Throws std::invalid_argument for fewer than two bins; Error, Geometry, if all samples are equal. Cost: two
-/// passes over the samples.
+/// The histogram of the measured samples from the 0.1st to the 99.9th percentile, so that metal does not
+/// stretch the bins; over the whole range if these percentiles are equal. Percentiles of float samples are
+/// computed from a million of them. Throws std::invalid_argument for fewer than two bins; Error, Geometry, if
+/// all samples are equal. Cost: two passes over the samples.
 Histogram histogram(const Scene& scene, int bins = 256);
 
 }  // namespace octotomy::voxel

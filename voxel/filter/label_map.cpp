@@ -14,8 +14,8 @@
 namespace octotomy::voxel {
 namespace {
 
-// Half-way between two samples, up to the rounding of a few products of coordinates, takes the upper one on
-// every machine.
+// The nearest sample. A position half-way between two samples, up to the rounding of a few products of
+// coordinates, takes the upper one on every machine.
 glm::ivec3 nearest(const glm::dvec3& p_voxel) {
   constexpr double rounding = 0x1p-20;
   return {glm::floor(p_voxel + 0.5 + rounding)};
@@ -42,7 +42,7 @@ Octree chosen_samples(const Lattice& lattice, const Octree& own, const Octree& b
   if (made == base) return own;
   const glm::ivec3 dims = lattice.dims;
   const glm::dmat4 voxel_from_index = glm::inverse(made.universe().lps_from_voxel) * lattice.lps_from_voxel;
-  // Whether a voxel around the sample is made, or, of those that were no base, added.
+  // Whether a voxel around the sample is in `made` and, with `only_added`, not in the base.
   const auto is_near = [&](const glm::dvec3& p_voxel, bool only_added) {
     constexpr double rounding = 0x1p-20;  // a sample this near a voxel's centre is that centre
     const glm::ivec3 low(glm::floor(p_voxel + rounding)), high(glm::ceil(p_voxel - rounding));

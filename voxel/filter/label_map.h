@@ -17,13 +17,13 @@ namespace octotomy::voxel {
 /// std::length_error if it needs more than 2^Universe::max_depth voxels a side.
 Universe universe_on(const Lattice& lattice);
 
-/// The samples of a lattice that an object holds which was chosen, opened, closed or filled from a base in a
-/// universe of its own. `own` is the base at the samples themselves, on universe_on(lattice); `base` and
-/// `made` share one universe. A sample is in the object as its nearest voxel is, if sample and voxel are both
-/// of the base or neither is. Else one of the up to eight voxels around a sample of the base must be in the
-/// object, or around another one must have been added to the base. So a sample that is a voxel's centre is in
-/// the object exactly if that voxel is, and a base from which nothing was chosen keeps its samples to the
-/// last. Parallel over blocks.
+/// Transfers an object from the voxels of a universe to the samples of a lattice. The object `made` was
+/// chosen, opened, closed or filled from `base`; the two share one universe. `own` is the base computed at
+/// the samples themselves, on universe_on(lattice). If a sample and its nearest voxel are both in the base or
+/// both outside it, the sample is in the object if that voxel is. Otherwise, a sample of the base is in the
+/// object if one of the up to eight voxels around it is, and another sample is if one of them was added to
+/// the base. So a sample at a voxel's centre is in the object exactly if that voxel is, and an unchanged base
+/// keeps exactly its samples. Parallel over blocks.
 Octree chosen_samples(const Lattice& lattice, const Octree& own, const Octree& base, const Octree& made);
 
 /// The label map of objects on a lattice: a sample is i + 1 if objects[i] is the first object with a voxel at
@@ -35,13 +35,13 @@ struct LabelMap {
 };
 LabelMap label_map(const Lattice& lattice, std::span<const Octree> objects, const Progress& progress = {});
 
-/// The largest label: a sample of single precision holds every whole number up to here, and the next one is
-/// what larger ones round to.
+/// The largest label: single precision represents every whole number up to here, and larger numbers may be
+/// rounded to the next one.
 constexpr int most_label = (1 << 24) - 1;
 
 /// The label that a sample stores: its nearest whole number, if the sample is within a hundredth of it. Scale
 /// factors and single precision shift stored labels by less; interpolation between labels shifts them by
-/// more. None if that number is negative or over most_label.
+/// more. None otherwise, or if that number is negative or above most_label.
 std::optional<int> label_of(double sample);
 
 /// The labels of a scene except 0, ascending, with their numbers of samples; a sample in several labels
@@ -53,8 +53,9 @@ struct Label {
 };
 std::vector<Label> labels(const Scene& scene);
 
-/// The same labels on another lattice, of which each sample is one: as of a map that was cropped, or whose
-/// axes were turned or exchanged. None where samples lie between those of the lattice, or labels beyond it.
+/// The same labels on another lattice on whose positions all samples lie, for a map that was cropped, or
+/// whose axes were reversed or exchanged. None if samples lie between those of the lattice, or labels beyond
+/// it.
 std::optional<Scene> laid_on(const Scene& scene, const Lattice& lattice);
 
 /// The voxels of a universe whose nearest sample has that label; voxels beyond the scan are empty. Parallel
@@ -66,8 +67,8 @@ struct LabelLayer {
   std::vector<int> labels;  ///< ascending
   Scene ranks;
 };
-/// The labels of a scene as few layers: each label in the first one where it overlaps no other. Throws as
-/// labels(); std::length_error for more than 32767 labels. Memory: two bytes a sample and layer.
+/// The labels of a scene in few layers: each label joins the first layer where it overlaps no other. Throws
+/// as labels(); std::length_error for more than 32767 labels. Memory: two bytes a sample and layer.
 std::vector<LabelLayer> label_layers(const Scene& scene);
 
 }  // namespace octotomy::voxel

@@ -48,7 +48,7 @@ class Slice {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
 
-  /// For each sample the column of the nearest measured one of its row, the lower one of two.
+  /// For each sample, the column of the nearest measured sample in its row, the lower one of two.
   std::vector<int> nearest_in_rows() const {
     std::vector<int> nearest(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), none);
     for (int y = 0; y < height_; ++y) {
@@ -67,7 +67,7 @@ class Slice {
     return nearest;
   }
 
-  /// The index of the nearest measured sample: rows by their distance, until none can be nearer.
+  /// The index of the nearest measured sample. Searches rows by distance until no row can be nearer.
   std::size_t nearest_to(int x, int y, const std::vector<int>& in_rows) const {
     double least_mm = std::numeric_limits<double>::infinity();
     std::size_t found = index(x, y);
@@ -90,7 +90,7 @@ class Slice {
   double padding_;
 };
 
-/// Replaces padding by the nearest measured samples; where nothing was measured all stays.
+/// Replaces padding by the nearest measured samples; without measured samples nothing changes.
 template <typename Sample>
 void fill(Samples<Sample>& samples, const Lattice& lattice, double padding) {
   const std::size_t size = slice_size(lattice);
@@ -117,8 +117,8 @@ void fill(Samples<Sample>& samples, const Lattice& lattice, double padding) {
   });
 }
 
-/// A mark below all samples: the old one where it is. Integers have none below the least: their filters take
-/// means and medians, which stay above it.
+/// A padding below all samples: the old one if it is lower. For int16 there may be none below the least
+/// sample, but means and medians stay above the old one.
 template <typename Sample>
 Sample mark_below(const Samples<Sample>& made, double padding) {
   const auto least = static_cast<double>(*std::min_element(made.begin(), made.end()));

@@ -5,15 +5,14 @@
 
 #include "voxel/space/scene.h"
 
-// Filters of scans in which the scanner measured only a part.
+// Filtering of scans that have padding.
 namespace octotomy::voxel {
 
-/// The result of a filter that keeps the lattice, on a scene with padding. The filter reads each padded
-/// sample as the nearest measured one of its slice, as the border repeats beyond a scene's faces; a slice
-/// without any repeats the nearest slice that has some, the lower one of two. The result is padded where the
-/// scene is, and its padding is below all that the filter made. Without padding the filter takes the scene
-/// itself. `filter` never sees a scene with padding. Parallel over slices, same bits on any thread count.
-/// Memory: a copy of the samples.
+/// Applies a filter that keeps the lattice to a scene with padding. `filter` gets a copy without padding:
+/// each padded sample is replaced by the nearest measured one of its slice; a slice without measured samples
+/// repeats the nearest slice that has some, the lower one of two. The result is padded where the scene is,
+/// with a padding below all samples that the filter returned. A scene without padding is passed to the filter
+/// unchanged. Parallel over slices, same bits on any thread count. Memory: a copy of the samples.
 Scene on_measured(const Scene& scene, const std::function<Scene(const Scene&)>& filter);
 
 }  // namespace octotomy::voxel

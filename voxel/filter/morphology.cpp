@@ -25,8 +25,8 @@ void check_radius(double radius_mm) {
                                 std::to_string(radius_mm));
 }
 
-// The limit on squared distances. A voxel on the ball's surface is inside, although its square may be rounded
-// by two units in the last place of a float.
+// The limit on squared distances. It includes voxels on the ball's surface although their squares may be
+// rounded up by two units in the last place of a float.
 double limit_mm2(double radius_mm) {
   assert(radius_mm >= 0.0);
   return radius_mm * radius_mm * (1.0 + 4.0 * static_cast<double>(std::numeric_limits<float>::epsilon()));

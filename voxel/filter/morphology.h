@@ -5,11 +5,11 @@
 
 namespace octotomy::voxel {
 
-// Morphology with a ball of a radius in millimetres, exactly Euclidean for any spacing: the ball holds the
-// voxels whose centres are at most the radius from its own. Voxels beyond the universe are outside. Each
+// Morphology with a ball whose radius is in millimetres, exactly Euclidean for any spacing: the ball contains
+// the voxels whose centres are at most the radius from its own. Voxels beyond the universe are outside. Each
 // function throws std::invalid_argument if the radius is negative or not finite, or the universe's axes are
-// not perpendicular. Parallel; same bits on any thread count. Cost: distance maps over the object's range and
-// the radius around it.
+// not perpendicular. Parallel; same bits on any thread count. Cost: distance maps over the object's range
+// enlarged by the radius.
 
 /// The voxels at most radius_mm from a voxel of the octree; the universe's faces cut the result off.
 Octree dilate(const Octree& octree, double radius_mm);
@@ -18,8 +18,8 @@ Octree erode(const Octree& octree, double radius_mm);
 /// Erosion, then dilation: the voxels that a ball inside the octree covers. A subset of the octree.
 Octree open(const Octree& octree, double radius_mm);
 /// Dilation, then erosion: the voxels that no ball outside the octree covers. A superset of the octree. Exact
-/// at the universe's faces too, because the dilation may leave the universe. Throws Error, Resource, where
-/// that map does not fit into free_memory().
+/// at the universe's faces too, because the dilation may leave the universe. Throws Error, Resource, if its
+/// distance map does not fit into free_memory().
 Octree close(const Octree& octree, double radius_mm);
 
 /// The octree with its cavities filled. A cavity is a part of the background that no path of face neighbours

@@ -1,10 +1,9 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 Mark what is extruded along the table.
+// 1 Mark the parts that are extruded along the table.
 // 2 Average the rest over cells of about two millimetres, and find the patient's core: the largest part into
 //   which a ball of detach_mm fits.
-// 3 Judge every other part: near the patient it stays; what hangs behind the core is a support.
-// 4 Close the patient, and fill what it encloses in each slice and in space.
-// 5 Class each sample by its cell, its mark and its place before or behind the coronal middle.
+// 3 Judge every other part: parts near the patient belong to it; parts that hang behind the core are
+// supports. 4 Close the patient, and fill everything that it encloses in each slice and in space. 5 Class
+// each sample by its cell, its mark and its position before or behind the coronal middle.
 #include "voxel/filter/patient.h"
 
 #include <algorithm>
@@ -23,15 +22,17 @@ namespace octotomy::voxel {
 namespace {
 
 constexpr double cell_mm = 2.0;
-constexpr double above_air = 40.0;         ///< HU of a cell's mean; the noise of a mean is a fraction of it
-constexpr double contact_mm = 3.0;         ///< what is cut off leaves this much where it hung on the core
-constexpr double mask_mm = 4.0;            ///< a mask on the face is no thicker
-constexpr double silhouette_mm = 10.0;     ///< within the core's outline from behind: where no ear is
+constexpr double above_air = 40.0;         ///< HU of a cell's mean, whose noise is a fraction of this
+constexpr double contact_mm = 3.0;         ///< length of the stump that a cut-off part leaves on the core
+constexpr double mask_mm = 4.0;            ///< largest thickness of a mask on the face
+constexpr double silhouette_mm = 10.0;     ///< distance within the core's outline, seen from behind, at which
+                                           ///< there is no ear
 constexpr double close_mm = 4.0;           ///< gaps in the skin up to twice this width are closed
-constexpr double foam_limit = -200.0;      ///< HU: from here on soft tissue lies below the threshold
-constexpr double least_core_share = 0.3;   ///< of the largest part; less, and the object is thin throughout
-constexpr double most_front_share = 0.25;  ///< a thick part that lies farther in front is no support
-constexpr double thick_mm = 4.0;           ///< a part is thick if it holds a ball of this radius
+constexpr double foam_limit = -200.0;      ///< HU; with a threshold from here on, soft tissue lies below it
+constexpr double least_core_share = 0.3;   ///< share of the largest part; with less, the object is thin
+                                           ///< throughout
+constexpr double most_front_share = 0.25;  ///< a thick part with a larger share in front is no support
+constexpr double thick_mm = 4.0;           ///< a part is thick if it contains a ball of this radius
 constexpr double least_bone_share = 0.01;  ///< of a limb's samples; an arm has about a tenth
 
 class Parter {
@@ -68,7 +69,7 @@ class Parter {
     return scene_.lattice.lps_mm((glm::dvec3(cell) + 0.5) * glm::dvec3(grid_.factor) - 0.5).y;
   }
 
-  /// What a ball of detach_mm does not reach of the patient's own surface is near in any case.
+  /// Raised so that the patient's own surface, which a ball of detach_mm does not reach, is always near.
   double near_mm() const { return std::max(options_.near_mm, options_.detach_mm + 2.0 * cell_mm); }
 
   void average() {
@@ -97,7 +98,7 @@ class Parter {
     });
   }
 
-  /// The part that holds the thickest ball, where the scan's sides and back count as its surface.
+  /// The part that contains the largest ball; the scan's sides and back count as its surface.
   std::vector<std::size_t> thickest(const Cells& set) const {
     std::vector<std::size_t> best;
     double most = -1.0;
@@ -111,7 +112,7 @@ class Parter {
     return best;
   }
 
-  /// How deep a solid cell lies.
+  /// Depth of a solid cell below the surface in millimetres.
   double depth_mm(std::size_t i) const {
     double depth = std::sqrt(static_cast<double>(depth2_[i]));
     for (const int axis : {axes_.side, axes_.back}) {
@@ -143,8 +144,8 @@ class Parter {
     set_middle();
   }
 
-  /// For each sample, whether faces of solid samples join it to the core. Cells of two millimetres join what
-  /// a thinner gap parts.
+  /// For each sample, whether faces of solid samples connect it to the core. Cells of two millimetres also
+  /// connect parts that a thinner gap separates.
   std::vector<std::uint8_t> reached() const {
     const glm::ivec3 dims = scene_.lattice.dims;
     std::vector<std::uint8_t> seen(samples_.size(), 0);
@@ -170,7 +171,7 @@ class Parter {
     return seen;
   }
 
-  /// Whether a sample is solid and no extruded part's.
+  /// Whether a sample is solid and not part of an extrusion.
   bool is_own_solid(std::size_t at) const {
     return extrusion_.marks[at] == 0 && samples_[at] >= options_.threshold;
   }
@@ -185,7 +186,7 @@ class Parter {
           visit(glm::ivec3(x, y, z), sample_index(scene_.lattice.dims, {x, y, z}));
   }
 
-  /// The share of a part's solid samples that a function counts.
+  /// The share of a part's solid samples for which `counts` returns true.
   template <typename Counts>
   double share_of(const std::vector<std::size_t>& part, const Counts& counts) const {
     double all = 0.0, counted = 0.0;
@@ -198,7 +199,8 @@ class Parter {
     return all > 0.0 ? counted / all : 0.0;
   }
 
-  /// Whether a part may be a limb: thicker than a board, with bone, or in a unit that does not show bone.
+  /// Whether a part may be a limb: thicker than a board, and with bone unless the scene's unit does not show
+  /// bone.
   bool is_limb(const std::vector<std::size_t>& part) const {
     const bool is_thick = std::any_of(part.begin(), part.end(),
                                       [&](std::size_t i) { return depth_mm(i) > 0.5 * options_.board_mm; });
@@ -207,9 +209,10 @@ class Parter {
                                                                  }) > least_bone_share);
   }
 
-  /// Half-way between the foremost cell of the core and the rearmost of the core and of what hangs on it and
-  /// is near, with half a cell and half of a mask's thickness of care. What hangs on the core in front may be
-  /// a nose or a marker: without it the middle lies farther back, where less is removed.
+  /// Computes the coronal middle, half-way between the foremost cell of the core and the rearmost of the core
+  /// and the parts that hang on it and are near, plus half a cell and half of a mask's thickness for safety.
+  /// Parts that hang on the core in front may be a nose or a marker: without them the middle lies farther
+  /// back, so less is removed.
   void set_middle() {
     Cells rest(grid_.count(), 0);
     for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = solid_[i] != 0 && core_[i] == 0 ? 1 : 0;
@@ -232,8 +235,9 @@ class Parter {
     middle_y_mm_ = 0.5 * (low + high) + 0.5 * (grid_.mm[axes_.back] + mask_mm);
   }
 
-  /// For each line from the front to the back, the core's rearmost cell, where the line lies well within the
-  /// core's outline; elsewhere the rearmost of all lines within near_mm along the table. Ears lie before it.
+  /// For each line from the front to the back, the core's rearmost cell if the line lies well within the
+  /// core's outline; otherwise the rearmost cell of all lines within near_mm along the table. Ears lie before
+  /// it.
   std::vector<int> backs() const {
     const int sides = grid_.dims[axes_.side], slices = grid_.dims[axes_.along];
     CellGrid plane = grid_;
@@ -261,12 +265,12 @@ class Parter {
     return back;
   }
 
-  /// A cell's place from the front to the back.
+  /// A cell's index from the front to the back.
   int depth(const glm::ivec3& cell) const {
     return back_sign_ > 0 ? cell[axes_.back] : grid_.dims[axes_.back] - 1 - cell[axes_.back];
   }
 
-  /// Joins to the core what belongs to the patient; collects supports and what is neither.
+  /// Joins the patient's other parts to the core; collects supports and doubtful parts.
   void judge_parts() {
     Cells rest(grid_.count(), 0), keeps(grid_.count(), 0);
     for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = solid_[i] != 0 && core_[i] == 0 ? 1 : 0;
@@ -314,7 +318,8 @@ class Parter {
            static_cast<std::size_t>(p[axes_.side]);
   }
 
-  /// The patient's cells with what they enclose and their blurred edge, and the edge of supports.
+  /// Computes the patient's cells with everything that they enclose and their blurred edge, and the edge of
+  /// supports.
   void protect() {
     Cells closed = eroded(grid_, dilated(grid_, body_, close_mm), close_mm);
     for (std::size_t i = 0; i < closed.size(); ++i) closed[i] |= body_[i];
@@ -326,7 +331,7 @@ class Parter {
     }
     inside_ = std::move(closed);
     edge_ = with_edge(grid_, inside_, options_.rim_mm);
-    // The blurred edge of a doubtful part is as doubtful.
+    // The blurred edge of a doubtful part is doubtful too.
     Cells beside = with_edge(grid_, doubtful_, options_.rim_mm);
     for (std::size_t i = 0; i < beside.size(); ++i) beside[i] &= support_[i] ^ 1;
     doubtful_ = std::move(beside);
@@ -360,13 +365,14 @@ class Parter {
     });
   }
 
-  /// Cells whose surroundings are denser than air on average, and most of whose neighbours are such cells:
-  /// foam and cloth, but not the blurred edge of skin.
+  /// Finds foam and cloth: cells whose surroundings are denser than air on average, and most of whose
+  /// neighbours are such cells, which excludes the blurred edge of skin.
   void find_foam() {
     foam_.assign(grid_.count(), 0);
     if (!seeks_foam_) return;
     Cells dense(grid_.count(), 0);
-    // The patient's blurred edge would make air beside it foam.
+    // Cells of the patient's blurred edge are left out, because they would turn the air beside them into
+    // foam.
     for_each_box_behind([&](std::size_t cell, const std::vector<std::size_t>& box) {
       double sum = 0.0, count = 0.0;
       for (const std::size_t i : box) {
@@ -444,7 +450,8 @@ class Parter {
   bool seeks_foam_ = false;
   int back_sign_ = 1;
   Extrusion extrusion_;
-  /// Of cells: mean sample; squared distances from the core, and in solid cells from the nearest other cell.
+  /// Per cell: mean sample; squared distance from the core; in solid cells, squared distance from the nearest
+  /// other cell.
   std::vector<float> mean_, away_, depth2_;
   std::vector<std::uint8_t> is_reached_;
   Cells solid_, core_, body_, support_, doubtful_, inside_, edge_, rim_, foam_;

@@ -7,14 +7,15 @@
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 
-// The patient in a scan, parted from what carries, holds or marks the patient.
+// Separation of the patient in a scan from things that carry, hold or mark the patient.
 namespace octotomy::voxel {
 
 struct PatientOptions {
   double threshold = -300.0;  ///< samples of at least this value are solid
   double detach_mm = 6.0;     ///< links thinner than a ball of this radius are cut
   /// Parts wholly within this distance of the patient are not supports, such as an ear that was cut off, bone
-  /// fragments or teeth. At least detach_mm and four millimetres, which hold what the ball does not reach.
+  /// fragments or teeth. Raised to detach_mm plus four millimetres, to include the patient's surface that the
+  /// ball does not reach.
   double near_mm = 25.0;
   double board_mm =
       40.0;  ///< above 0: the thickest solid board; with air around it, half of a couch's thickness
@@ -23,38 +24,39 @@ struct PatientOptions {
   Progress progress{};
 };
 
-/// Samples from here on are as dense as bone, in Hounsfield units.
+/// Samples of at least this value, in Hounsfield units, are as dense as bone.
 constexpr double dense_hu = 300.0;
 
-/// What a sample belongs to.
+/// Class of a sample.
 enum class Belongs : std::uint8_t {
   Air,       ///< nothing, or air that touches no support
   Patient,   ///< the patient, cavities and blurred edge included
   Support,   ///< behind the patient's coronal middle and not the patient's: boards, couches, foam, holders
-  Doubtful,  ///< solid, but neither surely: in front of the coronal middle, or cannot be parted
+  Doubtful,  ///< solid, but neither for certain: in front of the coronal middle, or not separable
 };
 
 struct PatientParts {
   std::vector<Belongs> of;  ///< for each sample, in the scene's order
   /// Half-way between the patient's foremost and rearmost point, LPS, or up to some millimetres behind: the
-  /// tip of the nose is not counted, and a mask on the face is allowed for. No sample in front of it is a
-  /// support's.
+  /// tip of the nose is not counted, and the thickness of a mask on the face is allowed for. No sample in
+  /// front of it is a support.
   double middle_y_mm = 0.0;
-  glm::dvec2 table_slope{0.0};      ///< how far the table shifts per mm along it: to the side and to the back
+  glm::dvec2 table_slope{0.0};      ///< shift of the table per millimetre along it: to the side and to the
+                                    ///< back
   double front_mm3 = 0.0;           ///< doubtful samples in front of the middle
   double behind_mm3 = 0.0;          ///< doubtful samples behind it
-  double extruded_front_mm3 = 0.0;  ///< of front_mm3: what belongs to a board or cradle
+  double extruded_front_mm3 = 0.0;  ///< the part of front_mm3 that belongs to a board or cradle
 };
 
-/// Parts the patient from supports by what a support is: it repeats along the table (extrusion_of()), is
-/// foam or cloth outside the skin, or hangs on the patient from behind by a link thinner than a ball of
-/// detach_mm. The patient is the solid part into which the largest ball fits, or the largest part of all for
-/// thin objects such as a dry skull. Another part as thick as a body that holds bone is doubtful: it may be a
-/// limb. What the skin or bone encloses slice by slice is the patient's. Foam
-/// is sought only in Hounsfield units and below the threshold. LPS frame of the scene. Throws
-/// std::invalid_argument if samples are not int16 or an option is out of its range; Error, Geometry, if
-/// nothing is solid; Stopped. Same bits on any thread count. Cost: linear; memory: three bytes per sample
-/// and 25 per cell of two millimetres.
+/// Separates the patient from supports. A support repeats along the table (extrusion_of()), is foam or cloth
+/// outside the skin, or hangs on the patient from behind by a link thinner than a ball of detach_mm. The
+/// patient is the solid part into which the largest ball fits, or the largest part of all for thin objects
+/// such as a dry skull. Another part that is as thick as a body and contains bone is doubtful, because it may
+/// be a limb. Everything that the skin or bone encloses slice by slice belongs to the patient. Foam is sought
+/// only in Hounsfield units and below the threshold. LPS frame of the scene. Throws std::invalid_argument if
+/// samples are not int16 or an option is out of its range; Error, Geometry, if nothing is solid; Stopped.
+/// Same bits on any thread count. Cost: linear; memory: three bytes per sample and 25 per cell of two
+/// millimetres.
 PatientParts patient_parts(const Scene& scene, const PatientOptions& options = {});
 
 }  // namespace octotomy::voxel

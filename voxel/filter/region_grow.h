@@ -10,8 +10,8 @@ namespace octotomy::voxel {
 
 struct GrowOptions {
   std::vector<glm::ivec3> seeds;  ///< voxels of the universe; at least one
-  /// In sample units, at least 0. The region's samples lie in the range of the seeds' samples, widened by
-  /// this at both ends.
+  /// In sample units, at least 0. The region's samples lie in the range of the seeds' samples, widened by the
+  /// tolerance at both ends.
   double tolerance = 0.0;
   Neighbours neighbours = Neighbours::Faces;
 };

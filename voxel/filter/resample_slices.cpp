@@ -22,7 +22,7 @@ namespace {
 double place_of(int slice, double spacing_mm, double from_mm) {
   const double place = slice * (spacing_mm / from_mm);
   const double whole = std::round(place);
-  // The quotient, the product and the spacing itself are rounded: four parts in 2^52 each slice.
+  // The quotient, the product and the spacing itself are rounded: by four parts in 2^52 per slice.
   return std::abs(place - whole) <= 4.0 * std::numeric_limits<double>::epsilon() * (1.0 + place) ? whole
                                                                                                  : place;
 }
@@ -139,7 +139,8 @@ Scene resample_slices(const Scene& scene, double spacing_mm, SliceKernel kernel,
   const double from_mm = scene.lattice.spacing_mm().z;
   const std::size_t size = slice_size(scene.lattice);
   const int last = scene.lattice.dims.z - 1;
-  // Without padding no sample equals it. A kernel that overshoots stays above it.
+  // NaN without padding, which no sample equals. Samples of overshooting kernels are raised to `least`, above
+  // the padding.
   const double padding = scene.padding.value_or(std::numeric_limits<double>::quiet_NaN());
   const double least = scene.padding ? *scene.padding + std::max(1.0, 0x1p-20 * std::abs(*scene.padding))
                                      : -std::numeric_limits<double>::infinity();

@@ -18,7 +18,7 @@ enum class SliceKernel { Nearest, Linear, Cubic, Lanczos };
 Lattice with_slice_spacing(const Lattice& lattice, double spacing_mm);
 
 /// The scene on with_slice_spacing(). int16 stays int16, rounded to the nearest, halves upwards, and clamped
-/// to its range. A sample that would be made of padding is padding. Does not smooth before a wider spacing;
+/// to its range. A sample that would depend on padding is padding. Does not smooth before a wider spacing;
 /// average_down() does. Throws std::invalid_argument as with_slice_spacing(), and for a label map unless the
 /// kernel is Nearest; Error, Resource, as need_memory(); Stopped. Parallel, same bits on any thread count.
 /// Memory: the result.

@@ -184,7 +184,7 @@ SliceMask contour_regions(const Scene& scene, const ContourOptions& options) {
     slice.position_mm = glm::dot(scene.lattice.lps_mm({0, 0, k}), mask.view.look);
     for (const SliceContour& contour : slice_contours(scene, k, options.threshold)) {
       const SliceContour thin = thinned(contour, options.thin);
-      // A sample equal to the threshold has links whose points coincide.
+      // If a sample equals the threshold, the points of its links coincide.
       if (thin.size() < 3 || std::abs(signed_area(thin)) <= least) continue;
       std::vector<glm::dvec2>& polygon = slice.polygons_mm.emplace_back();
       for (const glm::dvec2& p : thin)

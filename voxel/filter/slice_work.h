@@ -16,7 +16,7 @@
 // Checks, indices, rounding and parallel work by slices, for the filters of scenes.
 namespace octotomy::voxel {
 
-/// The place of a sample in a scene's samples. Precondition: the index lies inside the scene.
+/// The offset of a sample in a scene's samples. Precondition: the index lies inside the scene.
 inline std::size_t sample_index(const glm::ivec3& dims, const glm::ivec3& p) {
   assert(p.x >= 0 && p.x < dims.x && p.y >= 0 && p.y < dims.y && p.z >= 0 && p.z < dims.z);
   return (static_cast<std::size_t>(p.z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(p.y)) *
@@ -35,13 +35,14 @@ inline void check_values(const Scene& scene, const std::string& refusal) {
   if (scene.meaning == Meaning::Label) throw std::invalid_argument("labels have no order: " + refusal);
 }
 
-/// All of a scene but samples and holes, on a lattice.
+/// A copy of a scene on another lattice, without samples and holes.
 inline Scene empty_scene_like(const Scene& scene, const Lattice& lattice) {
   return {lattice,     {}, scene.meaning,  scene.modality, scene.source,
           scene.audit, {}, scene.identity, scene.overlaps, scene.padding};
 }
 
-/// A sample of a value: rounded to the nearest integer, halves upwards, and clamped to int16's range.
+/// Converts a value to a sample; to int16 rounded to the nearest integer, halves upwards, and clamped to its
+/// range.
 template <typename Sample>
 Sample rounded(double value) {
   if constexpr (std::is_same_v<Sample, std::int16_t>)
@@ -50,8 +51,8 @@ Sample rounded(double value) {
     return static_cast<Sample>(value);
 }
 
-/// Calls work(k) for every slice k, sixteen in parallel at a time. Between these it reports progress, and
-/// throws Stopped if the stop token is set.
+/// Calls work(k) for every slice k, sixteen slices in parallel at a time. Between groups it reports progress,
+/// and throws Stopped if the stop token is set.
 template <typename Work>
 void for_each_slice(int slices, const Progress& progress, const Work& work) {
   constexpr int at_once = 16;

@@ -153,7 +153,7 @@ Scene diffuse(const Scene& scene, const DiffusionOptions& options) {
   Scene result = empty_scene_like(scene, scene.lattice);
   const Lattice& lattice = scene.lattice;
   const glm::dvec3 spacing_mm = lattice.spacing_mm();
-  // In one piece, because the conductance is in units of the whole scan's gradient.
+  // Runs on the whole scan at once, because the conductance is in units of the whole scan's gradient.
   std::visit(
       [&](const auto& samples) {
         using Sample = typename std::decay_t<decltype(samples)>::value_type;
@@ -164,7 +164,7 @@ Scene diffuse(const Scene& scene, const DiffusionOptions& options) {
         // The longest step that is stable in three dimensions: the smallest spacing over 2^(3 + 1).
         filter->SetTimeStep(std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z}) / 16.0);
         filter->SetInput(image_of(samples.data(), lattice, 0, lattice.dims.z));
-        // ITK calls this between iterations, in this thread, and lets its exceptions through.
+        // ITK calls this between iterations, in this thread, and passes its exceptions on.
         filter->AddObserver(itk::IterationEvent(), [&, done = 0](const itk::EventObject&) mutable {
           options.progress.at(static_cast<double>(++done) / (options.iterations + 1));
         });

@@ -8,8 +8,8 @@
 
 namespace octotomy::voxel {
 
-/// A named window of CT in Hounsfield units. Windows of neighbouring tissues touch or overlap: a first guess,
-/// not a diagnosis. The units of cone-beam scanners differ from Hounsfield's by hundreds.
+/// A named window of CT in Hounsfield units. Windows of neighbouring tissues touch or overlap. They are a
+/// first guess, not a diagnosis: samples of cone-beam scanners differ from Hounsfield units by hundreds.
 struct Tissue {
   std::string_view name;
   std::optional<double> low;   ///< none: every sample up to `high`

@@ -12,15 +12,15 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Squared distances from a coordinate to four equal intervals of voxels side by side.
+/// Squared distances from a coordinate to four adjacent intervals of `voxels` voxels each.
 glm::dvec4 squares_mm2(double p, int first, int voxels, double spacing_mm) {
   const glm::dvec4 low = first - 0.5 + double(voxels) * glm::dvec4(0, 1, 2, 3);
   const glm::dvec4 apart_mm = spacing_mm * glm::max(glm::max(low - p, p - low - double(voxels)), 0.0);
   return apart_mm * apart_mm;
 }
 
-/// The nearest voxel, to a point, that is inside, or that is outside: from a point on the other side the way
-/// there ends on the boundary.
+/// Searches the voxel nearest to a point on the other side of the boundary, inside or outside. The path there
+/// ends on the boundary.
 struct Search {
   glm::dvec3 p;  ///< in voxels
   glm::dvec3 spacing_mm;
@@ -31,7 +31,7 @@ struct Search {
   bool is_over() const { return nearest_mm2 < enough_mm2; }
   bool wants(bool is_inside) const { return is_inside == wants_inside; }
 
-  /// The voxels that touch the one that holds the point. Returns whether none further away can be nearer.
+  /// Searches the voxels that touch the point's voxel. Returns whether no voxel further away can be nearer.
   bool look_around(const Octree& octree, const glm::ivec3& centre) {
     const glm::dvec3 to_low_mm = spacing_mm * (p - glm::dvec3(centre) + 0.5),
                      to_high_mm = spacing_mm - to_low_mm;
@@ -49,7 +49,7 @@ struct Search {
     return nearest_mm2 <= reach_mm * reach_mm;
   }
 
-  /// The way to the universe's border, beyond which there are no voxels.
+  /// Includes the distance to the universe's border, beyond which all is outside.
   void look_beyond(int side) {
     for (int axis = 0; axis < 3; ++axis) {
       const double mm = spacing_mm[axis] * std::min(p[axis] + 0.5, side - 0.5 - p[axis]);
@@ -57,7 +57,7 @@ struct Search {
     }
   }
 
-  /// A block of 4^height voxels a side from `low`, children nearest first.
+  /// Searches a block of 4^height voxels a side from `low`, nearest children first.
   void visit(BlockRef block, int height, const glm::ivec3& low) {
     assert(height >= 2 && block.node() != nullptr);
     const int side = 1 << (2 * (height - 1));

@@ -5,8 +5,8 @@
 
 namespace octotomy::voxel {
 
-/// The share of the area of a plane along the lattice that Measures::area_crofton13_mm2 finds, by the axis of
-/// its normal: 0.92 to 0.93 for cubes, less for longer voxels.
+/// Ratio of Measures::area_crofton13_mm2 to the true area of a flat boundary along the lattice, by the axis
+/// of its normal: 0.92 to 0.93 for cubic voxels, less for longer ones.
 glm::dvec3 crofton13_of_flat(const Lattice& lattice);
 
 }  // namespace octotomy::voxel

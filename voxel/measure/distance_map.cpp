@@ -15,16 +15,16 @@
 #include "voxel/tree/octree_node.h"
 #include "voxel/tree/slice_bits.h"
 
-// One axis after the other: along x, two sweeps give the distance to the row's nearest voxel; along y and z,
-// each line of squares becomes the lower envelope of the parabolas on its entries. Lines are independent, so
-// that threads share nothing.
+// The axes are processed in turn. Along x, two sweeps compute the distance to the row's nearest voxel; along
+// y and z, each line of squares becomes the lower envelope of the parabolas at its entries. Lines are
+// independent, so threads share nothing.
 
 namespace octotomy::voxel {
 namespace {
 
 constexpr float far_away = std::numeric_limits<float>::infinity();
 
-// The lower envelope of a line's parabolas. Reuses its buffers.
+// Computes the lower envelope of a line's parabolas. Reuses its buffers.
 class Envelope {
  public:
   // Replaces line[i] by the minimum over j of line[j] + (step (i - j))^2.
@@ -41,7 +41,7 @@ class Envelope {
       while (last >= 0) {
         const int j = apex_[static_cast<std::size_t>(last)];
         const double there = line[static_cast<std::size_t>(j)];
-        // The place from which the parabola on i is below the one on j.
+        // The position from which the parabola at i is below the one at j.
         from = 0.5 * ((here - there) / (square_step * (i - j)) + (i + j));
         if (from > start_[static_cast<std::size_t>(last)]) break;
         --last;

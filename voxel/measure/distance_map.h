@@ -8,7 +8,7 @@
 
 namespace octotomy::voxel {
 
-/// Voxels low..high, both included.
+/// A box of voxels low..high, both included.
 struct VoxelRange {
   glm::ivec3 low{0};
   glm::ivec3 high{-1};
@@ -18,10 +18,10 @@ struct VoxelRange {
   bool operator==(const VoxelRange&) const = default;
 };
 
-/// The smallest range that holds every voxel of the octree; empty for an empty octree.
+/// The smallest range that contains every voxel of the octree; empty for an empty octree.
 VoxelRange range_of(const Octree& octree);
 
-/// The range, `voxels` larger on every side; it may leave the universe.
+/// The range enlarged by `voxels` on every side; it may leave the universe.
 VoxelRange grown(const VoxelRange& range, int voxels);
 
 /// Squared distances in square millimetres from each voxel's centre to the nearest centre of a voxel of a
@@ -43,8 +43,8 @@ DistanceMap distance_map(const Octree& octree, const VoxelRange& range);
 /// Distances to the voxels that are not in the octree, voxels beyond the universe included.
 DistanceMap distance_map_of_complement(const Octree& octree, const VoxelRange& range);
 
-/// Turns a map that is zero at the voxels of a set and infinite at all others into the distances to the set.
-/// Throws and costs as distance_map().
+/// Converts a map that is zero at the voxels of a set and infinite elsewhere into the squared distances to
+/// the set. Throws and costs as distance_map().
 void spread(DistanceMap& map, const Universe& universe);
 
 /// The voxels of the range, and of the universe, whose squared distance satisfies `wanted`.

@@ -1,8 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-//
-// 1 Faces in the order of their plane, then row by row, as numbers of 64 bits.
-// 2 Faces beside each other in a row, and in rows beside each other, are joined (union-find).
-// 3 Parts larger than a curved surface's count.
+// 1 Sort the faces by plane, then row by row, as 64-bit numbers.
+// 2 Join faces beside each other in a row, and in neighbouring rows (union-find).
+// 3 Sum the parts that are larger than a curved surface's.
 #include "voxel/measure/flat_parts.h"
 
 #include <algorithm>
@@ -18,7 +16,7 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr int bits = 20;  // of a coordinate; a universe has fewer
+constexpr int bits = 20;  // bits of a coordinate; a universe needs fewer
 constexpr std::uint64_t one_row = 1u << bits;
 
 /// Ascends by axis, side, plane, row and column.
@@ -45,9 +43,10 @@ glm::dvec3 flat_parts_mm2(const Octree& octree) {
   tbb::parallel_sort(faces.begin(), faces.end());
   std::vector<std::size_t> part(faces.size());
   std::iota(part.begin(), part.end(), std::size_t{0});
-  std::size_t row_before = 0;  // the first face that does not stand before the one in the row before
+  std::size_t row_before = 0;  // first face not before the position of face i in the row before
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    // The first column and row have no neighbours before: theirs would be of another row or plane.
+    // Faces in the first column or row have no neighbour before them: the preceding number belongs to another
+    // row or plane.
     if ((faces[i] & (one_row - 1)) != 0 && i > 0 && faces[i - 1] == faces[i] - 1)
       part[root_of(part, i)] = root_of(part, i - 1);
     if ((faces[i] >> bits & (one_row - 1)) == 0) continue;

@@ -5,11 +5,11 @@
 
 namespace octotomy::voxel {
 
-/// Area of the parts of the boundary that are flat and lie along the lattice: faces of one plane, joined by
-/// edges, whose area is more than twice what the largest such part of a ball of the same area has, h sqrt(pi
-/// S), h the edge across the plane. In mm^2 by the axis of their normal. A plane of the solid there is
-/// digitised coherently: each part's volume is off by up to half a voxel's edge times its area. Cost: n log n
-/// in the boundary's faces.
+/// Area of the flat parts of the boundary along the lattice, in mm^2, by the axis of their normal. A part
+/// consists of faces of one plane joined by edges; it counts if its area exceeds twice that of the largest
+/// such part on a ball with the same total area S, which is h sqrt(pi S) for a voxel edge h across the plane.
+/// Such a part comes from a plane of the solid, whose faces all have the same digitisation error: the part's
+/// volume is off by up to half a voxel's edge times its area. Cost: n log n in the boundary's faces.
 glm::dvec3 flat_parts_mm2(const Octree& octree);
 
 }  // namespace octotomy::voxel

@@ -19,12 +19,12 @@
 
 // Area by the Crofton formula: the area of a boundary is four times the mean, over all directions, of the
 // number of entries of parallel lines times the area per line. Here 13 directions, those to a voxel's 26
-// neighbours, stand for all. Along each, the lines run through the lattice's points: crossings are pairs of
+// neighbours, represent all. Along each, the lines run through the lattice's points: crossings are pairs of
 // neighbours with one inside, and the area per line is the voxel's volume divided by the step's length.
 // Source: Ohser and Muecklich, Statistical Analysis of Microstructures, 2000, section 4.2; weights as in
 // Lang, Ohser and Hilfer, J. Microscopy 203, 2001. Departure: a direction's weight is the share of the sphere
-// nearest to it, for the lattice's own spacing, from a fine grid of directions, so that anisotropic voxels
-// have no bias either.
+// nearest to it, computed for the lattice's own spacing on a fine grid of directions, so that anisotropic
+// voxels have no bias either.
 
 namespace octotomy::voxel {
 namespace {
@@ -72,8 +72,8 @@ std::array<double, 13> summed_shares(const Lattice& lattice) {
   return share;
 }
 
-// Kept for the lattice that was asked for last, as all objects of a plan share theirs: summing them takes
-// longer than counting a small object.
+// Caches the shares of the last lattice, because all objects of a plan have the same one: computing the
+// shares takes longer than counting a small object.
 std::array<double, 13> shares(const Lattice& lattice) {
   static std::mutex mutex;
   static glm::dmat3 known(0.0);
@@ -87,8 +87,8 @@ std::array<double, 13> shares(const Lattice& lattice) {
   return share;
 }
 
-// Voxels of a row that differ from those of another one, voxel x against x + shift: beyond its ends the other
-// has none. Bit x of a shifted word is voxel x + shift.
+// Counts the voxels x of a row that differ from voxel x + shift of another row, which is empty beyond its
+// ends. Bit x of a shifted word is voxel x + shift.
 OCTOTOMY_VECTOR_CLONES std::uint64_t differing(const std::uint64_t* row, const std::uint64_t* other,
                                                int words, int shift) {
   std::uint64_t count = 0;
@@ -101,7 +101,7 @@ OCTOTOMY_VECTOR_CLONES std::uint64_t differing(const std::uint64_t* row, const s
   return count;
 }
 
-// First and second moments by axis, and boundary pairs by direction, of a run of slices.
+// First and second moments, and boundary pairs by direction, of a run of slices.
 class Sums {
  public:
   // Pairs of neighbours along each direction with exactly one inside, pairs across the universe's ends
@@ -151,8 +151,8 @@ class Sums {
   static std::uint64_t pairs(const std::uint64_t* here, const std::uint64_t* there, int words, int side,
                              int dx) {
     std::uint64_t count = differing(here, there, words, -dx);
-    // A voxel at the end of the row pairs with one outside. The shifted word holds this pair unless the row
-    // ends with the word.
+    // A voxel at the end of the row pairs with one outside. The shifted word contains this pair unless the
+    // row ends with the word.
     if (dx == 1 && side % 64 == 0) count += there[words - 1] >> 63;
     if (dx == -1) count += there[0] & 1;
     return count;
@@ -179,19 +179,19 @@ class Sums {
     second_moment[2].z += count * z * z;
   }
 
-  // Entry k: the bits of a word whose place has bit k set.
+  // Entry k: the bits of a word whose index has bit k set.
   static constexpr std::array<std::uint64_t, 6> places{0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc,
                                                        0xf0f0f0f0f0f0f0f0, 0xff00ff00ff00ff00,
                                                        0xffff0000ffff0000, 0xffffffff00000000};
 
-  // The sum of the places of set bits: bit k of a place adds 2^k.
+  // The sum of the indices of set bits: bit k of an index adds 2^k.
   static double sum_of_places(std::uint64_t word) {
     int sum = 0;
     for (std::size_t k = 0; k < places.size(); ++k) sum += std::popcount(word & places[k]) << k;
     return sum;
   }
 
-  // The sum of the squares of these places: a pair of bits j and k of a place adds 2^(j + k).
+  // The sum of the squares of these indices: a pair of bits j and k of an index adds 2^(j + k).
   static double sum_of_square_places(std::uint64_t word) {
     if (word == all_children) return 63.0 * 64.0 * 127.0 / 6.0;
     int sum = 0;
@@ -203,12 +203,13 @@ class Sums {
   }
 };
 
-// Runs of slices are fixed, so that sums too large to be exact are the same on any number of threads, too.
+// The runs of slices are fixed, so that even sums too large to be exact do not depend on the number of
+// threads.
 Sums sums_of(const Octree& octree) {
   constexpr int run = 16;
   const int side = octree.universe().side(), words = (side + 63) / 64;
   const std::vector<std::uint64_t> none(static_cast<std::size_t>(words), 0);
-  // One empty slice beyond the last holds the last slice's upper neighbours.
+  // The upper neighbours of the last slice are counted with one empty slice beyond it.
   std::vector<Sums> parts(static_cast<std::size_t>((side + run) / run));
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const auto read = [&](int z, SliceBits& slice) {

@@ -27,13 +27,14 @@ struct Measures {
   /// Inertia tensor about the centroid for a density of 1, in mm^5, along the LPS axes; none for an empty
   /// object. Multiply by a density in kg / mm^3 to get kg mm^2.
   std::optional<glm::dmat3> inertia_mm5;
-  /// Exposed voxel faces by direction (x, y, z) in square millimetres, for error bounds; no estimate of area.
+  /// Area of the exposed voxel faces by axis (x, y, z) in square millimetres, for error bounds; not an
+  /// estimate of the area.
   glm::dvec3 exposed_mm2{0.0};
 };
 /// Cost: two walks over the slices, word by word.
 Measures measure(const Octree& octree);
 
-/// Measures::extents alone. Cost: a walk over the blocks at the object's ends.
+/// Only Measures::extents. Cost: a walk over the blocks at the object's ends.
 std::optional<Box> extents_of(const Octree& octree);
 
 }  // namespace octotomy::voxel

@@ -34,7 +34,7 @@ std::optional<std::uint64_t> free_disk(const std::filesystem::path& folder) {
   const auto type = static_cast<std::int64_t>(kind.f_type) & 0xffffffff;
   if (std::find(plain_kinds.begin(), plain_kinds.end(), type) == plain_kinds.end() || disk.f_blocks == 0)
     return std::nullopt;
-  // What is kept back for the superuser is free to the superuser.
+  // Blocks reserved for the superuser are free for the superuser only.
   return std::uint64_t{::geteuid() == 0 ? disk.f_bfree : disk.f_bavail} * disk.f_frsize;
 }
 

@@ -7,16 +7,16 @@
 
 namespace octotomy::voxel {
 
-/// The most that deflate packs: 258 bytes into 2 bits.
+/// Highest compression of deflate: 258 bytes into 2 bits.
 inline constexpr std::uint64_t deflate_ratio = 1032;
 
-/// Bytes that the file system of a folder still takes from this process. None where it cannot tell, or may
-/// keep a file in fewer bytes than it has: file systems that pack, networks, layers of unknown ground.
+/// Free bytes that the file system of a folder grants this process. None if they are unknown, or if a file
+/// may take fewer bytes on disk than it has: on compressing, network, layered and unrecognised file systems.
 std::optional<std::uint64_t> free_disk(const std::filesystem::path& folder);
 
-/// Throws Error (Resource) with both figures where `out`, a file or folder that takes `least_bytes` or more
-/// while it is written, does not fit beside what free_disk() tells of its folder. An older file of its name
-/// makes no room, as it stays until the new one is whole.
+/// Throws Error (Resource) with both figures if `out`, a file or folder that takes at least `least_bytes`
+/// while it is written, does not fit into free_disk() of its folder. An older file of the same name frees no
+/// room, because it stays until the new one is complete.
 void need_disk(const std::filesystem::path& out, std::uint64_t least_bytes);
 
 }  // namespace octotomy::voxel

@@ -5,8 +5,8 @@
 
 namespace octotomy::voxel {
 
-/// Gives the memory of a scene's samples back. Emptying them does the same, but a caller that is compiled
-/// with little optimisation then visits each sample to destroy it.
+/// Frees the memory of a scene's samples. Clearing them does the same, but in callers that are compiled
+/// without optimisation the destruction then visits every sample.
 void drop_samples(Scene& scene);
 
 }  // namespace octotomy::voxel

@@ -12,11 +12,11 @@ enum class ErrorCode {
   Input,      ///< data or text from outside is wrong
   Geometry,   ///< the data are sound, but the operation has no answer on them
   Cancelled,  ///< a stop token was set
-  Resource,   ///< memory, disk, time or a child process gave out
+  Resource,   ///< memory, disk or time ran out, or a child process failed
 };
 
 /// The voxel kernel's error: a code and a message that names the place, the cause and what to do next. A
-/// broken precondition is no Error but std::invalid_argument.
+/// broken precondition throws std::invalid_argument instead.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
@@ -31,7 +31,8 @@ struct Stopped : Error {
   explicit Stopped(const std::string& message) : Error(ErrorCode::Cancelled, message) {}
 };
 
-/// The code of a failed system call: Resource if memory, the disk or a limit on it gave out, else Input.
+/// The code of a failed system call: Resource if memory, the disk or one of their limits is exhausted,
+/// otherwise Input.
 inline ErrorCode code_of_errno(int number) {
   return number == ENOSPC || number == EDQUOT || number == EFBIG || number == EIO || number == ENOMEM ||
                  number == EMFILE

@@ -10,17 +10,17 @@
 
 #include "voxel/space/error.h"
 
-// What readers and writers of files say, and how they compare names and keys.
+// Error messages, file access and text comparison for the readers and writers of files.
 namespace octotomy::voxel {
 
-/// Throws Error: the file and the reason.
+/// Throws Error with the file and the reason.
 [[noreturn]] inline void refuse(const std::filesystem::path& path, const std::string& reason,
                                 ErrorCode code = ErrorCode::Input) {
   throw Error(code, path.string() + ": " + reason);
 }
 
-/// Opens a file to read it; a missing one or a folder gives a stream that cannot be read. Throws Error
-/// (Input) of a pipe or a device: reading it may wait for ever or never end.
+/// Opens a file for reading. A missing file or a folder yields a stream in the failed state. Throws Error
+/// (Input) for a pipe or a device, because reading it may block or never end.
 inline std::ifstream opened(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
@@ -41,20 +41,20 @@ inline std::string file_bytes(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// ASCII letters alone change.
+/// The text in lower case; only ASCII letters change.
 inline std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
   return text;
 }
 
-/// Without blanks and carriage returns at its ends.
+/// The text without spaces, tabs and carriage returns at its ends.
 inline std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// In lower case, with its dot; empty if there is none.
+/// A file name's extension in lower case, with its dot; empty if there is none.
 inline std::string extension_of(const std::filesystem::path& path) {
   return lower_case(path.extension().string());
 }

@@ -29,7 +29,7 @@ std::vector<fs::path> folders() {
           "/usr/libexec/octotomy"};  // the Debian package's
 }
 
-/// Throws where somebody else could have put the file there or could change it. Whoever owns the running
+/// Throws if another user could have put the file there or everyone may change it. The owner of the running
 /// program is trusted already.
 void need_trusted(const fs::path& file) {
   struct stat program {};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-// Included before ITK's own headers. Debian's ITK knows only the compiler that it was built with; this is
-// what it would detect about clang.
+// To be included before ITK's headers. Debian's ITK recognises only the compiler with which it was built;
+// these are the results that its detection would give for clang.
 #if defined(__clang__)
 #define ITK_COMPILER_DETECTION_H
 #define ITK_NOEXCEPT noexcept

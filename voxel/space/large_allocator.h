@@ -12,9 +12,10 @@
 
 namespace octotomy::voxel {
 
-/// An allocator for arrays of many megabytes. Elements made without a value stay uninitialised, so that the
-/// threads that fill an array are the first to touch it. Asks the system for huge pages: a fault each 4 KiB
-/// takes longer than filling them, and for scattered reads finding a small page costs more than the sample.
+/// An allocator for arrays of many megabytes. Elements constructed without a value stay uninitialised, so
+/// that the threads that fill an array are the first to touch it. Requests huge pages: a page fault per 4 KiB
+/// takes longer than filling the page, and in scattered reads the address translation of small pages takes
+/// longer than the read.
 template <typename Value>
 struct LargeAllocator {
   using value_type = Value;
@@ -31,7 +32,7 @@ struct LargeAllocator {
     const std::size_t whole = (bytes + page - 1) / page * page;
     void* const memory = ::operator new(whole, std::align_val_t(page));
 #if defined(__linux__)
-    // Advice only: a system that ignores it gives small pages.
+    // Advice only: a system that ignores it maps small pages.
     static_cast<void>(::madvise(memory, whole, MADV_HUGEPAGE));
 #endif
     return static_cast<Value*>(memory);
@@ -42,7 +43,7 @@ struct LargeAllocator {
   }
   template <typename Other>
   void construct(Other* at) {
-    ::new (static_cast<void*>(at)) Other;  // without (): no value
+    ::new (static_cast<void*>(at)) Other;  // without (), so the element stays uninitialised
   }
   template <typename Other, typename... Arguments>
   void construct(Other* at, Arguments&&... arguments) {

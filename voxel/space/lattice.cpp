@@ -9,8 +9,8 @@
 namespace octotomy::voxel {
 namespace {
 
-// A plan's millimetres reach voxel indices with a few roundings of numbers below 2^12: 1e-12 of a voxel. A
-// translation that means to leave whole voxels leaves them by far more than a millionth.
+// Converting a plan's millimetres to voxel indices rounds numbers below 2^12 a few times: 1e-12 of a voxel. A
+// translation intended not to be by whole voxels differs from one by far more than a millionth.
 constexpr double whole_voxel_tolerance = 1e-6;
 
 }  // namespace
@@ -71,7 +71,7 @@ Universe universe_around(const Box& box, double voxel_mm) {
                                 " mm");
   const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
   const double longest_mm = std::max(extent_mm.x, std::max(extent_mm.y, extent_mm.z));
-  // An extent that is a whole number of voxels but for rounding must not take another level.
+  // An extent of a whole number of voxels, up to rounding, must not need another level.
   const double voxels = longest_mm / voxel_mm * (1.0 - 4.0 * std::numeric_limits<double>::epsilon());
   Universe universe;
   universe.depth = 2;
@@ -100,7 +100,7 @@ std::optional<glm::ivec3> whole_voxel_offset(const glm::dmat4& source_from_targe
     const double nearest = std::floor(constant + 0.5);
     if (stray.x + stray.y + stray.z + std::abs(constant - nearest) > whole_voxel_tolerance)
       return std::nullopt;
-    // Farther than any universe reaches, an offset serves nobody and may not fit into an int.
+    // An offset beyond every universe is useless and may not fit into an int.
     if (!(std::abs(nearest) < 1 << 30)) return std::nullopt;
     offset[row] = static_cast<int>(nearest);
   }

@@ -6,9 +6,9 @@
 
 namespace octotomy::voxel {
 
-/// The places of samples in the patient: `dims` samples, x fastest. The sample of integer index i is at LPS
-/// millimetre position `lps_from_voxel * (i, 1)`. An integer index is a voxel's centre, so the voxel reaches
-/// from i - 1/2 to i + 1/2.
+/// The positions of samples in the patient: `dims` samples, x fastest. The sample with integer index i lies
+/// at LPS position `lps_from_voxel * (i, 1)`, in millimetres. An integer index is a voxel's centre, so the
+/// voxel extends from i - 1/2 to i + 1/2.
 struct Lattice {
   glm::ivec3 dims{0};
   glm::dmat4 lps_from_voxel{1.0};
@@ -32,7 +32,7 @@ struct Box {
   glm::dvec3 high_mm{0.0};
 };
 
-/// The box that holds every voxel of the lattice, voxel edges included.
+/// The box that contains every voxel of the lattice, voxel edges included.
 Box bounds(const Lattice& lattice);
 
 /// A lattice with axes along LPS, whose first voxel's centre is `first_mm`.
@@ -53,12 +53,13 @@ struct Universe {
   bool operator==(const Universe&) const = default;
 };
 
-/// The smallest axis-aligned universe of cubic voxels that holds the box, box and universe sharing a centre.
-/// Throws std::invalid_argument if voxel_mm is not positive and finite, std::length_error if it would
-/// take more than 2^Universe::max_depth voxels a side.
+/// The smallest axis-aligned universe of cubic voxels that contains the box and shares its centre. Throws
+/// std::invalid_argument if voxel_mm is not positive and finite, std::length_error if it would take more than
+/// 2^Universe::max_depth voxels a side.
 Universe universe_around(const Box& box, double voxel_mm);
 
-/// The offset from a target's voxel to the source's, if the map is a translation by whole voxels.
+/// The offset from a target's voxel indices to the source's if the map is a translation by whole voxels;
+/// otherwise none.
 std::optional<glm::ivec3> whole_voxel_offset(const glm::dmat4& source_from_target);
 
 }  // namespace octotomy::voxel

@@ -7,7 +7,7 @@
 
 namespace octotomy::voxel {
 
-/// A text in printf's format, of at most 511 characters.
+/// Formats a text as printf does, cut off after 511 characters.
 template <typename... Parts>
 std::string print(const char* format, Parts... parts) {
   char text[512];
@@ -15,7 +15,7 @@ std::string print(const char* format, Parts... parts) {
   return text;
 }
 
-/// A text out of a file, for a message of one line: control characters, which terminals obey, become '?'.
+/// A text from a file for a one-line message: control characters, which would act on a terminal, become '?'.
 inline std::string shown(std::string text) {
   std::replace_if(
       text.begin(), text.end(),

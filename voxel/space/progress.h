@@ -8,7 +8,7 @@
 
 namespace octotomy::voxel {
 
-/// Watches and stops long work. The working function's own thread calls it, no other.
+/// Progress report and stop of long work. Only the thread of the working function calls `report`.
 struct Progress {
   std::stop_token stop;
   std::function<void(double fraction)> report;  ///< 0 to 1; may be empty

@@ -5,9 +5,9 @@
 
 namespace octotomy::voxel {
 
-/// Discards what anybody writes to standard error while one lives: for calls into libraries that print what
-/// they also report. One at a time in the process; the others wait. Throws nothing: if standard error cannot
-/// be redirected, it stays.
+/// Discards all output to standard error during its lifetime, for calls into libraries that print errors
+/// which they also return. Only one exists at a time in the process; constructing another waits. Throws
+/// nothing: if standard error cannot be redirected, it stays as it is.
 class QuietErrors {
  public:
   QuietErrors();

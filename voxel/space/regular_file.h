@@ -7,8 +7,8 @@
 
 namespace octotomy::voxel {
 
-/// Throws Error (Input) where `path` exists and is no regular file: reading a pipe or a device may wait for
-/// ever or never end. A missing file is left to its reader, which knows what it is for.
+/// Throws Error (Input) if `path` exists and is not a regular file: reading a pipe or a device may block or
+/// never end. A missing file is accepted; its reader reports it with its purpose.
 inline void need_regular_file(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);

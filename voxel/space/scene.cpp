@@ -42,7 +42,7 @@ std::string unit(const Scene& scene) {
 std::optional<SliceRange> slices_inside(const Lattice& lattice, const Hole& hole) {
   const glm::dvec3 step_mm(lattice.lps_from_voxel[2]);
   const double along_mm = glm::dot(step_mm, hole.normal);
-  // A lattice whose slices are turned by more than half a degree has no slice within the slab.
+  // A lattice whose slices are tilted by more than 0.8 degrees against the slab has no slice within it.
   if (!(std::abs(along_mm) > 0.9999 * glm::length(step_mm))) return std::nullopt;
   const double start_mm = glm::dot(glm::dvec3(lattice.lps_from_voxel[3]), hole.normal);
   // A slice within a hundredth of a step of an image is that image.
@@ -69,7 +69,8 @@ void check(const Scene& scene) {
     for (int row = 0; row < 4; ++row)
       if (!std::isfinite(lattice.lps_from_voxel[column][row]))
         throw std::invalid_argument(scene.source + ": the lattice's position is not finite");
-  const glm::dvec3 spacing_mm = lattice.spacing_mm();  // squares, which overflow before the steps do
+  const glm::dvec3 spacing_mm = lattice.spacing_mm();  // checked too, because its squares overflow before the
+                                                       // steps do
   if (!std::isfinite(spacing_mm.x + spacing_mm.y + spacing_mm.z) ||
       !glm::all(glm::greaterThan(spacing_mm, glm::dvec3(0.0))))
     throw std::invalid_argument(scene.source + ": the lattice's spacing is no length in millimetres");

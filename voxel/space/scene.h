@@ -14,22 +14,22 @@
 
 namespace octotomy::voxel {
 
-/// What a sample's value means.
+/// Meaning of the sample values.
 enum class Meaning { Hounsfield, Raw, Label };
 
-/// Ordered from harmless to grave, so that the gravest of several is their maximum.
+/// Ordered by severity, so that the maximum of several verdicts is the gravest.
 enum class Verdict { Pass, Warn, Fail };
 
-/// One line of a scan's audit: the check, its verdict, what was found and done about it.
+/// One line of a scan's audit: the check, its verdict, what was found and how it was handled.
 struct Finding {
   std::string check;
   Verdict verdict = Verdict::Pass;
   std::string detail;
-  std::vector<std::string> files = {};  ///< all that the finding is about, relative to the scan's folder
+  std::vector<std::string> files = {};  ///< the files concerned, relative to the scan's folder
 };
 
 /// A slab between two neighbouring images that are further apart than the others. No image measured its
-/// inside: the samples there are interpolated. Stays true when a scene is cropped or resampled.
+/// inside, so samples there are interpolated. Its position stays valid when a scene is cropped or resampled.
 struct Hole {
   glm::dvec3 normal{0, 0, 1};  ///< of the images, a unit vector in LPS
   double low_mm = 0.0;         ///< p . normal of the image below
@@ -43,8 +43,8 @@ using Samples = std::vector<Sample, LargeAllocator<Sample>>;
 using Int16Samples = Samples<std::int16_t>;
 using FloatSamples = Samples<float>;
 
-/// Patient, study and frame of reference as DICOM states them, in UTF-8 without padding. Empty where the file
-/// does not state them. A scan has one study and one frame, a structure set all that it refers to.
+/// Patient, study and frame of reference as DICOM states them, in UTF-8 without padding; empty if not stated.
+/// A scan has one study and one frame; a structure set lists all that it refers to.
 struct Identity {
   std::string patient_id, patient_name;
   std::vector<std::string> study_uids, frame_uids;
@@ -63,18 +63,18 @@ struct Scene {
   std::vector<Finding> audit;
   std::vector<Hole> holes = {};  ///< from the lowest on
   Identity identity = {};
-  /// Of a label map whose labels overlap: each number that stands for several labels, with those labels in
-  /// ascending order.
+  /// For a label map with overlapping labels: maps each number that stands for several labels to those
+  /// labels, in ascending order.
   std::map<int, std::vector<int>> overlaps = {};
-  /// The sample that stands where the scanner measured nothing; below every measured one. No interpolation
-  /// may mix it with a measurement. None: every sample is a measurement.
+  /// The sample value where the scanner measured nothing; below every measured one. No interpolation may mix
+  /// it with a measurement. None: every sample is a measurement.
   std::optional<double> padding = {};
   /// The samples' unit as a DICOM file declares it: "HU", "US" (unspecified), "OD", "BQML", "GY". Empty where
   /// none is declared, which of a CT means HU (PS3.3, C.8.2.1).
   std::string declared_unit = {};
 };
 
-/// A window's lower bound, raised above the padding: what was not measured lies in no window.
+/// A window's lower bound, raised above the padding, so that no window contains unmeasured samples.
 double above_padding(const Scene& scene, double low);
 
 /// First and last slice of a lattice whose centres lie inside a hole.
@@ -93,16 +93,16 @@ struct Range {
 };
 Range range(const Scene& scene);
 
-/// The unit people read beside a value: "HU" or "1".
+/// The unit to print after a sample value: "HU" or "1".
 std::string unit(const Scene& scene);
 
 /// Throws std::invalid_argument if the number of samples is not the lattice's, the lattice is empty,
 /// singular or not finite.
 void check(const Scene& scene);
 
-/// The sample at a position in index space by trilinear interpolation; positions outside take the nearest
-/// border sample; the padding if one of the samples that it would be made of is. Precondition: the scene
-/// passes check().
+/// The sample at a position in index space by trilinear interpolation. Positions outside take the nearest
+/// border sample. Returns the padding if any sample involved is padding. Precondition: the scene passes
+/// check().
 double interpolate(const Scene& scene, const glm::dvec3& p_voxel);
 
 }  // namespace octotomy::voxel

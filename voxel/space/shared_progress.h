@@ -9,14 +9,14 @@
 
 namespace octotomy::voxel {
 
-/// The progress of one part of the work, which reports 0 to 1 as `from` to `to` of the whole.
+/// Progress of one part of the work, whose 0 to 1 is reported as `from` to `to` of the whole.
 inline Progress part_of(const Progress& whole, double from, double to) {
   if (!whole.report) return {whole.stop, {}};
   return {whole.stop,
           [report = whole.report, from, to](double fraction) { report(from + (to - from) * fraction); }};
 }
 
-/// The progress of equal pieces that several threads work on. Reports from the thread that made it alone.
+/// Progress of equal pieces that several threads work on. Only the thread that constructed it reports.
 class SharedProgress {
  public:
   SharedProgress(const Progress& progress, std::size_t pieces) : progress_(progress), pieces_(pieces) {}

@@ -23,12 +23,12 @@ void check(const std::error_code& error, const fs::path& target) {
     throw Error(code_of_errno(error.value()), target.string() + ": cannot be written: " + error.message());
 }
 
-/// What is staged, and the place that it takes.
+/// A staged file or folder and its destination.
 struct Move {
   fs::path staged, target;
 };
 
-/// Gives the staged file the permissions of the file that it replaces.
+/// Checks that the target may be replaced, and copies its permissions to the staged file.
 void need_replaceable(const fs::path& target, const fs::path& staged) {
   struct stat of_old {};
   if (::lstat(target.c_str(), &of_old) != 0) return;
@@ -39,7 +39,7 @@ void need_replaceable(const fs::path& target, const fs::path& staged) {
   if (!is_folder) ::chmod(staged.c_str(), of_old.st_mode & 07777);
 }
 
-/// Brings what is staged beside a target that a link leads to, which may be on another disk.
+/// Moves a staged file or folder next to its target, which may lie on another disk behind a link.
 void bring(Move& move, std::list<StagedFiles>& folders) {
   const StagedFiles& there = folders.emplace_back(move.target.parent_path());
   const fs::path staged = there.folder() / move.target.filename();
@@ -51,8 +51,8 @@ void bring(Move& move, std::list<StagedFiles>& folders) {
   move.staged = staged;
 }
 
-/// A second name of a file that is replaced, so that it can be put back. Where the disk knows no such names,
-/// or they are not allowed, it cannot.
+/// A second hard link to a file that is replaced, from which it can be restored. File systems without hard
+/// links, or that forbid them, allow no restoring.
 class OldFile {
  public:
   explicit OldFile(const Move& move) : target_(move.target), kept_(move.staged.string() + ".old") {
@@ -60,7 +60,7 @@ class OldFile {
     was_there_ = fs::exists(fs::symlink_status(target_, error));
     if (was_there_) fs::create_hard_link(target_, kept_, error);
   }
-  /// Puts it back, or removes what is new.
+  /// Restores the old file or, if there was none, removes the new one.
   void restore() const {
     std::error_code ignored;
     was_there_ ? fs::rename(kept_, target_, ignored) : static_cast<void>(fs::remove_all(target_, ignored));
@@ -71,7 +71,7 @@ class OldFile {
   bool was_there_ = false;
 };
 
-/// All take their places, or none.
+/// Renames all files into place, or none.
 void rename_all(std::vector<Move>& moves) {
   for (const Move& move : moves) need_replaceable(move.target, move.staged);
   std::list<StagedFiles> elsewhere;
@@ -99,7 +99,7 @@ std::vector<fs::path> names_in(const fs::path& folder, const fs::path& last) {
   return names;
 }
 
-/// A path without what says nothing at its end: "/" and "/.".
+/// A path without a redundant "/" or "/." at its end.
 fs::path without_end(fs::path path) {
   while (path.has_relative_path() && (!path.has_filename() || path.filename() == "."))
     path = path.parent_path();

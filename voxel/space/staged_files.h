@@ -10,19 +10,19 @@
 namespace octotomy::voxel {
 
 /// A hidden folder beside the files to be written. Files are written into it under their own names and
-/// renamed into place together, so that a failure half-way leaves the old ones. Removed with the object; what
-/// a killed process left there is removed by the next one.
+/// renamed into place together, so that a failure half-way leaves the old files. The destructor removes the
+/// folder; a folder that a killed process left is removed by the next process.
 class StagedFiles {
  public:
-  /// Throws Error, Input or Resource, that names `destination` if no folder can be made in it.
+  /// Throws Error, Input or Resource, that names `destination` if no folder can be created in it.
   explicit StagedFiles(const std::filesystem::path& destination);
 
   const std::filesystem::path& folder() const { return unfinished_.path(); }
   /// Renames every staged file or folder into the destination, `last` (a file name) after all others, so that
-  /// a header never appears before its data. A link there is followed, also to another disk; a file there
-  /// hands on its permissions. Throws Error, Input or Resource, with path and reason; a device, pipe or
-  /// folder is not replaced. A failure leaves every old file: all targets are looked at before the first is
-  /// renamed, and names that were given are taken back where a later one fails.
+  /// a header never appears before its data. A link at the destination is followed, also to another disk. A
+  /// replaced file's permissions are kept. Throws Error, Input or Resource, with path and reason; a device,
+  /// pipe or folder is not replaced by a file. A failure leaves every old file: all targets are checked
+  /// before the first is renamed, and renames that were done are undone if a later one fails.
   void commit(const std::filesystem::path& last = {});
 
  private:
@@ -30,13 +30,14 @@ class StagedFiles {
   UnfinishedFolder unfinished_;
 };
 
-/// Files for places in any folders, which are renamed into place together like those of one StagedFiles.
+/// Files for several destination folders, renamed into place together like those of one StagedFiles.
 class StagedOutputs {
  public:
-  /// The hidden file to write in place of `place`, once each. Throws as StagedFiles.
+  /// The path of the hidden file to write instead of `place`. To be called once per place. Throws as
+  /// StagedFiles.
   std::filesystem::path beside(const std::filesystem::path& place);
-  /// As StagedFiles::commit(). The files take their names in the order in which they were asked for, after
-  /// what was written next to them.
+  /// As StagedFiles::commit(). The files are renamed in the order in which beside() was called for them,
+  /// after any other files staged with them.
   void commit();
 
  private:
@@ -44,21 +45,21 @@ class StagedOutputs {
   std::vector<std::filesystem::path> places_;
 };
 
-/// The file that a path means: links at its end followed, even one to nothing yet. Throws Error (Input) if
-/// the links lead in a circle.
+/// The file to which a path leads, with links at its end followed, even to a missing file. Throws Error
+/// (Input) if the links form a circle.
 std::filesystem::path behind_links(std::filesystem::path path);
 
-/// The absolute path of the file or folder that a path means to the system: folders' links are resolved
-/// before a ".." after them, links at the end are followed, even one to nothing yet, and a "/" at the end
-/// says nothing. Throws as behind_links().
+/// The absolute path of the file or folder to which the system resolves a path: folders' links are resolved
+/// before a ".." after them, links at the end are followed, even to a missing file, and a "/" at the end is
+/// ignored. Throws as behind_links().
 std::filesystem::path place_of(const std::filesystem::path& path);
 
-/// An absolute path as short as it can be told: without "." and "..", and with links as they are, but where
-/// ".." follows one.
+/// The shortest absolute form of a path: without "." and "..", and with links kept except where ".." follows
+/// one.
 std::filesystem::path absolute_of(const std::filesystem::path& path);
 
-/// Whether two paths mean one file, by links of either kind or by another spelling. Files need not be there.
-/// Throws as behind_links().
+/// Whether two paths lead to one file, through symbolic or hard links or another spelling. The files need not
+/// exist. Throws as behind_links().
 bool are_one_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
 }  // namespace octotomy::voxel

@@ -7,10 +7,10 @@
 
 namespace octotomy::voxel {
 
-/// Reads a representation's text from left to right. A refusal names the position.
+/// Reads a representation's text from left to right. Every error names the position.
 class TextCursor {
  public:
-  /// `what` is the text's kind, which a refusal begins with: "treecode".
+  /// `what` is the text's kind, with which error messages begin: "treecode".
   TextCursor(std::string_view what, std::string_view text) : what_(what), text_(text) {}
 
   std::size_t position() const { return position_; }
@@ -19,19 +19,19 @@ class TextCursor {
   char peek() const { return at_end() ? '\0' : text_[position_]; }
   void advance() { ++position_; }
 
-  void skip_spaces();  ///< and line ends
-  void skip_blanks();  ///< spaces and tabs within a line
+  void skip_spaces();  ///< skips spaces and line ends
+  void skip_blanks();  ///< skips spaces and tabs within a line
   bool accept(std::string_view expected);
   void expect(std::string_view expected);
-  /// A number of decimal digits, at most `largest`.
+  /// Reads a decimal number, at most `largest`.
   std::uint64_t number(std::uint64_t largest);
-  /// Nothing but spaces may follow.
+  /// Throws unless only spaces follow.
   void expect_end();
 
   /// Throws std::invalid_argument: "treecode, character 12: ...", counted from one.
   [[noreturn]] void refuse(const std::string& why) const { refuse_at(position_, why); }
   [[noreturn]] void refuse_at(std::size_t position, const std::string& why) const;
-  /// The same, naming the character found instead.
+  /// Likewise; the message names the expected text and the character that stands there.
   [[noreturn]] void refuse_unexpected(const std::string& expected) const;
 
  private:

@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-//
-// Owners hold a lock on their folder. A folder is made, then locked; between the two a cleaner may take the
-// lock and remove it, so the owner looks again once it has the lock, and makes another one.
+// Owners hold a lock on their folder. A folder is created, then locked. Between the two a cleaner may take
+// the lock and remove the folder, so the owner checks after locking that it still exists, and otherwise
+// creates another one.
 #include "voxel/space/unfinished_folder.h"
 
 #include <algorithm>
@@ -25,12 +24,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t letter_count = 6;
-/// A folder is renamed before it is emptied, so that no thread writes into it meanwhile.
+/// Suffix under which a folder is emptied. It is renamed first, so that no thread writes into it meanwhile.
 constexpr const char* leaving = "~";
 
-/// The folders of this process; never destroyed, since threads may outlive main(). Held while one is made or
-/// removed: of two threads that empty the same folder, one stumbles over what the other took and leaves the
-/// rest. Recursive, as an allocation that fails meanwhile may end the process on the same thread.
+/// The folders of this process; never destroyed, since threads may outlive main(). The mutex is held while a
+/// folder is created or removed: if two threads empty the same folder, one fails at an entry that the other
+/// removed and leaves the rest. Recursive, because an allocation that fails meanwhile may end the process on
+/// the same thread.
 struct Folders {
   std::recursive_timed_mutex mutex;
   std::vector<fs::path> paths;
@@ -57,10 +57,11 @@ void remove_folder(const fs::path& path) {
   const fs::path gone = path.string() + leaving;
   fs::rename(path, gone, ignored);
   fs::remove_all(gone, ignored);
-  fs::remove_all(path, ignored);  // where it could not be renamed
+  fs::remove_all(path, ignored);  // if it could not be renamed
 }
 
-/// What cannot be removed stays: it is hidden or says that it is unfinished, and the next run takes it away.
+/// Ignores exceptions: a folder that cannot be removed stays hidden or marked as unfinished until the next
+/// run removes it.
 template <typename Work>
 void quietly(const Work& work) {
   try {
@@ -70,7 +71,7 @@ void quietly(const Work& work) {
   }
 }
 
-/// The locked folder's descriptor; -1 if it was removed meanwhile or there are no locks.
+/// Locks a folder and returns its descriptor; -1 if it was removed meanwhile or there are no locks.
 int locked(const fs::path& path, int how) {
   const int file = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (file < 0) return -1;
@@ -160,7 +161,8 @@ void remove_abandoned(const fs::path& beside, const std::string& prefix) {
 NamesChange::NamesChange() : held_(names_mutex()) {}
 
 void remove_unfinished() noexcept {
-  // Neither is unlocked: after this no name changes, and no other thread makes or removes a folder.
+  // Neither mutex is unlocked, so from here on nothing is renamed into place and no other thread creates or
+  // removes a folder.
   const bool settled = names_mutex().try_lock_for(std::chrono::milliseconds(100));
   static_cast<void>(settled);
   if (!folders().mutex.try_lock_for(std::chrono::seconds(10))) return;  // the next run removes what is left

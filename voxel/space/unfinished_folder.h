@@ -7,21 +7,21 @@
 
 namespace octotomy::voxel {
 
-/// A folder that must not outlive unfinished work. It has a name that was free (mkdtemp), is closed to
-/// others, and is locked while its owner lives, so that a later process knows what a killed one left behind.
-/// Removed with the object.
+/// A folder for unfinished work. Its name is new (mkdtemp), only its owner may access it, and it is locked
+/// during the owner's lifetime, so that a later process recognises a folder that a killed process left. The
+/// destructor removes it.
 class UnfinishedFolder {
  public:
-  /// Makes `beside`/`prefix` with six letters added. Throws Error, Input or Resource, that names `beside`.
+  /// Creates `beside`/`prefix` with six letters added. Throws Error, Input or Resource, that names `beside`.
   UnfinishedFolder(const std::filesystem::path& beside, const std::string& prefix);
   UnfinishedFolder(const UnfinishedFolder&) = delete;
   UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
   ~UnfinishedFolder();
 
   const std::filesystem::path& path() const { return path_; }
-  /// Whether its files were given away by keep().
+  /// Whether keep() was called.
   bool is_kept() const { return path_.empty(); }
-  /// From now on the folder is somebody else's: it is neither removed nor listed. Returns its path.
+  /// Passes the folder to the caller: it is no longer removed or listed. Returns its path.
   std::filesystem::path keep();
 
  private:
@@ -29,8 +29,8 @@ class UnfinishedFolder {
   int lock_ = -1;
 };
 
-/// What takes back something that others see already and that is not finished: called when the object goes,
-/// or by remove_unfinished(), whichever comes first.
+/// Undoes a step that is visible to others before it is finished. Runs when the object is destroyed or in
+/// remove_unfinished(), whichever comes first.
 class Undo {
  public:
   explicit Undo(std::function<void()> undo);
@@ -42,18 +42,19 @@ class Undo {
   std::function<void()> undo_;
 };
 
-/// Makes the folders that a name in a folder leads through, and that folder itself never: it may have been
-/// removed for good meanwhile, by remove_unfinished(). Throws std::filesystem::filesystem_error.
+/// Creates the subfolders of `folder` along the path `name`, but never `folder` itself, because
+/// remove_unfinished() may have removed it. Throws std::filesystem::filesystem_error.
 void create_folders_in(const std::filesystem::path& folder, const std::filesystem::path& name);
 
-/// Whether the owner of an unfinished folder is gone; then `work` is called while nobody else can find the
-/// same. False, too, where the file system knows no locks.
+/// If the owner of an unfinished folder is gone, calls `work` while holding the folder's lock, so that no
+/// other process does the same, and returns true. Returns false otherwise, and where the file system has no
+/// locks.
 bool if_abandoned(const std::filesystem::path& folder, void (*work)(const std::filesystem::path&, void*),
                   void* argument);
-/// Removes the folders in `beside` whose names are `prefix` and six letters, and whose owners are gone.
+/// Removes the folders in `beside` whose names are `prefix` and six letters and whose owners are gone.
 void remove_abandoned(const std::filesystem::path& beside, const std::string& prefix);
 
-/// Held while finished files take their names: remove_unfinished() lets that step end.
+/// Held while finished files are renamed into place. remove_unfinished() waits for that step.
 class NamesChange {
  public:
   NamesChange();
@@ -62,10 +63,10 @@ class NamesChange {
   std::unique_lock<std::timed_mutex> held_;
 };
 
-/// Removes every unfinished folder of this process and calls what each Undo holds, for a process that ends
-/// without its destructors. No folder can be made or removed afterwards: a thread that tries waits for the
-/// end. Waits at most 100 ms for a NamesChange, and 10 s for a folder that is being removed; after that it
-/// leaves all to the next run.
+/// Removes every unfinished folder of this process and runs every Undo, for a process that ends without its
+/// destructors. Afterwards no folder can be created or removed: a thread that tries blocks until the process
+/// ends. Waits at most 100 ms for a NamesChange, and 10 s for a folder that is being removed; after that it
+/// leaves the folders to the next run.
 void remove_unfinished() noexcept;
 
 }  // namespace octotomy::voxel

@@ -7,8 +7,8 @@
 
 namespace octotomy::voxel {
 
-/// An orthographic way of looking: unit LPS vectors, right = look x up. A point's position in a view, in
-/// millimetres, is (p . right, p . up).
+/// An orthographic view: unit LPS vectors, right = look x up. The position of a point p in the view is (p .
+/// right, p . up), in millimetres.
 struct View {
   glm::dvec3 look{0, 1, 0};
   glm::dvec3 up{0, 0, 1};
@@ -23,11 +23,11 @@ bool is_frame(const View& view);
 
 /// A named view (anterior, posterior, left, right, superior, inferior) or "AZ,EL" in degrees: from anterior,
 /// azimuth turns the observer towards the patient's left, elevation raises the observer. Throws
-/// std::invalid_argument naming the text and the views there are.
+/// std::invalid_argument with the text and the valid names.
 View parse_view(const std::string& text);
 
-/// What the left and the right eye see of what a view shows: the observer turned about `up`, by half the
-/// angle between the eyes each. Precondition: finite.
+/// The views of the left and the right eye: the observer is turned about `up` by half of `between_deg` to
+/// each side. Precondition: finite.
 std::array<View, 2> stereo_pair(const View& view, double between_deg);
 
 }  // namespace octotomy::voxel

@@ -10,15 +10,16 @@
 
 namespace octotomy::voxel {
 
-/// What to do about the error number of a call that could not write, to end a message: empty if there is no
-/// room or limit to raise.
+/// Advice for the error number of a failed write, to append to a message; empty if there is no room or limit
+/// to raise.
 inline std::string way_out_of(int number) {
   if (number == EFBIG) return "; raise the limit on the size of files (ulimit -f)";
   return number == ENOSPC || number == EDQUOT ? "; make room on the disk" : "";
 }
 
-/// Throws Error: the file, the reason by the error number of the failed call, and what to do. Input or
-/// Resource; a stream that fails for no known reason, 0, most likely met a full disk.
+/// Throws Error with the file, the reason from the error number of the failed call, and advice. The code is
+/// Input or Resource. The number 0 stands for a stream that failed for an unknown reason, most likely a full
+/// disk.
 [[noreturn]] inline void refuse_unwritten(const std::filesystem::path& path, int number) {
   throw Error(number == 0 ? ErrorCode::Resource : code_of_errno(number),
               path.string() + ": cannot be written" +

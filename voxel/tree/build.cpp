@@ -34,7 +34,7 @@ struct BlockGrid {
   }
 };
 
-// Fills rows along x, in parallel; `fill` gets the place of a row's first block.
+// Fills the grid's rows along x in parallel; `fill` gets the position of a row's first block.
 using FillRow = std::function<void(const glm::ivec3& first, std::span<BlockRef> row)>;
 void fill_rows(BlockGrid& grid, const FillRow& fill) {
   tbb::parallel_for(0, grid.dims.y * grid.dims.z, [&](int row) {
@@ -43,7 +43,7 @@ void fill_rows(BlockGrid& grid, const FillRow& fill) {
   });
 }
 
-// The same by `make`, which gives one block.
+// A FillRow from `make`, which returns one block.
 template <typename Make>
 FillRow block_by_block(const Make& make) {
   return [&make](const glm::ivec3& first, std::span<BlockRef> row) {
@@ -75,7 +75,8 @@ BlockGrid parents(const BlockGrid& children, int parent_height) {
   return grid;
 }
 
-// Blocks of height 2 cover dims * 16 voxels from the universe's first voxel on; all others are empty.
+// Builds an octree from a grid of dims blocks of height 2, from the universe's first voxel on; all others are
+// empty.
 Octree octree_of_grid(const Universe& universe, const glm::ivec3& dims, const FillRow& fill) {
   BlockGrid grid(dims);
   fill_rows(grid, fill);
@@ -149,7 +150,7 @@ Octree octree_of_window(const Universe& universe, const Scene& scene, double low
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(y)) *
            static_cast<std::size_t>(dims.x);
   };
-  // Samples are read in their order in memory, whole rows of them.
+  // Samples are read in whole rows, in the order in which they lie in memory.
   const auto build = [&](const auto& row_bits) {
     return octree_of_grid(universe, (dims + 15) / 16, [&](const glm::ivec3& first, std::span<BlockRef> row) {
       const glm::ivec3 origin = first * 16;

@@ -16,16 +16,16 @@ namespace octotomy::voxel {
 /// Parallel; same bits on any thread count. Cost: one pass over the samples.
 Octree octree_of_window(const Universe& universe, const Scene& scene, double low, double high);
 
-/// The octree whose 16 x 16 x 16 blocks `make` gives, called once for every such block of the universe, from
-/// several threads, with the block's number along each axis. It returns the block as make_leaf_block() makes
-/// it. Voxels beyond the universe must be left empty.
+/// The octree whose 16 x 16 x 16 blocks `make` returns. `make` is called once for every such block of the
+/// universe, from several threads, with the block's number along each axis, and returns the block in the form
+/// of make_leaf_block(). Voxels beyond the universe must be empty.
 Octree octree_of_blocks(const Universe& universe, const std::function<Block(const glm::ivec3& block)>& make);
 
 /// Rows of 16 voxels of a block of height 2, by y + 16 z; bit x is voxel x.
 using BlockRows = std::array<std::uint16_t, 256>;
 Block leaf_block_of_rows(const BlockRows& rows);
 
-/// The voxels low..high, both included, as far as they lie in the universe.
+/// The voxels of the box low..high, both included, that lie in the universe.
 Octree octree_of_box(const Universe& universe, const glm::ivec3& low, const glm::ivec3& high);
 
 }  // namespace octotomy::voxel

@@ -9,8 +9,9 @@
 
 namespace octotomy::voxel {
 
-/// A row of a slice as bits by corner: `behind` is the voxel before corner x of the word, `ahead` the one
-/// after it. Rows outside the universe are empty; the last corner of a row has a word of its own.
+/// A row of a slice as bits indexed by corner. Bit i of `ahead` is the voxel after corner i of the word, bit
+/// i of `behind` the voxel before it. Rows outside the universe are empty. A row has one corner more than
+/// voxels, which may need a further word.
 struct RowBits {
   const std::uint64_t* words = nullptr;
   int count = 0;
@@ -18,7 +19,7 @@ struct RowBits {
   std::uint64_t behind(int word) const { return (ahead(word) << 1) | (word > 0 ? ahead(word - 1) >> 63 : 0); }
 };
 
-/// Row y, which may lie outside, of a slice or of none.
+/// Row y of a slice. Empty if y lies outside or `slice` is null.
 inline RowBits row_of(const SliceBits* slice, int y) {
   if (slice == nullptr || y < 0 || y >= slice->side) return {};
   return {slice->row(y), slice->words_per_row};

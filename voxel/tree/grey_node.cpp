@@ -64,7 +64,7 @@ class WindowCounter {
 MinMax range_of_node(const GreyOctree& grey, const glm::ivec3& origin, int side_log2) {
   if (side_log2 <= 1) return range_of_samples(grey, origin, 1 << side_log2);
   const bool is_block = side_log2 % 2 == 0;
-  const int height = side_log2 / 2;  // of the block, or of the eight that the node is made of
+  const int height = side_log2 / 2;  // of the block, or of the eight blocks that form the node
   MinMax range = range_of_block(grey, origin, height);
   for (int number = 1; number < (is_block ? 1 : 8); ++number)
     range.widen(range_of_block(grey, origin + (octant(number) << (2 * height)), height));
@@ -77,7 +77,8 @@ GreyNode::GreyNode(const GreyOctree& grey, Window16 window, const glm::ivec3& or
       origin_(origin),
       scan_(scan),
       status_(window_status(range_of_node(grey, origin, scan.side_log2()), window.low, window.high)) {
-  // Elsewhere the range tells by itself: what lies beyond the scan is not in the window.
+  // If the window excludes the background, the range alone decides, because voxels beyond the scan are not in
+  // the window.
   if (status_ == Status::Empty || !grey.window_meets_background(window.low, window.high)) return;
   const Status scanned = scan.status();
   if (scanned != Status::Full) status_ = scanned;

@@ -9,12 +9,12 @@
 
 namespace octotomy::voxel {
 
-/// A node of the min-max octree as the thesis has it (3.3.2), seen through a window: Full if all its
-/// samples are the scan's and lie in the window, Empty if their range misses the window, otherwise Partial. A
-/// value that looks into its grey octree, which must outlive it.
+/// A node of the thesis's min-max octree (3.3.2), seen through a window. Full if all its samples belong to
+/// the scan and lie in the window; Empty if their range misses the window or none of them belongs to the
+/// scan; otherwise Partial. Refers to its grey octree, which must outlive it.
 class GreyNode {
  public:
-  /// The Empty root of no octree.
+  /// An Empty root without an octree.
   GreyNode() = default;
   static GreyNode root(const GreyOctree& grey, Window16 window);
 

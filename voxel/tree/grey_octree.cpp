@@ -133,7 +133,7 @@ GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int
                           const Progress& progress) {
   check(scene);
   GreyOctreeBuild build(universe, scene, background, grey_step(scene));
-  // Threads wait for each other at each report, so they are no more than a percentage shows.
+  // Every report waits for all threads, so there are at most 50.
   const int slices = scene.lattice.dims.z, reports = progress.report ? std::min(slices, 50) : 1;
   for (int i = 1; i <= reports; ++i) {
     build.add(slices * i / reports);
@@ -174,7 +174,8 @@ GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t backgrou
 
 namespace {
 
-// Widens a box by the samples of a block of height `height`, or 1 for a leaf, that are not the background.
+// The box of the samples that differ from the background. add() widens it by a block of the given height; 1
+// is a leaf and 0 a voxel.
 class BoxOfSamples {
  public:
   explicit BoxOfSamples(const GreyOctree& grey) : grey_(grey) {}

@@ -20,8 +20,8 @@
 
 namespace octotomy::voxel {
 
-/// Smallest and largest sample of a block. Without default values, so that bricks are first touched by the
-/// threads that fill them.
+/// Smallest and largest sample of a block. Has no default values, so that a brick's memory is first written
+/// by the thread that fills it.
 struct MinMax {
   std::int16_t low;
   std::int16_t high;
@@ -32,7 +32,7 @@ struct MinMax {
   }
 };
 
-/// The range of all.
+/// The union of 64 ranges.
 inline MinMax joined(const std::array<MinMax, 64>& ranges) {
   MinMax whole = ranges.front();
   for (const MinMax& range : ranges) whole.widen(range);
@@ -54,22 +54,23 @@ struct GreyBrick {
 };
 
 /// A min-max octree of int16 samples over dense leaves (thesis 3.3.2, the hybrid tree of A.6). A window
-/// chosen later makes an object of it. Voxels beyond the scan have the background as their sample and belong
-/// to no window. A sample counts steps of step(), which is one in the scan's own unit where its samples are
-/// whole numbers of 16 bits. Immutable; copies share.
+/// chosen later selects an object from it. Voxels beyond the scan have the background as their sample and
+/// belong to no window. A sample counts steps of step() in the scan's unit; the step is 1 where the scan's
+/// samples are whole numbers of 16 bits. Immutable; copies share their data.
 class GreyOctree {
  public:
   const Universe& universe() const { return storage_->universe; }
   /// Value of voxels beyond the scan.
   std::int16_t background() const { return storage_->background; }
-  /// What a step of the samples is in the scan's unit: a power of two.
+  /// Size of one step of the samples in the scan's unit: a power of two.
   double step() const { return storage_->step; }
-  /// A value in the scan's unit as samples count: rounded as they are, where they are.
+  /// Converts a value from the scan's unit to steps. With a step of 1 the value is kept; otherwise it is
+  /// rounded as samples are.
   double in_steps(double value) const { return step() == 1.0 ? value : std::floor(value / step() + 0.5); }
-  /// The voxels whose sample is the scan's own.
+  /// The voxels whose sample comes from the scan.
   const Octree& scan() const { return storage_->scan; }
-  /// Whether voxels beyond the scan have samples in low..high. If so, samples alone do not tell the window's
-  /// voxels.
+  /// Whether the background lies in low..high. If so, samples alone do not determine the window's voxels,
+  /// which exclude those beyond the scan.
   bool window_meets_background(double low, double high) const {
     return low <= background() && background() <= high;
   }
@@ -90,12 +91,12 @@ class GreyOctree {
   std::int16_t sample(const glm::ivec3& voxel) const;
   std::uint64_t bytes_memory() const;
 
-  /// A copy that keeps the scan that it was made of, for on_scan_lattice().
+  /// A copy that keeps the scan from which it was built, for on_scan_lattice().
   GreyOctree with_scan(std::shared_ptr<const Scene> scene) const;
-  /// The same scan's samples on the scan's own lattice. A window under a motion is read from them, because
-  /// voxels that were interpolated already would be interpolated a second time, which loses thin walls. This
-  /// octree itself where the lattices coincide, no scan is kept or the scan is larger than a universe. The
-  /// first call builds it; later ones return the same. Any number of threads may call it.
+  /// The same scan's samples on the scan's own lattice. A window under a motion is read from these:
+  /// interpolating voxels that were interpolated before would lose thin walls. Returns this octree itself if
+  /// the lattices coincide, no scan is kept or the scan is larger than a universe. The first call builds the
+  /// result; later ones return the same. Any number of threads may call it.
   const GreyOctree& on_scan_lattice() const;
 
  private:
@@ -115,7 +116,7 @@ class GreyOctree {
     }
   };
   struct Storage {
-    /// All background: brick 0, and room for others.
+    /// Brick 0 holds the background, as do all blocks; room for `brick_count` others.
     Storage(const Universe& universe, std::int16_t background, std::size_t brick_count);
     Level& bottom() { return levels.front(); }
     /// Adds the levels above the bottom one.
@@ -127,47 +128,48 @@ class GreyOctree {
     Octree scan = Octree::empty({});
     std::vector<Level> levels;                  ///< heights 2, 3, ... up to the root's
     std::vector<std::uint32_t> brick_of_block;  ///< brick 0 is all background
-    /// With gaps: a brick that no block has was never touched, and takes no memory but within a page.
+    /// May have gaps. An unused brick is never written, so it takes memory only where it shares a page with a
+    /// used one.
     std::vector<GreyBrick, LargeAllocator<GreyBrick>> bricks;
-    std::size_t brick_count = 0;  ///< of those that blocks have, and brick 0
+    std::size_t brick_count = 0;  ///< bricks in use, brick 0 included
   };
   explicit GreyOctree(std::shared_ptr<const Storage> storage) : storage_(std::move(storage)) {}
   struct KeptScan;
   std::shared_ptr<const Storage> storage_;
-  std::shared_ptr<KeptScan> kept_;  ///< none: no scan, or one whose lattice is the universe's
+  std::shared_ptr<KeptScan> kept_;  ///< null without a scan to keep, or if on_scan_lattice() is this octree
 };
 
-/// What voxels outside of a scan hold by default: below any CT sample.
+/// Default sample of voxels outside a scan: below any CT sample.
 inline constexpr std::int16_t beyond_scan = -1024;
 
-/// The step in which a grey octree holds a scan's samples: 1 where they are whole numbers of 16 bits, else
-/// the least power of two of which the largest measured sample is at most 32,000. Cost: of float samples one
-/// pass.
+/// The step in which a grey octree stores a scan's samples: 1 if they are whole numbers of 16 bits, otherwise
+/// the least power of two for which the largest measured magnitude is at most 32,000 steps. Cost: one pass
+/// over float samples.
 double grey_step(const Scene& scene);
 
 /// Samples the scene at the universe's voxel centres: exactly if the lattices coincide, otherwise by
 /// trilinear interpolation; rounded to the nearest grey_step(), halves upward. Voxels whose centre lies
-/// outside the scene's bounds, or whose sample would be made of the scene's padding, become `background`, in
-/// the scan's unit, and are no part of scan(): no window holds them. Throws Stopped. Parallel; same bits on
-/// any thread count. GreyOctreeBuild (grey_octree_build.h) makes it while the scan is read. Memory: the
-/// samples within the scan's bounds and three per cent, without blocks of 16 x 16 x 16 voxels that have one
-/// value, as air beside a head has.
+/// outside the scene's bounds, or whose sample would depend on the scene's padding, become `background`, in
+/// the scan's unit, and are not part of scan(), so no window contains them. Throws Stopped. Parallel; same
+/// bits on any thread count. GreyOctreeBuild (grey_octree_build.h) builds it while the scan is being read.
+/// Memory: the samples within the scan's bounds plus three per cent, without blocks of 16 x 16 x 16 voxels of
+/// a single value, such as air beside a head.
 GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background = beyond_scan,
                           const Progress& progress = {});
 
-/// The grey octree whose blocks of height 2 numbered `blocks` have samples and whose others are background.
-/// `fill` sets the samples of brick `number`, that of blocks[number], and is called once each from several
-/// threads; ranges are made here. Samples beyond a universe of less than 16 voxels a side must be the
-/// background. `scan` are the voxels whose samples are the scan's; none: scan_box(). Throws
-/// std::invalid_argument if a block is outside the universe or named twice, or the scan is of another
+/// The grey octree with samples in the blocks of height 2 numbered `blocks` and the background elsewhere.
+/// `fill` sets the samples of brick `number`, which is that of blocks[number]; it is called once per brick,
+/// from several threads. Ranges are computed here. Samples beyond a universe of less than 16 voxels a side
+/// must be the background. `scan` contains the voxels whose samples belong to the scan; default: scan_box().
+/// Throws std::invalid_argument if a block is outside the universe or occurs twice, or `scan` has another
 /// universe.
 GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t background,
                                  std::span<const glm::ivec3> blocks,
                                  const std::function<void(std::size_t number, GreyBrick& brick)>& fill,
                                  std::optional<Octree> scan = std::nullopt, double step = 1.0);
 
-/// The smallest box that holds every sample other than the background: the scan's voxels as far as samples
-/// tell. Cost: the ranges of blocks, and the samples of those that the box's faces cut.
+/// The smallest box that contains every sample other than the background: the best estimate of the scan's
+/// voxels from samples alone. Cost: the ranges of blocks, and the samples of blocks that the box's faces cut.
 Octree scan_box(const GreyOctree& grey);
 
 }  // namespace octotomy::voxel

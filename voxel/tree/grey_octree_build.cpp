@@ -26,15 +26,15 @@
 // and the block of its voxels that lie in the scan, a row of blocks along x at a time, as soon as the slices
 // that it reads are final; 3 join ranges level by level up to the root, and the blocks to the scan's octree.
 //
-// Memory is what building costs: new pages take longer than what is written to them. So bricks of one value
-// are shared within a layer, and the others of a row follow each other. Samples that stay unchanged are
-// copied straight into bricks: of each run of blocks first the ranges are found, line by line; then, while
-// the run is in the cache, its samples are stored past it.
+// Memory dominates the time: mapping new pages takes longer than writing to them. So bricks of a single value
+// are shared within a layer, and the other bricks of a row are contiguous. Samples that need no resampling
+// are copied straight into bricks: for each run of blocks the ranges are computed first, line by line; then,
+// while the run is in the cache, its samples are copied by stores that bypass the cache.
 
 namespace octotomy::voxel {
 namespace {
 
-// First and last universe voxel, clamped to the universe, that a scan can reach.
+// First and last voxel of the universe that a scan can reach, clamped to the universe.
 std::pair<glm::ivec3, glm::ivec3> reach(const Universe& universe, const Lattice& lattice) {
   const glm::dmat4 universe_from_scan = glm::inverse(universe.lps_from_voxel) * lattice.lps_from_voxel;
   glm::dvec3 low(std::numeric_limits<double>::infinity());
@@ -52,11 +52,11 @@ std::pair<glm::ivec3, glm::ivec3> reach(const Universe& universe, const Lattice&
 
 using LeafRanges = std::array<MinMax, 64>;
 
-// Blocks along x that are taken over at once: their 256 rows of 512 samples stay in a cache of 256 KiB until
-// they are copied.
+// Largest number of blocks along x that are copied at once: their 256 rows of 512 samples stay in a cache of
+// 256 KiB until they are copied.
 constexpr std::size_t longest_run = 32;
 
-// Widens ranges by column by a row of samples.
+// Widens the ranges of columns by a row of samples.
 OCTOTOMY_VECTOR_CLONES void widen(const std::int16_t* samples, std::size_t width, std::int16_t* low,
                                   std::int16_t* high) {
   for (std::size_t x = 0; x < width; ++x) {
@@ -66,12 +66,12 @@ OCTOTOMY_VECTOR_CLONES void widen(const std::int16_t* samples, std::size_t width
   }
 }
 
-// The ranges of the leaves of a run of blocks along x, from the samples of the first one. Rows are read in
-// the order in which they lie in memory.
+// Computes the ranges of the leaves of a run of blocks along x; `first` is the run's first sample. Rows are
+// read in the order in which they lie in memory.
 void find_ranges(const std::int16_t* first, const RowSteps& steps, std::size_t count, LeafRanges* ranges) {
   const std::size_t width = 16 * count;
   for (std::size_t z = 0; z < 16; z += 4) {
-    // By column; then four columns to a leaf.
+    // First per column; then four columns are joined to a leaf.
     std::array<std::array<std::int16_t, 16 * longest_run>, 4> low, high;
     for (std::size_t slice = z; slice < z + 4; ++slice)
       for (std::size_t y = 0; y < 16; ++y) {
@@ -92,7 +92,7 @@ void find_ranges(const std::int16_t* first, const RowSteps& steps, std::size_t c
   }
 }
 
-// Copies a block's samples into their order by leaves.
+// Copies a block's samples into a brick, ordered by leaves.
 void copy_block(const std::int16_t* first, const RowSteps& steps, GreyBrick& brick) {
   for (std::size_t line = 0; line < 16; ++line)
     for (std::size_t row = 0; row < 16; row += 2) {
@@ -139,7 +139,7 @@ class GreyOctreeBuild::Work {
     try {
       tasks_.wait();
     } catch (...) {
-      // Nobody waits for the octree any more.
+      // The octree is no longer wanted, so its error is dropped.
     }
   }
 
@@ -175,7 +175,7 @@ class GreyOctreeBuild::Work {
     }
     glm::ivec3 first, count;
   };
-  // The bricks of one value that blocks of a layer share.
+  // The bricks of a single value that the blocks of a layer share.
   struct Shared {
     std::mutex mutex;
     std::unordered_map<std::int16_t, std::uint32_t> bricks;
@@ -185,14 +185,15 @@ class GreyOctreeBuild::Work {
   const Reached reached_;
   const ScanRows rows_;
   std::shared_ptr<GreyOctree::Storage> storage_;
-  std::vector<Block> scan_;  // by block, its voxels that lie in the scan
+  std::vector<Block> scan_;  // per block, its voxels that lie in the scan
   std::vector<Shared> shared_;
-  std::vector<std::pair<int, int>> layers_;  // not begun: how many slices they read, and z; the first last
+  std::vector<std::pair<int, int>> layers_;  // layers not begun: number of slices that each reads, and z; the
+                                             // next one last
   std::atomic<std::size_t> brick_count_ = 0;
   tbb::isolated_task_group tasks_;  // the last member: the others outlive them
 };
 
-// A row of blocks along x. Its bricks follow each other from a place of its own on.
+// A row of blocks along x. Its bricks are contiguous, in a range reserved for the row.
 class GreyOctreeBuild::Work::Row {
  public:
   Row(Work& work, int y, int z)
@@ -224,7 +225,7 @@ class GreyOctreeBuild::Work::Row {
       x += count;
     }
 #if defined(__SSE2__)
-    _mm_sfence();  // before other threads read what was stored past the cache
+    _mm_sfence();  // orders the streaming stores before other threads read them
 #endif
     work_.brick_count_ += next_ - first;
   }
@@ -237,7 +238,8 @@ class GreyOctreeBuild::Work::Row {
     return work_.scan_[work_.reached_.number(at + glm::ivec3(i, 0, 0))];
   }
 
-  // The scan's sample of a block's first voxel, if all of the block's samples are the scan's own; else null.
+  // The scan's sample at a block's first voxel, if all of the block's samples are the scan's own; otherwise
+  // null.
   const std::int16_t* scan_samples(const glm::ivec3& at) const {
     // Blocks of a smaller universe reach beyond it.
     return storage_.universe.side() < 16 ? nullptr : scan_rows_.own_samples(origin(at));
@@ -270,7 +272,7 @@ class GreyOctreeBuild::Work::Row {
     }
   }
 
-  // Gives `count` blocks along x their bricks, from the samples of the first one.
+  // Assigns bricks to `count` blocks along x and fills them; `samples` is the first block's first sample.
   void place(const glm::ivec3& at, int count, const std::int16_t* samples, const RowSteps& steps) {
     std::array<LeafRanges, longest_run> ranges;
     find_ranges(samples, steps, static_cast<std::size_t>(count), ranges.data());
@@ -279,14 +281,15 @@ class GreyOctreeBuild::Work::Row {
         copy_block(samples + 16 * i, steps, *brick);
   }
 
-  // Gives a block its brick. Returns it with its ranges, if its samples are still to be written.
+  // Assigns a brick to a block. Returns it, with its ranges, if its samples are still to be written,
+  // otherwise null.
   GreyBrick* placed(const glm::ivec3& at, const LeafRanges& ranges) {
     GreyOctree::Level& bottom = storage_.bottom();
     const std::size_t index = bottom.index(work_.reached_.first + at);
     const MinMax range = bottom.ranges[index] = joined(ranges);
     std::uint32_t& number = storage_.brick_of_block[index];
     if (range.low == range.high) {
-      if (range.low == storage_.background) return nullptr;  // has brick 0
+      if (range.low == storage_.background) return nullptr;  // brick 0 stands for it
       Shared& shared = work_.shared_[static_cast<std::size_t>(z_)];
       const std::lock_guard lock(shared.mutex);
       const auto [known, is_new] = shared.bricks.try_emplace(range.low, next_);
@@ -303,7 +306,7 @@ class GreyOctreeBuild::Work::Row {
   int y_, z_;
   const ScanRows& scan_rows_;
   GreyOctree::Storage& storage_;
-  std::uint32_t next_;                 // brick
+  std::uint32_t next_;                 // number of the next brick
   std::vector<std::int16_t> samples_;  // of a run that is resampled, z after y
 };
 

@@ -8,24 +8,25 @@
 
 namespace octotomy::voxel {
 
-/// Builds grey_octree_of() a scene while its slices become final: other threads build what the first ones
-/// determine, the bits are the same. Refers to the scene until it is finished or gone; either waits for the
-/// other threads and takes up no other work meanwhile.
+/// Builds grey_octree_of() of a scene while its slices become final. Other threads build the parts that the
+/// final slices determine; the result has the same bits. Refers to the scene until finished() or the
+/// destructor has returned. Both wait for the other threads without running unrelated tasks.
 class GreyOctreeBuild {
  public:
-  /// Preconditions: the scene passes check(); its samples need no values yet, but their place; `step` is
-  /// their grey_step(), which of whole numbers of 16 bits is 1.
+  /// Preconditions: the scene passes check(); its samples have their size, but need no values yet; `step` is
+  /// their grey_step(), which is 1 for whole numbers of 16 bits.
   GreyOctreeBuild(const Universe& universe, const Scene& scene, std::int16_t background = beyond_scan,
                   double step = 1.0);
   ~GreyOctreeBuild();
   GreyOctreeBuild(const GreyOctreeBuild&) = delete;
   GreyOctreeBuild& operator=(const GreyOctreeBuild&) = delete;
 
-  /// The scene's first `count` slices are final. Does not wait.
+  /// Reports that the scene's first `count` slices are final. Does not wait.
   void add(int count);
-  /// Waits for the other threads and tells what share of the voxels in the scan's box they have built.
+  /// Waits for the other threads. Returns the share of the scan's box, from 0 to 1, that has been built.
   double built();
-  /// Precondition: all slices were added. Throws as grey_octree_of(). To be called once.
+  /// Waits for the rest and returns the octree. Preconditions: all slices were added; not called before.
+  /// Throws as grey_octree_of().
   GreyOctree finished();
 
  private:

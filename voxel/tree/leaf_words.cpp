@@ -6,14 +6,15 @@
 namespace octotomy::voxel {
 namespace {
 
-// Nibbles of x, groups of y and layers of z that stay in their own leaf when a row is shifted by s of 4.
+// By axis and shift: the bits of a shifted word that come from the first of two neighbouring leaves.
 constexpr std::array<std::array<std::uint64_t, 4>, 3> staying{{
     {all_children, 0x7777777777777777, 0x3333333333333333, 0x1111111111111111},
     {all_children, 0x0fff0fff0fff0fff, 0x00ff00ff00ff00ff, 0x000f000f000f000f},
     {all_children, 0x0000ffffffffffff, 0x00000000ffffffff, 0x000000000000ffff},
 }};
 
-// The leaf that begins `shift` voxels into `low` along an axis and ends in the leaf after it.
+// The word of 4 x 4 x 4 voxels that begin `shift` voxels into leaf `low` along an axis and end in the next
+// leaf, `high`.
 std::uint64_t joined_words(std::uint64_t low, std::uint64_t high, int axis, int shift) {
   assert(axis >= 0 && axis < 3 && shift >= 0 && shift < 4);
   if (shift == 0) return low;
@@ -24,7 +25,7 @@ std::uint64_t joined_words(std::uint64_t low, std::uint64_t high, int axis, int 
 
 }  // namespace
 
-// `words_of(block)` gives the block's word by child number.
+// `words_of(block)` returns whether the block is empty, and a function from child number to word.
 template <typename Words>
 void LeafWords::fill(const glm::ivec3& first, const glm::ivec3& last, const Words& words_of) {
   assert(glm::all(glm::lessThan(last - first, glm::ivec3(side))));

@@ -18,14 +18,16 @@ class LeafWords {
  public:
   static constexpr int side = 8;
 
-  /// Reads the leaves of the box first..last, both included; the others of the array stay empty.
-  /// Precondition: at most `side` leaves along each axis.
+  /// Reads the leaves of the box first..last, both included; the others of the array are empty. Precondition:
+  /// at most `side` leaves along each axis.
   void read(const Octree& octree, const glm::ivec3& first, const glm::ivec3& last);
-  /// The same of the voxels whose sample lies in the window. Outside the universe it is the background.
+  /// Likewise for the voxels whose sample lies in the window. Outside the universe samples are the
+  /// background.
   void read(const GreyOctree& grey, Window16 window, const glm::ivec3& first, const glm::ivec3& last);
 
-  /// Writes the words of the 4 x 4 x 4 leaves, x fastest, that begin `shift` voxels into the box, 0..3 an
-  /// axis. Precondition: the box that was read is 5 leaves along each axis with a shift, 4 along the others.
+  /// Writes the words of the 4 x 4 x 4 leaves, x fastest, that begin `shift` voxels, 0..3 an axis, into the
+  /// box. Precondition: the box that was read has 5 leaves along each axis with a shift and 4 along the
+  /// others.
   void shifted(const glm::ivec3& shift, std::uint64_t* words) const;
 
   std::uint64_t word(int x, int y, int z) const {
@@ -33,7 +35,8 @@ class LeafWords {
     return words_[static_cast<std::size_t>(x + side * (y + side * z))];
   }
   const std::uint64_t* words() const { return words_.data(); }
-  /// Bits set in any, and in every, word of the box: all zero and all ones decide it as a whole.
+  /// Bits set in any, and in every, word of the box. The box is empty if any() is 0, and full if every() has
+  /// all bits set.
   std::uint64_t any() const { return any_; }
   std::uint64_t every() const { return every_; }
 

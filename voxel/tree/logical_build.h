@@ -19,10 +19,10 @@ inline void check_depth(int depth) {
                                 ", not " + std::to_string(depth));
 }
 
-/// Builds an octree from the statuses of its nodes in preorder. `source.open(level)` gives the next node's
-/// status. `source.close(homogeneous)` follows the children of a Partial node; `homogeneous` means all Full
-/// or all Empty, which a source may refuse and which is condensed otherwise. Either may throw. Partial is a
-/// broken precondition at the level of voxels.
+/// Builds an octree from the statuses of its nodes in preorder. `source.open(level)` returns the next node's
+/// status. `source.close(homogeneous)` is called after the children of a Partial node; `homogeneous` means
+/// that all are Full or all Empty. A source may reject that by throwing; otherwise the node is condensed.
+/// Precondition: no node at the level of voxels is Partial.
 template <typename Source>
 class LogicalBuild {
  public:

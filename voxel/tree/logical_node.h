@@ -7,16 +7,16 @@
 
 namespace octotomy::voxel {
 
-/// A node of the octree as the thesis has it (3.3): eight children, level 0 the root, level n single voxels.
-/// A value of a few words that refers to its octree, which must outlive it.
+/// A node of the thesis's octree (3.3): eight children, level 0 the root, level n single voxels. A value of a
+/// few words that refers to its octree, which must outlive it.
 class LogicalNode {
  public:
-  /// The Empty root of no octree.
+  /// An Empty root without an octree.
   LogicalNode() = default;
   static LogicalNode root(const Octree& octree);
 
   Status status() const;
-  /// The node is a cube of 2^side_log2 voxels a side: n less its level.
+  /// The node is a cube of 2^side_log2 voxels a side; side_log2 is n minus its level.
   int side_log2() const { return side_log2_; }
   /// Child x + 2y + 4z; of a homogeneous node, a virtual child of its status. Precondition: side_log2() > 0.
   LogicalNode child(int number) const;
@@ -25,8 +25,8 @@ class LogicalNode {
   LogicalNode(int side_log2, BlockRef block, std::uint64_t word, std::uint64_t mask)
       : block_(block), word_(word), mask_(mask), side_log2_(side_log2) {}
 
-  // Sides of 8 voxels and up: the block, or for odd logarithms the children `mask_` of it. Below: the bits
-  // `mask_` of a leaf's word.
+  // From 8 voxels a side up: the block or, for odd side_log2, its children `mask_`. Below: the bits `mask_`
+  // of a leaf's word.
   BlockRef block_;
   std::uint64_t word_ = 0;
   std::uint64_t mask_ = all_children;

@@ -21,7 +21,7 @@ constexpr std::uint64_t octant_mask(int octant) {
   return octant_children << (2 * octant_child(octant));
 }
 
-/// Moves the bit of each index to the index in which bits `low` and `high` are exchanged. Source: delta
+/// Moves every bit to the index in which bits `low` and `high` of its own index are exchanged. Source: delta
 /// swaps, Knuth, The Art of Computer Programming 4A, 7.1.3.
 template <int low, int high>
 constexpr std::uint64_t exchange_index_bits(std::uint64_t word) {

@@ -10,18 +10,19 @@
 
 namespace octotomy::voxel {
 
-/// A set of voxels of a universe. A value: copies share their nodes, cost nothing and never change, so any
+/// A set of voxels of a universe. Copies share their nodes, which never change, so copying is cheap and any
 /// number of threads may read one.
 class Octree {
  public:
   static Octree empty(const Universe& universe) { return Octree(universe, Block()); }
   static Octree full(const Universe& universe);
-  /// Takes a root block of the universe's height. Precondition: no voxel outside the universe.
+  /// `root` is a block of root_height(universe.depth). Precondition: it has no voxel outside the universe.
   Octree(const Universe& universe, Block root) : universe_(universe), root_(std::move(root)) {}
 
   const Universe& universe() const { return universe_; }
   BlockRef root() const { return root_.ref(); }
-  /// The root block reaches 4^height voxels a side: at least, and up to twice, the universe.
+  /// The root block has 4^height voxels a side: at least the universe's side, at most twice that side or 16
+  /// voxels.
   int root_height() const { return octotomy::voxel::root_height(universe_.depth); }
 
   bool is_empty() const { return root().is_empty(); }
@@ -31,7 +32,7 @@ class Octree {
   BlockRef leaf_block(const glm::ivec3& number) const;
   /// Voxels outside the universe are not contained.
   bool contains(const glm::ivec3& voxel) const;
-  /// Same universe, same voxels; shared parts are not looked at again.
+  /// Whether universe and voxels are the same. Shared nodes are not compared.
   bool operator==(const Octree& other) const;
 
  private:
@@ -39,8 +40,8 @@ class Octree {
   Block root_;
 };
 
-/// Nodes of one logical level as the thesis counts them: level 0 is the root, level n holds single voxels;
-/// children of homogeneous nodes do not exist.
+/// Numbers of nodes of one logical level as the thesis counts them: level 0 is the root, level n holds single
+/// voxels; homogeneous nodes have no children.
 struct LevelCount {
   int level = 0;
   std::uint64_t partial = 0;
@@ -50,7 +51,7 @@ struct LevelCount {
 /// Levels 1..n of the condensed octree (thesis 3.3, 3.4).
 std::vector<LevelCount> level_counts(const Octree& octree);
 
-/// Bytes of the nodes reachable from the octree; nodes met twice count once.
+/// Bytes of the nodes reachable from the octree; a shared node counts once.
 std::uint64_t bytes_memory(const Octree& octree);
 
 }  // namespace octotomy::voxel

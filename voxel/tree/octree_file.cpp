@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-//
-// Writing: 1 cut what there is into raw pieces, 2 compress them in parallel, 3 put them behind the header.
-// Reading: 1 walk the sections by their stored sizes, 2 check and decompress them in parallel, 3 build.
+// Writing: 1 cut the tree's data into raw pieces, 2 compress them in parallel, 3 append them to the header.
+// Reading: 1 walk the sections by their stored sizes, 2 check and decompress them in parallel, 3 build the
+// tree.
 #include "voxel/tree/octree_file.h"
 
 #include <algorithm>
@@ -33,13 +32,13 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::array<std::uint8_t, 8> magic{0x89, 'O', 'C', 'T', 'R', 'E', 'E', '\n'};
-/// Version 2 has the section SCAN, which a tree may need.
+/// Version 2 adds the section SCAN, and version 3 the section STEP.
 constexpr std::uint32_t first_version = 1;
 constexpr std::uint32_t last_version = 3;
 constexpr std::size_t header_bytes = 32;
 constexpr std::size_t section_header_bytes = 16;
 constexpr std::size_t largest_raw = std::size_t{1} << 20;
-/// A zstd block of 2^17 equal bytes takes 4 stored ones: no frame expands further.
+/// A zstd block of 2^17 equal bytes takes 4 stored bytes, so no frame expands further.
 constexpr std::size_t largest_ratio = std::size_t{1} << 15;
 constexpr std::size_t bricks_per_section = 64;
 constexpr std::size_t samples_per_brick = 4096;
@@ -64,7 +63,7 @@ std::uint32_t checksum(std::span<const std::uint8_t> bytes, std::uint32_t before
   return static_cast<std::uint32_t>(crc32_z(before, bytes.data(), bytes.size()));
 }
 
-// Of section `number`, whose header and stored bytes begin at `section`.
+// Checksum of section `number`, whose header and stored bytes begin at `section`.
 std::uint32_t section_checksum(std::uint32_t number, const std::uint8_t* section, std::size_t stored) {
   std::array<std::uint8_t, 4> number_bytes;
   put(number, number_bytes.data());
@@ -75,7 +74,7 @@ std::uint32_t section_checksum(std::uint32_t number, const std::uint8_t* section
 
 // Writing ------------------------------------------------------------------------------------------------
 
-/// A section before it is compressed: `make` gives its raw bytes when its turn comes.
+/// A section to be written: `make` returns its raw bytes when it is compressed.
 struct Piece {
   const char* name;
   std::function<Bytes()> make;
@@ -105,7 +104,7 @@ Bytes universe_bytes(const Universe& universe, std::int16_t background) {
   return raw;
 }
 
-// The sample that predicts number i of a leaf, if that is not its first.
+// Index of the sample that predicts sample i of a leaf. Precondition: i > 0.
 constexpr std::size_t predictor(std::size_t i) {
   return (i & 3) != 0 ? i - 1 : (i & 12) != 0 ? i - 4 : i - 16;
 }
@@ -326,7 +325,7 @@ class Reader {
       if (!damage[number].empty()) refuse_damaged(named(number) + ", " + damage[number]);
   }
 
-  // What is wrong with the section, if anything is.
+  // Checks and decompresses a section. Returns the reason if it is damaged.
   std::optional<std::string> unpack(std::uint32_t number, Section& section) const {
     const std::uint8_t* start = bytes_.data() + section.start;
     if (get<std::uint32_t>(start + 4) != section_checksum(number, start, section.stored.size()))
@@ -341,7 +340,7 @@ class Reader {
     return std::nullopt;
   }
 
-  // The raw bytes of the sections of a name that come next; empty if there are none.
+  // The joined raw bytes of the next sections if they have the given name; empty otherwise.
   Bytes take(const std::string& name) {
     Bytes raw;
     for (; next_ < sections_.size() && sections_[next_].name == name; ++next_) {
@@ -419,7 +418,7 @@ class Reader {
     std::vector<glm::ivec3> blocks;
     std::size_t bits = 0;
     for (const std::uint8_t byte : grid) bits += static_cast<std::size_t>(std::popcount(byte));
-    // Each brick is in the file before one is made.
+    // Checks that the file has every brick before any is allocated.
     const std::size_t first = next_;
     std::size_t samples = 0;
     for (; next_ < sections_.size() && sections_[next_].name == "BRIK"; ++next_) {

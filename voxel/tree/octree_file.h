@@ -20,11 +20,11 @@
 //   sections  each 4 letters of name, u32 checksum, u32 raw bytes, u32 stored bytes; then the stored bytes,
 //             one zstd frame of the raw ones
 //
-// A checksum is a CRC-32 (zlib's); a section's is of its number, counted from 0 as a u32, and all of the
-// section but the checksum itself. So a burst of 32 flipped bits is always found, any other damage but for
-// one in 2^32, and one in 2^64 where zstd's own checksum of the raw bytes sees it too. A section's raw bytes
-// are at most 2^20. Longer data are cut into sections of the same name, all but the last of that length.
-// Sections follow in this order:
+// A checksum is a CRC-32 (zlib's). A section's covers its number, a u32 counted from 0, and all of the
+// section except the checksum. So a burst of up to 32 flipped bits is always detected; other damage is missed
+// once in 2^32 cases, or once in 2^64 where zstd's own checksum of the raw bytes covers it too. A section's
+// raw bytes are at most 2^20. Longer data are cut into sections of the same name, all but the last of that
+// length. Sections follow in this order:
 //
 //   UNIV  u32 depth, i32 background (0 but for grey), 16 f64 of lps_from_voxel, column by column
 //   NAME  UTF-8, may be missing
@@ -48,26 +48,27 @@
 
 namespace octotomy::voxel {
 
-/// What an .octree file holds.
+/// Contents of an .octree file.
 struct OctreeFile {
   std::variant<Octree, GreyOctree, PartialOctree> tree;
   std::string name;      ///< for people, at most 2^20 bytes
-  std::string metadata;  ///< JSON by convention; kept as it is
+  std::string metadata;  ///< JSON by convention; stored unchanged
 };
 
 const Universe& universe(const OctreeFile& file);
 
-/// The file's bytes: the same for the same voxels, for any history of the tree and any number of threads.
+/// The file's bytes. They depend on the voxels alone, not on the tree's history or the number of threads.
 /// Parallel. Memory: the packed tree and, for grey, the compressed bricks.
 std::vector<std::uint8_t> octree_file_bytes(const OctreeFile& file);
 
-/// The inverse; `source` begins what is thrown. Throws Error with the code Input, naming the section and its
-/// first byte if a checksum, a size or a tree is not right, if the file is cut short or goes on, and
-/// if it is of a later version. Every checksum is verified before anything is built. Memory: at most 2^15
-/// times the bytes, which is as far as zstd compresses, and an empty tree of the universe.
+/// The inverse. `source` begins every message. Throws Error with the code Input, which names the section and
+/// its first byte, if a checksum, a size or a tree is wrong; also if the file ends early, goes on after its
+/// end, or has a later version. Every checksum is verified before anything is built. Memory: at most 2^15
+/// times the bytes, the highest compression of zstd, and an empty tree of the universe.
 OctreeFile octree_file_of_bytes(std::span<const std::uint8_t> bytes, const std::string& source);
 
-/// Writes beside and renames into place. Throws Error, Input or Resource, with path and reason.
+/// Writes a file beside `path` and renames it into place. Throws Error, Input or Resource, with path and
+/// reason.
 void write_octree(const OctreeFile& file, const std::filesystem::path& path);
 /// Throws Error with path and reason, and as octree_file_of_bytes().
 OctreeFile read_octree(const std::filesystem::path& path);

@@ -9,7 +9,7 @@
 namespace octotomy::voxel {
 namespace {
 
-// A block of height 6 holds 2^36 voxels: counts need 64 bits, and a Full child of height h holds 64^h.
+// Number of voxels of a block. A block of height 6 has 2^36, so counts need 64 bits.
 constexpr std::uint64_t voxels_of_height(int height) {
   return std::uint64_t{1} << (6 * height);
 }

@@ -20,10 +20,10 @@
 
 namespace octotomy::voxel {
 
-/// How many of the voxels of a node, a block or a box are in the object: none, all, or some.
+/// Whether none, all or some of the voxels of a node, a block or a box are in the object.
 enum class Status : std::uint8_t { Empty, Full, Partial };
 
-/// Status of the children, or the voxels, of a mask: those in `full` are Full, those outside `some` Empty.
+/// Status of the children or voxels in `mask`: those in `full` are Full, those outside `some` Empty.
 constexpr Status status_of(std::uint64_t mask, std::uint64_t full, std::uint64_t some) {
   if ((full & mask) == mask) return Status::Full;
   return (some & mask) == 0 ? Status::Empty : Status::Partial;
@@ -38,7 +38,7 @@ inline glm::ivec3 child_place(int child) {
   return {child & 3, (child >> 2) & 3, child >> 4};
 }
 
-/// Height of the root block of a universe of 2^depth voxels a side: the least that holds it, at least 2.
+/// Height of the root block of a universe of 2^depth voxels a side: the least that covers it, at least 2.
 constexpr int root_height(int depth) {
   return depth <= 4 ? 2 : (depth + 1) / 2;
 }
@@ -55,9 +55,10 @@ struct Node {
   std::int32_t height = 2;
   std::uint64_t voxel_count = 0;  ///< voxels of the object inside this block
   std::uint64_t full = 0;         ///< children that are Full
-  std::uint64_t partial = 0;      ///< children with a payload each, in ascending child number
+  std::uint64_t partial = 0;      ///< children that have a payload, which are stored in ascending child
+                                  ///< number
 
-  /// Place of child `child` of `partial` in the payload. Precondition: its bit is set.
+  /// Index of a child in the payload. Precondition: its bit of `partial` is set.
   int rank(int child) const {
     assert((partial >> child) & 1);
     return std::popcount(partial & ((std::uint64_t{1} << child) - 1));
@@ -72,7 +73,7 @@ struct Node {
   const Node** nodes() { return reinterpret_cast<const Node**>(this + 1); }
 };
 
-/// A block as a walk meets it: Empty (nullptr), Full, or a node that it does not own.
+/// A block without ownership, as walks pass it: Empty (nullptr), Full, or a node.
 class BlockRef {
  public:
   constexpr BlockRef() = default;
@@ -107,13 +108,14 @@ class BlockRef {
   std::uintptr_t bits_ = 0;
 };
 
-/// Fetches a node's count ahead of retain() or release(): atomic operations wait for memory one after the
-/// other, plain ones overlap.
+/// Prefetches a node's reference count before retain() or release(): atomic operations wait for memory one
+/// after the other, prefetches overlap.
 inline void prefetch_references(const Node* node) {
   __builtin_prefetch(&node->references, 1);
 }
 
-/// Takes and gives back one reference; giving back the last one frees the node and what it alone held.
+/// retain() adds a reference to a block's node; release() removes one. Removing the last one frees the node
+/// and releases its children.
 void retain(BlockRef block);
 void release(BlockRef block);
 
@@ -121,7 +123,7 @@ void release(BlockRef block);
 class Block {
  public:
   Block() = default;
-  /// Takes over a reference that the caller holds.
+  /// Takes over a reference from the caller.
   static Block adopt(BlockRef block) { return Block(block); }
   static Block share(BlockRef block) {
     retain(block);
@@ -144,15 +146,15 @@ class Block {
   BlockRef ref_;
 };
 
-/// The block of height 2 whose leaves of `partial` have the given words, in ascending child number. Words
+/// The block of height 2 whose leaves in `partial` have the given words, in ascending child number. Words
 /// that are all ones or zero are condensed, and so is the block.
 Block make_leaf_block(std::uint64_t full, std::uint64_t partial, const std::uint64_t* words);
 
-/// The block of height 3 and up with one block a bit of `undecided`, in ascending child number, which it
-/// takes over; condensed.
+/// A block of height 3 and up. `children` has one block per bit of `undecided`, in ascending child number;
+/// their references pass to the new block. The result is condensed.
 Block make_block(int height, std::uint64_t full, std::uint64_t undecided, std::span<BlockRef> children);
 
-/// Voxels of a block of the given height.
+/// Number of voxels of the object in a block of the given height.
 std::uint64_t voxel_count(BlockRef block, int height);
 
 }  // namespace octotomy::voxel

@@ -18,7 +18,7 @@ constexpr std::uint8_t byte_of(std::uint64_t word, int number) {
   return static_cast<std::uint8_t>(word >> (8 * number));
 }
 
-// Bytes that are 0xff, and bytes that are neither that nor 0, as a mask of eight bits each.
+// Two masks of eight bits: bytes that are 0xff, and bytes that are neither 0xff nor 0.
 struct Eight {
   std::uint8_t full = 0;
   std::uint8_t partial = 0;

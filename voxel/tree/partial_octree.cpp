@@ -14,7 +14,7 @@
 namespace octotomy::voxel {
 namespace {
 
-// Children of a block that are Full inside, and that anything touches.
+// Children of a block that are wholly inside, and children that the solid touches.
 struct Masks {
   std::uint64_t full = 0;
   std::uint64_t some = 0;
@@ -62,7 +62,7 @@ class LevelCounter {
       if (count(1, words, mask)) tally_.count_voxels(words.some, mask);
     }
   }
-  // Counts the node made of the children of `mask`; true if it is Partial.
+  // Counts the node formed by the children of `mask`. Returns whether it is Partial.
   bool count(int side_log2, const Masks& masks, std::uint64_t mask) {
     return tally_.count(side_log2, (masks.full & mask) == mask, (masks.some & mask) == 0);
   }
@@ -85,7 +85,8 @@ void for_each_boundary_leaf(BlockRef inside, BlockRef touching, int height, cons
   }
 }
 
-// The voxels inside and those of the boundary at least half filled; fractions are taken in tree order.
+// The voxels inside and the boundary voxels at least half filled. Reads fractions from `next` on, in tree
+// order.
 Block half_filled(BlockRef inside, BlockRef touching, int height, const std::uint16_t*& next) {
   assert(height >= 2);
   if (inside == touching) return Block::share(inside);

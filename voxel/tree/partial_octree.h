@@ -9,16 +9,16 @@
 
 namespace octotomy::voxel {
 
-/// A solid in its voxels with the share of each that it fills. Two octrees hold the voxels
-/// wholly inside (D1) and those that any of it touches (D2). The voxels between them are its boundary.
+/// A solid as voxels, with the share of each voxel that it fills. Two octrees contain the voxels wholly
+/// inside (D1) and the voxels that the solid touches (D2). The voxels between them are its boundary.
 struct PartialOctree {
-  /// A fraction that stands for a whole voxel.
+  /// The fraction of a wholly filled voxel.
   static constexpr std::uint16_t whole = 65535;
 
   Octree inside;
   Octree touching;
-  /// Of the voxels of touching - inside, in tree order: blocks depth first with child numbers ascending
-  /// (octree_node.h), voxels of a leaf in bit order. The share filled is fraction / whole.
+  /// One fraction per voxel of touching - inside, in tree order: blocks depth first with child numbers
+  /// ascending (octree_node.h), voxels of a leaf in bit order. The share filled is fraction / whole.
   std::vector<std::uint16_t> fractions;
 };
 
@@ -26,9 +26,9 @@ struct PartialOctree {
 /// of fractions is not that of the voxels between the two.
 void check(const PartialOctree& partial);
 
-/// Levels 1..n as the thesis counts its digital sphere (table 3.1): a node is Full only if it lies wholly
-/// inside and Empty only if nothing touches it; at level n a boundary voxel counts as Full, without
-/// being merged into its parent. Precondition: passes check().
+/// Levels 1..n as the thesis counts its digital sphere (table 3.1). A node is Full only if it lies wholly
+/// inside, and Empty only if the solid does not touch it. At level n a boundary voxel counts as Full, but is
+/// not merged into its parent. Precondition: passes check().
 std::vector<LevelCount> level_counts(const PartialOctree& partial);
 
 /// Visits every boundary voxel with its fraction, in tree order. Precondition: passes check().
@@ -39,7 +39,7 @@ void for_each_boundary_voxel(
 /// The voxels at least half filled (D4). Precondition: passes check().
 Octree at_least_half(const PartialOctree& partial);
 
-/// Volume by fractions, in cubic millimetres; sums integers, hence exact but for the fractions' rounding to
+/// Volume by fractions, in cubic millimetres. Sums integers, so the only error is the fractions' rounding to
 /// 1 / 65535 each.
 double volume_mm3(const PartialOctree& partial);
 

@@ -14,8 +14,9 @@
 namespace octotomy::voxel {
 namespace {
 
-// Interpolates between four rows of samples, at y and z 0, 1 and 0, 1: voxel i of the row lies at a share of
-// the way from sample low[i] to high[i]. What lies between samples of 16 bits rounds to 16 bits.
+// Interpolates between four rows of samples, at (y, z) = (0, 0), (1, 0), (0, 1), (1, 1). Voxel i of the row
+// lies between samples low[i] and high[i], with weight share[i] for the latter. Values between 16-bit samples
+// round to 16 bits.
 OCTOTOMY_VECTOR_CLONES void interpolate_row(const std::int16_t* const (&rows)[4], const std::int32_t* low,
                                             const std::int32_t* high, const double* share,
                                             const glm::dvec2& yz_share, std::int16_t* row) {
@@ -168,7 +169,7 @@ std::uint16_t ScanRows::interpolate(const Sample* samples, const glm::ivec3& fir
   return static_cast<std::uint16_t>(inside);
 }
 
-// The same bits as interpolate(), a row at a time.
+// As interpolate(), with the same bits, but a row at a time.
 std::uint16_t ScanRows::interpolate_along(const std::int16_t* samples, const glm::ivec3& first,
                                           std::int16_t* row) const {
   const Place& y = along_[1][static_cast<std::size_t>(first.y)];

@@ -17,35 +17,35 @@ struct RowSteps {
   std::size_t row = 0, slice = 0;
 };
 
-/// A scan's samples at the voxel centres of a universe, read along the universe's rows, 16 voxels at a time:
-/// the scan's own if the lattices coincide, otherwise by trilinear interpolation; in steps of `step`, rounded
-/// to the nearest, halves upward. Refers to the scene.
+/// A scan's samples at the voxel centres of a universe, read along the universe's rows, 16 voxels at a time.
+/// They are the scan's own if the lattices coincide, otherwise trilinearly interpolated; in steps of `step`,
+/// rounded to the nearest, halves upward. Refers to the scene, which must outlive it.
 class ScanRows {
  public:
   static constexpr int length = 16;
-  /// Voxels whose centre lies outside the scene's bounds, or whose sample would be made of the scene's
+  /// Voxels whose centre lies outside the scene's bounds, or whose sample would depend on the scene's
   /// padding, have the sample `background` and do not lie in the scan.
   ScanRows(const Universe& universe, const Scene& scene, std::int16_t background, double step);
 
-  /// How many of the scan's slices, from the first on, hold all samples that the universe's slices
-  /// first..last are made of.
+  /// Number of the scan's slices, from the first on, that contain all samples on which the universe's slices
+  /// first..last depend.
   int slices_read(int first, int last) const;
 
-  /// The sample of the first of 16 x 16 x 16 voxels from `origin` on, if all of them have samples of the
-  /// scan's own and the scan has no padding; else null. steps() lead to the others.
+  /// The sample of the first of the 16 x 16 x 16 voxels from `origin` on, if all of them are samples of the
+  /// scan and the scan has no padding; otherwise null. steps() leads to the other samples.
   const std::int16_t* own_samples(const glm::ivec3& origin) const;
   RowSteps steps() const;
 
-  /// Fills a row; bit i of the answer is set if its voxel i lies in the scan. Precondition: `first` lies in
+  /// Fills a row. Bit i of the result is set if its voxel i lies in the scan. Precondition: `first` lies in
   /// the universe. Throws std::invalid_argument if a float sample leaves the int16 range.
   std::uint16_t read(const glm::ivec3& first, std::int16_t* row) const;
 
  private:
-  /// The place of a position along one axis: between two samples, or outside.
+  /// A position along one axis: between two samples, or outside.
   struct Place {
     int low = 0;
     int high = 0;
-    double share = 0.0;  ///< of the higher one
+    double share = 0.0;  ///< weight of the higher sample
     bool inside = false;
   };
   bool is_diagonal() const;
@@ -53,7 +53,7 @@ class ScanRows {
   Place place(int axis, double p) const;
   std::array<Place, 3> places(const glm::ivec3& voxel) const;
   std::size_t index(int y, int z) const;
-  /// Whether padding is among the samples that a sample at a place is made of.
+  /// Whether an interpolated sample would depend on padding.
   template <typename Sample>
   bool is_mixed(const Sample* samples, const std::array<Place, 3>& at) const;
   template <typename Sample>
@@ -69,12 +69,12 @@ class ScanRows {
   std::int16_t background_;
   double step_;
   glm::dmat4 scan_from_universe_;
-  std::optional<glm::ivec3> offset_;         ///< of the scan's samples, if the two lattices coincide
+  std::optional<glm::ivec3> offset_;         ///< from the universe to the scan, if the two lattices coincide
   std::array<std::vector<Place>, 3> along_;  ///< per axis and voxel, if the lattices' axes are parallel
   struct {
     std::vector<std::int32_t> low, high;
     std::vector<double> share;
-  } in_row_;  ///< the places along x, an array each
+  } in_row_;  ///< the places along x, one array per member
 };
 
 }  // namespace octotomy::voxel

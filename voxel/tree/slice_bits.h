@@ -18,7 +18,8 @@ struct SliceBits {
   const std::uint64_t* row(int y) const { return words.data() + static_cast<std::size_t>(y) * words_per_row; }
 };
 
-/// The octree's voxels with index z, into a slice that is reused. Precondition: z within the universe.
+/// Reads the octree's voxels with index z into a slice, which may be reused. Precondition: z within the
+/// universe.
 void read_slice(const Octree& octree, int z, SliceBits& slice);
 
 }  // namespace octotomy::voxel

@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-//
-// Building goes layer by layer: a layer of height h is the blocks that share their z. One of height 2 is made
-// of 16 slices, one of height h of four layers of height h - 1, and layers without any voxel cost nothing.
+// Building proceeds by layers. A layer of height h consists of the blocks of height h with the same z. One of
+// height 2 is built from 16 slices, a higher one from four layers of height h - 1. Layers without voxels cost
+// nothing.
 #include "voxel/tree/slice_build.h"
 
 #include <algorithm>
@@ -56,7 +55,7 @@ class LayerBuild {
     slices_.fill(empty_slice(side_));
   }
 
-  // Blocks by x, y; no blocks at all for a layer without voxels.
+  // A layer's blocks, x fastest; none if the layer has no voxels.
   std::vector<Block> layer(int height, int z) {
     if (z >= side_) return {};
     if (height == 2) return bottom_layer(z);
@@ -116,7 +115,7 @@ class LayerBuild {
     return blocks;
   }
 
-  // The blocks of one y: a row of words of 64 voxels is four blocks wide.
+  // Builds the blocks of one y. A word of 64 voxels spans four blocks.
   void draw_blocks(int y, int count, const std::array<bool, 16>& drawn, Block* blocks) const {
     const int words_per_row = slices_.front().words_per_row;
     for (int column = 0; column < words_per_row; ++column) {
@@ -188,7 +187,7 @@ void set_row(SliceBits& slice, int y, int first, int last) {
 bool next_run(const SliceBits& slice, int y, int from, int& first, int& last) {
   assert(y >= 0 && y < slice.side && from >= 0 && from <= slice.side);
   const std::uint64_t* row = slice.row(y);
-  // The first voxel from x on that is in the object, or is not: `flip` is all ones for the latter.
+  // The first voxel from x on that is in the object, or outside it if `flip` is all ones.
   const auto find = [&](int x, std::uint64_t flip) {
     for (int word = x / 64; word < slice.words_per_row; ++word) {
       std::uint64_t bits = row[word] ^ flip;

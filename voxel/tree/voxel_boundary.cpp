@@ -11,12 +11,13 @@
 namespace octotomy::voxel {
 namespace {
 
-// The word of a leaf, numbered in leaves; outside the universe there is no voxel.
+// The word of the leaf with the given number along each axis; 0 outside the universe.
 std::uint64_t word_at(const Octree& octree, const glm::ivec3& leaf) {
   return octree.leaf_block(leaf >> 2).word(child_index(leaf.x & 3, leaf.y & 3, leaf.z & 3));
 }
 
-// The voxels of a word whose neighbour at +axis or -axis is inside, given the word beyond that side.
+// The voxels of a word whose neighbour at +axis or -axis is inside; `beyond` is the word of the next leaf on
+// that side.
 std::uint64_t neighbours(std::uint64_t word, std::uint64_t beyond, int axis, int side) {
   assert(axis >= 0 && axis < 3 && (side == 1 || side == -1));
   constexpr std::uint64_t first_layer[3]{0x1111111111111111ULL, 0x000f000f000f000fULL, 0x000000000000ffffULL};

@@ -18,7 +18,7 @@ struct Window16 {
   std::int16_t high = 0;
 };
 
-/// The int16 samples that lie in low..high; none if no int16 value does.
+/// The window of the int16 values in low..high; none if there are no such values.
 inline std::optional<Window16> window16(double low, double high) {
   constexpr double smallest = std::numeric_limits<std::int16_t>::min();
   constexpr double largest = std::numeric_limits<std::int16_t>::max();
