@@ -128,6 +128,13 @@ TEST_F(DrawnRegionFile, ClosedCurvesOfSlicerAreProjected) {
     expect_polygon(drawn, "anterior", {{1, 3}, {11, 3}, {11, 13}});
     EXPECT_EQ(drawn.findings.size(), 2u);  // the list of points, and the spline's bend
   }
+  const DrawnRegion unstated = read_drawn_region(
+      "anterior:" +
+      write("old.mrk.json", R"({"markups": [{"type": "ClosedCurve", "controlPoints": [)" + lps + "]}]}"));
+  expect_polygon(unstated, "anterior", {{1, 3}, {11, 3}, {11, 13}});
+  const std::string assumed = testing::PrintToString(unstated.findings);
+  EXPECT_NE(assumed.find("WARN, frame: the file names no coordinateSystem"), std::string::npos) << assumed;
+  EXPECT_NE(assumed.find("WARN, unit: the file names no coordinateUnits"), std::string::npos) << assumed;
   const auto said = [&](const std::string& text) {
     return refusal([&] { read_drawn_region("left:" + write("bad.mrk.json", text)); });
   };

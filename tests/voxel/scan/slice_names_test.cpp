@@ -69,5 +69,14 @@ TEST(SliceNames, ADotIsADecimalPointWhereItsDigitsAllowThat) {
   expect_order({"1.2.840.9.png", "1.2.840.10.png"});
 }
 
+TEST(SliceNames, StacksInOneFolderAreNamedAndSignsAreNoStack) {
+  EXPECT_EQ(stacks_named({"ct_1.png", "ct_2.png", "mask_1.png", "mask_2.png"}),
+            "ct_#.png (2 files) and mask_#.png (2 files)");
+  EXPECT_EQ(stacks_named({"ct_1.png", "ct_2.png", "mask_3.png"}), "");
+  EXPECT_EQ(stacks_named({"z_-10.png", "z_-5.png", "z_5.png", "z_10.png", "z_+15.png"}), "");
+  EXPECT_NE(numbered_alike(ordered_by_name({"s1_000.png", "s1_001.png", "s2_000.png", "s2_001.png"})), "");
+  EXPECT_EQ(numbered_alike(ordered_by_name({"s1_000.png", "s1_001.png", "s2_002.png", "s2_003.png"})), "");
+}
+
 }  // namespace
 }  // namespace octotomy::voxel
