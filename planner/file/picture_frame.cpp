@@ -10,7 +10,7 @@
 #include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
-#include "voxel/scan/png_chunk.h"
+#include "voxel/picture/png_chunk.h"
 #include "voxel/space/regular_file.h"
 
 namespace octotomy::planner {

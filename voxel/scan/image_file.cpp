@@ -7,10 +7,10 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "voxel/scan/encode_png.h"
+#include "voxel/picture/encode_png.h"
+#include "voxel/picture/png_chunk.h"
 #include "voxel/scan/image_file_oiio.h"
 #include "voxel/scan/picture_header.h"
-#include "voxel/scan/png_chunk.h"
 #include "voxel/scan/portable_map.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/helper_file.h"

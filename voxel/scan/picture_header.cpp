@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "voxel/scan/png_chunk.h"
+#include "voxel/picture/png_chunk.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {

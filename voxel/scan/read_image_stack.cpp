@@ -10,10 +10,10 @@
 #include <set>
 #include <utility>
 
+#include "voxel/picture/slice_names.h"
 #include "voxel/scan/image_file.h"
 #include "voxel/scan/picture_statements.h"
 #include "voxel/scan/read_raw.h"
-#include "voxel/scan/slice_names.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/printed.h"
 

@@ -161,8 +161,11 @@ TEST(DicomStacks, AnImageThatNoAttributeTellsApartStaysWithItsRival) {
     images[i].first_mm.z = i == 2 ? 2.0 : 0.0;
   }
   EXPECT_EQ(parted_at_one_place(images).size(), 1U);
-  images[1].traits[4] = "H60s";  // the kernel
-  ASSERT_STREQ(dicom_traits[4].check, "kernel");
+  const auto* kernel = std::find_if(dicom_traits.begin(), dicom_traits.end(), [](const auto& trait) {
+    return trait.check == std::string_view("kernel");
+  });
+  ASSERT_NE(kernel, dicom_traits.end());
+  images[1].traits[static_cast<std::size_t>(kernel - dicom_traits.begin())] = "H60s";
   const std::vector<DicomSubseries> parts = parted_at_one_place(images);
   ASSERT_EQ(parts.size(), 2U);
   EXPECT_EQ(parts[0].slices.size(), 2U);

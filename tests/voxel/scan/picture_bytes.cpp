@@ -8,7 +8,7 @@
 #include <zlib.h>
 
 #include "tests/voxel/scan/dicom_bytes.h"
-#include "voxel/scan/png_chunk.h"
+#include "voxel/picture/png_chunk.h"
 
 namespace octotomy::tests {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "tests/voxel/scan/picture_bytes.h"
-#include "voxel/scan/png_chunk.h"
+#include "voxel/picture/png_chunk.h"
 
 namespace octotomy::voxel {
 namespace {

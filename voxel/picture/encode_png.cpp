@@ -2,7 +2,7 @@
 // ISO/IEC 15948 (PNG), and its advice on filters (12.8): 1 of each row's five filtered forms take the one
 // whose bytes, as signed numbers, have the least sum of magnitudes; 2 deflate all rows as one stream; 3 cut
 // the stream into chunks.
-#include "voxel/scan/encode_png.h"
+#include "voxel/picture/encode_png.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include <string_view>
 #include <zlib.h>
 
-#include "voxel/scan/png_chunk.h"
+#include "voxel/picture/png_chunk.h"
 #include "voxel/space/error.h"
 #include "voxel/space/vector_clones.h"
 

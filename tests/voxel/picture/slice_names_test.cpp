@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/slice_names.h"
+#include "voxel/picture/slice_names.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/png_chunk.h"
+#include "voxel/picture/png_chunk.h"
 
 #include <cassert>
 #include <stdexcept>

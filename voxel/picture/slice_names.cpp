@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 cut each name into numbers and the text between them; 2 gather what the names of equal text have at each
 // number: signs, digits behind the dot; 3 decide for each number what its minus and its dot mean; 4 sort.
-#include "voxel/scan/slice_names.h"
+#include "voxel/picture/slice_names.h"
 
 #include <algorithm>
 #include <cctype>
