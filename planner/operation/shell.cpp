@@ -59,8 +59,12 @@ void bound(const Shell& shell, const BoundBench& bench, Object& made) {
                                         is_whole_voxels(object.voxel)};
     const verify::OffsetAsked asked{-shell.thickness_mm, cell_of(shell)};
     made.witness = verify::without(object.witness, verify::witness_of_offset(operand, asked));
-    made.bound.measured_apart_mm +=
-        verify::offset_allowance_mm(operand, asked, made.mesh.whole->measures().area_mm2);
+    // The outer surface is the operand's own, and only the inner one was found by distances.
+    const double area_mm2 = made.mesh.whole->measures().area_mm2,
+                 inner_mm2 = area_mm2 - object.mesh.whole->measures().area_mm2;
+    if (inner_mm2 > 0.0)
+      made.bound.measured_apart_mm +=
+          inner_mm2 / area_mm2 * verify::offset_allowance_mm(operand, asked, inner_mm2);
   }
   made.ends_with_universe = true;
 }
