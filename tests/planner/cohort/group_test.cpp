@@ -63,7 +63,8 @@ void write_series(const fs::path& folder, int foreign_slices) {
     char name[32];
     std::snprintf(name, sizeof name, "slice_%04d.dcm", k + 1);
     std::string bytes = tests::bytes_of(folder / name);
-    bytes.replace(bytes.find("OCTOTOMY"), 8, "STRANGER");  // PatientID
+    const std::string patient_id("\x10\x00\x20\x00LO", 6);
+    bytes.replace(bytes.find("OCTOTOMY", bytes.find(patient_id)), 8, "STRANGER");
     tests::write_bytes(folder / name, bytes);
   }
 }
@@ -98,6 +99,7 @@ TEST_F(CohortAudit, ASubjectWithAFailInAScansAuditIsDoubtfulEverywhere) {
   EXPECT_EQ(summary["doubtful"], 1);
   EXPECT_EQ(summary["without_answer"], 0);
   EXPECT_NE(summary["findings"].dump().find("1: FAIL, patient: "), std::string::npos) << summary["findings"];
+  ASSERT_EQ(summary["doubtful"], 1);
   for (const auto& measurement : summary["measurements"]) {
     EXPECT_EQ(measurement["doubtful"], nlohmann::ordered_json::array({"1"}));
     EXPECT_EQ(measurement["subjects"], 2);

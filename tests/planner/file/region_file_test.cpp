@@ -78,7 +78,7 @@ TEST(RegionFile, ContoursThatLeaveOutSlicesOfTheScanAreTold) {
   scan.lps_from_voxel[2] = {0, 0, 2, 0};
   const auto found = slices_without_contours(mask, scan, "set");
   ASSERT_TRUE(found);
-  EXPECT_HOLDS(*found, "set: 1 gap between neighbouring contours, the widest of 8 mm");
+  EXPECT_HOLDS(*found, "set: 1 gap between neighbouring contours, the widest of 8.00 mm");
   // Planes between that hold nothing state that the structure ends.
   mask.slices = {square(0.0), {2.0, {}}, {6.0, {}}, square(8.0)};
   EXPECT_FALSE(slices_without_contours(mask, scan, "set"));

@@ -59,7 +59,7 @@ std::vector<Subject> subjects_of(const std::string& name, const Scan& scan, doub
                                  const glm::dvec2& region_middle_mm) {
   const voxel::Universe universe = voxel::universe_around(voxel::bounds(scan->lattice), voxel_mm);
   const voxel::Box box = voxel::bounds(universe.lattice());
-  const Expression window = voxel::Window{voxel::grey_octree_of(universe, *scan, -1024), low};
+  const Expression window = voxel::Window{voxel::grey_octree_of(universe, *scan, -1024).with_scan(scan), low};
   DrawnRegion region{"anterior", drawn};
   for (glm::dvec2& point : region.polygons_mm.front()) point += region_middle_mm;
   const Expression mask = voxel::RegionMask{{{voxel::parse_view(region.view), region.polygons_mm}}};
