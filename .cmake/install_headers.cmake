@@ -1,12 +1,12 @@
 # Installs the public headers: those that a room's page lists under "Call from anywhere", and what they include.
 # Set SOURCE_DIR and INCLUDE_DIR (with DESTDIR in front).
 cmake_policy(VERSION 3.25)
-file(GLOB pages RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/voxel/*/README.md ${SOURCE_DIR}/brep/*/README.md
-     ${SOURCE_DIR}/convert/*/README.md ${SOURCE_DIR}/verify/*/README.md ${SOURCE_DIR}/planner/*/README.md)
+file(GLOB_RECURSE pages RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/voxel/README.md ${SOURCE_DIR}/brep/README.md
+     ${SOURCE_DIR}/convert/README.md ${SOURCE_DIR}/verify/README.md ${SOURCE_DIR}/planner/README.md)
 set(found)
 foreach(page ${pages})
   get_filename_component(room ${page} DIRECTORY)
-  if(room MATCHES "^planner/(cli|suite|verb)$")
+  if(room MATCHES "^planner/(cli|suite|verb)(/|$)")
     continue()
   endif()
   file(READ ${SOURCE_DIR}/${page} text)
