@@ -38,10 +38,10 @@ void check(const Repair& repair, const Place& place) {
     place.at(repair.hull ? "hull" : "cell_mm").refuse("is of a surface that is made anew: add 'solid'");
 }
 
-Json to_json(const std::vector<brep::Change>& changes) {
+Json changes_json(const std::vector<brep::Change>& changes) {
   Json list = Json::array();
   for (const brep::Change& change : changes)
-    list.push_back({{"step", change.step}, {"what", change.what}, {"at_mm", planner::to_json(change.at_mm)}});
+    list.push_back({{"step", change.step}, {"what", change.what}, {"at_mm", to_json(change.at_mm)}});
   return list;
 }
 
@@ -78,8 +78,8 @@ Mended mended(const Repair& repair, const std::filesystem::path& path, const vox
 
 /// What was done and what came of it.
 Json told(const Mended& made, const brep::RepairEffect& effect) {
-  return {{"changes", to_json(made.repaired.changes)},
-          {"left", to_json(made.repaired.left)},
+  return {{"changes", changes_json(made.repaired.changes)},
+          {"left", changes_json(made.repaired.left)},
           {"method", made.repaired.enclosed_cell_mm ? "enclosed" : "mended"},
           {"cell_mm", made.repaired.enclosed_cell_mm ? Json(*made.repaired.enclosed_cell_mm) : Json(nullptr)},
           {"volume_before_mm3", effect.volume_before_mm3},
@@ -89,7 +89,7 @@ Json told(const Mended& made, const brep::RepairEffect& effect) {
           {"area_before_mm2", effect.area_before_mm2},
           {"area_after_mm2", effect.area_after_mm2},
           {"largest_distance_mm", effect.largest_distance_mm},
-          {"largest_distance_at_mm", planner::to_json(effect.largest_at_mm)}};
+          {"largest_distance_at_mm", to_json(effect.largest_at_mm)}};
 }
 
 std::string definition(const Repair& repair, const Objects&) {
@@ -157,8 +157,8 @@ FileAnswer on_files(const Repair& repair, const FileBench& bench) {
                               " has it, rounded, it is none: write .ply, .off or .vtp");
   answer.json = {{"path", repair.out.string()}};
   answer.json.update(told(made, effect));
-  answer.json["before"] = planner::to_json(before);
-  answer.json["health"] = planner::to_json(after);
+  answer.json["before"] = to_json(before);
+  answer.json["health"] = to_json(after);
   answer.json["findings"] = answer.findings;
   const auto from_to = [](double was, double is, const char* unit) {
     return grouped(was, 1) + " to " + grouped(is, 1) + unit;
