@@ -9,9 +9,9 @@
 
 #include "voxel/space/regular_file.h"
 
-// The text form of CalculiX's result: a block begins " -4  DISP", its lines are " -1", the node in 10
-// characters and three values in 12 each, without space between them, and it ends " -3". Source: CalculiX
-// GraphiX manual, "Result format".
+// The text form of CalculiX's result: a block begins with " -4 DISP" and ends with " -3". Each of its lines
+// holds " -1", the node in 10 characters and three values in 12 each, without space between them. Source:
+// CalculiX GraphiX manual, "Result format".
 
 namespace octotomy::convert {
 namespace {
@@ -76,7 +76,7 @@ struct Line {
   }
 };
 
-/// The nodes' block: node n is the n-th line, as write_deck() numbers them.
+/// Reads the block of nodes. Node n is on the n-th line, as write_deck() numbers nodes.
 void read_nodes(std::ifstream& in, Line& line, Tetrahedra& tetrahedra) {
   while (line.next(in) && !line.begins(" -3")) {
     const glm::dvec3 p_mm = line.vector();
@@ -86,8 +86,9 @@ void read_nodes(std::ifstream& in, Line& line, Tetrahedra& tetrahedra) {
   }
 }
 
-/// The eight linear tetrahedra in one of second order, by its ten nodes: one at each corner, and four about
-/// the line between the middles of the first and the last side. Neighbours divide their common face alike.
+/// Divides a second-order tetrahedron, by its ten nodes, into eight linear ones: one at each corner, and four
+/// about the line between the middles of the first and the last side. Neighbours divide their common face in
+/// the same way.
 constexpr std::array<std::array<std::uint8_t, 4>, 8> linear_parts{{{0, 4, 6, 7},
                                                                    {1, 5, 4, 8},
                                                                    {2, 6, 5, 9},
@@ -97,7 +98,7 @@ constexpr std::array<std::array<std::uint8_t, 4>, 8> linear_parts{{{0, 4, 6, 7},
                                                                    {4, 9, 7, 8},
                                                                    {4, 9, 8, 5}}};
 
-/// The elements' block: two lines each, of type and nodes.
+/// Reads the block of elements. Each has two lines: its type and its nodes.
 void read_elements(std::ifstream& in, Line& line, Tetrahedra& tetrahedra) {
   constexpr std::size_t type_at = node_at + node_width, type_width = 5;
   constexpr long linear_tetrahedron = 3, quadratic_tetrahedron = 6;

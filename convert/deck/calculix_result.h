@@ -11,16 +11,16 @@
 
 namespace octotomy::convert {
 
-/// The displacements of the last step in CalculiX's .frd result, by node of the deck that write_deck() made
-/// (its node 1 is the first); none for nodes that the result lacks. Millimetres, LPS. Throws voxel::Error
+/// The displacements of the last step in CalculiX's .frd result, by node of the deck that write_deck() wrote
+/// (element 0 is its node 1); none for nodes that the result lacks. Millimetres, LPS. Throws voxel::Error
 /// (Input) with path and line if the file cannot be read, holds no displacements, a node number beyond
 /// `node_count`, or a line of another format; voxel::Stopped. Memory: 32 bytes a node.
 std::vector<std::optional<glm::dvec3>> read_displacements(const std::filesystem::path& frd,
                                                           std::size_t node_count,
                                                           const voxel::Progress& progress = {});
 
-/// A solved deck from CalculiX's .frd result: nodes to the six digits of that file, linear tetrahedra (eight
-/// for one of second order), and the displacements of the last step.
+/// A solved deck from CalculiX's .frd result: nodes with the six digits of that file, linear tetrahedra
+/// (eight for each of second order), and the displacements of the last step.
 struct SolvedDeck {
   Tetrahedra tetrahedra;
   std::vector<glm::dvec3> displacement_mm;

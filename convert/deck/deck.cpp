@@ -144,7 +144,7 @@ std::vector<Part> parts_of(const std::filesystem::path& path) {
   refuse_to_write(path, "'" + extension + "' is no deck this program writes: " + deck_extensions());
 }
 
-/// Whether a file begins as TetGen's that are written here.
+/// Whether a file begins like the TetGen files that write_deck() writes.
 bool is_own_tetgen_file(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) return false;
   std::string line(4096, '\0');
@@ -165,7 +165,7 @@ double bytes_about(const Tetrahedra& tetrahedra, const DeckOptions& options) {
          35.0 * static_cast<double>(tetrahedra.tets.size()) + 10.0 * static_cast<double>(entries);
 }
 
-/// Bytes that every format takes at least: "1,0,0,0" a node, "1,1,2,3,4" an element.
+/// The smallest size of a deck in any format: "1,0,0,0" a node, "1,1,2,3,4" an element.
 std::uint64_t least_bytes(const Tetrahedra& tetrahedra) {
   return 8 * tetrahedra.nodes_mm.size() + 10 * tetrahedra.tets.size();
 }
@@ -262,7 +262,7 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
     if (file.open(staged_files.folder() / part.path.filename(), std::ios::out | std::ios::binary) == nullptr)
       fail("cannot be written");
     std::ostream out(&file);
-    out.exceptions(std::ios::badbit);  // else the stream would swallow a stop
+    out.exceptions(std::ios::badbit);  // otherwise the stream swallows voxel::Stopped
     bool complete = true;
     try {
       part.write(tetrahedra, options, out);

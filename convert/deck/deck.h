@@ -25,7 +25,8 @@ struct NodeSet {
   std::vector<std::uint32_t> nodes;  ///< ascending
 };
 
-/// A face may be in several surfaces. Gmsh's elements have one place, so its file then repeats the face.
+/// A face may be in several surfaces. A Gmsh element belongs to one surface only, so the .msh file repeats
+/// such a face.
 struct DeckSurface {
   std::string name;
   std::vector<ElementFace> faces;
@@ -49,9 +50,9 @@ struct ElementField {
   std::vector<double> values;
 };
 
-/// The content of a deck beside its nodes and elements. Units are mm, N, MPa; frame LPS. Names are letters,
-/// digits, '_' and '-', at most 80, beginning with a letter, as both Abaqus and CalculiX accept, and differ
-/// by more than case (deck_names.h).
+/// The content of a deck apart from its nodes and elements. Units are mm, N, MPa; frame LPS. Names are
+/// letters, digits, '_' and '-', at most 80, beginning with a letter, as both Abaqus and CalculiX accept, and
+/// differ by more than case (deck_names.h).
 struct DeckOptions {
   std::string title;
   std::string element_set = "SOLID";
@@ -61,9 +62,9 @@ struct DeckOptions {
   std::vector<NodeSet> node_sets;
   std::vector<DeckSurface> surfaces;
   std::vector<ContactPair> contacts;
-  /// With any, the deck ends in a static step, linear except for contact.
+  /// If there are any, the deck ends with a static step, linear except for contact.
   std::vector<Prescribed> prescribed;
-  std::vector<ElementField> fields;  ///< written to formats that have a place for them
+  std::vector<ElementField> fields;  ///< written only to formats that support them
   std::vector<std::string> notes;    ///< lines of the header: versions, plan, quality
   bool msh_2_2 = false;              ///< .msh in Gmsh's version 2.2 instead of 4.1
   /// Ten-node tetrahedra in place of four-node ones (second_order.h): far less stiff in bending and near
@@ -72,28 +73,27 @@ struct DeckOptions {
   voxel::Progress progress{};  ///< of the bytes written, approximately
 };
 
-/// Writes a deck in the format of its extension, beside the destination and then renamed into place:
-/// .inp  Abaqus and CalculiX: C3D4 or C3D10 elements, sets of elements by region and material, sets of
-///       nodes, surfaces, materials with their sections, and the static step of what is prescribed.
-/// .feb  FEBio 4: the same, prescribed displacements as maps over node sets.
-/// .vtu  VTK unstructured grid of tetrahedra, appended raw data; points in double precision, the nodes of the
-///       surface marked by the point array `surface`, sets by arrays of their own; regions, materials and
-///       fields by elements, surfaces by bits of elements, bit i for the face opposite corner i.
-/// .msh  Gmsh 4.1 or 2.2, text: a physical volume a region, a physical surface a surface.
-/// .node TetGen's .node, .ele and .face, the last with the whole surface; linear elements only. Throws as
-///       need_own_deck_files().
-/// Throws std::invalid_argument for another extension, no tetrahedra, an element that names no node, sets and
-/// lists that do not fit, or options that a solver would refuse; voxel::Error (Input or Resource) with path
-/// and reason if a file cannot be written; voxel::Stopped. No file is left by a failure.
+/// Writes a deck in the format of its extension, beside the destination and then renamed into place: .inp
+/// Abaqus and CalculiX: C3D4 or C3D10 elements, sets of elements by region and material, sets of nodes,
+/// surfaces, materials with their sections, and a static step with the prescribed displacements. .feb FEBio
+/// 4: the same, prescribed displacements as maps over node sets. .vtu VTK unstructured grid of tetrahedra,
+/// appended raw data; points in double precision, the nodes of the surface marked by the point array
+/// `surface`, sets by arrays of their own; regions, materials and fields by elements, surfaces by bits of
+/// elements, bit i for the face opposite corner i. .msh Gmsh 4.1 or 2.2, text: a physical volume a region, a
+/// physical surface a surface. .node TetGen's .node, .ele and .face, the last with the whole surface; linear
+/// elements only. Throws as need_own_deck_files(). Throws std::invalid_argument for another extension, no
+/// tetrahedra, an element that names no node, sets and lists that do not fit, or options that a solver would
+/// refuse; voxel::Error (Input or Resource) with path and reason if a file cannot be written; voxel::Stopped.
+/// No file is left by a failure.
 void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
                 const DeckOptions& options = {});
 
-/// The files that write_deck() makes for a path: of TetGen's three, else it alone. Throws as write_deck() for
-/// another extension.
+/// The files that write_deck() writes for a path: three for TetGen, otherwise the path alone. Throws as
+/// write_deck() for another extension.
 std::vector<std::filesystem::path> deck_files(const std::filesystem::path& path);
 
-/// Throws voxel::Error (Input) where another of the deck's files than `path` names is there and is not
-/// Octotomy's: nobody asked to replace it. For refusals before the work.
+/// Throws voxel::Error (Input) if one of the deck's files other than `path` exists and was not written by
+/// Octotomy, because the caller did not ask to replace it. Call before long work.
 void need_own_deck_files(const std::filesystem::path& path);
 
 /// The extensions of write_deck() for messages: ".inp, .feb, .vtu, .msh or .node".

@@ -22,11 +22,11 @@ void write_tetgen_node(const Tetrahedra& tetrahedra, const DeckOptions& options,
 void write_tetgen_ele(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
 void write_tetgen_face(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
 
-/// What stands about the title in the first line of TetGen's files.
+/// The text before and after the title in the first line of TetGen's files.
 inline constexpr std::string_view tetgen_title_begin = "# ", tetgen_title_end = "; mm, LPS";
 
-/// A number for the solvers, in 12 digits. CalculiX reads at most 20 characters of a field; these are 19 with
-/// sign, point and exponent.
+/// A number with 12 digits. CalculiX reads at most 20 characters of a field; sign, point and exponent make at
+/// most 19.
 std::array<char, 32> deck_number(double value);
 /// All digits of a double.
 std::array<char, 32> full_number(double value);
@@ -35,7 +35,7 @@ std::array<char, 32> full_number(double value);
 std::string region_name(std::uint32_t region);
 /// One more than the largest region number.
 std::uint32_t region_count(const Tetrahedra& tetrahedra);
-/// An element's nodes in the order of most formats: corners, then the middles of sides if there are any.
+/// An element's nodes: corners, then the middles of sides if there are any. Most formats use this order.
 std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, std::size_t tet);
 /// A face's nodes: corners, then the middles of sides if there are any.
 std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, const ElementFace& face);

@@ -7,12 +7,12 @@
 
 #include "convert/deck/deck_format.h"
 
-// Abaqus keyword format in the part that CalculiX reads too. Numbers begin at 1.
+// The part of the Abaqus keyword format that CalculiX also reads. Numbers begin at 1.
 
 namespace octotomy::convert {
 namespace {
 
-/// Entries a line of a set: the most that both solvers take.
+/// Entries in a line of a set: the most that both solvers read.
 constexpr std::size_t set_line_entries = 16;
 
 /// Free text of the header in ASCII, which is all that Abaqus and CalculiX promise to read. A line that
@@ -41,7 +41,7 @@ std::string one_line(const std::string& text) {
       return std::string_view(text).substr(i).starts_with(pair.first);
     });
     line += found == known.end() ? "?" : found->second;
-    // To the next character's first byte.
+    // Move to the first byte of the next UTF-8 character.
     for (++i; i < text.size() && (static_cast<unsigned char>(text[i]) & 0xc0u) == 0x80u;) ++i;
   }
   return line;

@@ -4,7 +4,7 @@
 #include "convert/deck/deck_format.h"
 
 // Gmsh's MSH text, versions 4.1 and 2.2. A region is a volume, a surface a face, each with a physical group
-// of its name. Node sets have no place in the format but by points; they are left out. Source: Gmsh reference
+// of its name. The format can hold node sets only as points, so they are left out. Source: Gmsh reference
 // manual, section "MSH file format".
 
 namespace octotomy::convert {
@@ -17,7 +17,7 @@ int tetrahedron_type(const Tetrahedra& tetrahedra) {
   return tetrahedra.mid_nodes.empty() ? 4 : 11;
 }
 
-/// Gmsh has the middles of the last two sides the other way round.
+/// Gmsh exchanges the middles of the last two sides.
 std::vector<std::uint32_t> nodes_by_gmsh(const Tetrahedra& tetrahedra, std::size_t tet) {
   std::vector<std::uint32_t> nodes = nodes_of(tetrahedra, tet);
   if (!tetrahedra.mid_nodes.empty()) std::swap(nodes[8], nodes[9]);
@@ -50,7 +50,7 @@ void write_nodes(const std::vector<std::uint32_t>& nodes, std::ostream& out) {
   out << "\n";
 }
 
-/// Entities with the box of all nodes: a reader that wants tighter ones finds them from the nodes.
+/// Writes every entity with the bounding box of all nodes. A reader can compute tighter boxes from the nodes.
 void write_entities(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out) {
   glm::dvec3 low = tetrahedra.nodes_mm.front();
   glm::dvec3 high = low;
@@ -77,7 +77,7 @@ void write_4_1(const Tetrahedra& tetrahedra, const DeckOptions& options, std::os
   write_names(tetrahedra, options, out);
   write_entities(tetrahedra, options, out);
   const std::size_t nodes = tetrahedra.nodes_mm.size();
-  // All nodes belong to the first volume: those on an interface have no entity of their own.
+  // All nodes belong to the first volume, because nodes on an interface have no entity of their own.
   out << "$Nodes\n1 " << nodes << " 1 " << nodes << "\n3 1 0 " << nodes << "\n";
   for (std::size_t i = 1; i <= nodes; ++i) out << i << "\n";
   for (const glm::dvec3& p : tetrahedra.nodes_mm) {

@@ -13,10 +13,11 @@ namespace {
 
 constexpr std::size_t longest_name = 80;
 
-/// The names of one kind that are taken, without regard to case, with what has them.
+/// The names of one kind in use, compared without regard to case, each with a description of its holder.
 class Taken {
  public:
-  /// The earlier holder of a name that differs by case at most; none: it was free and now is taken.
+  /// Returns the holder of an equal name, compared without regard to case. If there is none, adds the name
+  /// and returns none.
   std::optional<std::string> take(const std::string& what, const std::string& name) {
     const auto [holder, is_new] = holders_.emplace(voxel::lower_case(name), what + " '" + name + "'");
     if (is_new) return std::nullopt;
@@ -28,8 +29,8 @@ class Taken {
   std::map<std::string, std::string> holders_;
 };
 
-/// Names of node sets that every deck has: .inp calls all nodes N and the element set's name, FEBio by the
-/// latter alone.
+/// Names of node sets that every deck has: the set of all nodes is named N and the element set's name in
+/// .inp, and by the element set's name alone in FEBio.
 Taken own_node_sets(const DeckOptions& options) {
   Taken taken;
   taken.take("the surface's node set", options.surface_node_set);
@@ -39,7 +40,7 @@ Taken own_node_sets(const DeckOptions& options) {
   return taken;
 }
 
-/// Names that stand beside surfaces in a format: sets of elements, Gmsh's volumes, arrays of .vtu.
+/// Names that some format keeps in one list with surfaces: sets of elements, Gmsh's volumes, arrays of .vtu.
 Taken own_surfaces(const Tetrahedra& tetrahedra, const DeckOptions& options) {
   Taken taken;
   taken.take("the element set", options.element_set);
@@ -52,7 +53,7 @@ Taken own_surfaces(const Tetrahedra& tetrahedra, const DeckOptions& options) {
   return taken;
 }
 
-/// Calls visit(kind's taken names, what, name) for each name that may be changed, in the deck's order.
+/// Calls visit(names in use of its kind, what, name) for each name that may be changed, in the deck's order.
 template <typename Options, typename Visit>
 void for_each_name(const Tetrahedra& tetrahedra, Options& options, const Visit& visit) {
   Taken materials;
@@ -65,7 +66,7 @@ void for_each_name(const Tetrahedra& tetrahedra, Options& options, const Visit& 
   for (auto& pair : options.contacts) visit(contacts, "contact pair", pair.name);
 }
 
-/// A name near to the given one that nothing has.
+/// A similar name that is not in use.
 std::string free_name(const std::string& name, const Taken& taken) {
   std::string begin = name;
   if (begin.empty() || std::isalpha(static_cast<unsigned char>(begin.front())) == 0) begin.insert(0, "X");

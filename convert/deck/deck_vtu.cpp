@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint8_t vtk_tetra = 10;
 constexpr std::uint8_t vtk_quadratic_tetra = 24;
 
-/// Blocks of appended data, each behind its size in bytes; offsets count from behind the '_'.
+/// Blocks of appended data, each preceded by its size in bytes. Offsets count from the byte after the '_'.
 class Appended {
  public:
   template <typename T>
@@ -67,7 +67,7 @@ Marks marks_of(const std::vector<std::uint32_t>& nodes, const Tetrahedra& tetrah
   return marks;
 }
 
-/// A bit for each element's face of a surface.
+/// For each element, a bit for each of its faces that is in the surface.
 Marks marks_of(const DeckSurface& surface, const Tetrahedra& tetrahedra) {
   Marks marks(tetrahedra.tets.size(), 0);
   for (const ElementFace& face : surface.faces)

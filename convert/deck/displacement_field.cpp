@@ -43,7 +43,7 @@ DisplacementField::Bins DisplacementField::bins_of(const Tetrahedra& tetrahedra)
     high_mm = glm::max(high_mm, p_mm);
   }
   const glm::dvec3 extent_mm = high_mm - bins.low_mm;
-  // About one bin an element, and few enough along an axis to fit into memory for any shape.
+  // About one bin an element. The limit along an axis bounds memory for any shape.
   constexpr double most_a_side = 400.0;
   const double longest_mm = std::max({extent_mm.x, extent_mm.y, extent_mm.z});
   bins.side_mm = std::max(
@@ -77,7 +77,7 @@ DisplacementField::DisplacementField(Tetrahedra tetrahedra, std::vector<glm::dve
       surface_tree_(surface_) {}
 
 std::optional<glm::dvec3> DisplacementField::within(const glm::dvec3& p_mm) const {
-  // A point on a face shared by two elements must be in one of them in spite of rounding.
+  // With this tolerance a point on a shared face is in one of the two elements in spite of rounding.
   constexpr double slack = 1e-9;
   const std::size_t bin = bins_.number(bins_.bin(p_mm));
   for (std::uint32_t i = bins_.first[bin]; i < bins_.first[bin + 1]; ++i) {
@@ -179,7 +179,7 @@ voxel::Scene warped(const voxel::Scene& scan, const DisplacementField& field,
         [&](auto& samples) {
           using Sample = typename std::decay_t<decltype(samples)>::value_type;
           tbb::parallel_for(std::size_t{0}, slice, [&](std::size_t i) {
-            // Voxels that have not moved keep their bits.
+            // Voxels that do not move keep their exact values.
             if (from[i] == glm::dvec3(0.0)) return;
             const double value = sampler.at(sampler.voxel(points_mm[i] + from[i]));
             samples[slice * static_cast<std::size_t>(z) + i] =

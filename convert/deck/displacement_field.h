@@ -12,8 +12,9 @@
 
 namespace octotomy::convert {
 
-/// The displacements of tetrahedra's nodes as a field over space: linear within each element; outside of all
-/// elements, that of the nearest point of their surface. So it is continuous across the surface.
+/// The displacements of tetrahedra's nodes as a field over space: linear within each element; outside all
+/// elements, the displacement of the nearest point of their surface. So the field is continuous across the
+/// surface.
 class DisplacementField {
  public:
   /// Throws std::invalid_argument if there are no elements, or not one displacement for each node.
@@ -33,7 +34,7 @@ class DisplacementField {
     glm::dvec3 low_mm{0.0};
     double side_mm = 1.0;
     glm::ivec3 dims{1};
-    std::vector<std::uint32_t> first;  ///< of each bin in `tets`, and the end
+    std::vector<std::uint32_t> first;  ///< index of each bin's first element in `tets`, then the end
     std::vector<std::uint32_t> tets;
 
     glm::ivec3 bin(const glm::dvec3& p_mm) const;
@@ -52,8 +53,8 @@ class DisplacementField {
 /// A surface whose points are displaced.
 brep::Mesh warped(const brep::Mesh& mesh, const DisplacementField& field);
 
-/// The scan of a displaced body: each voxel takes the trilinear sample of the place it came from. int16
-/// samples are rounded to the nearest integer. Throws voxel::Stopped.
+/// The scan of a displaced body: each voxel gets the trilinear sample at the position from which it moved.
+/// int16 samples are rounded to the nearest integer. Throws voxel::Stopped.
 voxel::Scene warped(const voxel::Scene& scan, const DisplacementField& field,
                     const voxel::Progress& progress = {});
 

@@ -17,7 +17,7 @@
 namespace octotomy::convert {
 namespace {
 
-/// Points along an edge of an element at most.
+/// The largest number of points along an edge of an element.
 constexpr int most_points_an_edge = 9;
 
 /// Sample points of an element, equally weighted: barycentric coordinates (i + 1/4) / n that sum to 1, with n
@@ -44,8 +44,8 @@ class Depth {
   Depth(const Tetrahedra& tetrahedra, double depth_mm)
       : surface_(surface_of(tetrahedra)), tree_(surface_), depth_mm_(depth_mm) {}
 
-  /// Moves points that are nearer to the surface to the depth, straight away from their nearest point of it.
-  /// False if there were none.
+  /// Moves each point that is nearer to the surface than the depth away from its nearest surface point until
+  /// it is at the depth. Returns false if no point was nearer.
   bool sink(std::vector<glm::dvec3>& points_mm) const {
     // A point within this share of the depth from the surface moves along the surface's normal.
     constexpr double too_near = 1e-6;
@@ -89,7 +89,7 @@ std::optional<double> mean_over(const std::array<glm::dvec3, 4>& corners_mm, con
     std::vector<glm::dvec3> sunk_mm;
     sunk_mm.reserve(points.size());
     for (const glm::dvec3& p : points) sunk_mm.push_back(scan.lps_mm(p));
-    // Below one face of a corner, a point may be near another.
+    // Near an edge or corner, a point moved away from one face may be near another face.
     constexpr int rounds = 3;
     for (int round = 0; round < rounds && depth->sink(sunk_mm); ++round)
       for (std::size_t i = 0; i < points.size(); ++i)
@@ -120,8 +120,8 @@ void check(const Tetrahedra& tetrahedra, const MaterialOptions& options) {
     throw std::invalid_argument("materials: the depth below the surface must be 0 or more");
 }
 
-/// Bins of equal ratio of Young's modulus, so that soft elements are told apart as well as stiff ones; those
-/// that hold no element are left out.
+/// Groups elements into bins of equal ratio of Young's modulus, which resolve soft elements as well as stiff
+/// ones. Empty bins are left out.
 void gather(const MaterialOptions& options, ElementMaterials& result) {
   const auto ends = std::minmax_element(result.youngs_modulus_mpa.begin(), result.youngs_modulus_mpa.end());
   const double low = *ends.first;
@@ -156,7 +156,7 @@ void gather(const MaterialOptions& options, ElementMaterials& result) {
 }  // namespace
 
 const std::vector<StiffnessLaw>& stiffness_laws() {
-  // Keyak's middle piece does not meet its neighbours exactly; it is as printed.
+  // Keyak's middle piece does not meet its neighbours exactly. Its numbers are those of the publication.
   static const std::vector<StiffnessLaw> laws = {
       {"morgan2003-femoral-neck",
        "Morgan, Bayraktar, Keaveny, J. Biomech. 36, 2003: E = 6850 rho_app^1.49",

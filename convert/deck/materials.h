@@ -23,7 +23,7 @@ enum class DensityKind { Apparent, Ash };
 /// Piecewise E = a + b rho^c in MPa, rho in g/cm3.
 struct StiffnessLaw {
   struct Piece {
-    double from_g_cm3 = 0.0;  ///< up to the next piece's
+    double from_g_cm3 = 0.0;  ///< the piece ends where the next one begins
     double a_mpa = 0.0;
     double b = 0.0;
     double c = 1.0;
@@ -37,24 +37,24 @@ struct StiffnessLaw {
 /// The published laws: morgan2003-femoral-neck, morgan2003-pooled, carter-hayes1977, keller1994, keyak1998.
 /// Each names its source.
 const std::vector<StiffnessLaw>& stiffness_laws();
-/// Throws std::invalid_argument that lists the laws.
+/// Throws std::invalid_argument, which lists the laws, for an unknown name.
 const StiffnessLaw& stiffness_law(const std::string& name);
 /// Young's modulus at a density. Precondition: rho >= 0.
 double youngs_modulus_mpa(const StiffnessLaw& law, double rho_g_cm3);
 
 struct MaterialOptions {
   std::string law = "morgan2003-femoral-neck";
-  /// None: the scan is not calibrated. A default applies and a finding says so.
+  /// None: the scan is not calibrated. Then a default applies, with a finding.
   std::optional<DensityCalibration> calibration;
-  int bins = 20;  ///< materials by stiffness, in steps of one ratio, 1..1000; more is finer
+  int bins = 20;  ///< number of materials, in steps of equal ratio of stiffness, 1..1000
   double poisson_ratio = 0.3;
-  /// The smallest Young's modulus of an element, MPa: that of marrow and of elements at the surface's edge
-  /// could otherwise be zero or negative.
+  /// The smallest Young's modulus of an element, MPa: a law may yield zero or less for marrow and for
+  /// elements at the surface.
   double least_mpa = 1.0;
-  /// Voxels at the surface hold bone and its surroundings. A point nearer to the surface than this depth
-  /// takes the scan's value at this depth, straight away from its nearest point of the surface, if that value
-  /// is larger. 0: its own value. A voxel's diagonal passes below all such voxels. In bone thinner than twice
-  /// the depth it may not reach the middle.
+  /// Voxels at the surface hold bone and its surroundings. A point nearer to the surface than this depth is
+  /// moved to this depth, away from its nearest surface point, and gets the scan's value there if it is
+  /// larger. 0: every point keeps its own value. With a voxel's diagonal all voxels at the surface are
+  /// avoided. Bone thinner than twice the depth has no point at this depth.
   double surface_depth_mm = 0.0;
   voxel::Progress progress{};  ///< of the elements
 };
@@ -64,18 +64,19 @@ struct ElementMaterials {
   std::vector<double> hu;             ///< mean over the element
   std::vector<double> density_g_cm3;  ///< never negative
   std::vector<double> youngs_modulus_mpa;
-  std::vector<DeckMaterial> materials;  ///< one a bin that holds elements: their mean
+  std::vector<DeckMaterial> materials;  ///< one for each bin with elements: their mean
   std::vector<std::uint32_t> material_of_tet;
-  double worst_ratio = 1.0;            ///< of an element's own stiffness to its material's, or the inverse
+  double worst_ratio = 1.0;  ///< largest ratio, over all elements, between an element's own stiffness and its
+                             ///< material's, either way
   std::vector<std::uint32_t> outside;  ///< elements without a point in the scan, ascending
   std::vector<std::string> findings;
 };
 
 /// Samples the scan over each element: the mean of the trilinear interpolant at points spread evenly over it,
 /// half a voxel apart or less, at most 165 (elements up to five voxels large). Points outside the scan do not
-/// count. An element without a point inside takes the nearest sample to its middle, and a finding counts
-/// them. Throws std::invalid_argument if an option is out of range, the law is unknown, or there are no
-/// elements; voxel::Stopped. Parallel; same bits on any thread count. Cost: the points. Source: Taddei et
+/// count. An element without a point in the scan gets the sample nearest to its middle, and a finding counts
+/// such elements. Throws std::invalid_argument if an option is out of range, the law is unknown, or there are
+/// no elements; voxel::Stopped. Parallel; same bits on any thread count. Cost: the points. Source: Taddei et
 /// al., "The material mapping strategy influences the accuracy of CT-based finite element models of bones",
 /// Med. Eng. Phys. 29, 2007: integration over elements instead of nodes or centroids.
 ElementMaterials element_materials(const Tetrahedra& tetrahedra, const voxel::Scene& scan,

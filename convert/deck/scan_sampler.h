@@ -18,14 +18,14 @@ class ScanSampler {
   /// An LPS point in the scan's voxel indices.
   glm::dvec3 voxel(const glm::dvec3& p_mm) const { return voxel_from_lps_ * glm::dvec4(p_mm, 1.0); }
   glm::dvec3 lps_mm(const glm::dvec3& v) const { return scan_.lattice.lps_mm(v); }
-  /// Whether a position is in one of the scan's voxels, and its value is made of measured samples alone.
+  /// Whether a position is in one of the scan's voxels and its value depends on measured samples only.
   bool holds(const glm::dvec3& v) const {
     return glm::all(glm::greaterThanEqual(v, glm::dvec3(-0.5))) &&
            glm::all(glm::lessThanEqual(v, glm::dvec3(scan_.lattice.dims) - 0.5)) &&
            !(scan_.padding && at(v) == *scan_.padding);
   }
-  /// Beyond the outermost samples, the nearest of them. The padding if one of the samples that it would be
-  /// made of is.
+  /// The interpolated value. Positions beyond the outermost samples are moved to the nearest of them. Returns
+  /// the padding if one of the samples needed is padding.
   double at(const glm::dvec3& v) const {
     const glm::dvec3 most(scan_.lattice.dims - 1);
     const glm::dvec3 inside = glm::clamp(v, glm::dvec3(0.0), most);

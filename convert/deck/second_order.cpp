@@ -11,7 +11,7 @@
 namespace octotomy::convert {
 namespace {
 
-/// A side by its ends, the lower number in the upper half.
+/// A side's key: the lower end in the upper 32 bits, the higher end in the lower ones.
 std::uint64_t side_of(std::uint32_t a, std::uint32_t b) {
   return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
 }
@@ -22,7 +22,7 @@ std::uint32_t upper_end(std::uint64_t side) {
   return static_cast<std::uint32_t>(side);
 }
 
-/// All sides, ascending: the n-th has the n-th node behind the corners.
+/// All sides, ascending. Side n gets the n-th node after the corners.
 std::vector<std::uint64_t> sides_of(const Tetrahedra& tetrahedra) {
   std::vector<std::uint64_t> sides;
   sides.reserve(6 * tetrahedra.tets.size());
@@ -82,7 +82,7 @@ class Refining {
     return all;
   }
 
-  /// Displacements of all nodes of a set with its middles.
+  /// The displacements of all nodes of a set, its middles included.
   std::vector<glm::dvec3> with_means(const std::vector<std::uint32_t>& nodes,
                                      const std::vector<std::uint32_t>& all,
                                      const std::vector<glm::dvec3>& displacement_mm) const {

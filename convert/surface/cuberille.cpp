@@ -13,8 +13,8 @@
 #include "voxel/space/shared_progress.h"
 #include "voxel/tree/corner_patterns.h"
 
-// The surface is dual to marching cubes': eight voxels about a corner are a cube of samples, the faces that
-// meet there its crossed edges, the sheets its loops. The passes:
+// The surface is dual to that of marching cubes: the eight voxels about a corner are a cube of samples, the
+// faces that meet there are its crossed edges, and the sheets are its loops. The passes:
 //
 // 1 Every plane of corners counts its sheets; a running sum gives every plane its first point.
 // 2 Every layer of voxels, with the planes below and above it, writes the planes' points and the layer's
@@ -34,7 +34,7 @@ struct Sheets {
 std::array<Sheets, 256> sheets_of(Touching touching) {
   std::array<Sheets, 256> sheets;
   for (int inside = 0; inside < 256; ++inside) {
-    // The cases keep inside corners apart. Those of the complement keep outside corners apart.
+    // A case keeps its inside corners apart. The case of the complement keeps the outside corners apart.
     const MarchingCubesCase& mc = marching_cubes_case(touching == Touching::Apart ? inside : 255 - inside);
     Sheets& target = sheets[static_cast<std::size_t>(inside)];
     for (const std::vector<int>& loop : mc.loops) {
@@ -63,7 +63,7 @@ struct CornerPlane {
 struct Quad {
   std::array<glm::ivec3, 4> corners;
   std::array<std::uint32_t, 4> points;
-  std::uint8_t bent = 0;  ///< bit i: its side from corner i goes through a point half way
+  std::uint8_t bent = 0;  ///< bit i: the side from corner i goes through a point half way
 };
 
 /// An edge of the lattice by its lower corner, and its axis.
@@ -200,7 +200,7 @@ class Cuberille {
   /// one.
   void add_face(const std::array<CornerPlane*, 2>& planes, const glm::ivec3& v, int axis, bool upper_inside,
                 Layer& layer) const {
-    // Around the square so that the normal is along -axis if the upper voxel is inside.
+    // Order the corners so that the normal is along -axis if the upper voxel is inside.
     const int b = (axis + 1) % 3;
     const int c = (axis + 2) % 3;
     Quad quad{};
@@ -255,10 +255,10 @@ class Cuberille {
     const std::uint16_t crossed = marching_cubes_case(pattern).crossed;
     for (const int edge : around)
       if (((crossed >> edge) & 1) == 0) return false;
-    // All four faces about the lattice edge must share one point at each end, or nothing is doubled.
+    // The edge is doubled only if all four faces about it share one point at each end.
     const int flip = 1 << along;
     const auto across = [&](int edge) {
-      // The same face's crossed edge in the cube about the other end.
+      // The cube edge that the same face crosses in the cube about the other end.
       const std::array<int, 2> ends = corners_of_edge(edge);
       const int a = std::min(ends[0] ^ flip, ends[1] ^ flip);
       for (int e = 0; e < 12; ++e)
@@ -308,7 +308,7 @@ class Cuberille {
     check_number(std::max(surface_.points_half.size(), surface_.faces.size()), "points or triangles");
   }
 
-  /// Triangles from the face's middle to its sides: none is flat, wherever sides are bent.
+  /// Adds triangles from the face's middle to its sides. None is degenerate, whichever sides are bent.
   void add_bent(const Quad& quad, const std::map<EdgeKey, std::uint32_t>& middles) {
     const auto centre = static_cast<std::uint32_t>(surface_.points_half.size());
     surface_.points_half.push_back(quad.corners[0] + quad.corners[2]);

@@ -24,21 +24,21 @@ struct LatticeSurface {
 /// Whether voxels that share only an edge belong together. Voxels that share only a corner never do: no
 /// manifold surface could join them.
 enum class Touching {
-  Apart,    ///< neighbours share a face: the surface parts voxels that meet at an edge
-  Together  ///< neighbours share a face or an edge: the surface parts the outside voxels there
+  Apart,    ///< neighbours share a face: the surface separates voxels that share only an edge
+  Together  ///< neighbours share a face or an edge: the surface separates the outside voxels at such an edge
 };
 
 /// The cuberille (thesis 3.1.2.2) as a mesh: the exact boundary of a set of voxels, two triangles a face that
 /// borders a voxel outside the set or the universe's end. Always closed, oriented and manifold: if several
-/// sheets meet at an edge or corner, each has points of its own at the same place; `touching` decides the
-/// sheets. Such sheets touch, so a reader that welds points by place (STL) joins them again. If two sheets
-/// run along the same edge between the same two points, one bends through a point half way: its faces are
-/// four triangles or more. Six volumes are 48 times the number of voxels as an integer; the area is the
-/// number of faces. Throws voxel::Error (Resource) if 32 bits do not number points or triangles;
-/// voxel::Stopped. Parallel; same bits on any thread count. Cost: slices of side^2 / 8 bytes, the faces;
-/// memory five bytes a corner of two layers a thread. Source: Herman, Liu, "Three-dimensional display of
-/// human organs from computed tomograms", CGIP 9, 1979. By duality, the sheets about a corner are the loops
-/// of the marching-cubes case there.
+/// sheets meet at an edge or corner, each sheet has its own points at the same position; `touching` decides
+/// the sheets. A reader that welds points by position (STL) joins such sheets again. If two sheets run along
+/// the same edge between the same two points, one bends through a point half way: its faces are four
+/// triangles or more. Six volumes are 48 times the number of voxels as an integer; the area is the number of
+/// faces. Throws voxel::Error (Resource) if 32 bits do not number points or triangles; voxel::Stopped.
+/// Parallel; same bits on any thread count. Cost: slices of side^2 / 8 bytes, the faces; memory five bytes a
+/// corner of two layers a thread. Source: Herman, Liu, "Three-dimensional display of human organs from
+/// computed tomograms", CGIP 9, 1979. By duality, the sheets about a corner are the loops of the
+/// marching-cubes case there.
 LatticeSurface cuberille(const voxel::Octree& octree, Touching touching = Touching::Apart,
                          const voxel::Progress& progress = {});
 

@@ -11,13 +11,13 @@
 namespace octotomy::convert {
 namespace {
 
-/// The closest that a point of the surface may come to a sample, as a part of the edge: enough for points of
-/// different edges to differ, and for voxels of up to 16 mm under a nanometre off a cut.
+/// The least distance of a surface point from a sample, as a part of the edge. Points of different edges stay
+/// distinct, and with voxels of up to 16 mm a point lies less than a nanometre off a cut.
 constexpr double closest_to_sample() {
   return 0x1p-24;
 }
 
-/// Halvings of an edge, which bring a point to within rounding of the expression's end.
+/// Halvings of an edge: they leave an error of 2^-40 of the edge.
 constexpr int halvings = 40;
 
 }  // namespace

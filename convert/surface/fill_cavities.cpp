@@ -19,7 +19,7 @@ Filled fill_cavities(const brep::Solid& solid, double smaller_than_mm3) {
     shells.join(a, b);
     shells.join(a, c);
   }
-  // By the shell's first point, about which volumes are taken to keep digits.
+  // Indexed by the shell's representative point. Volumes are computed about that point to keep precision.
   std::vector<double> volume_mm3(surface.points_mm.size(), 0.0);
   for (const auto& [a, b, c] : surface.faces) {
     const std::uint32_t shell = shells.set_of(a);

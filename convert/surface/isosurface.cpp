@@ -20,9 +20,9 @@ namespace {
 
 /// The closest that a crossing may come to a sample, as a part of the edge. Without it, a sample equal to a
 /// bound would collapse up to six vertices into one point and triangles to nothing. Half the step that one
-/// unit makes on an edge whose ends differ by 512: the rounding of the samples themselves leaves a crossing
-/// from soft tissue to bone that uncertain anyway. The bias is of second order: only this share of the
-/// crossings moves, and by this share of an edge at most.
+/// unit makes on an edge whose ends differ by 512: the rounding of the samples makes a crossing from soft
+/// tissue to bone equally uncertain. The bias is of second order: only this share of the crossings moves, and
+/// by this share of an edge at most.
 constexpr double closest_to_sample() {
   return 0.5 / 512.0;
 }
@@ -42,7 +42,7 @@ std::uint64_t packed(std::uint64_t flags) {
   return (flags * 0x0102040810204080ULL) >> 56;
 }
 
-/// Sets the bits of one row of samples, one place up for the padding.
+/// Sets the bits of one row of samples, shifted by one place for the padding.
 template <typename Sample, typename Inside>
 void mark_row(const Sample* samples, std::size_t count, const Inside& inside, std::uint64_t* row) {
   std::uint64_t carry = 0;
@@ -111,7 +111,7 @@ class SceneSamples {
   }
 
  private:
-  /// No number where nothing was measured: a surface then closes at the measured voxel's end.
+  /// NaN for padding, so that the surface closes at the end of the measured voxel.
   double measured(std::size_t index) const {
     const auto sample = static_cast<double>(samples_[index]);
     return padding_ && sample == *padding_ ? std::numeric_limits<double>::quiet_NaN() : sample;
@@ -122,7 +122,7 @@ class SceneSamples {
   std::optional<double> padding_;
 };
 
-/// The samples of a grey octree: blocks that are wholly in or out of the window are not opened.
+/// The samples of a grey octree: skips blocks that are wholly inside or outside the window.
 class GreySamples {
  public:
   explicit GreySamples(const voxel::GreyOctree& grey) : grey_(grey), lattice_(grey.universe().lattice()) {}
@@ -141,8 +141,8 @@ class GreySamples {
     return bits;
   }
 
-  /// As GreyOctree::sample() has them, of voxels that are known to be within. A sample that is not the scan's
-  /// but has a value of the window is no number.
+  /// The two samples as by GreyOctree::sample(). If the window contains the background, a sample beyond the
+  /// scan is NaN. Precondition: both voxels are in the universe.
   std::pair<double, double> two(const glm::ivec3& voxel, int axis) const {
     const auto [first, second] = samples_of(voxel, axis);
     if (!meets_background_) return {first, second};
@@ -171,7 +171,8 @@ class GreySamples {
     return brick.samples[at / 64][at % 64];
   }
 
-  /// A coordinate within a brick as a part of the sample's number along x: leaves of 4^3 follow each other.
+  /// The contribution of a coordinate x within a brick to the sample's index, as samples are stored in leaves
+  /// of 4^3.
   static constexpr std::array<int, 16> spread = {0,   1,   2,   3,   64,  65,  66,  67,
                                                  128, 129, 130, 131, 192, 193, 194, 195};
 
@@ -212,7 +213,7 @@ class GreySamples {
 
   const voxel::GreyOctree& grey_;
   voxel::Lattice lattice_;
-  bool meets_background_ = false;  ///< of the window asked for
+  bool meets_background_ = false;  ///< whether the window contains the background
 };
 
 void check_bounds(double low, double high) {

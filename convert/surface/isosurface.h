@@ -17,10 +17,9 @@ namespace octotomy::convert {
 /// scan's border is closed half a voxel beyond the outermost samples, at the voxels' ends. Samples that are
 /// not numbers, and the scene's padding, are outside; the surface closes half way to them. Between
 /// neighbouring samples below and above the window there is no surface. Empty if nothing is inside.
-///
-/// On a sphere of r voxels of partial-volume samples the volume is 0.82 / r^2 of it low: 0.6 because
-/// triangles are chords, the rest because the mean of a voxel is not its centre's value. The area is 0.4 %
-/// high at every resolution, by ripple, less 0.3 / r^2.
+/// For partial-volume samples of a sphere with a radius of r voxels, the relative volume is too small by 0.82
+/// / r^2: 0.6 / r^2 because triangles are chords, the rest because a voxel's mean is not its centre's value.
+/// The area is too large by 0.4 % - 0.3 / r^2, because of ripple.
 ///
 /// Throws std::invalid_argument if the scene fails check() or a bound is not a number; voxel::Error
 /// (Resource) if 32 bits do not number the triangles; voxel::Stopped. Parallel; same bits on any thread
@@ -30,15 +29,15 @@ brep::Triangles isosurface(const voxel::Scene& scene, double low, double high,
                            const voxel::Progress& progress = {});
 
 /// The isosurface of a grey octree's samples: the same bits as of a scene with these samples. Skips blocks
-/// that lie wholly in or out of the window. Samples beyond the scan are in no window: if the window holds
-/// their value, the surface closes half a voxel beyond the scan's outermost samples.
+/// that lie wholly in or out of the window. Samples beyond the scan are outside every window. If the window
+/// contains their value, the surface closes half a voxel beyond the scan's outermost samples.
 brep::Triangles isosurface(const voxel::GreyOctree& grey, double low, double high,
                            const voxel::Progress& progress = {});
 
-/// Whether rounding to doubles leaves isosurfaces on a lattice free of self-intersection: it lies nowhere
-/// farther from the origin of millimetres than 2^16 times its cells' least height. Rounding then moves points
-/// by less than 2^-34 of a cell, while they keep 2^-10 of an edge's distance from samples. So it is for any
-/// scan of a patient: one of 0.2 mm would have to reach 13 metres away.
+/// Whether rounding to doubles leaves isosurfaces on a lattice free of self-intersection: no part of it is
+/// farther from the origin than 2^16 times the least height of its cells. Rounding then moves points by less
+/// than 2^-34 of a cell, while they keep 2^-10 of an edge's distance from samples. Every scan of a patient
+/// fulfils this: one with voxels of 0.2 mm would have to lie 13 metres away to fail.
 bool stays_apart(const voxel::Lattice& lattice);
 
 }  // namespace octotomy::convert

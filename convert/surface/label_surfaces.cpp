@@ -18,16 +18,14 @@
 #include "voxel/space/shared_progress.h"
 
 // Source: Bloomenthal and Ferguson, "Polygonization of non-manifold implicit surfaces", SIGGRAPH 1995, for
-// tetrahedra of several materials. Departures: Kuhn's six tetrahedra of a cell in place of one's own
-// polygonizer, and points where labels' shares are equal. The passes:
-//
-// 1 The labels are copied with a border of no label, so that surfaces close there.
-// 2 Every cell whose corners differ is cut into six tetrahedra along its diagonal from the lowest to the
-//   highest corner; all cells alike, so neighbours share whole triangles. A tetrahedron's triangles follow
-//   from which of its corners have equal labels. They name their points by keys: a point lies on an edge
-//   between two labels, on a face between three, or in a tetrahedron between four.
-// 3 The keys of each plane of samples are sorted; the rank of a key is its point's number.
-// 4 The points are placed, and keys replaced by numbers.
+// tetrahedra of several materials. Departures: a cell is cut into Kuhn's six tetrahedra, and points lie where
+// the labels' shares are equal. The passes:
+// 1 The labels are copied with a border of no label, so that surfaces close there. 2 Every cell whose corners
+// differ is cut into six tetrahedra along its diagonal from the lowest to the highest corner. All cells are
+// cut in the same way, so neighbours share whole triangles. A tetrahedron's triangles follow from which of
+// its corners have equal labels. They name their points by keys: a point lies on an edge between two labels,
+// on a face between three, or in a tetrahedron between four. 3 The keys of each plane of samples are sorted;
+// the rank of a key is its point's number. 4 The points are placed, and keys replaced by numbers.
 //
 // Why the surfaces are sound. Up to where its points lie, a label's region is the union of the dual cells of
 // its samples, which is a regular neighbourhood of the complex that they span, so its boundary is a closed
@@ -40,10 +38,10 @@ namespace {
 
 using Key = std::uint64_t;
 
-/// Codes of points at a sample: 8 d + e for the face with the corners 0, d and e, d = 0 for an edge, where
-/// corners are offsets, x + 2y + 4z; and the six tetrahedra's own.
+/// Codes of points at a sample. 8 d + e: the face with the corners 0, d and e, or the edge if d = 0, where
+/// corners are offsets x + 2y + 4z. From first_tetrahedron_code on: the six tetrahedra.
 constexpr std::uint32_t code_count = 128, first_tetrahedron_code = 64;
-/// The part of an edge that a point keeps from its ends.
+/// The least distance of a point from the ends of its edge, as a part of the edge.
 constexpr double least_part = 0.1;
 
 struct PointName {
@@ -173,7 +171,7 @@ const std::array<std::array<Pieces, 64>, 6>& pieces() {
   return table;
 }
 
-/// Of a scene whose samples are int16 and do not overlap.
+/// Extracts the surfaces of a scene whose samples are int16 and whose labels do not overlap.
 class Extraction {
  public:
   Extraction(const voxel::Scene& scene, const LabelSurfaceOptions& options)
@@ -275,7 +273,7 @@ class Extraction {
     }
   }
 
-  /// Refuses more than memory holds before any is taken.
+  /// Counts the triangles and throws, before they are allocated, if there are too many.
   void count_faces(const voxel::Progress& progress) {
     faces_.resize(static_cast<std::size_t>(size_.z - 1));
     std::vector<std::uint64_t> counts(faces_.size());
@@ -308,7 +306,7 @@ class Extraction {
         face.sides = {labels[piece.behind], labels[piece.front]};
         for (std::size_t i = 0; i < 3; ++i)
           face.points[i] = (cell + step_[piece.points[i].corner]) * code_count + piece.points[i].code;
-        // Outward from a part, from the lower number of two.
+        // Wind outward from the part; between two parts, from the one of lower number.
         const bool turn =
             face.sides.behind == 0 || (face.sides.front != 0 && face.sides.front < face.sides.behind);
         if (turn) std::swap(face.sides.behind, face.sides.front);
@@ -334,7 +332,7 @@ class Extraction {
       keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
       keys.shrink_to_fit();
     });
-    std::uint64_t points = 0;  // no more than faces, as each is a corner of three and more
+    std::uint64_t points = 0;  // no more than faces, because each point is a corner of at least three
     for (const std::vector<Key>& keys : keys_) {
       first_point_.push_back(points);
       points += keys.size();
@@ -350,7 +348,7 @@ class Extraction {
     tbb::parallel_for(std::size_t{0}, keys_.size(), [&](std::size_t z) {
       done.one_more();
       for (std::size_t i = 0; i < keys_[z].size(); ++i)
-        // The border's sample is one before the first.
+        // The copy has a border, so its indices are one larger.
         made_.triangles.points_mm[first_point_[z] + i] = lattice_.lps_mm(point_of(keys_[z][i]) - 1.0);
     });
     tbb::parallel_for(std::size_t{0}, faces_.size(), [&](std::size_t z) {
@@ -383,12 +381,12 @@ class Extraction {
     const std::size_t d = code / 8, e = code % 8;
     return d == 0 ? edge_point(low, corner(e)) : face_point(low, corner(d), corner(e));
   }
-  /// Inside the face, as each of the three is inside of a side.
+  /// A point inside the face, because it averages points inside its three sides.
   glm::dvec3 face_point(std::size_t a, std::size_t b, std::size_t c) const {
     return (edge_point(a, b) + edge_point(b, c) + edge_point(c, a)) / 3.0;
   }
-  /// From sample a to sample b where the weighted shares of both labels about it are equal, linearly between
-  /// the two; half-way at the scan's border.
+  /// The point between samples a and b where the weighted shares of both labels are equal, by linear
+  /// interpolation; half-way at the scan's border.
   glm::dvec3 edge_point(std::size_t a, std::size_t b) const {
     if (a > b) std::swap(a, b);  // the same bits from each tetrahedron
     const glm::ivec3 from = sample_of(a), to = sample_of(b);
@@ -403,8 +401,8 @@ class Extraction {
   bool is_border(const glm::ivec3& p) const {
     return glm::any(glm::equal(p, glm::ivec3(0))) || glm::any(glm::equal(p, size_ - 1));
   }
-  /// How much more of one label there is about a sample than of another, at least 0. A label ends at the
-  /// scan's border as it is there.
+  /// The weighted share of label `more` about a sample less that of label `less`, at least 0. Labels at the
+  /// scan's border are repeated beyond it.
   double excess(const glm::ivec3& p, std::int16_t more, std::int16_t less) const {
     const int reach = options_.smooth_voxels;
     double sum = 0.0;

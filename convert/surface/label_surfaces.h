@@ -10,23 +10,23 @@
 namespace octotomy::convert {
 
 struct LabelSurfaceOptions {
-  std::set<int> labels = {};  ///< the parts; empty: all but 0. Samples of others belong to no part.
-  /// 0..4: the neighbours so many voxels about a sample decide where a surface passes between two samples; 0:
-  /// half-way. More is smoother, and draws a ball of r voxels in by s / 2r voxels.
+  std::set<int> labels = {};  ///< the parts; empty: all but 0. Samples with other labels belong to no part.
+  /// 0..4: radius s, in voxels, of the neighbourhood that decides where a surface passes between two samples;
+  /// 0: half-way. Larger is smoother, and shrinks a ball of radius r by s / 2r voxels.
   int smooth_voxels = 1;
   voxel::Progress progress = {};
 };
 
-/// The surfaces of all labels of a label map at once, in LPS millimetres. A part without a name is in
-/// `names` with an empty one. Labels that overlap (Scene::overlaps) each get their whole surface, and what
-/// follows holds for each of voxel::label_layers() by itself.
-///
-/// The surfaces cut space: two labels that touch share the triangles between them, three meet in lines and
-/// four in points, so there is no gap and no overlap, and the parts' volumes add up to that within the
-/// outside. The surface of each label is closed, manifold, oriented and free of self-intersection for any
-/// labels. It passes between neighbouring samples of different labels, a tenth of their distance from each or
-/// more; samples that only touch across a cell's diagonal are joined along one of its diagonals, apart along
-/// the others. A part that reaches the scan's border is closed half a voxel beyond its outermost samples.
+/// The surfaces of all labels of a label map at once, in LPS millimetres. A part without a name is in `names`
+/// with an empty one. Labels that overlap (Scene::overlaps) each get their whole surface; then the guarantees
+/// below hold within each of voxel::label_layers().
+/// The surfaces partition space: two labels that touch share the triangles between them, three meet in lines
+/// and four in points. So there is no gap and no overlap, and the parts' volumes add up to the volume that
+/// their outer surface encloses. The surface of each label is closed, manifold, oriented and free of
+/// self-intersection for any labels. It passes between neighbouring samples of different labels, a tenth of
+/// their distance from each or more; samples that only touch across a cell's diagonal are joined along one of
+/// its diagonals, apart along the others. A part that reaches the scan's border is closed half a voxel beyond
+/// its outermost samples.
 ///
 /// Throws std::invalid_argument if the scene fails check(), a sample is no label, or an option is out of
 /// range; std::length_error as voxel::label_layers(); voxel::Error (Input) if a label that was asked for has

@@ -16,8 +16,8 @@ struct ElementFace {
   std::uint8_t opposite = 0;  ///< 0..3
 };
 
-/// The faces of one element only, in the elements' order. Cost: n log n, and a look at all elements for each
-/// million; memory 80 MB beside the result and 4 bytes a node.
+/// The faces of one element only, in the elements' order. Cost: n log n, and one pass over all elements for
+/// each million of them; memory 80 MB and 4 bytes a node beside the result.
 std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra);
 /// The surface faces as triangles, outward. Points are all nodes, inner ones included.
 brep::Triangles surface_of(const Tetrahedra& tetrahedra);

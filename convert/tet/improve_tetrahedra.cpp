@@ -83,7 +83,7 @@ class Improving {
           options.surface_play_mm.empty() ? 0.0 : options.surface_play_mm[i];
   }
 
-  /// The rounds left where it ended early, else 0.
+  /// Returns the rounds left if it ended early, otherwise 0.
   int run() {
     double last = 0.0;
     for (int round = 0; round < options_.rounds; ++round) {
@@ -106,7 +106,7 @@ class Improving {
     return p;
   }
 
-  /// Those below the goal, the flattest first.
+  /// The elements below the goal, the flattest first.
   std::vector<std::uint32_t> flat_elements() const {
     std::vector<std::pair<double, std::uint32_t>> flat;
     for (std::uint32_t t = 0; t < t_.tets.size(); ++t)
@@ -118,7 +118,7 @@ class Improving {
     return elements;
   }
 
-  /// Whether anything has moved.
+  /// Returns whether any node moved.
   bool mend(const std::vector<std::uint32_t>& flat) {
     bool moved = false;
     for (const std::uint32_t tet : flat)
@@ -130,8 +130,8 @@ class Improving {
   }
 
   /// The largest flatness about a node if it stood at `p_mm`, or the first found that is `enough` or more.
-  /// Begins with the element `worst`, since what is flat at one place is flat close by, and leaves the
-  /// flattest in it.
+  /// Begins with the element `worst`, because the element that is flattest at one position is mostly the
+  /// flattest nearby. Sets `worst` to the flattest element.
   double flattest(std::uint32_t v, const glm::dvec3& p_mm, double enough, std::uint32_t& worst) const {
     const auto flatness_of = [&](std::uint32_t tet) {
       Corners p = corners_of(tet);
@@ -156,7 +156,7 @@ class Improving {
     return shortest;
   }
 
-  /// Moves a node to a place where its flattest element is less flat; whether there is one.
+  /// Moves a node to a position where its flattest element is less flat. Returns false if it finds none.
   bool move(std::uint32_t v) {
     if (play_mm_[v] <= 0.0) return false;
     glm::dvec3 best_mm = t_.nodes_mm[v];

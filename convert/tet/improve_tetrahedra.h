@@ -24,12 +24,11 @@ struct ImproveOptions {
 /// Moves nodes so that the smallest dihedral angles of the flattest elements grow. A move never lowers the
 /// smallest angle about its node, and makes no volume zero or negative. Elements, their order and their
 /// nodes' numbers stay. Elements that no move of a single node can improve stay too: see quality(). Returns
-/// the rounds left where it stopped early, for a call that goes on with them, else 0. Throws
+/// the rounds left if it stopped early, so that another call can continue; otherwise 0. Throws
 /// std::invalid_argument if an option is out of range; voxel::Stopped. Deterministic. Cost: linear, and about
-/// 40 us a flat element and round.
-/// Source: after Freitag and Ollivier-Gooch, "Tetrahedral mesh improvement using swapping and smoothing",
-/// IJNME 40, 1997. Departure: the search takes steps in fixed directions, as the smallest angle has no
-/// gradient.
+/// 40 us a flat element and round. Source: after Freitag and Ollivier-Gooch, "Tetrahedral mesh improvement
+/// using swapping and smoothing", IJNME 40, 1997. Departure: the search takes steps in fixed directions, as
+/// the smallest angle has no gradient.
 int improve(Tetrahedra& tetrahedra, const ImproveOptions& options);
 
 }  // namespace octotomy::convert

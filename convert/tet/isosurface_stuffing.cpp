@@ -1,15 +1,13 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Source: Labelle and Shewchuk 2007 (isosurface_stuffing.h), with its numbers for a uniform lattice.
-// Departures: the sign and the cut points come from triangles instead of a function, and quadrilaterals are
-// cut from their node that comes first in one order of all nodes (pass 5) in place of the paper's table; the
-// tests put random cuts on every side to hold the bound.
-// 1 Mark the lattice points inside: each row along x crosses the surface, and the parity changes there.
-// 2 On each side between lattice points of either mark, cut where a triangle crosses it.
-// 3 Warp a lattice point to the nearest cut point that lies too near to it for good angles; its sides lose
-//   their cuts.
-// 4 Of each of the lattice's tetrahedra keep what is inside: corners inside, warped ones, and cut points.
-// 5 Where that is a pyramid or a prism, divide it from its first node. As the order of nodes is the same for
-//   all, neighbours divide their common face alike.
+// SPDX-License-Identifier: AGPL-3.0-or-later Source: Labelle and Shewchuk 2007 (isosurface_stuffing.h), with
+// its numbers for a uniform lattice. Departures: the sign and the cut points come from triangles instead of a
+// function, and quadrilaterals are cut from their node that comes first in one order of all nodes (pass 5) in
+// place of the paper's table; the tests put random cuts on every side to hold the bound. 1 Mark the lattice
+// points inside: each row along x crosses the surface, and the parity changes there. 2 On each side between
+// lattice points of either mark, add a cut point where a triangle crosses it. 3 Warp a lattice point to the
+// nearest cut point that lies too near to it for good angles; its sides lose their cuts. 4 Of each of the
+// lattice's tetrahedra keep what is inside: corners inside, warped ones, and cut points. 5 Where that is a
+// pyramid or a prism, divide it from its first node. All tetrahedra use the same order of nodes, so
+// neighbours divide their common face in the same way.
 #include "convert/tet/isosurface_stuffing.h"
 
 #include <algorithm>
@@ -70,7 +68,8 @@ Lattice lattice_about(const brep::Triangles& surface, double cell_mm) {
     }
   Lattice lattice;
   lattice.half_mm = 0.5 * cell_mm;
-  // Moved by odd shares of a cell, so that planes of round coordinates do not run along the lattice's.
+  // The offsets are not round parts of a cell, so that planes at round coordinates do not coincide with the
+  // lattice's.
   lattice.origin_mm = low - cell_mm * glm::dvec3(1.27182818, 1.31415926, 1.14142135);
   const glm::dvec3 halves = glm::ceil((high - lattice.origin_mm) / lattice.half_mm) + 4.0;
   constexpr double most_points = 536870912.0;
@@ -143,7 +142,7 @@ class CubeLists {
           for (std::size_t i = begin_[number({x, y, z})]; i < begin_[number({x, y, z}) + 1]; ++i)
             if (const auto found = crossing(a, along, surface_.faces[faces_[i]]))
               share = std::max(share, *found);
-    // Rounding has hidden the crossing: any point of the side is as near as that.
+    // Rounding hid the crossing, so the middle of the side is used.
     return share < 0.0 ? 0.5 : share;
   }
 
@@ -346,7 +345,7 @@ class Stuffing {
     add_pyramid(a[1], a[2], b[2], b[1], a[0]);
   }
 
-  /// Passes 4 and 5 for a tetrahedron of the lattice.
+  /// Does passes 4 and 5 for a tetrahedron of the lattice.
   void add_inside_of(const std::array<Place, 4>& corners) {
     std::array<Place, 4> in{}, out{}, zero{};
     std::size_t ins = 0, outs = 0, zeros = 0;

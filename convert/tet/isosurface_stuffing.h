@@ -13,7 +13,7 @@ constexpr double stuffed_dihedral_deg() {
 }
 
 struct StuffingOptions {
-  double cell_mm = 1.0;  ///< edge of the lattice's cubes, above 0; what is thinner may be lost or joined
+  double cell_mm = 1.0;        ///< edge of the lattice's cubes, above 0; thinner parts may be lost or joined
   voxel::Progress progress{};  ///< reports the share that is done
 };
 
@@ -22,17 +22,16 @@ struct StuffingOptions {
 /// them cut its edges off within a cell. Guaranteed, however bad the triangles are: all volumes are positive
 /// and every dihedral angle is over stuffed_dihedral_deg(). The volume is the surface's to within what cells
 /// miss. Parts thinner than a cell may be lost, joined or hang together by a node or a side only. `method` is
-/// "isosurface stuffing". In LPS millimetres. Empty where no lattice point is inside.
-/// Precondition: closed and not empty; where triangles cross, what is inside an odd number of times is
-/// filled. Throws std::invalid_argument if the cell is not above 0 or the surface has no triangles;
-/// voxel::Error (Resource) if the surface's box has over 2^29 lattice points; voxel::Stopped. Deterministic.
-/// Cost: n log n and the lattice points of the box; about 12 elements a cube.
-/// Source: Labelle, Shewchuk, "Isosurface stuffing: fast tetrahedral meshes with good dihedral angles", ACM
-/// TOG 26(3), 2007, uniform lattice.
+/// "isosurface stuffing". In LPS millimetres. Empty where no lattice point is inside. Precondition: closed
+/// and not empty; where triangles cross, points that are inside an odd number of times count as inside.
+/// Throws std::invalid_argument if the cell is not above 0 or the surface has no triangles; voxel::Error
+/// (Resource) if the surface's box has over 2^29 lattice points; voxel::Stopped. Deterministic. Cost: n log n
+/// and the lattice points of the box; about 12 elements a cube. Source: Labelle, Shewchuk, "Isosurface
+/// stuffing: fast tetrahedral meshes with good dihedral angles", ACM TOG 26(3), 2007, uniform lattice.
 Tetrahedra stuff(const brep::Triangles& surface, const StuffingOptions& options);
 
-/// The edge of the cubes of which about this number of elements fills a volume: two lattice points and twelve
-/// tetrahedra a cube.
+/// The edge of the lattice's cubes with which about this number of elements fills a volume. A cube has two
+/// lattice points and twelve tetrahedra.
 double cell_of_elements_mm(double volume_mm3, double elements);
 
 }  // namespace octotomy::convert

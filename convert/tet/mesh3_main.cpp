@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 
 // octotomy-mesh3: one run of CGAL's Mesh_3, fed and read by mesher_process.cpp. The request's switches are
-// Mesh3Sizes, its hole points are the points of the surface to start from, its sizes one a point. Nothing
-// ends by the clock, so that the answer is the same on any machine. Source: Alliez, Jamin, Rineau, Tayeb,
+// Mesh3Sizes, its hole points are the points of the surface to start from, its sizes one a point. No step
+// ends by the clock, so the answer is the same on any machine. Source: Alliez, Jamin, Rineau, Tayeb,
 // Tournois, Yvinec, "3D mesh generation", CGAL user and reference manual 5.5; slivers are exuded as Cheng et
 // al. do, "Sliver exudation", JACM 47(5), 2000.
 
@@ -34,8 +34,8 @@ using Domain = convert::StartingFrom<convert::SurfaceDomain, Point>;
 using Triangulation = CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Sequential_tag>::type;
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
 
-/// The size at a point: that of the surface's nearest point, between its triangle's corners by the
-/// barycentric coordinates, and more with the way from there.
+/// The size at a point: the size at the nearest point of the surface, interpolated between its triangle's
+/// corners, plus a share of the distance from there.
 class SizeField {
  public:
   using FT = Domain::FT;
@@ -97,7 +97,7 @@ bool read_surface(const MesherRequest& request, octotomy::brep::Triangles& surfa
   for (const Point& p : points) surface.points_mm.emplace_back(p.x(), p.y(), p.z());
   surface.faces.resize(request.triangles);
   if (!read_all(surface.faces.data(), surface.faces.size() * sizeof surface.faces[0])) return false;
-  // A side that two triangles run along the same way would count twice in what is inside.
+  // Refuses a side along which two triangles run in the same direction.
   std::unordered_set<std::uint64_t> sides;
   for (std::size_t f = 0; f < surface.faces.size(); ++f)
     for (std::size_t i = 0; i < 3; ++i)

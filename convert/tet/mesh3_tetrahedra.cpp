@@ -11,15 +11,13 @@
 #include "voxel/space/rounded.h"
 
 // 1 Mesh_3 refines a Delaunay triangulation until facets and cells have the sizes asked for, and exudes
-//   slivers.
-// 2 The nodes of its surface lie on the given one, so its facets are chords: they lose volume on a convex
-//   surface and gain some on a hollow one. Every node of the surface moves along its normal by the same share
-//   of the distance that a facet's middle may have there. A larger share would mean that something else was
-//   lost.
-// 3 Nodes move to mend flat elements (improve_tetrahedra.h).
-// 4 The answer counts only if the volumes are positive, their sum is the surface's, each point of the given
-//   surface is near the new one, and little of the volume lies outside: a thin spike or wall that no cell met
-//   would otherwise be lost unseen.
+// slivers. 2 The nodes of its surface lie on the given one, so its facets are chords: they lose volume on a
+// convex surface and gain some on a hollow one. Every node of the surface moves along its normal by the same
+// share of the distance that a facet's middle may have there. The share is at most 1: a larger one would mean
+// that something else was lost. 3 Nodes move to mend flat elements (improve_tetrahedra.h). 4 The answer
+// counts only if the volumes are positive, their sum is the surface's, each point of the given surface is
+// near the new one, and little of the volume lies outside: otherwise the loss of a thin spike or wall that no
+// cell met would go unnoticed.
 
 namespace octotomy::convert {
 namespace {
@@ -71,8 +69,8 @@ void undo_inversions(Tetrahedra& tetrahedra, const std::vector<glm::dvec3>& befo
 }
 
 /// Pass 2: moves nodes of the surface by a share of their play, which is in the order of `boundary_nodes`.
-/// Returns the share, positive outward. It takes some rounds: the volume is the area's integral to first
-/// order only, and some nodes move back.
+/// Returns the share, positive outward. Needs several rounds, because the volume is linear in the share to
+/// first order only and some nodes move back.
 double restore_volume(Tetrahedra& tetrahedra, double volume_mm3, const std::vector<double>& play_mm) {
   constexpr int rounds = 4;
   const brep::Triangles surface = surface_of(tetrahedra);
@@ -111,18 +109,18 @@ std::vector<glm::dvec3> boundary_mm(const Tetrahedra& tetrahedra) {
   return points;
 }
 
-/// The share of the given surface's triangles that may be lost: enough for needles of noise, too little for a
-/// part of the bone.
+/// The share of the given surface's triangles that may be lost: it allows the loss of needles of noise, but
+/// not of a part of the bone.
 constexpr double lost_share() {
   return 1e-3;
 }
 
-/// The share of the volume that elements may hold outside of the given surface: chords across hollows do.
+/// The largest share of the volume that may lie outside the given surface, where chords cross hollows.
 constexpr double misplaced_share() {
   return 0.1;
 }
 
-/// One try: its elements if there are any, how they are wrong, and the points of the given surface it lost.
+/// One try: its elements if there are any, their faults, and the points of the given surface that it lost.
 struct Try {
   MesherOutcome outcome;
   Tetrahedra made;
@@ -178,8 +176,8 @@ std::vector<double> play_mm(const Given& given, const std::vector<brep::Foot>& f
   return play;
 }
 
-/// Shells of which every triangle is lost, the smallest first, that together hold no more than the volume
-/// may differ by: films and specks that no element of their triangles' size has room in. Adds a finding.
+/// Shells whose triangles are all lost, smallest first, while their total volume stays within the volume's
+/// tolerance: films and specks too thin for an element of their triangles' size. Adds a finding.
 std::vector<bool> lost_specks(Try& t, const Given& given, const std::vector<bool>& is_gone) {
   const Shells& shells = given.shells;
   std::vector<std::size_t> gone(shells.mm3.size(), 0);
@@ -207,8 +205,8 @@ std::vector<bool> lost_specks(Try& t, const Given& given, const std::vector<bool
   return is_speck;
 }
 
-/// Finds the points of the given surface that are further from the new one than a facet is large: they stand
-/// on a lost detail. Returns why that is too much, if it is: the tip of a spike and specks may be lost, other
+/// Finds the points of the given surface that are further from the new one than a facet's size: they lie on a
+/// lost detail. Returns a reason if too much is lost: the tip of a spike and specks may be lost, other
 /// triangles may not.
 std::optional<std::string> lost_details(Try& t, const Given& given, const std::vector<double>& to_own_mm) {
   std::vector<bool> is_lost(to_own_mm.size(), false);
@@ -235,11 +233,11 @@ std::optional<std::string> lost_details(Try& t, const Given& given, const std::v
          rounded(first_mm) + " mm";
 }
 
-/// Where a thin wall is lost between the given points, what is left has been thickened to the whole volume.
-/// Returns why that is too much, if it is: the volume outside of the given solid, by four points of each
-/// element.
+/// If a thin wall is lost between the given points, pass 2 has thickened the rest to the whole volume. So
+/// this measures the volume outside the given solid, by four points of each element, and returns a reason if
+/// it is too large.
 std::optional<std::string> misplaced(const Tetrahedra& made, const Given& given) {
-  // The points of Hammer's formula for quadratic functions: so much of one corner, and as much of the others.
+  // The points of Hammer's formula for quadratic functions, by their weights of one corner and of the others.
   constexpr double own = 0.5854101966249685, others = 0.1381966011250105;
   std::vector<glm::dvec3> points_mm;
   for (std::size_t t = 0; t < made.tets.size(); ++t) {

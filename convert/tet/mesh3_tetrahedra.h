@@ -8,7 +8,7 @@
 namespace octotomy::convert {
 
 /// Largest relative difference of the total volume from the surface's if the mesher makes a surface of its
-/// own: a tenth of what a scan's voxels leave unknown of a bone's volume at best.
+/// own: a tenth of the least uncertainty that a scan's voxels leave in a bone's volume.
 constexpr double own_surface_volume_tolerance() {
   return 1e-3;
 }

@@ -29,7 +29,7 @@ MesherTask begin() {
   dup2(STDERR_FILENO, STDOUT_FILENO);
   if (!read_all(&task.request, sizeof task.request) || task.request.version != MesherRequest::this_version)
     end(mesher_exit_protocol);
-  // It may have ended before prctl().
+  // The parent may have ended before prctl().
   if (task.request.parent != ::getppid()) end(mesher_exit_protocol);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_AS, task.request.memory_limit_bytes);

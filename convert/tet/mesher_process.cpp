@@ -33,7 +33,7 @@ using Clock = std::chrono::steady_clock;
 /// How often to poll a running child: a hundredth of the shortest run that a user notices as slow.
 constexpr std::chrono::milliseconds look_every{1};
 constexpr std::chrono::milliseconds report_every{200};
-/// How much of the end of the mesher's log to quote.
+/// Bytes to quote from the end of the mesher's log.
 constexpr std::size_t last_words_bytes = 400;
 
 [[noreturn]] void fail(const std::string& what, int error) {
@@ -92,7 +92,7 @@ class MemoryFile {
   int file_;
 };
 
-/// Starts the executable with three files as its standard streams and nothing else of ours open.
+/// Starts the executable with three files as its standard streams. It inherits no other open file.
 pid_t start(const std::filesystem::path& executable, int in, int out, int log) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
@@ -129,7 +129,7 @@ struct Ending {
   int status = 0;
 };
 
-/// What the processors have done for a child; none once it has ended.
+/// The processor time that a child has used; zero once it has ended.
 std::chrono::nanoseconds processor_time(pid_t child) {
   clockid_t clock{};
   timespec used{};
@@ -264,7 +264,7 @@ void write_request(const MemoryFile& file, Sent& sent, const std::string& switch
   std::copy(switches.begin(), switches.end(), request.switches.begin());
   request.memory_limit_bytes = limits.memory_bytes;
   request.parent = ::getpid();
-  // wait_within() decides; this limit ends the child if this process is gone by then.
+  // wait_within() enforces the limit; this one ends the child if the parent has ended.
   request.cpu_limit_seconds =
       static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::seconds>(limits.time).count() + 2);
   file.write_all(&request, sizeof request);

@@ -32,7 +32,7 @@ struct MesherRequest {
   std::array<double, 3> spacing_mm{};
   std::uint64_t memory_limit_bytes = 0;
   std::uint64_t cpu_limit_seconds = 0;
-  std::int64_t parent = 0;  ///< the process that asks; the child ends with it
+  std::int64_t parent = 0;  ///< process id of the parent, with which the child ends
 };
 struct MesherAnswer {
   std::uint64_t version = MesherRequest::this_version;
@@ -56,8 +56,8 @@ struct MesherInput {
   std::vector<double> sizes_mm{};  ///< for Mesh_3: the largest radius of a facet's ball at each point
 };
 struct MesherLimits {
-  /// Of a processor, so that other work of the machine changes no answer. On the clock a run may take
-  /// most_clock_times() as long, which a process that stands still reaches.
+  /// Limit of processor time, so that other load on the machine changes no answer. The limit on the clock is
+  /// most_clock_times() as long and ends a process that hangs.
   std::chrono::milliseconds time{60000};
   std::uint64_t memory_bytes = 4ull << 30;
   voxel::Progress progress{};  ///< reports the share of the time limit that is gone

@@ -19,8 +19,8 @@ struct OctreeCell {
   int side_log2 = 0;
 };
 
-/// Cells that do not overlap, as one sparse grid of bits a side. Memory: about a byte a cell at the boundary,
-/// 512 bytes a lone one, and 5 bytes for every 16 x 16 x 16 voxels of the universe.
+/// Cells that do not overlap, stored as one sparse grid of bits for each length of side. Memory: about a byte
+/// a cell at the boundary, 512 bytes a lone one, and 5 bytes for every 16 x 16 x 16 voxels of the universe.
 class OctreeCells {
  public:
   explicit OctreeCells(const voxel::Universe& universe);

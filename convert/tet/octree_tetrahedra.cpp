@@ -85,7 +85,7 @@ void cut(const OctreeCell& cell, std::uint64_t halves, const Node& node, const T
   }
 }
 
-/// Numbers of those corners of the lattice that are nodes: 5 bytes or so each, by the rank of their bits.
+/// Numbers of the lattice's corners that are nodes, by the rank of their bits; about 5 bytes each.
 class CornerNumbers {
  public:
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
@@ -132,8 +132,8 @@ class CornerNumbers {
 
 constexpr std::size_t cells_between_looks = 4096;  // some milliseconds
 
-/// Throws if so many elements and nodes take more memory than there is. `bound` says so where they are the
-/// least.
+/// Throws if this many elements and nodes need more memory than is free. `bound` precedes the numbers in the
+/// message.
 void need_room(std::uint64_t elements, std::uint64_t nodes, const std::string& bound = "") {
   constexpr double bytes_an_element = sizeof(std::array<std::uint32_t, 4>) + sizeof(std::uint32_t);
   constexpr double bytes_a_node = sizeof(glm::dvec3) + 2 * sizeof(std::uint32_t);
@@ -165,7 +165,7 @@ class Filling {
         of_elements.at(static_cast<double>(done) / static_cast<double>(cell_count_));
       add(cell);
       if (!tells_regions) return;
-      // Neighbours are mostly of one region.
+      // Neighbouring cells are mostly of one region, so test the last one first.
       if (!regions[region].contains(cell.first))
         for (region = 0; !regions[region].contains(cell.first);) ++region;
       result_.region_of_tet.resize(result_.tets.size(), static_cast<std::uint32_t>(region));
@@ -266,9 +266,9 @@ class Filling {
   Tetrahedra result_;
 };
 
-/// The voxels all of whose 26 neighbours the octree holds.
+/// The voxels of which all 26 neighbours are in the octree.
 voxel::Octree inner_voxels(const voxel::Octree& octree) {
-  // Of a lattice in which steps of a voxel are exact.
+  // On a unit lattice, steps of one voxel are exact.
   const voxel::Universe unit{octree.universe().depth, glm::dmat4(1.0)};
   voxel::Octree inner(unit, voxel::Block::share(octree.root()));
   for (int axis = 0; axis < 3; ++axis) {
@@ -283,7 +283,7 @@ voxel::Octree inner_voxels(const voxel::Octree& octree) {
 
 Tetrahedra filled(const std::vector<voxel::Octree>& regions, bool tells_regions, BoundaryCells boundary,
                   const voxel::Progress& progress) {
-  // Twelve elements and a node in the middle, at the least, of a node of an octree.
+  // Each octree node yields at least twelve elements and a node in its middle.
   std::uint64_t least_cells = 0;
   for (const voxel::Octree& region : regions)
     for (const voxel::LevelCount& level : voxel::level_counts(region)) least_cells += level.full;
@@ -325,7 +325,7 @@ Tetrahedra tetrahedra_of(const std::vector<voxel::Octree>& regions, BoundaryCell
       throw std::invalid_argument("tetrahedra_of: regions are of different universes: evaluate them in one");
   }
   progress.at(0.0);
-  // A voxel in several regions is the first's.
+  // A voxel in several regions belongs to the first.
   const voxel::Universe& universe = regions.front().universe();
   std::vector<voxel::Octree> apart{regions.front()};
   voxel::Octree taken = regions.front();

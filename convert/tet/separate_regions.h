@@ -12,7 +12,7 @@ namespace octotomy::convert {
 using RegionPair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// The same elements with separate regions: each region has its own nodes, at the same places, in place of
-/// those it shared, so that contact may open and slide between them. A node stays with its lowest region.
+/// shared ones, so that contact may open and slide between regions. A node stays with its lowest region.
 /// Copies follow all nodes, by node and region. Elements keep their numbers, so faces found before stay
 /// valid. Boundary nodes include both sides of the former interfaces. Throws std::invalid_argument if
 /// elements are of second order: separate regions first; voxel::Error (Resource) if 32 bits do not number the

@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t most_triangles = std::size_t{1} << 22;
 
-/// The longest side that is not halved, relative to the size: its halves would be two thirds, as far off as
-/// the whole.
+/// The longest side that is not halved, relative to the size: the side and its halves, 2/3, are then equally
+/// far from the size.
 constexpr double longest_share() {
   return 4.0 / 3.0;
 }
@@ -97,7 +97,8 @@ class Round {
       if (length_mm(sides[i]) > longest_share() * sizes_mm[i]) middle_.emplace(sides[i], 0);
   }
 
-  /// The side across from which a triangle is halved: its longest, of equals the one both its triangles take.
+  /// The side across from which a triangle is halved: its longest, of equal ones the one that both of its
+  /// triangles choose.
   std::size_t longest(const Face& face) const {
     std::size_t best = 0;
     const auto key = [&](std::size_t i) {
@@ -222,7 +223,7 @@ std::vector<double> SizingField::at_mm(const std::vector<glm::dvec3>& points_mm)
 brep::Triangles refined_surface(const brep::Triangles& surface, const SizingField& sizes) {
   brep::Triangles finer = surface;
   do {
-    // The smaller triangles are, the more is known of how many there will be.
+    // Checked every round, because the estimate improves as triangles become smaller.
     if (finer.faces.size() > most_triangles ||
         least_count(finer, sizes) > static_cast<double>(most_triangles))
       refuse_number();

@@ -22,8 +22,8 @@ struct Refinement {
   double size_mm = 1.0;       ///< approximate largest side of a surface's triangles there
 };
 
-/// Growth of elements' sides per length away from a refinement: as much as Mesh_3 and a radius-edge bound
-/// allow without flat elements in between.
+/// Growth of elements' sides per length away from a refinement: the largest that Mesh_3 and a radius-edge
+/// bound allow without flat elements in between.
 constexpr double sizing_growth() {
   return 0.3;
 }
@@ -58,9 +58,9 @@ class SizingField {
 /// Cost: n log n of the answer.
 brep::Triangles refined_surface(const brep::Triangles& surface, const SizingField& sizes);
 
-/// Where elements stayed over three times as large as a refinement allows at their middle, as those deep
-/// inside do that grow from a refined surface: the worst place, both sizes and the number of places. Looks at
-/// the element nearest to each point, and to a hundred of a surface's. None if no place is. Cost: places
+/// Places where elements are over three times as large as a refinement allows at their middle, as happens
+/// deep inside a refined surface: the worst place, both sizes and the number of places. Checks the element
+/// nearest to each point, and to a hundred points of a surface. None if there is no such place. Cost: places
 /// times elements, parallel.
 std::optional<std::string> coarse_place(const Tetrahedra& tetrahedra, const std::vector<Refinement>& finer);
 

@@ -31,7 +31,8 @@ class SparseGrid {
     const std::uint32_t number = numbers_[number_of(p >> 2)];
     return number == no_page ? Value{} : pages_[number][place_in_page(p)];
   }
-  /// Makes the page of a place. The reference ends with the next page. Precondition: within the cube.
+  /// Makes the page of a place. The reference is valid until the next page is made. Precondition: within the
+  /// cube.
   Value& at(const glm::ivec3& p) {
     assert(holds(p));
     std::uint32_t& number = numbers_[number_of(p >> 2)];

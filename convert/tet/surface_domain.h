@@ -16,8 +16,8 @@
 
 namespace octotomy::convert {
 
-/// The inside of a closed surface as Mesh_3 asks about it (CGAL's concept MeshDomain_3). Our own tree finds
-/// the triangles, CGAL's exact predicates decide. The caller keeps surface and tree. One thread.
+/// The inside of a closed surface as a model of CGAL's concept MeshDomain_3. SurfaceTree finds the triangles,
+/// and CGAL's exact predicates decide. The caller keeps surface and tree. One thread.
 class SurfaceDomain {
  public:
   using R = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -80,8 +80,8 @@ class SurfaceDomain {
 
   static glm::dvec3 vector_of(const Point_3& p) { return {p.x(), p.y(), p.z()}; }
 
-  /// Its last corner comes first, as in CGAL's surface mesh: common points are then rounded as they are
-  /// there.
+  /// Its last corner comes first, as in CGAL's surface mesh, so intersection points are rounded in the same
+  /// way.
   Triangle triangle(std::uint32_t face) const {
     const auto corner = [&](std::size_t i) {
       const glm::dvec3& p = surface_.points_mm[surface_.faces[face][i]];
@@ -96,7 +96,8 @@ class SurfaceDomain {
   }
   Ends ends_of(const Ray_3& ray) const { return ends_along(ray.source(), ray.to_vector(), 0.0); }
   Ends ends_of(const Line_3& line) const { return ends_along(line.point(), line.to_vector(), -1.0); }
-  /// From `first` times the way through the whole box, and a little more, to once that way.
+  /// The part of the line from `first` times to once its reach, a length that crosses the whole box from
+  /// `from`.
   Ends ends_along(const Point_3& from, const Vector_3& along, double first) const {
     const glm::dvec3 start = vector_of(from), way(along.x(), along.y(), along.z());
     const glm::dvec3 low(box_.xmin(), box_.ymin(), box_.zmin()), high(box_.xmax(), box_.ymax(), box_.zmax());
@@ -105,8 +106,8 @@ class SurfaceDomain {
     return {start + first * reach, start + reach};
   }
 
-  /// Whether a query meets the surface; then `met_` is such a triangle. Mesh_3 asks whether first and where
-  /// directly after it.
+  /// Whether a query meets the surface; then `met_` is a triangle that it meets. Mesh_3 asks for the point
+  /// directly afterwards, so the result is kept.
   template <typename Query>
   bool find(const Query& query) const {
     const auto [from, to] = ends_of(query);
@@ -119,7 +120,8 @@ class SurfaceDomain {
     return has_met_;
   }
 
-  /// A point that a query has in common with the triangle that it meets: of a whole stretch its begin.
+  /// A point that the query shares with the triangle that it meets; the segment's source if they share a
+  /// segment.
   template <typename Query>
   Point_3 common_point(const Query& query) const {
     using Exact = CGAL::Mesh_3::Robust_intersection_traits_3<R>;

@@ -7,12 +7,12 @@
 #include <functional>
 #include <queue>
 
-// Grading is Dijkstra's: the smallest size that is not settled can be made no smaller by others.
+// Grading is Dijkstra's algorithm: no other size can reduce the smallest one that is not settled.
 
 namespace octotomy::convert {
 namespace {
 
-/// The share of the mean size under which a size is noise.
+/// Sizes below this share of the mean size are noise.
 constexpr double least_share() {
   return 0.125;
 }

@@ -16,7 +16,7 @@ namespace convert = octotomy::convert;
 
 namespace {
 
-/// Fills the arrays as TetGen wants them; they live until the process ends.
+/// Fills TetGen's input arrays, which live until the process ends.
 bool read_complex(const MesherRequest& request, tetgenio& in) {
   constexpr auto most = static_cast<std::uint64_t>(std::numeric_limits<int>::max() / 3);
   if (request.points > most || request.triangles > most || request.holes > most) return false;
@@ -50,7 +50,7 @@ bool write_answer(int file, const tetgenio& out) {
 }
 
 bool answer(const convert::MesherTask& task) {
-  // Never destroyed: their destructors would free one by one what read_complex allocates at once.
+  // Never destroyed: the destructors would free one by one the arrays that read_complex allocates as one.
   static auto& in = *new tetgenio;
   static auto& out = *new tetgenio;
   std::string switches = task.request.switches.data();

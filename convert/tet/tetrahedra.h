@@ -43,8 +43,8 @@ struct TetQuality {
   double min_dihedral_deg = 0.0;  ///< 70.53 for the regular tetrahedron, 0 for a flat one
   double max_dihedral_deg = 0.0;
   double max_radius_edge = 0.0;  ///< circumradius by shortest edge; 0.612 for the regular tetrahedron
-  /// The number of elements by smallest dihedral angle: below each of `dihedral_steps_deg` and not below the
-  /// one before; last, above all.
+  /// The number of elements by smallest dihedral angle: below each of `dihedral_steps_deg` but not below the
+  /// one before; the last entry counts the rest.
   std::array<std::size_t, 6> by_dihedral{};
 };
 inline constexpr std::array<double, 5> dihedral_steps_deg{5.0, 10.0, 20.0, 30.0, 45.0};

@@ -45,7 +45,7 @@ using voxel::rounded;
   throw std::invalid_argument("tetrahedralise: " + why);
 }
 
-/// A number as TetGen's switches have it.
+/// A number in the form of TetGen's switches.
 std::string switch_number(double value) {
   std::ostringstream text;
   text << std::setprecision(6) << value;
@@ -66,8 +66,8 @@ constexpr double flat_volume() {
   return 1e-8;
 }
 
-/// The smallest extent of a solid. No scanner could have seen a smaller one; TetGen's absolute tolerances
-/// begin to bite some orders below.
+/// The smallest extent of a solid. No scanner resolves a smaller one, and TetGen's absolute tolerances take
+/// effect only some orders of magnitude below.
 constexpr double tiny_extent_mm() {
   return 1e-3;
 }
@@ -322,24 +322,25 @@ SizeLimits refine(MesherInput& surface, const std::vector<Refinement>& finer) {
   return limits;
 }
 
-/// The largest relative difference of the volume that stuffing may leave: as repair's, of what it encloses.
+/// The largest relative difference of volume that stuffing may leave. Equal to the tolerance of repair.
 constexpr double stuffed_volume_tolerance() {
   return 0.05;
 }
 
-/// Smaller cells are tried until this much of the volume is there: a tenth of a voxel about a thick bone.
+/// Smaller cells are tried until the volume's relative difference is at most this: a tenth of a voxel about a
+/// thick bone.
 constexpr double stuffed_volume_goal() {
   return 0.01;
 }
 
-/// Elements that a solver on a workstation takes.
+/// The number of elements that a solver on a workstation can handle.
 constexpr double most_stuffed_elements() {
   return 2e6;
 }
 
-/// Triangles that are too many for the meshers in a time: Mesh_3 fills about three a millisecond of bones,
-/// and a surface of a million took TetGen with quality more than a minute. Of the surface and the limit
-/// alone, so that the answer is the same on any machine.
+/// More triangles than this are too many for the meshers within a time limit: Mesh_3 fills about three
+/// triangles a millisecond of bones, and TetGen with quality needed more than a minute for a million. Depends
+/// on the time limit alone, so the answer is the same on any machine.
 std::size_t most_meshed_triangles(std::chrono::milliseconds time_limit) {
   return 5 * static_cast<std::size_t>(std::max<std::int64_t>(time_limit.count(), 0));
 }
@@ -378,7 +379,7 @@ std::optional<Tetrahedra> by_stuffing(const MesherInput& surface, double surface
   return made;
 }
 
-/// Puts elements in place of those that are there, if their smallest angle is larger.
+/// Replaces the best elements by others if the smallest angle of these is larger.
 void take_better(std::optional<Tetrahedra>& best, std::optional<Tetrahedra> other, const std::string& who,
                  Attempts& attempts) {
   if (!other) return;

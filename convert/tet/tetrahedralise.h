@@ -64,8 +64,8 @@ std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra);
 /// Source: Si, "TetGen, a Delaunay-based quality tetrahedral mesh generator", ACM TOMS 41(2), 2015.
 Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options = {});
 
-/// What is wrong with tetrahedra that should fill a surface of this volume within a relative tolerance: there
-/// are none, one has no positive volume, or the total differs. None if nothing is.
+/// The fault of tetrahedra that should fill a surface of this volume within a relative tolerance: there are
+/// none, one has no positive volume, or the total differs. None if there is no fault.
 std::optional<std::string> fault_in_filling(const Tetrahedra& tetrahedra, double surface_mm3,
                                             double tolerance);
 

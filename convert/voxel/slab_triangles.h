@@ -45,8 +45,8 @@ std::pair<int, int> layers_cut(const Corners& corners, int side);
 /// The segment in which a layer of centres cuts a triangle, as x and y, the end of lower y first.
 struct LayerCut {
   glm::dvec2 from{0.0}, to{0.0};
-  /// A ray along +x enters the solid here, in a right-handed index space. By the same rule as the cut, so
-  /// that the entries and exits of a row cancel along a closed surface.
+  /// Whether a ray along +x enters the solid here, in a right-handed index space. Decided by the same rule as
+  /// the cut, so the entries and exits of a row cancel on a closed surface.
   bool entering = false;
 };
 /// Cuts an edge if one end is at or below z and the other above. Interpolates from the lower end, so that

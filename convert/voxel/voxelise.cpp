@@ -20,11 +20,11 @@
 //   the segment in at most one point, and the row's bit at the first voxel not before that point flips.
 // 3 A running exclusive-or along each row turns flips into voxels inside.
 // 4 A slab's rows become 16 x 16 x 16 blocks.
-//
 // The half-open rule: layer z cuts an edge if one end is at or below z and the other above; row y cuts a
 // segment if it begins at or below y and ends above. The cut of an edge is computed from its lower end, so
 // both triangles on it get the same number to the last bit, and each row is crossed an even number of times
-// however its crossings round. So a closed mesh never leaks, even with vertices and edges on voxel centres.
+// whichever way the crossings are rounded. So a closed mesh never leaks, even with vertices and edges on
+// voxel centres.
 
 namespace octotomy::convert {
 namespace {
@@ -69,7 +69,7 @@ class Slab {
         carry = std::uint64_t{0} - (bits_[i] >> 63);
       }
     }
-    // A universe of less than a word's width has no voxels further on.
+    // A universe of fewer than 64 voxels a side has no voxels beyond its one word.
     if (side_ < 64)
       for (std::uint64_t& word : bits_) word &= (std::uint64_t{1} << side_) - 1;
   }
@@ -102,7 +102,7 @@ class Slab {
  private:
   /// Rows of a block that exist: universes of fewer than 16 voxels a side have fewer.
   int row_count() const { return std::min(slab_layers, side_); }
-  /// All layers of a row stand together.
+  /// The layers of one y follow each other.
   std::size_t row_number(int y, int z_in_slab) const {
     return static_cast<std::size_t>(y) * slab_layers + static_cast<std::size_t>(z_in_slab);
   }

@@ -15,9 +15,9 @@
 #include "voxel/tree/build.h"
 
 // Shares by the divergence theorem, a row of voxels at a time. A line along x that enters the solid at e
-// fills x1 - e of the voxel x0 .. x1 that holds e, and all voxels behind it; a line that leaves takes as much
-// away. Integrated over the row's cross-section, a piece of surface in a voxel adds its area seen along x to
-// the voxels behind it, and that area less its moment about x0 to its own voxel. The passes:
+// fills x1 - e of the voxel x0 .. x1 that holds e, and all voxels behind it; a line that leaves subtracts the
+// same amounts. Integrated over the row's cross-section, a piece of surface in a voxel adds its area seen
+// along x to the voxels behind it, and that area less its moment about x0 to its own voxel. The passes:
 //
 // 1 voxelise() decides the voxels that no triangle touches by their centres.
 // 2 A slab's triangles are cut into layers, the layers' pieces into rows, the rows' pieces into voxels: a
@@ -196,7 +196,7 @@ class ShareSlab {
   void add_row(const Polygon& polygon, int y, int z) {
     const auto row = static_cast<std::uint32_t>(y + side_ * (z - first_z_));
     const auto places = static_cast<std::uint32_t>(side_ + 1);
-    // Surface before the row fills all of it.
+    // Surface before the row's first voxel contributes to the whole row.
     if (polygon.least(0) <= -0.5) {
       Polygon before;
       Polygon rest;

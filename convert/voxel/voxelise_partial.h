@@ -12,8 +12,8 @@ namespace octotomy::convert {
 /// that only brushes a voxel from outside does not touch it: Inside of a solid is the complement of Touching
 /// of its outside, as for voxel::digitise(). at_least_half() of the answer is D4. The mesh may reach out of
 /// the universe. Precondition: no self-intersection; otherwise shares are clamped to 0 and 1. Throws as
-/// voxelise(). Parallel over slabs; same bits on any thread count. Cost: the pieces into which voxels cut the
-/// triangles, each a polygon; 24 bytes a piece in sixteen layers a thread.
+/// voxelise(). Parallel over slabs; same bits on any thread count. Cost: the polygons into which voxels cut
+/// the triangles; memory 24 bytes a polygon of the sixteen layers that each thread works on.
 voxel::PartialOctree voxelise_partial(const voxel::Universe& universe, const brep::Linked& solid,
                                       const voxel::Progress& progress = {});
 

@@ -13,18 +13,17 @@
 #include "convert/voxel/winding_threshold.h"
 #include "voxel/space/shared_progress.h"
 
-// The winding number of an open surface S is that of a closed one less that of what closes it. The passes:
-//
+// The winding number of an open surface S is that of S closed by a cap, less that of the cap. The passes:
 // 1 The rim of S: its edges with more triangles one way than the other, each as often as the excess. For any
-//   S, as many rim edges enter a vertex as leave it, so that the cone C from any apex over them closes S.
-// 2 Along each row of voxels, crossings of S + C by signs give the whole number n about each centre.
-// 3 A voxel is inside where n - w > 1/2, w the winding number of C. Away from C, w changes no faster than the
-//   law of Biot and Savart lets a current along the rim: |grad w| <= integral along it of 1 / (4 pi r^2).
-//   So a cube of voxels without a triangle of C where w(centre) keeps away from ... -1/2, 1/2, 3/2 ... by
-//   more than that over the cube has one whole number for n to be compared with; others are divided, from the
-//   whole universe down to single voxels.
-// 4 Between crossings of its 256 rows, a row of blocks of 16^3 voxels has stretches of one n, and blocks that
-//   are made. The octree is put together from above: a cube of one n and one number is Full or Empty.
+// S, as many rim edges enter a vertex as leave it, so that the cone C from any apex over them closes S. 2
+// Along each row of voxels, crossings of S + C by signs give the whole number n about each centre. 3 A voxel
+// is inside where n - w > 1/2, w the winding number of C. Away from C, w changes no faster than the law of
+// Biot and Savart lets a current along the rim: |grad w| <= integral along it of 1 / (4 pi r^2). So if a cube
+// of voxels contains no triangle of C, and w(centre) differs from every odd multiple of 1/2 by more than w
+// can change within the cube, one whole number serves as the threshold of n for the whole cube. Other cubes
+// are divided, from the universe down to single voxels. 4 Between crossings of its 256 rows, a row of blocks
+// of 16^3 voxels has stretches of one n, and blocks that are made. The octree is put together from above: a
+// cube of one n and one number is Full or Empty.
 //
 // Departure from the source, which sums over all triangles by a tree: here only rims cost, a closed surface
 // has none, and the decision for a cube is proven for each of its voxels.
@@ -34,7 +33,7 @@ namespace {
 
 constexpr int row_count = slab_layers * slab_layers;  // of a row of blocks
 
-/// A row enters or leaves the closed surface before voxel x.
+/// A crossing of a row with the closed surface, before voxel x.
 struct Crossing {
   std::int32_t x = 0;
   std::uint8_t row = 0;  ///< y + 16 z, of the row of blocks
@@ -44,7 +43,7 @@ struct Crossing {
 /// The numbers of a block's voxels, x fastest.
 using BlockWinds = std::array<std::int32_t, std::size_t{row_count} * slab_layers>;
 
-/// Blocks of a row of blocks, from where the one before ends.
+/// Consecutive blocks in a row of blocks. Begins where the stretch before it ends.
 struct Stretch {
   int end = 0;  ///< in blocks
   std::optional<std::int32_t> winds;
@@ -94,7 +93,7 @@ class WoundOctree {
 
   int slab_count() const { return blocks_along_; }
 
-  /// Makes a row of blocks of its crossings. Different rows may be made on different threads.
+  /// Builds a row of blocks from its crossings. Different rows may be built on different threads.
   void make_row(int block_y, int block_z, const std::vector<Crossing>& crossings) {
     if (crossings.empty()) return;
     BlockRow& row = rows_[row_number(block_y, block_z)];
@@ -147,7 +146,7 @@ class WoundOctree {
     }
   }
 
-  /// The block's voxels with at least the number that is asked for there.
+  /// The block's voxels whose number is at least the threshold there.
   voxel::Block made(const glm::ivec3& block, const BlockWinds& winds) const {
     std::array<std::uint16_t, row_count> rows{};
     const auto decided = [&](const Cube& cube, int least) {

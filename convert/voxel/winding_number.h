@@ -13,14 +13,14 @@ namespace octotomy::convert {
 /// numbers", SIGGRAPH 2013.
 double winding_number(const brep::Triangles& triangles, const glm::dvec3& p_mm);
 
-/// The voxels about whose centre the triangles wind more than a half: what a surface encloses although it has
-/// holes, crosses itself, or has edges of one, three or contrary triangles. For a closed surface these are
-/// the voxels that it encloses at least once. A surface that is inside out encloses nothing. A centre exactly
-/// on the surface is inside if the solid lies further along x, y or z. Throws voxel::Error (Geometry) if a
-/// triangle names no point or a point is not finite; voxel::Stopped. Parallel; same bits on any thread count.
-/// Cost: the triangles' footprint in the yz plane and the blocks of 16^3 voxels that they touch, in time and
-/// memory; not the universe. Holes add the voxels near their rims and the sheet across them, each times the
-/// rims' edges.
+/// The voxels about whose centre the triangles have a winding number above 1/2: those that the surface
+/// encloses, even if it has holes, crosses itself, or has edges with one, three or inconsistently oriented
+/// triangles. For a closed surface these are the voxels that it encloses at least once. A surface that is
+/// inside out encloses nothing. A centre exactly on the surface is inside if the solid lies further along x,
+/// y or z. Throws voxel::Error (Geometry) if a triangle names no point or a point is not finite;
+/// voxel::Stopped. Parallel; same bits on any thread count. Cost: the triangles' footprint in the yz plane
+/// and the blocks of 16^3 voxels that they touch, in time and memory; not the universe. Holes add the voxels
+/// near their rims and the sheet across them, each times the rims' edges.
 voxel::Octree voxelise_by_winding_number(const voxel::Universe& universe, const brep::Triangles& triangles,
                                          const voxel::Progress& progress = {});
 

@@ -49,13 +49,13 @@ std::vector<RimEdge> rim_of(const brep::Triangles& surface) {
   return rim;
 }
 
-/// How far an apex is put out of its rim's middle, in voxel edges: anything but a simple fraction, so that
-/// the cap of a flat hole does not lie in a plane of voxel centres.
+/// Offset of an apex from its rim's middle, in voxel edges. Not a simple fraction, so that the cap of a flat
+/// hole does not lie in a plane of voxel centres.
 constexpr glm::dvec3 apex_offset_voxels{0.2718281828, 0.3141592653, 0.1414213562};
 
-/// Whether a plane parts a triangle from a cube for certain. Source: Akenine-Moller, "Fast 3D triangle-box
-/// overlap testing", Journal of Graphics Tools 6(1), 2001. Departure: what rounding leaves unsure is not
-/// parted.
+/// Whether some plane certainly separates a triangle from a cube. Source: Akenine-Moller, "Fast 3D
+/// triangle-box overlap testing", Journal of Graphics Tools 6(1), 2001. Departure: a case that rounding
+/// leaves undecided counts as not separated.
 bool is_parted(const Corners& triangle, const glm::dvec3& middle, double half_side) {
   const Corners from_middle{triangle[0] - middle, triangle[1] - middle, triangle[2] - middle};
   double farthest = 0.0;
@@ -114,7 +114,7 @@ double covered_share(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3
   return std::atan2(glm::dot(a, glm::cross(b, c)), below) / (2.0 * std::numbers::pi);
 }
 
-/// One cone a connected part of the rim, from the middle of its edges.
+/// Closes each connected part of the rim by a cone whose apex is near the middle of its edges.
 Cap cap_of(const voxel::Universe& universe, const brep::Triangles& surface) {
   const std::vector<RimEdge> rim = rim_of(surface);
   brep::DisjointSets rims(surface.points_mm.size());
@@ -174,12 +174,12 @@ bool WindingThreshold::meets_cap(const Cube& cube) const {
   return false;
 }
 
-/// Whether w may pass a threshold between the middle and another voxel. Of an edge, the integral of 1 / r^2
-/// along it is the angle that it covers by its line's distance. With D its own distance, no r shrinks by more
-/// than the factor 1 - reach / D.
+/// Whether w may pass a threshold between the middle and another voxel. The integral of 1 / r^2 along an edge
+/// is the angle that the edge subtends, divided by the distance of its line. With D the distance of the edge
+/// itself, no r shrinks by more than the factor 1 - reach / D.
 bool WindingThreshold::may_change(const Cube& cube, const glm::dvec3& middle_mm, double share) const {
   const glm::dvec3 spacing = lattice_.spacing_mm();
-  // Edges of a lattice may be oblique: no diagonal is longer than the three edges together.
+  // A lattice may be oblique, but no diagonal is longer than the three edges together.
   const double reach = 0.5 * (cube.side - 1) * (spacing.x + spacing.y + spacing.z);
   const double room = std::abs(share + 0.5 - std::round(share + 0.5));
   double change = 0.0;

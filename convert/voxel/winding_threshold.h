@@ -19,7 +19,7 @@ namespace octotomy::convert {
 /// Van Oosterom, Strackee, "The solid angle of a plane triangle", IEEE TBME 30(2), 1983.
 double covered_share(const std::array<glm::dvec3, 3>& triangle_mm, const glm::dvec3& p_mm);
 
-/// What closes a surface: a cone over each part of its rim. In LPS millimetres.
+/// The triangles that close a surface: a cone over each part of its rim. In LPS millimetres.
 struct Cap {
   std::vector<std::array<glm::dvec3, 3>> triangles;
   std::vector<std::array<glm::dvec3, 2>> edges;  ///< of the rim
@@ -32,8 +32,8 @@ struct Cube {
   int side = slab_layers;
 };
 
-/// How often a surface with its cap has to wind about a voxel's centre if the surface alone winds more than a
-/// half: 1 away from holes. Cost of a cube that is asked for: the cap's triangles.
+/// The least winding number that a surface with its cap has about a voxel's centre if the surface alone has
+/// more than 1/2: 1 away from holes. Cost of a cube: the cap's triangles.
 class WindingThreshold {
  public:
   WindingThreshold(const voxel::Universe& universe, const Cap& cap);

@@ -9,7 +9,7 @@
 
 namespace octotomy::planner {
 
-/// A pipe that the programs that are started do not inherit, unless they are given an end of it.
+/// A pipe that child programs do not inherit, unless one of its ends is passed to them.
 class Pipe {
  public:
   /// Throws std::system_error where the system has none left.
@@ -35,7 +35,7 @@ struct ChildProcess {
 };
 
 struct ChildEnd {
-  int status = 0;    ///< as waitpid() tells it
+  int status = 0;    ///< as waitpid() reports it
   std::string said;  ///< the first line on its standard output
 };
 

@@ -40,7 +40,7 @@ fs::path list_of(const fs::path& out) {
   voxel::refuse(path, why + ", or choose another OUT");
 }
 
-/// Refuses what stands in the place of a file and is none: a pipe would be waited for.
+/// Refuses anything at a file's path that is not a regular file, because reading a pipe would block.
 void need_file(const fs::path& path) {
   std::error_code ignored;
   if (fs::exists(fs::symlink_status(path)) && !fs::is_regular_file(path, ignored))
@@ -119,7 +119,7 @@ void need_ours(const fs::path& out, const std::string& name) {
     refuse(out / "code" / name, "is not Octotomy's, or was changed after it wrote it: move it");
 }
 
-/// The list, opened and locked, so that one process at a time writes to code/.
+/// The opened and locked list: the lock allows one process at a time to write to code/.
 class LockedList {
  public:
   explicit LockedList(const fs::path& out)

@@ -15,7 +15,7 @@ struct Growth {
   double of(std::uint64_t bytes) const { return at + per_byte * static_cast<double>(bytes); }
 };
 
-/// What subjects of a plan take, learnt from those that are done.
+/// The resources that subjects of a plan need, estimated from those that are done.
 struct Forecast {
   std::size_t learnt_from = 0;
   Growth seconds, peak_mb;

@@ -152,7 +152,7 @@ GroupColumn summarised(const CohortColumn& column, const std::vector<Subject>& s
   return made;
 }
 
-/// Tells the progress and heeds a stop, at a few of the subjects.
+/// Reports the progress and checks for a stop, at a few of the subjects.
 void look_up(const GroupOptions& options, std::size_t subject, std::size_t count) {
   if (subject % 256 != 0) return;
   if (options.stop.stop_requested()) throw voxel::Stopped("stopped before the group was written");

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 constexpr int picture_px = 240;
 constexpr const char* report_folder = "report";
 
-/// A subject in the hands of one process; free again where that process ends, however it ends.
+/// The exclusive claim of one process on a subject. Released when that process ends, however it ends.
 class Claim {
  public:
   Claim(const fs::path& out, const Subject& subject) {

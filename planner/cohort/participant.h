@@ -12,10 +12,10 @@
 
 namespace octotomy::planner {
 
-/// What became of a subject, as its folder's subject.json tells it.
+/// The state of a subject, as recorded in its folder's subject.json.
 struct SubjectRecord {
   /// Doubtful: there is an answer, and the audit of a scan has a FAIL. Changed: a file of the answer is not
-  /// as it was written, so nothing is told of the subject.
+  /// as it was written, so the subject's numbers are not used.
   enum class State { Done, Doubtful, Failed, Missing, Changed };
 
   State state = State::Missing;
@@ -27,7 +27,7 @@ struct SubjectRecord {
   double peak_mb = 0.0;             ///< the process's largest memory
   std::uint64_t scan_bytes = 0;     ///< of the scans' files
   bool was_kept = false;            ///< an earlier run's answer to the same question stands
-  bool is_another_at_work = false;  ///< nothing was done, as another process has the subject in hand
+  bool is_another_at_work = false;  ///< nothing was done, because another process works on the subject
 
   bool has_answer() const { return state == State::Done || state == State::Doubtful; }
 };
@@ -37,7 +37,7 @@ std::string to_string(SubjectRecord::State state);
 struct ParticipantOptions {
   std::stop_token stop;
   std::function<void(const std::string& doing, double fraction)> progress;
-  bool again = false;    ///< evaluates what is done, too
+  bool again = false;    ///< evaluates subjects that are done, too
   bool reports = false;  ///< writes each subject's report and files as well
 };
 

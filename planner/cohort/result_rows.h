@@ -27,7 +27,7 @@ struct ResultRow {
   std::string scan_audit;   ///< the gravest verdict of all scans' audits; empty: no scan was read
 };
 
-/// What the audits of a result's scans say.
+/// The results of the audits of a result's scans.
 struct ScanAudits {
   std::string gravest;                ///< "PASS", "WARN" or "FAIL"; empty: the result has no audit
   std::vector<std::string> findings;  ///< each WARN and FAIL: "FAIL, patient: ...", with the scan's name

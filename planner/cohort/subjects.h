@@ -15,7 +15,7 @@ namespace octotomy::planner {
 struct Subject {
   std::string label;  ///< "01", or "01_ses-2" where there are sessions; letters, digits, _ and -
   std::map<std::string, std::filesystem::path> scans;  ///< by their names in the plan
-  std::string trouble = {};                            ///< why its scans are not known; empty: they are
+  std::string trouble = {};                            ///< why its scans are unknown; empty: they are known
   std::filesystem::path place = {};  ///< the BIDS folder with its files; empty: a table names its scans
 
   std::string folder() const { return "sub-" + label; }

@@ -16,8 +16,8 @@
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 
-// What an operation works with. Each kernel has a bench of its own that shows only that kernel's answers, so
-// that neither can see the other's. One header, as an operation uses most of them.
+// The inputs of an operation's functions. Each kernel has its own bench, which gives access to that kernel's
+// answers only. All are in one header, because an operation uses most of them.
 namespace octotomy::planner {
 
 /// A scan while steps need its samples.
@@ -27,10 +27,10 @@ struct LoadedScan {
 
   const voxel::Scene& scene() const { return *shared; }
 };
-/// Answers a scan by its name in the document.
+/// Returns a scan by its name in the document.
 using Scans = std::function<const LoadedScan&(const std::string& name)>;
 
-/// A scan without its samples: what a report says of it.
+/// The facts of a scan that a report needs, without its samples.
 struct ScanRecord {
   std::string name;
   std::filesystem::path path;
@@ -44,7 +44,7 @@ struct ScanRecord {
   std::vector<voxel::Hole> holes;
   voxel::Identity identity = {};
   std::string made_by = {};  ///< the step that made it, in words; empty: it was read
-  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< what that step tells of it
+  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< reported by that step
 };
 
 /// The bench of operations that make a scan of another one.
@@ -59,23 +59,24 @@ struct ScanBench {
 /// A scan that an operation made.
 struct MadeScan {
   voxel::Scene scene;
-  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< what the operation tells beside it
+  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< further results of the operation
   std::optional<voxel::GreyOctree> removed = {};  ///< samples taken out, so that they can be put back
   std::vector<std::string> findings = {};
 };
 
-/// The bench on which an operation settles values that it finds itself, as a plane that fits best.
+/// The bench of operations that compute values of their own before the kernels run, such as a plane of best
+/// fit.
 struct SettleBench {
   const Objects& objects;
   const Scans& scan;
   Timings& timings;
   voxel::Progress progress;
   std::filesystem::path folder = {};  ///< paths of files are relative to it
-  /// What is told of the values that were found.
+  /// Reported facts about the computed values.
   nlohmann::ordered_json& details;
   std::vector<std::string>& findings;
 
-  /// An earlier object's solid. Throws std::runtime_error where it has none.
+  /// An earlier object's solid. Throws std::runtime_error if the object has none.
   const brep::Solid& object(const std::string& name) const;
 };
 
@@ -93,7 +94,7 @@ struct VoxelBench {
   const VoxelSide& object(const std::string& name) const { return objects.at(name).voxel; }
   bool is_tool(const std::string& name) const { return objects.at(name).is_tool; }
   const LoadedScan& loaded(const std::string& name) const { return scan(name); }
-  /// What the universe's voxels fill.
+  /// The box of all the universe's voxels.
   voxel::Box box_mm() const;
   /// The expression's voxels of the universe; timed.
   voxel::Octree combined(const voxel::Expression& expression) const;
@@ -135,7 +136,7 @@ struct AnswerBench {
   std::function<void(const std::string& doing, double fraction)> report = {};
   std::filesystem::path folder = {};      ///< files are written below it
   std::vector<std::string> origins = {};  ///< where the objects come from, for files' headers
-  /// What several operations share, by their own keys.
+  /// Values that several operations share, by keys that the operations choose.
   std::map<std::string, std::shared_ptr<const void>>& kept;
   Scans scan = {};  ///< those that measurements and files use
 
@@ -151,7 +152,8 @@ struct FileBench {
   std::stop_token stop = {};
   /// Called with what is being done and a fraction of it, 0..1; may be empty.
   std::function<void(const std::string& doing, double fraction)> report = {};
-  /// Reads a scan as the command line's options say, with `slices_final` as in voxel::ReadOptions; timed.
+  /// Reads a scan according to the command line's options, with `slices_final` as in voxel::ReadOptions;
+  /// timed.
   std::function<voxel::Scene(const std::filesystem::path& path, const voxel::SlicesFinal& slices_final)>
       scan_reader = {};
   voxel::Scene read_scan(const std::filesystem::path& path,
@@ -162,11 +164,11 @@ struct FileBench {
   voxel::Progress progress(const std::string& doing) const;
 };
 
-/// What a verb says: a JSON object below what every answer begins with, and a table for people.
+/// A verb's output: a JSON object, placed after the members common to all answers, and a table for people.
 struct FileAnswer {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   std::vector<std::pair<std::string, std::string>> rows = {};
-  std::vector<std::string> findings = {};  ///< said as warnings, too
+  std::vector<std::string> findings = {};  ///< also printed as warnings
 };
 
 /// A file that an operation wrote, or the reason why it did not.

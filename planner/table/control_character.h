@@ -6,10 +6,12 @@
 #include <string>
 #include <string_view>
 
-// Names and texts of files reach terminals and lists, which would obey control characters or break at them.
+// Names and texts of files reach terminals and lists. Control characters would act on a terminal or break a
+// list.
 namespace octotomy::planner {
 
-/// Of ASCII, ends of lines and tabulators included; the bytes of other letters are none.
+/// Whether a byte is an ASCII control character, line ends and tabs included. Bytes of non-ASCII letters are
+/// not.
 inline bool is_control(char symbol) {
   return static_cast<unsigned char>(symbol) < ' ' || symbol == 0x7f;
 }
@@ -18,7 +20,8 @@ inline bool has_control(std::string_view text) {
   return std::any_of(text.begin(), text.end(), is_control);
 }
 
-/// Throws std::runtime_error of `what`, for example "a scan's name", where its text has such characters.
+/// Throws std::runtime_error that names `what`, for example "a scan's name", if the text has control
+/// characters.
 inline void need_no_control(std::string_view text, const std::string& what) {
   if (has_control(text)) throw std::runtime_error(what + " has control characters: take them out");
 }

@@ -50,7 +50,7 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
     refuse(1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + zero, '\n')),
            "a byte 0: it is no text, or not UTF-8");
-  // Spreadsheets write semicolons where a comma stands in numbers.
+  // Spreadsheets separate cells by semicolons if the locale's decimal point is a comma.
   const std::string_view heading = text.substr(0, text.find_first_of("\r\n"));
   const bool has_semicolons =
       heading.find(',') == std::string_view::npos && heading.find(';') != std::string_view::npos;

@@ -16,7 +16,7 @@ const Kind* as(const std::exception& error) {
   return dynamic_cast<const Kind*>(&error);
 }
 
-/// Both kernels have the same codes in the same order, which begin the faults.
+/// Both kernels have the same codes in the same order, and Fault begins with them.
 template <typename Code>
 Fault fault_of_code(Code code) {
   static_assert(static_cast<int>(Code::Resource) == static_cast<int>(Fault::Resource));

@@ -12,7 +12,7 @@ enum class Fault {
   Geometry,   ///< the data are sound, but the operation has no answer on them
   Cancelled,  ///< the work was stopped
   Resource,   ///< memory, disk, time or a child process gave out
-  Internal,   ///< a mistake in the program, which no user can mend
+  Internal,   ///< a mistake in the program, which users cannot correct
 };
 
 /// A mistake in the program. Its text names the place.
@@ -29,11 +29,11 @@ Fault fault_of(const std::exception& error);
 /// "input", "geometry", "cancelled", "resource" or "internal".
 std::string to_string(Fault fault);
 
-/// The error's text for people; of an Internal one it says so and asks to report it.
+/// The error's text for people. For an Internal error it names the fault as internal and asks to report it.
 std::string message_of(const std::exception& error);
 
-/// Whether the work has no answer for a reason that lies in the data or in a limit on the work, so that
-/// another way may be tried or the reason stated: it was not stopped, memory is left, and it is no mistake.
+/// Whether the cause is the data or a limit on the work, so that the caller may try another method or report
+/// the reason. False for a stop, for exhausted memory and for a mistake in the program.
 bool is_no_answer(const std::exception& error);
 
 /// Throws an error of the same kind whose text begins with `where`. Stops and std::bad_alloc are thrown as

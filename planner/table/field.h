@@ -12,7 +12,7 @@
 
 #include "planner/table/sample_window.h"
 
-// The fields of operations: what each is called, holds and means. Reading and printing JSON, refusals, the
+// The fields of operations: the name, type and meaning of each. Reading and printing JSON, refusals, the
 // schema, the command line's options and their help all derive from this one description.
 namespace octotomy::planner {
 
@@ -29,8 +29,8 @@ struct Site {
   glm::dvec3 point_mm{0.0};
   std::string object;  ///< empty: the point
 };
-/// A point: typed in LPS millimetres, or a landmark of the plan. The landmark lies as in the scan, or, as
-/// "ans@advanced", as it moved along with an object.
+/// A point: typed in LPS millimetres, or a landmark of the plan. The landmark is at its position in the scan,
+/// or, as "ans@advanced", where that object's motions put it.
 struct Mark {
   glm::dvec3 p_mm{0.0};  ///< of a landmark: in the scan
   std::string landmark;  ///< empty: typed
@@ -61,7 +61,7 @@ using Slot = std::variant<
     std::vector<int>*, std::vector<std::string>*, std::vector<glm::dvec3>*, std::vector<ObjectName>*, Mark*,
     std::optional<Mark>*, std::vector<Mark>*, std::optional<glm::dmat4>*, Polygons*, NamePairs*, Records>;
 
-/// The unit that a name ends in, for people: "mm", "mm³", "°"; empty for what has none.
+/// The unit at the end of a name, for people: "mm", "mm³", "°"; empty if there is none.
 std::string unit_of_name(const std::string& name);
 
 /// One field of an operation or of a record within it.
@@ -83,9 +83,9 @@ struct Field {
   std::optional<std::string> argument = {};  ///< on the command line a positional argument of this name
   std::string option = {};                   ///< on the command line "--" and this; default: from `name`
   bool has_commas = false;                   ///< a list that is one word with commas
-  bool is_repeated = false;                  ///< a list whose option is said once for each entry
-  bool is_of_plans = false;                  ///< the command line has another way to say it
-  bool is_input = false;                     ///< a path that is read: on the command line it must be there
+  bool is_repeated = false;                  ///< a list whose option is repeated for each entry
+  bool is_of_plans = false;                  ///< only in plans: the command line has another form for it
+  bool is_input = false;                     ///< a path that is read: on the command line it must exist
 
   Field required() && { return is_required = true, std::move(*this); }
   Field direction() && { return is_direction = true, std::move(*this); }

@@ -219,7 +219,7 @@ Json json_of(const glm::dvec3& value) {
   return {value.x, value.y, value.z};
 }
 
-/// Prints one value; null where nothing is there.
+/// Prints one value; null if there is none.
 struct Printer {
   const Field& field;
 
@@ -398,7 +398,7 @@ struct Word {
   SortedJson operator()(const Records&) const { return word; }
 };
 
-/// What help calls one word.
+/// The form of one word in help.
 struct Form {
   std::string operator()(const bool*) const { return ""; }
   std::string operator()(const int*) const { return "N"; }

@@ -11,9 +11,9 @@
 // Fields and JSON: one reader, one printer and one schema for every operation.
 namespace octotomy::planner {
 
-/// Reads an object's keys into the fields of `owner`. `also` are keys that are known and not read here.
-/// Throws std::runtime_error with the place, what is wrong and what to try: an unknown key with the nearest
-/// known one, a missing one, a wrong type, a number out of its range, a name that is not bound.
+/// Reads an object's keys into the fields of `owner`. `also` lists further keys that are allowed but not read
+/// here. Throws std::runtime_error with the place, what is wrong and what to try: an unknown key with the
+/// nearest known one, a missing one, a wrong type, a number out of its range, a name that is not bound.
 void read_fields(const std::vector<Field>& fields, const nlohmann::json& object, void* owner,
                  const Place& place, const std::vector<std::string>& also = {});
 
@@ -22,16 +22,15 @@ void read_fields(const std::vector<Field>& fields, const nlohmann::json& object,
 nlohmann::ordered_json print_fields(const std::vector<Field>& fields, void* owner);
 
 /// The fields as a JSON schema's object (draft 2020-12). `fresh` is an owner with all defaults; a field that
-/// is not required has its default told.
+/// is not required states its default.
 nlohmann::ordered_json fields_schema(const std::vector<Field>& fields, void* fresh);
 
 /// A field's value as JSON from the words of the command line: "X,Y,Z" is a point, several are a list. Throws
-/// std::runtime_error where a word is not of the field's type.
+/// std::runtime_error if a word is not of the field's type.
 nlohmann::json json_of_words(const Field& field, void* fresh, const std::vector<std::string>& words);
 
-/// The same for several fields in their order: a point takes three values, a list all that are left, any
-/// other field one. Scans are passed over. Throws std::runtime_error where there are too many values or too
-/// few.
+/// The same for several fields in their order: a point takes three values, a list takes all that are left,
+/// any other field one. Scans are skipped. Throws std::runtime_error if there are too many values or too few.
 nlohmann::json json_of_values(const std::vector<Field>& fields, void* fresh,
                               const std::vector<std::string>& values);
 
@@ -43,7 +42,7 @@ bool names_objects(const Field& field, void* fresh);
 bool names_scan(const Field& field, void* fresh);
 /// Whether it is a flag, which has no word.
 bool is_flag(const Field& field, void* fresh);
-/// What help calls one word: "MM", "X,Y,Z", "NAME".
+/// The form of one word in help: "MM", "X,Y,Z", "NAME".
 std::string word_form(const Field& field, void* fresh);
 
 }  // namespace octotomy::planner

@@ -5,9 +5,9 @@
 
 namespace octotomy::planner {
 
-/// Members keep the order they were given: what is written.
+/// Members keep the order of insertion. For JSON that is written.
 using Json = nlohmann::ordered_json;
-/// Members lie in the order of their names: what is read by name alone.
+/// Members are sorted by name. For JSON that is only read, by name.
 using SortedJson = nlohmann::json;
 
 }  // namespace octotomy::planner

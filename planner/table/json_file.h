@@ -12,21 +12,21 @@
 // place in it.
 namespace octotomy::planner {
 
-/// `where` may be empty: then only what is wrong is said.
+/// If `where` is empty, the message contains `what` alone.
 [[noreturn]] void refuse(const std::string& where, const std::string& what);
 
 /// For a refusal: "a number", "a JSON array".
 std::string type_of(const nlohmann::json& value);
 
-/// The most levels that JSON may be deep: it is copied and written by calls within calls, which take the
+/// The largest depth of JSON. Copying and writing recurse once a level, so deeper JSON could exhaust the
 /// stack.
 inline constexpr int most_json_levels = 512;
-/// Levels of brackets outside of texts, before anything is built of them. Linear.
+/// The depth of brackets outside of strings, computed without parsing. Linear.
 int json_levels(std::string_view text);
-/// Refuses a text that is deeper than most_json_levels.
+/// Throws if a text is deeper than most_json_levels.
 void need_shallow_json(std::string_view text);
 
-/// Throws std::runtime_error where a text is no JSON, or too deep.
+/// Throws std::runtime_error if a text is not JSON or too deep.
 template <typename AnyJson = nlohmann::json>
 AnyJson parse_json(std::string_view text) {
   need_shallow_json(text);
@@ -48,7 +48,7 @@ std::string json_text(const AnyJson& json, int indent = -1) {
 /// Written beside and renamed into place.
 void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
-/// Refuses keys that are not known, with the nearest that is.
+/// Throws for an unknown key, with the nearest known one.
 void check_keys(const nlohmann::json& object, const std::string& where,
                 const std::vector<std::string>& known);
 

@@ -7,11 +7,12 @@
 
 namespace octotomy::planner {
 
-/// A number for people: so many decimals, digits grouped in threes by a narrow no-break space from five
+/// A number for people: `decimals` decimals, digits grouped in threes by a narrow no-break space from five
 /// digits on, a true minus sign. "not a number" and infinities are an en dash.
 std::string grouped(double value, int decimals);
 
-/// As many decimals as three significant figures take, at the least none: 1 234, 56.7, 0.0123.
+/// A number with three significant figures, all of its whole digits and at most six decimals: 1 234, 56.7,
+/// 0.0123.
 std::string three_figures(double value);
 
 /// A number as short as six decimals allow, in plain ASCII: 0.5, 300; from 1e+15 on with its power of ten.

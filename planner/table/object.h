@@ -28,7 +28,7 @@ struct VoxelSide {
   explicit VoxelSide(const voxel::Universe& universe) : octree(voxel::Octree::empty(universe)) {}
 
   voxel::Octree octree;
-  /// What the object is made of, down to windows on samples, so that a motion samples those once.
+  /// The object as an expression of windows on samples, so that a motion interpolates the samples only once.
   std::optional<voxel::Expression> symbol;
   voxel::Measures measures;
   std::string lineage;
@@ -38,14 +38,14 @@ struct VoxelSide {
 
 /// The mesh kernel's answer to the same operation.
 struct MeshSide {
-  std::optional<brep::Solid> whole;   ///< as far as it reaches; none if the kernel has no answer
+  std::optional<brep::Solid> whole;   ///< also beyond the universe; none if the kernel has no answer
   std::optional<brep::Solid> within;  ///< the part of it within the universe
   std::string lineage;
   std::vector<std::string> makers;  ///< as of VoxelSide
   double shift_mm = 0.0;            ///< how far Booleans moved operands
   std::vector<std::string> findings;
-  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< what the operation tells beside it
-  /// Of some of another object's parts: its name, and the parts that were left out.
+  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< further results of the operation
+  /// If the object is a choice of another object's parts: that object's name, and the parts left out.
   std::optional<std::pair<std::string, brep::Solid>> parts_of = {};
 };
 
@@ -70,16 +70,16 @@ struct Shown {
 /// What a certificate's bound is made of.
 struct BoundTerms {
   std::vector<CutPlane> planes;
-  glm::dvec3 spacing_mm{0.0};  ///< of the coarsest scan it comes from; zero where it comes from none
-  std::optional<voxel::Box> scan_box_mm;  ///< of the scan that it comes from, while it has not moved
+  glm::dvec3 spacing_mm{0.0};  ///< of the coarsest scan that the object derives from; zero if there is none
+  std::optional<voxel::Box> scan_box_mm;  ///< of the scan it derives from; none once it has moved
   bool voxels_are_samples = false;
   double shift_mm = 0.0;       ///< how far Booleans on the way moved operands (brep::Booleans)
   std::vector<Shown> windows;  ///< of all that it was made of: their bounds decide where its surface lies
   /// Objects whose surface was made anew on the way, by an offset, by smoothing or by fewer triangles: where
   /// theirs is in doubt, so is this one's.
   std::vector<std::string> reshaped;
-  /// How far right answers may lie apart on the mean because each kernel measured distances of its own
-  /// (verify::BoundInputs).
+  /// The mean distance by which two correct answers may differ because each kernel measured distances by
+  /// itself (verify::BoundInputs).
   double measured_apart_mm = 0.0;
 };
 
@@ -90,7 +90,7 @@ struct CutWall {
   glm::dmat4 moved_from_still{1.0};
 };
 
-/// Why an object's certificate cannot be a PASS, whatever the kernels say of each other.
+/// A reason why an object's certificate cannot be a PASS, even if the kernels agree.
 struct Caveat {
   voxel::Verdict verdict = voxel::Verdict::Warn;
   std::string reason;
@@ -108,18 +108,19 @@ struct Object {
   std::string definition;        ///< in words: "skull & cut"
   bool is_tool = false;          ///< only helps to make others, as a mask
   bool is_interpolated = false;  ///< a part of it comes from samples between images
-  bool is_surely_empty = false;  ///< its definition holds nothing of any objects, as a - a
+  bool is_surely_empty = false;  ///< its definition is empty for any objects, such as a - a
   VoxelSide voxel;
   MeshSide mesh;
   BoundTerms bound;
   verify::Witness witness;  ///< of the object as `mesh.whole` has it; empty where no third reading exists
   std::optional<verify::Certificate> certificate;  ///< none for tools, and where there is no mesh
   std::vector<std::string> findings;
-  /// What is told where the scan's border cuts it off: no kernel knows what lies beyond. A motion keeps it.
+  /// The finding if the scan's border cuts the object off, because neither kernel has data beyond it. A
+  /// motion keeps the finding.
   std::optional<std::string> border_finding;
   std::vector<Caveat> caveats;
-  /// What both kernels took from one place on the way that is no answer: values found by a step, filtered
-  /// samples.
+  /// Inputs that both kernels share although they were computed only once: values computed by a step,
+  /// filtered samples. An error in them cannot show as a disagreement.
   std::vector<std::string> shared_values;
   bool ends_with_universe = false;  ///< its mesh stays cut at the universe's border when it moves on
   std::optional<Shown> shown;
@@ -127,15 +128,15 @@ struct Object {
   struct Moved {
     std::string object;  ///< that was moved
     glm::dmat4 motion{1.0};
-    /// What is told of the motion: how it was found, residuals of points.
+    /// Reported facts about the motion: how it was found, residuals of points.
     nlohmann::ordered_json details = nlohmann::ordered_json::object();
   };
   std::optional<Moved> moved;
-  /// Of an object that is another one moved or mirrored, by one step or by several.
+  /// Set if the object is another one moved or mirrored, by one step or by several.
   struct Image {
     std::string object;  ///< the one that was neither moved nor mirrored
     glm::dmat4 image_from_object{1.0};
-    /// Whether all of both lies within the universe: they are equally large then.
+    /// Whether both objects lie wholly within the universe. Then their volumes are equal.
     bool is_whole = false;
   };
   std::optional<Image> image;

@@ -15,12 +15,12 @@
 #include "planner/table/scope.h"
 
 // The table of operations. An operation is a typed value; its entry says what the value's fields mean and
-// what each kernel does with it. Plan steps, verbs, help and the schema derive from the entry. Describe
-// stands beside the entry that it builds, which makes the header long.
+// what each kernel does with it. Plan steps, verbs, help and the schema derive from the entry. The header is
+// long because it contains both the entry and Describe, which builds it.
 namespace octotomy::planner {
 
-/// What a step leaves behind: an object or a scan that later steps use, numbers, a file in the result's
-/// folder, or names and directions, which it binds in the document's scope when it is checked.
+/// The result of a step: an object or a scan that later steps use, numbers, a file in the result's folder, or
+/// names and directions, which are bound in the document's scope when the step is checked.
 enum class Makes { Object, Scan, Measurement, File, Names };
 
 /// An entry of the table. Its functions take the operation's value behind a pointer; Describe binds them.
@@ -34,48 +34,48 @@ struct Operation {
 
   /// A value with all defaults.
   std::function<std::shared_ptr<void>()> fresh;
-  /// Refuses what single fields cannot know.
+  /// Checks conditions that involve several fields. Throws if one is not met.
   std::function<void(const void* value, const Place& place)> check;
   /// The operation in words, for people: "skull & cut".
   std::function<std::string(const void* value, const Objects& objects)> definition;
-  /// The value with what the operation finds itself, as a plane that fits best; the other functions get that
-  /// value. Empty where there is nothing to find.
+  /// Completes the value by what the operation computes, such as a plane of best fit. The other functions get
+  /// the completed value. Empty if there is nothing to compute.
   std::function<std::shared_ptr<void>(const void* value, const SettleBench& bench)> settle;
-  /// The scan that it makes of another one.
+  /// Makes a scan from another one.
   std::function<MadeScan(const void* value, const ScanBench& bench)> scan;
-  /// The voxel kernel's answer; empty where it has none: then the mesh kernel's answer is voxelised.
+  /// The voxel kernel's answer. Empty if it has none; then the mesh kernel's answer is voxelised.
   std::function<void(const void* value, const VoxelBench& bench, VoxelSide& made)> voxel;
-  /// The mesh kernel's answer; empty where it has none.
+  /// The mesh kernel's answer. Empty if it has none.
   std::function<void(const void* value, const MeshBench& bench, MeshSide& made)> mesh;
-  /// What the certificate's bound is made of, and which samples show the surface.
+  /// Sets the terms of the certificate's bound, and the samples that show the surface.
   std::function<void(const void* value, const BoundBench& bench, Object& made)> bound;
   /// The numbers of a measurement, each with its half-width.
   std::function<nlohmann::ordered_json(const void* value, const AnswerBench& bench)> measure;
-  /// Writes a file, or tells the reason why there is nothing to write.
+  /// Writes a file, or reports why there is nothing to write.
   std::function<void(const void* value, const AnswerBench& bench, Exported& made)> write;
-  /// The work on a file that needs no certificate: it puts into the bench's `kept` what `write` finds there.
-  /// Runs beside later steps. Empty where there is none.
+  /// The part of writing a file that needs no certificate. Stores its results in the bench's `kept`, where
+  /// `write` reads them. Runs in parallel with later steps. Empty if there is no such part.
   std::function<void(const void* value, const AnswerBench& bench)> ahead;
-  /// The objects that it uses beside those that its fields name.
+  /// The objects that the operation uses in addition to those that its fields name.
   std::function<std::vector<std::string>(const void* value)> uses;
-  /// Examples of the operation as a verb on files; empty: it is none. Of an operation that makes a scan the
-  /// form of prepare's step: "gaussian=SIGMA (mm)".
+  /// Examples of the operation as a verb on files; empty: it is not a verb. For an operation that makes a
+  /// scan, the form of prepare's step: "gaussian=SIGMA (mm)".
   std::string verb_example;
-  /// What the verb does where its answer is not the object that both kernels make; its objects are paths of
+  /// Runs the verb if its answer is not the object that both kernels make. The value's objects are paths of
   /// files.
   std::function<FileAnswer(const void* value, const FileBench& bench)> on_files;
-  /// The same value where the parts that hold these points, LPS, stay, too; null where it chooses no parts in
-  /// both kernels.
+  /// The same value changed so that the parts that contain these points, LPS, are also kept. Null if the
+  /// operation does not choose parts in both kernels.
   std::function<std::shared_ptr<void>(const void* value, const std::vector<glm::dvec3>& also_mm)> with_parts;
   /// Fields that only the verb has.
   std::vector<Field> verb_fields;
-  /// The verb has the options that say how a scan is read.
+  /// The verb has the options for reading scans.
   bool reads_scans = false;
-  /// An object that only helps to make others, as a mask: it has no certificate of its own.
+  /// The object only helps to make others, such as a mask, and has no certificate.
   bool is_tool = false;
-  /// Its object is the one that its field `object` names, under a rigid motion (Object::moved).
+  /// The object is that of the field `object` under a rigid motion (Object::moved).
   bool is_motion = false;
-  /// Its answer depends on how the head is held: on views or on words as "forward".
+  /// The answer depends on the head's orientation, by views or by words such as "forward".
   bool is_of_head = false;
 };
 
@@ -111,7 +111,7 @@ class Describe {
   using Voxels = void (*)(const Value&, const VoxelBench&, VoxelSide&);
   using Triangles = void (*)(const Value&, const MeshBench&, MeshSide&);
   using Bound = void (*)(const Value&, const BoundBench&, Object&);
-  /// What an operation that makes an object needs; null for a kernel that has no answer.
+  /// Binds the functions of an operation that makes an object; null for a kernel that has no answer.
   Describe&& object(Definition definition, Voxels voxels, Triangles triangles, Bound bound) && {
     bind(entry_.definition, definition);
     if (voxels != nullptr) bind(entry_.voxel, voxels);
@@ -164,12 +164,12 @@ class Action {
   const Operation& operation() const { return *operation_; }
   const void* value() const { return value_.get(); }
   void* value() { return value_.get(); }
-  /// Null where the operation is another one.
+  /// Null if the operation is another one.
   template <typename Value>
   const Value* get_if() const {
     return operation_->type == typeid(Value) ? static_cast<const Value*>(value_.get()) : nullptr;
   }
-  /// Throws std::invalid_argument where the operation is another one.
+  /// Throws std::invalid_argument if the operation is another one.
   template <typename Value>
   const Value& get() const {
     if (const Value* value = get_if<Value>()) return *value;
