@@ -182,7 +182,8 @@ std::map<int, std::string> write_segments(const Program& program, const SegmentT
   if (is_octree(text.out)) {
     const Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
                     {"scan", text.scan.filename().string()},
-                    {"steps", segments.front().made.steps}};
+                    {"steps", segments.front().made.steps},
+                    {"scan_audit", doubts_of(scene.audit)}};
     const voxel::OctreeFile file{segments.front().made.octree, segments.front().name, json_text(made)};
     const Stopwatch watch(timings, "write");
     outputs.write(text.out, [&](const fs::path& path) {

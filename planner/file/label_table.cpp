@@ -196,7 +196,7 @@ void add_json(Names& table, const SortedJson& json, const std::string& where) {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-std::string cell(const std::vector<std::string>& row, std::size_t column) {
+std::string cell_of(const std::vector<std::string>& row, std::size_t column) {
   return column < row.size() ? voxel::trimmed(row[column]) : std::string();
 }
 
@@ -215,7 +215,7 @@ std::vector<std::size_t> columns_of(const std::vector<std::string>& heading,
 bool may_have_labels(const Rows& rows, std::size_t first, std::size_t column) {
   bool any = false;
   for (std::size_t i = first; i < rows.size(); ++i) {
-    const std::string text = cell(rows[i], column);
+    const std::string text = cell_of(rows[i], column);
     if (whole(text) || is_beyond_labels(text)) return true;
     any = any || !text.empty();
   }
@@ -225,7 +225,7 @@ bool may_have_labels(const Rows& rows, std::size_t first, std::size_t column) {
 /// Whether every cell of a column that is not empty is a whole number, in the rows from `first`.
 bool has_numbers(const Rows& rows, std::size_t first, std::size_t column) {
   return std::all_of(rows.begin() + static_cast<std::ptrdiff_t>(first), rows.end(), [&](const auto& row) {
-    const std::string text = cell(row, column);
+    const std::string text = cell_of(row, column);
     return text.empty() || whole(text) || is_beyond_labels(text);
   });
 }
@@ -263,7 +263,7 @@ Columns columns_in(Names& table, const Rows& rows, const std::string& where, boo
       for (const std::size_t other : labels) {
         if (other == taken || other == names.front() || !has_numbers(rows, 1, other)) continue;
         const auto differs = std::find_if(rows.begin() + 1, rows.end(), [&](const auto& row) {
-          return !cell(row, other).empty() && cell(row, other) != cell(row, taken);
+          return !cell_of(row, other).empty() && cell_of(row, other) != cell_of(row, taken);
         });
         if (differs != rows.end())
           table.note(where + ": WARN: the labels are taken from the column '" +
@@ -281,7 +281,7 @@ void add_rows(Names& table, const Rows& rows, const std::string& where, bool is_
   const Columns columns = columns_in(table, rows, where, is_tsv);
   for (std::size_t i = columns.first_row; i < rows.size(); ++i) {
     const std::string at = where + ":" + std::to_string(i + 1);
-    const std::string number = cell(rows[i], columns.label), name = cell(rows[i], columns.name);
+    const std::string number = cell_of(rows[i], columns.label), name = cell_of(rows[i], columns.name);
     if (number.empty() || name.empty()) {
       table.pass_over(at, number.empty() ? "it has no label" : "label " + number + " has no name");
       continue;
