@@ -219,18 +219,6 @@ int convert_labels(const Program& program, const ConvertText& text) {
   return done;
 }
 
-/// The names of a label map's labels, which another file is to keep; none of other scans.
-LabelTable names_of_labels(const voxel::Scene& scene, const fs::path& in) {
-  if (scene.meaning != voxel::Meaning::Label || !fs::is_regular_file(in)) return {};
-  std::set<int> occurring;
-  try {
-    for (const voxel::Label& label : voxel::labels(scene)) occurring.insert(label.number);
-  } catch (const std::invalid_argument&) {  // samples between labels
-    return {};
-  }
-  return label_table_of(in, occurring);
-}
-
 int convert(const Program& program, const ConvertText& text) {
   if (text.out.extension() == ".dcm" && !text.dicom) return convert_labels(program, text);
   const bool folder = text.dicom || !text.out.has_extension();

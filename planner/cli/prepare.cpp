@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 
 #include "planner/cli/verbs.h"
+#include "planner/file/label_table.h"
 #include "planner/file/outputs.h"
+#include "planner/file/write_label_table.h"
 #include "planner/picture/removed_picture.h"
 #include "planner/table/field_json.h"
 #include "planner/table/json_file.h"
@@ -113,6 +115,7 @@ int prepare(const Program& program, const PrepareText& text) {
                                "only remove_headrest draws a picture: add --step remove_headrest");
   Timings timings;
   voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
+  const LabelTable table = names_of_labels(scene, text.in);
   std::optional<voxel::GreyOctree> removed;
   std::optional<RemovedPicture> picture;
   Json did = Json::array();
@@ -157,6 +160,8 @@ int prepare(const Program& program, const PrepareText& text) {
     did.push_back(std::move(said));
   }
   if (program.stop.stop_requested()) throw Stopped("stopped before " + text.out.string() + " was written");
+  const bool has_names = scene.meaning == voxel::Meaning::Label && !table.names.empty();
+  if (has_names) need_label_table(text.out, table.names);
   Outputs outputs;
   {
     const Stopwatch watch(timings, "write");
@@ -167,9 +172,15 @@ int prepare(const Program& program, const PrepareText& text) {
     outputs.write(text.picture,
                   [&](const fs::path& file) { voxel::write_image(file, picture->size_px, picture->rgb); });
   outputs.commit();
+  std::vector<std::string> findings = table.passed_over;
+  if (has_names)
+    for (std::string& finding : write_label_table(text.out, table.names))
+      findings.push_back(std::move(finding));
   Json json = scan_answer(scene, timings);
   json["path"] = text.out.string();
   json["steps"] = std::move(did);
+  json["findings"] = findings;
+  for (const std::string& finding : findings) warn_finding(finding);
   rows.emplace_back("written", text.out.string());
   program.say(json, lines(rows));
   return done;

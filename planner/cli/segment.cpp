@@ -8,6 +8,7 @@
 #include "planner/cli/verbs.h"
 #include "planner/file/outputs.h"
 #include "planner/file/slice_contours.h"
+#include "planner/file/write_label_table.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/operation/trace.h"
 #include "planner/table/json_file.h"
@@ -171,14 +172,18 @@ void write_seg(const Program& program, const SegmentText& text, const voxel::Sce
   outputs.write(text.out, [&](const fs::path& file) { voxel::write_dicom_seg(written, file, options); });
 }
 
-/// Writes the objects: one as an octree, any number as a label map on the scan's own lattice.
-void write_segments(const Program& program, const SegmentText& text, const voxel::Scene& scene,
-                    const std::vector<Named>& segments, Outputs& outputs, Timings& timings, Json& json) {
+/// Writes the objects: one as an octree, any number as a label map on the scan's own lattice. Returns the
+/// names of a label map's labels.
+std::map<int, std::string> write_segments(const Program& program, const SegmentText& text,
+                                          const voxel::Scene& scene, const std::vector<Named>& segments,
+                                          Outputs& outputs, Timings& timings, Json& json) {
+  std::map<int, std::string> names;
   if (program.stop.stop_requested()) throw Stopped("stopped before " + text.out.string() + " was written");
   if (is_octree(text.out)) {
     const Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
                     {"scan", text.scan.filename().string()},
-                    {"steps", segments.front().made.steps}};
+                    {"steps", segments.front().made.steps},
+                    {"scan_audit", doubts_of(scene.audit)}};
     const voxel::OctreeFile file{segments.front().made.octree, segments.front().name, json_text(made)};
     const Stopwatch watch(timings, "write");
     outputs.write(text.out, [&](const fs::path& path) {
@@ -192,19 +197,22 @@ void write_segments(const Program& program, const SegmentText& text, const voxel
     for (const Named& segment : segments) octrees.push_back(segment.on_samples.value_or(segment.made.octree));
     const Stopwatch watch(timings, "write");
     const voxel::LabelMap map = voxel::label_map(scene.lattice, octrees, {program.stop.get_token(), {}});
-    outputs.write(text.out, [&](const fs::path& file) { voxel::write_scene(map.scene, file); });
     json["kind"] = "label map";
     json["labels"] = Json::array();
-    for (const voxel::Label& label : voxel::labels(map.scene))
-      json["labels"].push_back({{"label", label.number},
-                                {"name", segments[static_cast<std::size_t>(label.number) - 1].name},
-                                {"samples", label.samples}});
+    for (const voxel::Label& label : voxel::labels(map.scene)) {
+      const std::string& name = segments[static_cast<std::size_t>(label.number) - 1].name;
+      json["labels"].push_back({{"label", label.number}, {"name", name}, {"samples", label.samples}});
+      names.emplace(label.number, name);
+    }
+    need_label_table(text.out, names);
+    outputs.write(text.out, [&](const fs::path& file) { voxel::write_scene(map.scene, file); });
     json["overlaps"] = map.overlaps;
     if (map.overlaps > 0)
       json["findings"].push_back(std::to_string(map.overlaps) +
                                  " samples lie in several objects: they have the first one's label");
   }
   json["path"] = text.out.string();
+  return names;
 }
 
 /// What cannot be said together is refused before anything is read.
@@ -258,10 +266,11 @@ int segment(const Program& program, const SegmentText& text) {
     first = asked.window = otsu.window;
   }
   std::string written;
+  std::map<int, std::string> names;
   Outputs outputs;
   if (!text.out.empty()) {
     const std::vector<Named> segments = segments_of(program, text, asked, scene, timings);
-    write_segments(program, text, scene, segments, outputs, timings, json);
+    names = write_segments(program, text, scene, segments, outputs, timings, json);
     json["objects"] = Json::array();
     for (const Named& each : segments) {
       json["objects"].push_back(said_of(each));
@@ -274,6 +283,8 @@ int segment(const Program& program, const SegmentText& text) {
     written += (written.empty() ? "" : ", ") + text.contours.string();
   }
   outputs.commit();
+  if (!names.empty())
+    for (std::string& finding : write_label_table(text.out, names)) findings.push_back(std::move(finding));
   for (const std::string& finding : findings) json["findings"].push_back(finding);
   Json whole = answer(timings);
   for (const auto& [key, value] : json.items())

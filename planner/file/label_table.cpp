@@ -18,7 +18,6 @@
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "planner/table/number_format.h"
-#include "voxel/scan/label_names.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::planner {
@@ -78,56 +77,116 @@ class Names {
     if (++passed_over_count_ <= most_told)
       passed_over_.push_back(where + ": the row is passed over, as " + why);
   }
-  bool empty() const { return names_.empty(); }
+  /// Reports what is doubtful of the whole table.
+  void note(std::string text) { notes_.push_back(std::move(text)); }
   LabelTable table(const fs::path& path) && {
     if (passed_over_count_ > passed_over_.size())
       passed_over_.push_back(path.string() + ": " + std::to_string(passed_over_count_ - passed_over_.size()) +
                              " more rows are passed over");
+    passed_over_.insert(passed_over_.begin(), notes_.begin(), notes_.end());
     return {std::move(names_), path, std::move(passed_over_)};
   }
 
  private:
-  std::vector<std::string> passed_over_;
+  std::vector<std::string> passed_over_, notes_;
   std::size_t passed_over_count_ = 0;
   std::map<int, std::string> names_;
   std::map<std::string, int> labels_;
 };
 
-/// The value of the first of the keys that an object has; null where it has none.
-const SortedJson* one_of(const SortedJson& object, const std::vector<const char*>& keys) {
-  for (const char* key : keys)
-    if (object.is_object() && object.contains(key)) return &object[key];
+/// A heading or key as tables of all programs agree on it: "Label Value", "LabelValue" and "label_value" are
+/// "labelvalue"; "#No." is "no".
+std::string plain_word(const std::string& text) {
+  std::string word;
+  for (const unsigned char c : text)
+    if (std::isalnum(c)) word += static_cast<char>(std::tolower(c));
+  return word;
+}
+
+/// Headings and keys of labels, as plain_word() spells them, the likeliest first.
+const std::vector<std::string>& words_of_labels() {
+  static const std::vector<std::string> words{
+      "label",  "labelvalue", "labelid", "labelnumber", "labelno",   "labelindex", "value",   "index", "id",
+      "number", "no",         "idx",     "key",         "segmentid", "segmentno",  "classid", "class"};
+  return words;
+}
+
+/// The same of names. A column "label" can have them where another has the numbers.
+const std::vector<std::string>& words_of_names() {
+  static const std::vector<std::string> words{
+      "name",        "labelname",  "segmentname", "segmentlabel", "structurename",
+      "structure",   "regionname", "classname",   "class",        "labeldescription",
+      "description", "anatomy",    "region",      "organ",        "label"};
+  return words;
+}
+
+/// The value of the first of the words that an object has as a key and that `fits`; null where it has none.
+template <typename Fits>
+const SortedJson* one_of(const SortedJson& object, const std::vector<std::string>& words, const Fits& fits) {
+  if (!object.is_object()) return nullptr;
+  for (const std::string& word : words)
+    for (const auto& [key, value] : object.items())
+      if (plain_word(key) == word && fits(value)) return &value;
   return nullptr;
+}
+
+/// A number of JSON as text; what a text holds; empty of anything else.
+std::string number_text(const SortedJson& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number()) return value.dump();
+  return {};
+}
+
+bool is_label_number(const SortedJson& value) {
+  const std::string text = number_text(value);
+  return whole(text) || is_beyond_labels(text);
+}
+
+/// An entry of a JSON list: {"label": 5, "name": "liver"}, {"id": 5, "label": "liver"}.
+void add_entry(Names& table, const SortedJson& entry, const std::string& at) {
+  const SortedJson* const label = one_of(entry, words_of_labels(), is_label_number);
+  const SortedJson* const name = one_of(
+      entry, words_of_names(), [&](const SortedJson& value) { return &value != label && value.is_string(); });
+  if (label == nullptr) {
+    const SortedJson* const none =
+        one_of(entry, words_of_labels(), [](const SortedJson& value) { return value.is_null(); });
+    if (none != nullptr && name != nullptr) return table.pass_over(at, "it has no label");
+    refuse(at, "has no label: a key 'label' with a whole number is expected, and a key 'name'");
+  }
+  const std::string number = number_text(*label);
+  if (is_beyond_labels(number)) return table.pass_over(at, "no label map can have the label " + number);
+  if (name == nullptr) word_of(need(entry, "name", at), at + ".name");
+  if (name == nullptr || voxel::trimmed(name->get<std::string>()).empty())
+    return table.pass_over(at, "label " + number + " has no name");
+  table.add(*whole(number), name->get<std::string>(), at);
 }
 
 void add_json(Names& table, const SortedJson& json, const std::string& where) {
   if (json.is_array()) {
     for (const SortedJson& entry : json) {
       const std::string at = where + "[" + std::to_string(&entry - &json.front()) + "]";
-      if (entry.is_array()) {  // dcmqi lists the segments of each file
+      if (entry.is_array())  // dcmqi lists the segments of each file
         add_json(table, entry, at);
-        continue;
-      }
-      const SortedJson* const label =
-          one_of(entry, {"label", "labelID", "LabelValue", "value", "index", "id"});
-      const SortedJson* const name = one_of(entry, {"name", "Name", "SegmentLabel"});
-      const std::size_t number =
-          count_of(label != nullptr ? *label : need(entry, "label", at), at + ".label");
-      table.add(static_cast<int>(std::min(number, std::size_t{voxel::most_label} + 1)),
-                word_of(name != nullptr ? *name : need(entry, "name", at), at + ".name"), at);
+      else
+        add_entry(table, entry, at);
     }
     return;
   }
   if (!json.is_object()) refuse(where, "must be an object or a list of labels and names");
-  if (const SortedJson* const inner = one_of(json, {"labels", "Labels", "LabelMap", "segmentAttributes"});
-      inner != nullptr && inner->is_structured())
-    return add_json(table, *inner, where + ": labels");
+  for (const char* const key : {"labels", "Labels", "LabelMap", "segmentAttributes"})
+    if (json.contains(key) && json[key].is_structured())
+      return add_json(table, json[key], where + ": labels");
   for (const auto& [key, value] : json.items()) {
     const std::string at = where + ": " + key;
+    const std::string number = value.is_number() ? value.dump() : "";
     if (const std::optional<int> label = whole(key); label && value.is_string())
       table.add(*label, value.get<std::string>(), at);
-    else if (value.is_number_integer() && value >= 0 && value <= voxel::most_label)
-      table.add(value.get<int>(), key, at);
+    else if (is_beyond_labels(key) && value.is_string())
+      table.pass_over(at, "no label map can have the label " + key);
+    else if (const std::optional<int> own = whole(number))
+      table.add(*own, key, at);
+    else if (is_beyond_labels(number))
+      table.pass_over(at, "no label map can have the label " + number);
     else if (value.is_array() && !value.empty() && value.front().is_number_integer())
       continue;  // nnU-Net's regions are unions of labels
     else
@@ -135,80 +194,94 @@ void add_json(Names& table, const SortedJson& json, const std::string& where) {
   }
 }
 
-/// Whether a key is the name of a number that files beside scans state of the acquisition (BIDS, dcm2niix):
-/// one word of several parts in capitals, the last of which is a quantity.
-bool is_of_acquisition(const std::string& key) {
-  static const std::set<std::string> known{"KVP",
-                                           "KVp",
-                                           "Rows",
-                                           "Columns",
-                                           "Exposure",
-                                           "ExposureInuAs",
-                                           "Modality",
-                                           "PixelBandwidth",
-                                           "XRayTubeCurrent",
-                                           "GantryDetectorTilt",
-                                           "Resolution",
-                                           "SAR",
-                                           "BitsStored",
-                                           "BitsAllocated",
-                                           "HighBit",
-                                           "SamplesPerPixel",
-                                           "PixelRepresentation",
-                                           "SmallestImagePixelValue",
-                                           "LargestImagePixelValue",
-                                           "WindowCenter",
-                                           "WindowWidth",
-                                           "RescaleSlope",
-                                           "RescaleIntercept",
-                                           "EchoTrainLength",
-                                           "NumberOfAverages",
-                                           "NumberOfFrames",
-                                           "ReconMatrixPE",
-                                           "PercentPhaseFOV",
-                                           "PercentSampling",
-                                           "ImagesInAcquisition"};
-  if (known.contains(key)) return true;
-  static const std::vector<std::string> quantities{
-      "Number",    "Time",    "Thickness", "Angle",  "Spacing",  "Length",   "Width",    "Strength",
-      "Frequency", "Factor",  "Size",      "Dose",   "Diameter", "Distance", "Height",   "Current",
-      "Voltage",   "Tilt",    "Pitch",     "Rate",   "Steps",    "Delay",    "Duration", "Bandwidth",
-      "Lines",     "Samples", "Averages",  "Slices", "Shift",    "Pixels"};
-  const bool is_one_word =
-      std::all_of(key.begin(), key.end(), [](unsigned char c) { return std::isalnum(c); });
-  return is_one_word && std::any_of(quantities.begin(), quantities.end(), [&](const std::string& end) {
-           return key.size() > end.size() && key.ends_with(end) &&
-                  std::isupper(static_cast<unsigned char>(key.front()));
-         });
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string cell_of(const std::vector<std::string>& row, std::size_t column) {
+  return column < row.size() ? voxel::trimmed(row[column]) : std::string();
 }
 
-/// The column whose heading is one of the words; none where there is none.
-std::optional<std::size_t> column(const std::vector<std::string>& heading,
-                                  const std::vector<std::string>& words) {
+/// The columns below a heading that have one of the words, the likeliest word's first.
+std::vector<std::size_t> columns_of(const std::vector<std::string>& heading,
+                                    const std::vector<std::string>& words) {
+  std::vector<std::size_t> found;
   for (const std::string& word : words)
     for (std::size_t i = 0; i < heading.size(); ++i)
-      if (voxel::lower_case(voxel::trimmed(heading[i])) == word) return i;
-  return std::nullopt;
+      if (plain_word(heading[i]) == word) found.push_back(i);
+  return found;
 }
 
-void add_rows(Names& table, const std::vector<std::vector<std::string>>& rows, const std::string& where) {
-  if (rows.empty()) return;
-  std::size_t label_at = 0, name_at = 1, first = 0;
-  if (!whole(rows[0][0]) && !is_beyond_labels(rows[0][0])) {
-    const auto labels = column(rows[0], {"label", "labelvalue", "label_value", "value", "index", "id"});
-    const auto names = column(rows[0], {"name", "labelname", "label_name", "segmentname", "structure"});
-    if (!labels || !names)
-      refuse(where + ":1", "must name a column 'label' and a column 'name', or begin with a label");
-    label_at = *labels;
-    name_at = *names;
-    first = 1;
-  }
+/// Whether a cell of a column is a whole number, or the column is empty, in the rows from `first`. A column
+/// of words alone has no labels.
+bool may_have_labels(const Rows& rows, std::size_t first, std::size_t column) {
+  bool any = false;
   for (std::size_t i = first; i < rows.size(); ++i) {
+    const std::string text = cell_of(rows[i], column);
+    if (whole(text) || is_beyond_labels(text)) return true;
+    any = any || !text.empty();
+  }
+  return !any;
+}
+
+/// Whether every cell of a column that is not empty is a whole number, in the rows from `first`.
+bool has_numbers(const Rows& rows, std::size_t first, std::size_t column) {
+  return std::all_of(rows.begin() + static_cast<std::ptrdiff_t>(first), rows.end(), [&](const auto& row) {
+    const std::string text = cell_of(row, column);
+    return text.empty() || whole(text) || is_beyond_labels(text);
+  });
+}
+
+struct Columns {
+  std::size_t label = 0, name = 1, first_row = 0;
+};
+
+/// The columns of labels and names. Of a .tsv the labels are in "index", as BIDS has it, whatever else has
+/// numbers; a second column of other numbers is reported.
+Columns columns_in(Names& table, const Rows& rows, const std::string& where, bool is_tsv) {
+  if (whole(rows[0][0]) || is_beyond_labels(rows[0][0])) {
+    const bool has_words = std::any_of(rows.begin(), rows.end(), [](const auto& row) {
+      return std::any_of(row.begin() + 1, row.end(), [](const std::string& text) {
+        return !text.empty() && !whole(text) && !is_beyond_labels(text) && !is_decimal(text);
+      });
+    });
+    if (rows[0].size() > 2 && has_words && has_numbers(rows, 0, 1))
+      refuse(where + ":1",
+             "has numbers in its second column, where names are expected without a heading: add a first row "
+             "that names a column 'label' and a column 'name'");
+    return {};
+  }
+  std::vector<std::size_t> labels = columns_of(rows[0], words_of_labels());
+  if (is_tsv)
+    std::stable_partition(labels.begin(), labels.end(),
+                          [&](std::size_t column) { return plain_word(rows[0][column]) == "index"; });
+  const auto numbered = std::find_if(labels.begin(), labels.end(),
+                                     [&](std::size_t column) { return may_have_labels(rows, 1, column); });
+  std::vector<std::size_t> names = columns_of(rows[0], words_of_names());
+  if (!labels.empty()) {
+    const std::size_t taken = numbered != labels.end() ? *numbered : labels.front();
+    std::erase(names, taken);
+    if (!names.empty()) {
+      for (const std::size_t other : labels) {
+        if (other == taken || other == names.front() || !has_numbers(rows, 1, other)) continue;
+        const auto differs = std::find_if(rows.begin() + 1, rows.end(), [&](const auto& row) {
+          return !cell_of(row, other).empty() && cell_of(row, other) != cell_of(row, taken);
+        });
+        if (differs != rows.end())
+          table.note(where + ": WARN: the labels are taken from the column '" +
+                     voxel::trimmed(rows[0][taken]) + "'; the column '" + voxel::trimmed(rows[0][other]) +
+                     "' has other numbers, which are not read");
+      }
+      return {taken, names.front(), 1};
+    }
+  }
+  refuse(where + ":1", "must name a column 'label' and a column 'name', or begin with a label");
+}
+
+void add_rows(Names& table, const Rows& rows, const std::string& where, bool is_tsv) {
+  if (rows.empty()) return;
+  const Columns columns = columns_in(table, rows, where, is_tsv);
+  for (std::size_t i = columns.first_row; i < rows.size(); ++i) {
     const std::string at = where + ":" + std::to_string(i + 1);
-    const auto cell = [&](std::size_t column) {
-      return column < rows[i].size() ? voxel::trimmed(rows[i][column]) : std::string();
-    };
-    const std::string number = cell(label_at), name = cell(name_at);
+    const std::string number = cell_of(rows[i], columns.label), name = cell_of(rows[i], columns.name);
     if (number.empty() || name.empty()) {
       table.pass_over(at, number.empty() ? "it has no label" : "label " + number + " has no name");
       continue;
@@ -224,7 +297,7 @@ void add_rows(Names& table, const std::vector<std::vector<std::string>>& rows, c
 }
 
 /// "left kidney" of "left kidney 255 0 0 255": the words before a colour of three or four numbers; without
-/// one those before the first number.
+/// one those before the first number; of "0.9 0.9 0.9 left kidney", as FSL has it, those behind the colour.
 std::string name_before_colour(const std::string& text) {
   const auto is_number = [](const std::string& word) { return whole(word) || is_decimal(word); };
   std::istringstream in(text);
@@ -232,22 +305,28 @@ std::string name_before_colour(const std::string& text) {
   for (std::string word; in >> word;) words.push_back(word);
   const auto most = std::min<std::ptrdiff_t>(std::ssize(words), 4);
   const auto colour = std::find_if_not(words.rbegin(), words.rbegin() + most, is_number) - words.rbegin();
-  const auto end = colour >= 3 ? words.end() - colour : std::find_if(words.begin(), words.end(), is_number);
+  auto end = colour >= 3 ? words.end() - colour : std::find_if(words.begin(), words.end(), is_number);
+  auto begin = words.begin();
+  if (end == begin) {  // the colour comes first
+    begin = std::find_if_not(words.begin(), words.end(), is_number);
+    if (begin - words.begin() < 3) return {};
+    end = words.end();
+  }
   std::string name;
-  for (auto word = words.begin(); word != end; ++word) name += (name.empty() ? "" : " ") + *word;
+  for (auto word = begin; word != end; ++word) name += (name.empty() ? "" : " ") + *word;
   return name;
 }
 
 /// "Label Name R G B A", "#No. Label Name": two words and more, none of which is a number, one of them a
 /// column's of labels.
 bool is_heading(const std::string& text) {
-  static const std::set<std::string> columns{"label", "index", "id", "idx", "no.", "no", "value"};
+  const std::vector<std::string>& columns = words_of_labels();
   std::istringstream in(text);
   bool any = false;
   std::size_t count = 0;
   for (std::string word; in >> word; ++count) {
     if (whole(word) || is_decimal(word) || is_beyond_labels(word)) return false;
-    any = any || columns.contains(voxel::lower_case(word));
+    any = any || std::find(columns.begin(), columns.end(), plain_word(word)) != columns.end();
   }
   return any && count > 1;
 }
@@ -284,108 +363,6 @@ void add_lines(Names& table, std::istream& in, const std::string& where) {
   }
 }
 
-/// The parts of a BIDS name: "sub-01", "space-T1w", "dseg".
-std::set<std::string> entities_of(const std::string& stem) {
-  std::set<std::string> parts;
-  std::istringstream in(stem);
-  for (std::string part; std::getline(in, part, '_');) parts.insert(part);
-  return parts;
-}
-
-/// The "dseg.tsv" of a folder and those above whose entities are all the label map's, the nearest and most
-/// particular first.
-std::vector<fs::path> inherited_tables(const fs::path& label_map, const std::string& stem) {
-  std::vector<fs::path> found;
-  const std::set<std::string> own = entities_of(stem);
-  if (!own.contains("dseg")) return found;
-  constexpr int most_folders = 4;
-  fs::path folder = fs::absolute(label_map).parent_path();
-  for (int i = 0; i < most_folders; ++i, folder = folder.parent_path()) {
-    std::vector<std::pair<std::size_t, fs::path>> here;
-    std::error_code unreadable;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, unreadable)) {
-      const std::string name = entry.path().filename().string();
-      if (!name.ends_with("dseg.tsv") || !entry.is_regular_file(unreadable)) continue;
-      const std::set<std::string> parts = entities_of(entry.path().stem().string());
-      if (std::includes(own.begin(), own.end(), parts.begin(), parts.end()) && parts != own)
-        here.emplace_back(own.size() - parts.size(), entry.path());
-    }
-    std::sort(here.begin(), here.end());
-    for (const auto& [distance, path] : here) found.push_back(path);
-  }
-  return found;
-}
-
-/// The files that may be a label map's table, the likeliest first.
-std::vector<fs::path> tables_beside(const fs::path& label_map) {
-  std::string stem = label_map.filename().string();
-  for (const char* extension :
-       {".nii.gz", ".nii", ".seg.nrrd", ".seg.nhdr", ".nrrd", ".nhdr", ".mha", ".mhd", ".img", ".hdr"})
-    if (voxel::lower_case(stem).ends_with(extension)) {
-      stem.resize(stem.size() - std::string(extension).size());
-      break;
-    }
-  std::vector<std::string> extensions{".json", ".csv", ".tsv", ".txt", ".ctbl", ".label", ".lut"};
-  // BIDS names labels in .tsv, and states other facts in .json.
-  if (stem.ends_with("dseg")) std::swap(extensions[0], extensions[2]);
-  std::vector<fs::path> found;
-  for (const char* more : {"", "_labels", "-labels", "_ColorTable", "-ColorTable"})
-    for (const std::string& extension : extensions)
-      if (fs::path beside = label_map.parent_path() / (stem + more + extension); fs::is_regular_file(beside))
-        found.push_back(std::move(beside));
-  for (fs::path& table : inherited_tables(label_map, stem)) found.push_back(std::move(table));
-  return found;
-}
-
-/// A table, or why the file is none of this label map's.
-LabelTable table_or_why(const fs::path& path, const std::set<int>& occurring, std::string& why) {
-  LabelTable table;
-  try {
-    table = read_label_table(path);
-  } catch (const std::runtime_error& error) {
-    why = error.what();
-    if (why.starts_with(path.string() + ": ")) why.erase(0, path.string().size() + 2);
-    return table;
-  }
-  const auto occurs = [&](const auto& entry) { return occurring.contains(entry.first); };
-  if (table.names.empty())
-    why = "it names no label";
-  else if (!occurring.empty() && std::none_of(table.names.begin(), table.names.end(), occurs))
-    why = "none of its labels occurs";
-  if (voxel::extension_of(path) == ".json")
-    for (const auto& [label, name] : table.names)
-      if (is_of_acquisition(name)) why = "'" + name + "' is a number of an acquisition";
-  return table;
-}
-
-/// A name or number that two tables give differently; empty where they agree.
-std::string disagreement(const LabelTable& taken, const LabelTable& other) {
-  std::map<std::string, int> numbers;
-  for (const auto& [number, name] : other.names) numbers.emplace(name, number);
-  for (const auto& [number, name] : taken.names) {
-    if (const auto there = other.names.find(number); there != other.names.end() && there->second != name)
-      return std::to_string(number) + " is '" + there->second + "' there and '" + name + "' here";
-    if (const auto there = numbers.find(name); there != numbers.end() && there->second != number)
-      return "'" + name + "' is " + std::to_string(there->second) + " there and " + std::to_string(number) +
-             " here";
-  }
-  return {};
-}
-
-/// Reports tables in the label map's folder that contradict the one that is used.
-void add_disagreements(const fs::path& label_map, const std::set<int>& occurring, LabelTable& taken) {
-  for (const fs::path& beside : tables_beside(label_map)) {
-    if (beside == taken.file || beside.parent_path() != label_map.parent_path()) continue;
-    std::string why;
-    const LabelTable other = table_or_why(beside, occurring, why);
-    if (!why.empty()) continue;
-    if (const std::string differs = disagreement(taken, other); !differs.empty())
-      taken.passed_over.push_back(beside.string() + ": passed over, as it contradicts " +
-                                  taken.file.string() + ", whose names are used: " + differs +
-                                  "; remove the wrong one, or choose one by --names");
-  }
-}
-
 }  // namespace
 
 int LabelTable::label(const std::string& name) const {
@@ -419,7 +396,8 @@ LabelTable read_label_table(const fs::path& path) {
   if (!in) refuse(where, "cannot be read");
   const DecodedText text = decoded({std::istreambuf_iterator<char>(in), {}});
   if (extension == ".csv" || extension == ".tsv") {
-    add_rows(table, extension == ".tsv" ? parse_tsv(text.utf8) : parse_csv(text.utf8), where);
+    const bool is_tsv = extension == ".tsv";
+    add_rows(table, is_tsv ? parse_tsv(text.utf8) : parse_csv(text.utf8), where, is_tsv);
   } else {
     std::istringstream lines(text.utf8);
     add_lines(table, lines, where);
@@ -428,28 +406,6 @@ LabelTable read_label_table(const fs::path& path) {
   if (!text.encoding.empty())
     made.passed_over.insert(made.passed_over.begin(), where + ": read as " + text.encoding);
   return made;
-}
-
-LabelTable label_table_of(const fs::path& label_map, const std::set<int>& occurring) {
-  if (LabelTable own{voxel::label_names(label_map), label_map}; !own.names.empty()) {
-    add_disagreements(label_map, occurring, own);
-    return own;
-  }
-  std::vector<std::string> passed_over;
-  for (const fs::path& beside : tables_beside(label_map)) {
-    std::string why;
-    LabelTable table = table_or_why(beside, occurring, why);
-    if (why.empty()) {
-      table.passed_over.insert(table.passed_over.begin(), passed_over.begin(), passed_over.end());
-      add_disagreements(label_map, occurring, table);
-      return table;
-    }
-    passed_over.push_back(beside.string() + ": passed over, as it is no table of this label map's names: " +
-                          why + "; --names takes a table as it is");
-  }
-  LabelTable none;
-  none.passed_over = std::move(passed_over);
-  return none;
 }
 
 std::vector<std::string> findings_of_labels(const std::vector<voxel::Label>& labels) {

@@ -10,12 +10,14 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
 #include "planner/file/svg_shapes.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
+#include "voxel/space/file_text.h"
 #include "voxel/space/regular_file.h"
 
 namespace octotomy::planner {
@@ -44,6 +46,29 @@ PixelLength pixel_of(const std::string& text) {
   return version < 0.915 ? PixelLength{90, "Inkscape before 0.92"} : PixelLength{96, "Inkscape"};
 }
 
+/// The value of a property, which an element's style may state before its attribute; empty without one.
+std::string property_of(const XmlTag& element, const std::string& name) {
+  if (const auto style = element.attributes.find("style"); style != element.attributes.end()) {
+    std::istringstream declarations(style->second);
+    for (std::string declaration; std::getline(declarations, declaration, ';');) {
+      const std::size_t colon = declaration.find(':');
+      if (colon != std::string::npos && voxel::trimmed(declaration.substr(0, colon)) == name)
+        return voxel::trimmed(declaration.substr(colon + 1));
+    }
+  }
+  const auto attribute = element.attributes.find(name);
+  return attribute == element.attributes.end() ? "" : voxel::trimmed(attribute->second);
+}
+
+/// "the clip-path of <g> (line 3)" of an element that shows a part of its shapes only; empty of others.
+std::string cut_of(const XmlTag& element) {
+  for (const char* property : {"clip-path", "mask"})
+    if (const std::string value = property_of(element, property); !value.empty() && value != "none")
+      return std::string("the ") + property + " of <" + element.name + "> (line " +
+             std::to_string(element.line) + ")";
+  return {};
+}
+
 /// A file's elements, in two walks: for the units and the picture, and for the outlines.
 class Drawing {
  public:
@@ -56,9 +81,11 @@ class Drawing {
     const XmlTags& elements = elements_;
     std::vector<glm::dmat3> open;
     std::size_t hidden_from = none;
+    cuts_.clear();
     for (const XmlTag& element : elements) {
       if (!element.begins) {
         open.pop_back();
+        cuts_.pop_back();
         if (hidden_from != none && open.size() <= hidden_from) hidden_from = none;
         continue;
       }
@@ -71,6 +98,7 @@ class Drawing {
       has_classes_ = has_classes_ || element.attributes.contains("class");
       const glm::dmat3 map = (open.empty() ? glm::dmat3(1.0) : open.back()) *
                              (open.empty() ? glm::dmat3(1.0) : transform_of(elements, element));
+      cuts_.push_back(cut_of(element));
       if (open.empty())
         read_root(elements, element);
       else if (hidden_from == none && !is_hidden(element))
@@ -87,6 +115,13 @@ class Drawing {
   const PixelLength& pixel() const { return pixel_; }
   /// Whether elements have classes, whose style sheet may hide them.
   bool has_classes() const { return has_classes_; }
+  /// The clip paths and masks of the element that the walk is at and of the groups that hold it.
+  std::vector<std::string> cuts() const {
+    std::vector<std::string> stated;
+    std::copy_if(cuts_.begin(), cuts_.end(), std::back_inserter(stated),
+                 [](const std::string& cut) { return !cut.empty(); });
+    return stated;
+  }
 
  private:
   static constexpr std::size_t none = ~std::size_t{0};
@@ -139,6 +174,7 @@ class Drawing {
   PixelLength pixel_;
   XmlTags elements_;
   bool has_length_ = false, is_in_pixels_ = false, has_classes_ = false;
+  std::vector<std::string> cuts_;  ///< of each open element; empty where it has none
   double mm_per_unit_ = mm_per_css_pixel;
 };
 
@@ -194,18 +230,31 @@ SvgOutlines read_svg_outlines(const std::filesystem::path& path, const SvgPlacem
       ++left_out[element.name];
   });
   const glm::dmat3 mm_from_user = place(drawing.mm_per_unit(), picture);
+  std::vector<std::string> cuts;
   drawing.walk([&](const XmlTags& elements, const XmlTag& element, const glm::dmat3& map) {
+    const std::size_t before = made.polygons_mm.size();
     for (std::vector<glm::dvec2>& polygon : polygons_of(elements, element, mm_from_user * map, tolerance_mm))
       add_polygon(std::move(polygon), element.line, made);
+    if (made.polygons_mm.size() == before) return;
+    for (std::string& cut : drawing.cuts())
+      if (std::find(cuts.begin(), cuts.end(), cut) == cuts.end()) cuts.push_back(std::move(cut));
   });
   if (made.polygons_mm.empty())
     refuse(path.string(), "has no outline: draw a path, polygon, polyline, rect, circle or ellipse");
   for (const auto& [name, count] : left_out)
     made.findings.push_back(std::to_string(count) + " <" + name + "> left out: it encloses nothing");
+  constexpr std::size_t most_told = 8;
+  for (std::size_t i = 0; i < std::min(cuts.size(), most_told); ++i)
+    made.findings.push_back("WARN: " + cuts[i] +
+                            " is not read: the outlines there are taken whole, also where the drawing does "
+                            "not show them; cut the shapes themselves, or release the clip or mask");
+  if (cuts.size() > most_told)
+    made.findings.push_back("WARN: " + std::to_string(cuts.size() - most_told) +
+                            " more clip paths and masks are not read");
   if (drawing.has_classes())
     made.findings.push_back(
-        "its style sheet is not read: outlines of classes that it hides are taken, too; delete hidden "
-        "layers");
+        "its style sheet is not read: outlines of classes that it hides, clips or masks are taken whole; "
+        "delete hidden layers");
   if (!picture && !drawing.has_length())
     made.findings.push_back(
         (drawing.is_in_pixels() ? "the drawing states its width in pixels, which are no length: a pixel"

@@ -32,7 +32,8 @@ struct SvgOutlines {
 /// transforms, of all groups that are displayed. Open outlines close as they do when filled; curves become
 /// lines that are nowhere farther than `tolerance_mm` from them. User units are the length that the root's
 /// width and viewBox give them; a pixel is 1/96 inch, of Adobe Illustrator 1/72 and of Inkscape before 0.92
-/// 1/90, which is an assumption and a finding, as is a root without a width. Throws std::runtime_error saying
+/// 1/90, which is an assumption and a finding, as is a root without a width. Clip paths and masks are not
+/// read: each that holds an outline is a finding. Throws std::runtime_error saying
 /// file, line and reason for what is no SVG, for shapes that cannot be read, and where there is no outline.
 SvgOutlines read_svg_outlines(const std::filesystem::path& path, const SvgPlacement& place,
                               double tolerance_mm);

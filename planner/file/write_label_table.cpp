@@ -2,7 +2,8 @@
 #include "planner/file/write_label_table.h"
 
 #include <algorithm>
-#include <set>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include "planner/file/label_table.h"
@@ -39,6 +40,19 @@ std::map<int, std::string> spelled(const std::map<int, std::string>& names) {
   return made;
 }
 
+bool holds(const fs::path& table, const std::map<int, std::string>& names) {
+  const std::map<int, std::string> there = names_in(table);
+  return there == names || there == spelled(names);
+}
+
+/// Whether a file is byte for byte what label_table_text() makes of its names.
+bool is_written_here(const fs::path& table) {
+  const std::map<int, std::string> names = names_in(table);
+  if (names.empty() || !fs::is_regular_file(fs::symlink_status(table))) return false;
+  std::ifstream in(table, std::ios::binary);
+  return std::string{std::istreambuf_iterator<char>(in), {}} == label_table_text(names);
+}
+
 }  // namespace
 
 fs::path label_table_path(const fs::path& label_map) {
@@ -57,8 +71,8 @@ std::string label_table_text(const std::map<int, std::string>& names) {
 
 void need_label_table(const fs::path& label_map, const std::map<int, std::string>& names) {
   const fs::path table = label_table_path(label_map);
-  if (!fs::exists(fs::symlink_status(table)) || names_in(table) == names || names_in(table) == spelled(names))
-    return;
+  if (!fs::exists(fs::symlink_status(table)) || holds(table, names)) return;
+  if (fs::exists(label_map) && is_written_here(table)) return;
   throw std::runtime_error(table.string() +
                            ": is there already and does not hold the names of the label map's labels, which "
                            "are written to it: move it away, or choose another name for the label map");
@@ -69,7 +83,7 @@ std::vector<std::string> write_label_table(const fs::path& label_map,
   if (label_table_of(label_map).names == names) return {};
   need_label_table(label_map, names);
   const fs::path table = label_table_path(label_map);
-  if (!fs::exists(table)) write_whole(table, label_table_text(names));
+  if (!holds(table, names)) write_whole(table, label_table_text(names));
   std::vector<std::string> findings{"the names of the labels stand in " + table.string() +
                                     ", as the label map's own file has no place for them"};
   if (spelled(names) != names)

@@ -17,7 +17,9 @@ std::filesystem::path label_table_path(const std::filesystem::path& label_map);
 std::string label_table_text(const std::map<int, std::string>& names);
 
 /// Throws std::runtime_error where a file of the table's name is there and does not hold these names: a
-/// reader would take them for the label map's.
+/// reader would take them for the label map's. Where the label map is there too and is replaced, so is a
+/// table that label_table_text() made, as the two belong together. To be called before the label map is
+/// written.
 void need_label_table(const std::filesystem::path& label_map, const std::map<int, std::string>& names);
 
 /// Writes the table beside the label map, unless a file there names its labels so already. Returns the

@@ -85,6 +85,35 @@ Json octree_answer(const voxel::OctreeFile& file, std::optional<std::uint64_t> b
   return json;
 }
 
+Json doubts_of(const std::vector<voxel::Finding>& audit) {
+  constexpr std::size_t most = 32;
+  std::vector<voxel::Finding> doubts;
+  for (const voxel::Finding& finding : audit)
+    if (finding.verdict != voxel::Verdict::Pass && doubts.size() < most)
+      doubts.push_back({finding.check, finding.verdict, finding.detail});
+  return to_json(doubts);
+}
+
+std::vector<std::string> told_doubts(const Json& answer) {
+  constexpr std::size_t most = 32;
+  std::vector<std::string> lines;
+  // The file may be of another program: nothing is promised of its metadata.
+  const auto text_at = [](const Json& object, const char* key) {
+    const bool has = object.is_object() && object.contains(key) && object[key].is_string();
+    return has ? object[key].get<std::string>() : std::string();
+  };
+  const Json metadata = answer.value("metadata", Json());
+  if (!metadata.is_object() || !metadata.contains("scan_audit") || !metadata["scan_audit"].is_array())
+    return lines;
+  for (const Json& line : metadata["scan_audit"]) {
+    const std::string verdict = text_at(line, "verdict");
+    if ((verdict == "WARN" || verdict == "FAIL") && lines.size() < most)
+      lines.push_back(verdict + ", the octree's scan " + text_at(metadata, "scan") + ": " +
+                      text_at(line, "check") + ": " + text_at(line, "detail"));
+  }
+  return lines;
+}
+
 std::string octree_text(const std::string& title, const Json& answer) {
   const auto number = [&](const char* key) { return grouped(answer[key].get<double>(), 0); };
   const Json& spacing = answer["spacing_mm"];

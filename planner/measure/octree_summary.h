@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "planner/measure/result_json.h"
 #include "voxel/tree/octree_file.h"
@@ -17,6 +18,13 @@ namespace octotomy::planner {
 /// fractions.
 Json octree_answer(const voxel::OctreeFile& file, std::optional<std::uint64_t> bytes_file,
                    const Timings& timings);
+
+/// The lines of a scan's audit that are no PASS, at most 32, for the `scan_audit` of the metadata of an
+/// octree that is made of the scan.
+Json doubts_of(const std::vector<voxel::Finding>& audit);
+
+/// What an octree_answer()'s metadata holds of them, for people: "FAIL, slices: ..." after the scan's name.
+std::vector<std::string> told_doubts(const Json& answer);
 
 /// The same for people.
 std::string octree_text(const std::string& title, const Json& answer);

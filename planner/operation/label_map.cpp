@@ -2,7 +2,9 @@
 // An object's voxels as a label map of the universe.
 #include "voxel/filter/label_map.h"
 
+#include "planner/file/label_table.h"
 #include "planner/file/output_path.h"
+#include "planner/file/write_label_table.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/scan/write_scene.h"
@@ -29,7 +31,16 @@ void write(const LabelMap& wanted, const AnswerBench& bench, Exported& made) {
   voxel::LabelMap map =
       voxel::label_map(octree.universe().lattice(), {&octree, 1}, bench.progress("labelling " + object.id));
   map.scene.source = object.id;
-  voxel::write_scene(map.scene, output_file(bench.folder, made.path));
+  const std::filesystem::path file = output_file(bench.folder, made.path);
+  voxel::write_scene(map.scene, file);
+  // The plan's other files are kept where the table of another label map has its name.
+  const std::map<int, std::string> names{{1, object.id}};
+  const std::filesystem::path table = label_table_path(file);
+  if (!std::filesystem::exists(table))
+    write_whole(table, label_table_text(names));
+  else if (read_label_table(table).names != names)
+    made.findings.push_back("the name of its label is not written, as " + table.filename().string() +
+                            " has the names of another label map: choose another name for one of them");
   made.written = true;
   made.content = grouped(static_cast<double>(octree.voxel_count()), 0) + " voxels labelled 1";
   made.details = {{"voxels", octree.voxel_count()}, {"volume_mm3", object.voxel.measures.volume_mm3}};

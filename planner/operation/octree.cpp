@@ -97,7 +97,8 @@ voxel::OctreeFile from_scan(const FileBench& bench, const Build& asked) {
   Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
             {"scan", asked.in().filename().string()},
             {"unit", voxel::unit(scene)},
-            {"modality", scene.modality}};
+            {"modality", scene.modality},
+            {"scan_audit", doubts_of(scene.audit)}};
   if (window) made["window"] = {window->low, window->high ? Json(*window->high) : Json(nullptr)};
   const std::string name = asked.in().stem().string();
   if (!window) return {grey, name, json_text(made)};

@@ -9,6 +9,7 @@
 #include "planner/file/file_kind.h"
 #include "planner/file/mesh_in.h"
 #include "planner/file/octree_in.h"
+#include "planner/file/write_label_table.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/json_file.h"
@@ -155,9 +156,14 @@ FileAnswer write_labels(const FileBench& bench, const Voxelise& asked, const std
   if (map.overlaps > 0)
     findings.push_back(std::to_string(map.overlaps) +
                        " voxels lie in several meshes: they have the first one's label");
+  std::map<int, std::string> names;
+  for (std::size_t i = 0; i < subjects.size(); ++i)
+    names.emplace(static_cast<int>(i) + 1, subjects[i].path.stem().string());
+  need_label_table(asked.out, names);
   {
     const Stopwatch watch(bench.timings, "write");
     voxel::write_scene(map.scene, asked.out);
+    for (std::string& finding : write_label_table(asked.out, names)) findings.push_back(std::move(finding));
   }
   Json json{{"kind", "label map"}, {"path", asked.out.string()}};
   json["dims"] = {lattice.dims.x, lattice.dims.y, lattice.dims.z};

@@ -5,7 +5,9 @@
 
 #include "convert/deck/calculix_result.h"
 #include "convert/deck/displacement_field.h"
+#include "planner/file/label_table.h"
 #include "planner/file/mesh_file.h"
+#include "planner/file/write_label_table.h"
 #include "planner/measure/result_json.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
@@ -85,6 +87,8 @@ FileAnswer on_files(const Warp& warp, const FileBench& bench) {
     write_surface(warped, warp.out, bench.timings);
   } else {
     const voxel::Scene scan = bench.read_scan(file);
+    const LabelTable table = names_of_labels(scan, file);
+    if (!table.names.empty()) need_label_table(warp.out, table.names);
     voxel::Scene warped;
     {
       const Stopwatch watch(bench.timings, "warp");
@@ -92,6 +96,10 @@ FileAnswer on_files(const Warp& warp, const FileBench& bench) {
     }
     const Stopwatch watch(bench.timings, "write");
     voxel::write_scene(warped, warp.out);
+    by.findings.insert(by.findings.end(), table.passed_over.begin(), table.passed_over.end());
+    if (!table.names.empty())
+      for (std::string& finding : write_label_table(warp.out, table.names))
+        by.findings.push_back(std::move(finding));
   }
   FileAnswer answer{{{"path", warp.out.string()}}};
   answer.json.update(by.details);

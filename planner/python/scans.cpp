@@ -8,6 +8,8 @@
 #include <pybind11/stl/filesystem.h>
 #include <string>
 
+#include "planner/file/label_table.h"
+#include "planner/file/write_label_table.h"
 #include "planner/measure/result_json.h"
 #include "planner/python/arrays.h"
 #include "planner/python/module.h"
@@ -147,9 +149,16 @@ void add_scans(py::module_& module) {
       .def(
           "write",
           [](const Scene& scene, const std::filesystem::path& path) {
-            without_lock([&](const std::stop_token&) { voxel::write_scene(scene, path); });
+            without_lock([&](const std::stop_token&) {
+              const std::map<int, std::string> names = names_of_labels(scene, scene.source).names;
+              if (!names.empty()) need_label_table(path, names);
+              voxel::write_scene(scene, path);
+              if (!names.empty()) write_label_table(path, names);
+            });
           },
-          py::arg("path"), "Writes .nrrd, .nii, .nii.gz or .mha as the name ends.");
+          py::arg("path"),
+          "Writes .nrrd, .nii, .nii.gz or .mha as the name ends. The names of the labels of a label map that "
+          "was read from a file are written beside it, as .tsv.");
 
   module.def(
       "read_scan", &read_scan, py::arg("path"), py::arg("series") = "", py::arg("spacing_mm") = py::none(),

@@ -86,12 +86,32 @@ std::string csv_of(const Json& rows) {
   return table.text();
 }
 
+std::string gravest_scan_audit(const Json& result) {
+  static const std::vector<std::string> verdicts{"", "PASS", "WARN", "FAIL"};
+  const auto scans = result.find("scans");
+  if (scans == result.end() || !scans->is_array()) return {};
+  std::size_t gravest = 0;
+  for (const Json& scan : *scans) {
+    if (!scan.is_object() || !scan.contains("audit")) continue;
+    for (const Json& line : scan["audit"]) {
+      const auto found =
+          std::find(verdicts.begin(), verdicts.end(), line.is_object() ? line.value("verdict", "") : "");
+      if (found != verdicts.end())
+        gravest = std::max(gravest, static_cast<std::size_t>(found - verdicts.begin()));
+    }
+  }
+  return verdicts[gravest];
+}
+
 std::vector<std::pair<std::filesystem::path, std::string>> result_tables(const Json& result) {
   std::vector<std::pair<std::filesystem::path, std::string>> tables;
   const auto add = [&](const std::string& name, const Json& rows) {
     if (!rows.empty()) tables.emplace_back("tables/" + name + ".csv", csv_of(rows));
   };
-  add("measurements", result.at("measurements"));
+  Json measurements = result.at("measurements");
+  if (const std::string audit = gravest_scan_audit(result); !audit.empty())
+    for (Json& row : measurements) row["scan_audit"] = audit;
+  add("measurements", measurements);
   add("movements", movement_rows(result.at("movements")));
   if (result.at("cephalometry").is_object()) add("cephalometry", result.at("cephalometry").at("measures"));
   add("certificates", result.at("certificates"));

@@ -13,8 +13,13 @@ namespace octotomy::planner {
 /// lists are left out.
 std::string csv_of(const nlohmann::ordered_json& rows);
 
+/// The gravest verdict of the audits of a result's scans, "PASS", "WARN" or "FAIL"; empty where no scan was
+/// read.
+std::string gravest_scan_audit(const nlohmann::ordered_json& result);
+
 /// A result's tables by their names in its folder: tables/measurements.csv, movements.csv, cephalometry.csv
-/// and certificates.csv, as far as the result has rows for them.
+/// and certificates.csv, as far as the result has rows for them. The measurements have a column `scan_audit`
+/// of gravest_scan_audit(), as no certificate sees what was wrong with the scan itself.
 std::vector<std::pair<std::filesystem::path, std::string>> result_tables(
     const nlohmann::ordered_json& result);
 

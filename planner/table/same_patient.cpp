@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/table/same_patient.h"
 
+#include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "voxel/scan/identity.h"
 
@@ -18,6 +20,20 @@ std::string joined(const std::vector<std::string>& words, const char* last) {
 bool states_nothing(const voxel::Identity& identity) {
   return identity.patient_id.empty() && identity.patient_name.empty() && identity.study_uids.empty() &&
          identity.frame_uids.empty();
+}
+
+/// A line where what is laid onto a scan refers to images of other series alone; none where one of both
+/// states no series.
+std::vector<std::string> other_series(const IdentityOf& scan, const IdentityOf& laid) {
+  const std::string& own = scan.identity.series_uid;
+  const std::vector<std::string>& referred = laid.identity.referred_series_uids;
+  if (own.empty() || referred.empty() || std::find(referred.begin(), referred.end(), own) != referred.end())
+    return {};
+  return {
+      "WARN: series: " + laid.name + " refers to images of the series " + joined(referred, " and ") +
+      ", and " + scan.name + " is of the series " + own +
+      ": they fit only where the patient lay the same in both; choose the series that it was drawn on, or "
+      "compare the contours with the images"};
 }
 
 }  // namespace
@@ -46,9 +62,11 @@ std::vector<std::string> need_same_patient(const IdentityOf& scan, const Identit
   if (finding.verdict == voxel::Verdict::Fail && !is_allowed)
     throw std::runtime_error(finding.detail + "; where that is meant, " + option +
                              " goes on and reports it as a FAIL");
-  if (finding.verdict == voxel::Verdict::Fail) return {"FAIL: identity: " + finding.detail};
-  if (finding.verdict == voxel::Verdict::Warn) return {"identity: " + finding.detail};
-  return {};
+  std::vector<std::string> lines;
+  if (finding.verdict == voxel::Verdict::Fail) lines.push_back("FAIL: identity: " + finding.detail);
+  if (finding.verdict == voxel::Verdict::Warn) lines.push_back("identity: " + finding.detail);
+  for (std::string& line : other_series(scan, laid)) lines.push_back(std::move(line));
+  return lines;
 }
 
 }  // namespace octotomy::planner

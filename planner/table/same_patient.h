@@ -19,7 +19,8 @@ struct IdentityOf {
 voxel::Finding identity_finding(const IdentityOf& scan, const IdentityOf& laid);
 
 /// Throws std::runtime_error where identity_finding() fails, with `option` as the way to go on; where
-/// `is_allowed` returns the failure instead. Returns no line where the files agree in all.
+/// `is_allowed` returns the failure instead. A WARN follows where `laid` is a structure set that was drawn on
+/// other series than the scan's alone. Returns no line where the files agree in all.
 std::vector<std::string> need_same_patient(const IdentityOf& scan, const IdentityOf& laid, bool is_allowed,
                                            const std::string& option);
 

@@ -21,6 +21,10 @@ int info_of_octree(const Program& program, const fs::path& path) {
   const voxel::OctreeFile file = read_timed(path, timings);
   Json json = octree_answer(file, fs::file_size(path), timings);
   json["source"] = path.string();
+  for (const std::string& doubt : told_doubts(json)) {
+    json["findings"].push_back(doubt);
+    warn_finding(doubt);
+  }
   program.say(json, octree_text(path.string(), json));
   return done;
 }

@@ -73,6 +73,7 @@ class SeriesReader {
     scene_.lattice = lattice_of(stack, plan);
     scene_.modality = stack.first().modality;
     scene_.identity = stack.first().identity;
+    scene_.identity.series_uid = stack.first().series_uid;
     scene_.declared_unit = stack.first().lut ? stack.first().lut->type : stack.first().rescale_type;
     audit_steps();
     if (scene_.modality == "CT") {

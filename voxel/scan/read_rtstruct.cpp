@@ -81,13 +81,16 @@ void add_uid(std::vector<std::string>& uids, std::string uid) {
   if (!uid.empty() && std::find(uids.begin(), uids.end(), uid) == uids.end()) uids.push_back(std::move(uid));
 }
 
-/// The file's own, and the studies and frames of reference that it refers to.
+/// The file's own, and the studies, series and frames of reference that it refers to.
 Identity identity_of_set(const DicomFile& file) {
   Identity identity = identity_of(file);
   for (const DicomFile& frame : file.items(0x30060010)) {
     add_uid(identity.frame_uids, frame.text(0x00200052));
-    for (const DicomFile& study : frame.items(0x30060012))
+    for (const DicomFile& study : frame.items(0x30060012)) {
       add_uid(identity.study_uids, study.text(0x00081155));
+      for (const DicomFile& series : study.items(0x30060014))
+        add_uid(identity.referred_series_uids, series.text(0x0020000e));
+    }
   }
   return identity;
 }

@@ -51,6 +51,8 @@ struct Identity {
   std::string id_issuer = {};   ///< who gave the patient's number, which is unique only among the issuer's
   std::string birth_date = {};  ///< YYYYMMDD
   std::string sex = {};         ///< M, F or O
+  std::string series_uid = {};  ///< of a scan that was read of a DICOM series
+  std::vector<std::string> referred_series_uids = {};  ///< of a structure set: the series it was drawn on
 };
 
 /// Samples on a lattice, x fastest.

@@ -220,7 +220,16 @@ TEST_F(Segments, LabelMapsHoldSeveralObjectsAndGiveThemBack) {
       json(segment("again.nrrd") + "--object " + at("a.octree") + " --object " + at("b.octree"));
   EXPECT_EQ(again["overlaps"], again["labels"][0]["samples"]);
   EXPECT_EQ(again["labels"][1]["samples"], 20 * 8 * 8);
-  EXPECT_EQ(again["findings"].size(), 1u);
+  ASSERT_EQ(again["findings"].size(), 2u);
+  EXPECT_NE(again["findings"][1].dump().find("again.tsv"), std::string::npos) << again["findings"];
+  EXPECT_EQ(tests::bytes_of(folder_ / "again.tsv"), "index\tname\n1\ta\n2\tb\n");
+  // Made again of others the map has their names; a table that somebody else wrote refuses it.
+  EXPECT_EQ(run(segment("again.nrrd") + "--object " + at("b.octree")).status, 0);
+  EXPECT_EQ(tests::bytes_of(folder_ / "again.tsv"), "index\tname\n1\tb\n");
+  EXPECT_EQ(json("segment " + at("again.nrrd") + " --named b -o " + at("back.nrrd"))["labels"][0]["samples"],
+            again["labels"][0]["samples"].get<int>() + 20 * 8 * 8);
+  write("again.tsv", "name\tindex\nmine\t1\n");
+  expect_refused(run(segment("again.nrrd") + "--object " + at("a.octree")), "again.tsv");
 }
 
 TEST_F(Segments, AnOctreeAndALabelMapAreOneSetOnSlicesOfAnyDistance) {
@@ -307,8 +316,15 @@ TEST_F(Segments, SeveralBecomeADicomSegmentationAndComeBackUnshiftedUnderTheirNa
 
 TEST_F(Segments, NamesOfLabelsStayBesideALabelMapThatIsConverted) {
   EXPECT_EQ(run(segment("map.nrrd") + "--window 600: --window 200:600").status, 0);
+  EXPECT_EQ(tests::bytes_of(folder_ / "map.tsv"), "index\tname\n1\t600:\n2\t200:600\n");
+  std::filesystem::remove(folder_ / "map.tsv");
   write("map.json", R"({"Balls": 1, "Cube": 2})");
   EXPECT_EQ(run("convert " + at("map.nrrd") + " -o " + at("named.dcm")).status, 0);
+  // prepare keeps them, too.
+  EXPECT_EQ(run("prepare " + at("map.nrrd") + " -o " + at("less.nrrd") + " --step crop=-20,-15,-15,20,19,15")
+                .status,
+            0);
+  EXPECT_EQ(tests::bytes_of(folder_ / "less.tsv"), "index\tname\n1\tBalls\n2\tCube\n");
   for (const char* name : {"out.nrrd", "other.nii.gz", "third.mha"}) {
     SCOPED_TRACE(name);
     const SortedJson made = json("convert " + at("named.dcm") + " -o " + at(name));

@@ -74,7 +74,13 @@ TEST(LabelTable, ASpoiledTableIsRefusedByItsLine) {
                 .find("again.csv:32767: 'part2' is the name of two labels, 2 and 32767"),
             std::string::npos);
   EXPECT_NE(refusal("d.txt", "5 255 0 0 1 1 1 \"liver\"\nliver 5\n").find("d.txt:2"), std::string::npos);
-  EXPECT_NE(refusal("e.json", R"({"liver": -1})").find("liver"), std::string::npos);
+  EXPECT_NE(refusal("e.json", R"({"liver": true})").find("liver"), std::string::npos);
+  EXPECT_NE(refusal("g.json", R"([{"label": "liver", "name": "liver"}])").find("has no label"),
+            std::string::npos);
+  EXPECT_NE(refusal("h.csv", "label,name,id\n5,liver,1\nsix,spleen,2\n").find("h.csv:3: has no label"),
+            std::string::npos);
+  EXPECT_NE(refusal("i.csv", "1,10,liver\n2,20,spleen\n").find("i.csv:1: has numbers in its second column"),
+            std::string::npos);
   EXPECT_NE(refusal("f.csv", "5,liver\nsix,spleen\n").find("f.csv:2"), std::string::npos);
 }
 
@@ -100,6 +106,74 @@ TEST(LabelTable, RowsThatNameNoLabelArePassedOverByTheirLine) {
   std::string many = "5,liver\n";
   for (int i = 1; i <= 20; ++i) many += "-" + std::to_string(i) + ",none\n";
   EXPECT_EQ(read_label_table(put(folder, "h.csv", many)).passed_over.size(), 9u);
+}
+
+TEST(LabelTable, RowsOfJsonThatNoLabelMapCanHaveArePassedOverToo) {
+  const ScratchFolder folder;
+  const Names expected{{2, "left kidney"}, {5, "liver"}};
+  for (
+      const auto& [name, text, told] :
+      {std::tuple<const char*, const char*, const char*>{"a.json",
+                                                         R"({"liver": 5, "ignore": -1, "left kidney": 2})",
+                                                         "a.json: ignore: the row is passed over"},
+       {"b.json", R"({"5": "liver", "-1": "unknown", "2": "left kidney"})", "b.json: -1: the row"},
+       {"c.json",
+        R"([{"label": -1, "name": "x"}, {"label": 5, "name": "liver"}, {"label": 2, "name": "left kidney"}])",
+        "c.json[0]: the row is passed over, as no label map can have the label -1"},
+       {"d.json",
+        R"([{"id": 5, "label": "liver"}, {"id": null, "label": "x"}, {"id": 2, "label": "left kidney"}])",
+        "d.json[1]: the row is passed over, as it has no label"}}) {
+    const LabelTable table = read_label_table(put(folder, name, text));
+    EXPECT_EQ(table.names, expected) << name;
+    ASSERT_EQ(table.passed_over.size(), 1u) << name;
+    EXPECT_NE(table.passed_over[0].find(told), std::string::npos) << table.passed_over[0];
+  }
+}
+
+TEST(LabelTable, HeadingsOfOtherProgramsAreRead) {
+  const ScratchFolder folder;
+  const Names expected{{2, "left kidney"}, {5, "liver"}};
+  for (const auto& [name, text] :
+       {std::pair<const char*, const char*>{"a.csv", "No.,Label\n5,liver\n2,left kidney\n"},
+        {"b.csv", "#No.,Label Name:,R\n5,liver,1\n2,left kidney,2\n"},
+        {"c.csv", "Name,Label-Value\nliver,5\nleft kidney,2\n"},
+        {"d.csv", "ID;Structure Name\n5;liver\n2;left kidney\n"},
+        {"e.csv", "label,id\nliver,5\nleft kidney,2\n"},
+        {"f.tsv", "index\tlabel\n5\tliver\n2\tleft kidney\n"},
+        {"g.json",
+         R"([{"LabelValue": 5, "Name": "liver"}, {"label_value": "2", "label_name": "left kidney"}])"},
+        {"h.json",
+         R"({"labels": [{"value": 5.0, "name": "liver"}, {"No.": 2, "Description": "left kidney"}]})"},
+        {"i.lut", "5 0.9 0.9 0.9 liver\n2 0 0.5 0 left kidney\n"},
+        {"j.txt", "# Label description\n5 255 0 0 1 1 1 liver\n2 0 9 0 1 1 1 left kidney\n"}}) {
+    const LabelTable table = read_label_table(put(folder, name, text));
+    EXPECT_EQ(table.names, expected) << name;
+    EXPECT_TRUE(table.passed_over.empty()) << name;
+  }
+  const LabelTable headed =
+      read_label_table(put(folder, "k.txt", "LabelValue Name R G B\n5 liver 9 9 9\n2 left kidney 0 9 0\n"));
+  EXPECT_EQ(headed.names, expected);
+  EXPECT_EQ(headed.passed_over.size(), 1u);
+}
+
+TEST(LabelTable, OfBidsTheIndexIsTheLabelAndOtherNumbersAreReported) {
+  const ScratchFolder folder;
+  const LabelTable bids =
+      read_label_table(put(folder, "a_dseg.tsv", "label\tname\tindex\n11\tliver\t1\n12\tspleen\t2\n"));
+  EXPECT_EQ(bids.names, (Names{{1, "liver"}, {2, "spleen"}}));
+  ASSERT_EQ(bids.passed_over.size(), 1u);
+  EXPECT_NE(
+      bids.passed_over[0].find("WARN: the labels are taken from the column 'index'; the column 'label'"),
+      std::string::npos)
+      << bids.passed_over[0];
+  // A program's own table has its row numbers in "index".
+  const LabelTable rows =
+      read_label_table(put(folder, "b.csv", "index,label,name\n0,11,liver\n1,12,spleen\n"));
+  EXPECT_EQ(rows.names, (Names{{11, "liver"}, {12, "spleen"}}));
+  ASSERT_EQ(rows.passed_over.size(), 1u);
+  EXPECT_NE(rows.passed_over[0].find("the column 'index' has other numbers"), std::string::npos);
+  EXPECT_TRUE(read_label_table(put(folder, "c.tsv", "index\tlabel\tname\n1\t1\tliver\n2\t2\tspleen\n"))
+                  .passed_over.empty());
 }
 
 TEST(LabelTable, OtherEncodingsAreReadAndSaid) {

@@ -126,6 +126,33 @@ TEST_F(SvgOutlinesFile, WhatAStyleHidesOrMovesIsLeftOutToldOrRefused) {
                std::runtime_error);
 }
 
+TEST_F(SvgOutlinesFile, AClipPathOrMaskThatIsNotReadIsNamedWithItsElement) {
+  const auto findings = [&](const std::string& inside) {
+    const SvgOutlines found = read("<clipPath id=\"c\"><rect width=\"3\" height=\"3\"/></clipPath>" + inside);
+    EXPECT_EQ(found.polygons_mm.size(), 1u) << inside;
+    EXPECT_NEAR(std::abs(voxel::signed_area(found.polygons_mm[0])), 49.0, 1e-9) << inside;
+    return found.findings;
+  };
+  const std::string size = "width=\"7\" height=\"7\"";
+  for (const auto& [inside, cut] :
+       {std::pair<std::string, const char*>{"<rect clip-path=\"url(#c)\" " + size + "/>",
+                                            "clip-path of <rect>"},
+        {"<g mask=\"url(#c)\"><g><rect " + size + "/></g></g>", "mask of <g>"},
+        {"<g style=\"fill:none; clip-path : url(#c)\"><rect " + size + "/></g>", "clip-path of <g>"}}) {
+    const std::vector<std::string> found = findings(inside);
+    ASSERT_EQ(found.size(), 1u) << inside;
+    EXPECT_EQ(found[0].find("WARN: the " + std::string(cut)), 0u) << found[0];
+  }
+  const std::string shape = "<rect " + size + "/>";
+  for (const std::string& inside :
+       {"<g clip-path=\"none\">" + shape + "</g>",
+        "<g clip-path=\"url(#c)\" style=\"clip-path:none\">" + shape + "</g>",
+        "<g clip-path=\"url(#c)\"><image href=\"a.png\" width=\"1\" height=\"1\"/></g>" + shape,
+        "<g clip-path=\"url(#c)\"></g>" + shape})
+    EXPECT_EQ(findings(inside).size(), 0u) << inside;
+  EXPECT_EQ(read("<g clip-path=\"url(#c)\">" + shape + shape + "</g>").findings.size(), 1u) << "told once";
+}
+
 TEST_F(SvgOutlinesFile, UnitsAreTheRootsAndToldWhereTheyAreNone) {
   const auto side_mm = [&](const std::string& root, const std::string& side = "10") {
     const SvgOutlines found = read("<rect width=\"" + side + "\" height=\"" + side + "\"/>", root);

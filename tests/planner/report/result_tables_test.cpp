@@ -18,6 +18,26 @@ TEST(ResultTables, ValuesAtAnyDepthAreColumnsAndWhatARowLacksIsEmpty) {
             "c,,,,,,true\n");
 }
 
+TEST(ResultTables, EachMeasurementStatesTheGravestAuditOfTheScans) {
+  const auto table = [](const std::string& scans) {
+    return result_tables(
+               Json::parse(R"({"measurements": [{"id": "size", "volume_mm3": 2}], "cephalometry": null,
+      "certificates": [], "movements": [], "scans": )" +
+                           scans + "}"))
+        .at(0)
+        .second;
+  };
+  const std::string pass = R"({"check": "size", "verdict": "PASS", "detail": ""})";
+  const std::string warn = R"({"check": "unit", "verdict": "WARN", "detail": "a"})";
+  const std::string fail = R"({"check": "slices", "verdict": "FAIL", "detail": "b"})";
+  EXPECT_EQ(table("[]"), "id,volume_mm3\nsize,2\n");
+  EXPECT_EQ(table("[{\"audit\": [" + pass + "]}]"), "id,volume_mm3,scan_audit\nsize,2,PASS\n");
+  EXPECT_EQ(table("[{\"audit\": [" + fail + "," + warn + "]}, {\"audit\": [" + pass + "]}]"),
+            "id,volume_mm3,scan_audit\nsize,2,FAIL\n");
+  EXPECT_EQ(table("[{\"audit\": [" + pass + "]}, {\"audit\": [" + warn + "]}]"),
+            "id,volume_mm3,scan_audit\nsize,2,WARN\n");
+}
+
 TEST(ResultTables, AMovementHasARowForItsPieceAndForEachLandmark) {
   const Json result = Json::parse(R"({"measurements": [], "cephalometry": null, "certificates": [],
     "movements": [{"object": "m", "from": "s", "pitch_deg": 3, "yaw_deg": 0, "roll_deg": 0, "words": "w",

@@ -45,6 +45,19 @@ class SamePatient : public tests::CommandLine {
   voxel::Identity own_;
 };
 
+TEST_F(SamePatient, AStructureSetDrawnOnAnotherSeriesIsReportedWithBothSeries) {
+  ASSERT_FALSE(own_.series_uid.empty());
+  put_set("series.dcm", {own_.patient_id, own_.study_uids.at(0), own_.frame_uids.at(0), own_.series_uid});
+  put_set("other_series.dcm", {own_.patient_id, own_.study_uids.at(0), own_.frame_uids.at(0), "1.2.3.6"});
+  EXPECT_EQ(findings(mask("series.dcm", like("ct"))).find("WARN: series"), std::string::npos);
+  const CommandAnswer answer = mask("other_series.dcm", like("ct"));
+  ASSERT_EQ(answer.status, 0) << answer.errors;
+  const std::string found = findings(answer);
+  EXPECT_NE(found.find("WARN: series: "), std::string::npos) << found;
+  EXPECT_NE(found.find("the series 1.2.3.6, and "), std::string::npos) << found;
+  EXPECT_NE(found.find("is of the series " + own_.series_uid), std::string::npos) << found;
+}
+
 TEST_F(SamePatient, AStructureSetOfAnotherPatientStudyOrFrameIsRefusedWithBothValuesAndTheWayToGoOn) {
   const CommandAnswer same = mask("own.dcm", like("ct"));
   ASSERT_EQ(same.status, 0) << same.errors;

@@ -146,6 +146,13 @@ TEST(ReadRtstruct, StatesWhoseItIsAndWhichFrameItRefersTo) {
   EXPECT_EQ(identity.patient_id, "P-17");
   EXPECT_EQ(identity.study_uids, std::vector<std::string>{"1.2.3"});
   EXPECT_EQ(identity.frame_uids, std::vector<std::string>{"1.2.4"});
+  EXPECT_TRUE(identity.referred_series_uids.empty());
+  const Identity drawn =
+      read_rtstruct(written(folder, structure_set({{1, "A", {rectangle({0, 0}, {9, 9}, 0)}}},
+                                                  {"P-17", "1.2.3", "1.2.4", "1.2.5"})))
+          .identity;
+  EXPECT_EQ(drawn.study_uids, std::vector<std::string>{"1.2.3"});
+  EXPECT_EQ(drawn.referred_series_uids, std::vector<std::string>{"1.2.5"});
 }
 
 }  // namespace

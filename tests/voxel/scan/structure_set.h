@@ -21,6 +21,7 @@ struct DrawnStructure {
 /// Whom a structure set states; empty: it does not.
 struct StatedIdentity {
   std::string patient_id, study_uid, frame_uid;
+  std::string series_uid = {};  ///< that it was drawn on; beside frame_uid
 };
 
 /// A DICOM structure set, explicit VR little-endian; long contours as UN, as pydicom writes them.
@@ -50,8 +51,13 @@ inline std::string structure_set(const std::vector<DrawnStructure>& structures,
   std::string stated;
   if (!identity.patient_id.empty()) stated += D::element(0x00100020, "LO", identity.patient_id);
   if (!identity.study_uid.empty()) stated += D::element(0x0020000d, "UI", identity.study_uid);
+  const std::string referred = D::sequence(
+      0x30060012,
+      D::item(D::element(0x00081155, "UI", identity.study_uid) +
+              D::sequence(0x30060014, D::item(D::element(0x0020000e, "UI", identity.series_uid)))));
   if (!identity.frame_uid.empty())
-    stated += D::sequence(0x30060010, D::item(D::element(0x00200052, "UI", identity.frame_uid)));
+    stated += D::sequence(0x30060010, D::item(D::element(0x00200052, "UI", identity.frame_uid) +
+                                              (identity.series_uid.empty() ? "" : referred)));
   return D::file("1.2.840.10008.1.2.1", D::element(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.481.3") +
                                             D::element(0x00080060, "CS", "RTSTRUCT") + stated +
                                             D::sequence(0x30060020, names) + D::sequence(0x30060039, drawn));
