@@ -8,6 +8,7 @@
 #include "planner/picture/colour.h"
 #include "planner/plan/answers.h"
 #include "planner/plan/dependence.h"
+#include "planner/report/patient.h"
 #include "planner/serve/new_plan.h"
 #include "planner/serve/told_measurement.h"
 #include "planner/table/fault.h"
@@ -51,6 +52,7 @@ Json scan_json(const ScanRecord& scan) {
   for (Json& line : json["audit"]) line["sentence"] = line.value("detail", "");
   json["bounds_mm"] = box_json(voxel::bounds(scan.lattice));
   json["window_suggestion"] = tones_of(scan);
+  json["patient"] = patient_json(scan.identity);
   return json;
 }
 

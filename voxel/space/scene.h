@@ -51,6 +51,7 @@ struct Identity {
   std::string id_issuer = {};   ///< who gave the patient's number, which is unique only among the issuer's
   std::string birth_date = {};  ///< YYYYMMDD
   std::string sex = {};         ///< M, F or O
+  std::string study_date = {};  ///< YYYYMMDD
 };
 
 /// Samples on a lattice, x fastest.
