@@ -204,9 +204,10 @@ export function done(id: number): void {
   set({jobs: state.jobs.filter((job) => job.id !== id)});
 }
 
-/// Where a file of the server is fetched, with this window's token.
+/// Where a file of the server is fetched. This window's token stands in the path, so that links in a report
+/// reach the files beside it.
 export const file_url = (name: string): string =>
-    `/file/${encodeURIComponent(name)}?token=${encodeURIComponent(token())}`;
+    `/file/${[token(), ...name.split("/")].map(encodeURIComponent).join("/")}`;
 export const token = (): string => new URLSearchParams(location.search).get("token") ?? "";
 
 export function download(name: string): void {

@@ -276,6 +276,7 @@ Json report(Desk& desk, const Json&, const Watched& watched) {
 
 Json outcome(Desk& desk, const Json& said, const Watched& watched) {
   const fs::path path = desk.folders.need_within(said.at("path").get<std::string>());
+  need_readable_samples(desk.folders, path);
   const Plan plan = desk.with_document([](const Document& document) { return *document.plan(); });
   const Evaluation before = desk.evaluate(plan, {}, true, watched);
   const voxel::Progress progress{watched.stop, [&](double share) {

@@ -14,6 +14,7 @@
 #include "planner/table/fault.h"
 #include "planner/table/number_format.h"
 #include "planner/table/plan_universe.h"
+#include "voxel/scan/read_scene.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner::serve {
@@ -119,6 +120,7 @@ void Desk::open(const fs::path& path, const Watched& watched) {
   const voxel::Progress progress{watched.stop, [&](double share) {
                                    if (watched.progress) watched.progress("read " + path.string(), share);
                                  }};
+  if (!is_plan(path)) need_readable_samples(folders, path);
   const fs::path plan = is_plan(path) ? path : plan_of_scan(path, working_folder_, progress);
   auto document = std::make_unique<Document>(plan, folders);
   folders.open(plan);
@@ -159,6 +161,10 @@ Evaluation Desk::evaluate(const Plan& plan, const std::vector<std::string>& step
   options.keep_scans = true;
   options.cache = &cache;
   options.only_look_up = only_look_up;
+  options.read_scene = [this](const fs::path& path, const voxel::ReadOptions& how) {
+    if (!how.raw) need_readable_samples(folders, path);
+    return voxel::read_scene(path, how);
+  };
   return planner::evaluate(plan, options);
 }
 
