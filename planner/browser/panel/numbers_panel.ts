@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The plan's numbers: volumes and measurements with their certificates.
-import {badge, measured_text} from "./certificate_badge";
+import {badge, judged, measured_text} from "./certificate_badge";
 import {certify_all} from "../commands";
 import {is_overlap} from "../drawn_objects";
 import {button, Child, el} from "../base/html";
 import {icon} from "../base/icons";
+import {makes_body} from "../operations";
 import {Measurement} from "../protocol";
 import {set, state, step_of, steps} from "../state";
 import {step_words} from "./step_lists";
@@ -12,11 +13,13 @@ import {step_words} from "./step_lists";
 export function numbers(): Child {
   const all = steps();
   const objects =
-      (state.plan?.objects ?? []).filter((object) => step_of(object.id) && step_of(object.id)?.do !== "mask");
+      (state.plan?.objects ?? []).filter((object) => makes_body(step_of(object.id)));
   const measurements = state.plan?.measurements ?? [];
   const counts = {PASS: 0, WARN: 0, FAIL: 0};
-  for (const object of objects)
-    if (object.certificate) counts[object.certificate.verdict]++;
+  for (const object of objects) {
+    const certificate = judged(object.certificate, object.volume);
+    if (certificate) counts[certificate.verdict]++;
+  }
   const certified = counts.PASS + counts.WARN + counts.FAIL;
   return [
     el("section", {class: "card"},
@@ -39,7 +42,7 @@ export function numbers(): Child {
                 is_overlap(step, all) && !object.id.includes("overlap") ? el("small", {}, " overlap") : null),
              el("td", {}, el("div", {}, measured_text(object.volume)),
                 object.area ? el("small", {}, measured_text(object.area)) : null),
-             el("td", {class: "badge-cell"}, badge(object.id, object.certificate)));
+             el("td", {class: "badge-cell"}, badge(object.id, object.certificate, object.volume)));
        }))),
     el("table", {class: "numbers"}, el("caption", {}, "Measurements"),
        el("tbody", {},
@@ -63,5 +66,5 @@ function measurement_row(found: Measurement): Child {
       el("th", {scope: "row"}, found.id.replace(/_/g, " "),
          el("small", {}, ` ${found.says ?? (step ? step_words(step) : "")}`)),
       el("td", {}, measured_text(found)),
-      el("td", {class: "badge-cell"}, badge(found.id, object?.certificate)));
+      el("td", {class: "badge-cell"}, badge(found.id, object?.certificate, found)));
 }

@@ -397,6 +397,8 @@ class Desk(Served):
         state = self.window.ask("procedure", name="le_fort_i", landmarks=marks, values={"forward_mm": 5})
         self.assertEqual({mark["name"] for mark in state["landmarks"]}, {"mine", *marks})
         self.assertIn("bone", [step["id"] for step in state["plan"]["steps"]])
+        objects = {entry["id"] for entry in state["objects"]}
+        self.assertEqual(set(state["made"]), objects - {"bone"}, "what the procedure made, and nothing older")
         made = self.window.ask("evaluate")["objects"]
         self.assertTrue(all(entry["evaluated"] for entry in made), made)
         words = " ".join(row["words"] for row in self.window.ask("movement")["rows"])
