@@ -123,7 +123,7 @@ const first: State = {
   plan: null,
   page: "start",
   theme: "system",
-  hides_patient: localStorage.getItem("octotomy:hides_patient") === "yes",
+  hides_patient: localStorage.getItem("octotomy_hides_patient") === "yes",
   panes: usual_panes(),
   active_pane: 0,
   cross_mm: [0, 0, 0],
@@ -167,7 +167,7 @@ export function watch(keys: Key[], call: () => void): void {
 
 /// Shows the patient, or hides whom the scan is of on every screen and in new reports. This browser keeps it.
 export function hide_patient(hides_patient: boolean): void {
-  localStorage.setItem("octotomy:hides_patient", hides_patient ? "yes" : "no");
+  localStorage.setItem("octotomy_hides_patient", hides_patient ? "yes" : "no");
   set({hides_patient});
 }
 

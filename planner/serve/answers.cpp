@@ -19,6 +19,7 @@
 #include "planner/serve/pane_fields.h"
 #include "planner/serve/told_measurement.h"
 #include "planner/table/json_file.h"
+#include "voxel/filter/components.h"
 #include "voxel/measure/measure.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/space/error.h"
@@ -178,6 +179,21 @@ Json overlap(Desk& desk, const Json& said, const Watched& watched) {
   for (const Object& object : preview.evaluation->objects)
     if (object.id == Desk::Preview::overlap) return {{"mm3", object.voxel.measures.volume_mm3}};
   refuse("with: name at least one other object");
+}
+
+Json largest_part(Desk& desk, const Json& said, const Watched&) {
+  const std::string id = said.at("object");
+  const Snapshot snapshot = desk.snapshot();
+  if (snapshot.evaluation)
+    for (const Object& object : snapshot.evaluation->objects) {
+      if (object.id != id) continue;
+      const voxel::Components parts = voxel::components(object.voxel.octree);
+      const voxel::Measures largest = voxel::measure(parts.largest);
+      return {{"parts", parts.voxel_counts.size()},
+              {"mm3", largest.volume_mm3},
+              {"at_mm", largest.centroid_mm ? planner::to_json(*largest.centroid_mm) : Json(nullptr)}};
+    }
+  refuse("'" + id + "' is not evaluated yet");
 }
 
 Json movement(Desk& desk, const Json& said, const Watched&) {

@@ -14,6 +14,9 @@ Json measure(Desk& desk, const Json& said, const Watched& watched);
 Json certify(Desk& desk, const Json& said, const Watched& watched);
 /// {"object", "with", "move"} -> {"mm3"}, in voxels.
 Json overlap(Desk& desk, const Json& said, const Watched& watched);
+/// {"object"} -> {"parts", "mm3", "at_mm"}: its connected parts, and the centroid of the largest; null where
+/// it is empty.
+Json largest_part(Desk& desk, const Json& said, const Watched& watched);
 /// {"path", "frame", "unit"} -> {"audit"}: what a mesh file says of its frame and unit, and how its size and
 /// place fit the plan's first scan. The path is a plan's.
 Json mesh_audit(Desk& desk, const Json& said, const Watched& watched);

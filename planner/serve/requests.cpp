@@ -230,6 +230,7 @@ const std::vector<Word>& words() {
       {"command", Lane::Desk, false, command_of_step},
       {"evaluate", Lane::Evaluate, false, evaluate, true},
       {"overlap", Lane::Overlap, false, overlap},
+      {"largest_part", Lane::Long, false, largest_part},
       {"measure", Lane::Long, false, measure},
       {"movement", Lane::Long, false, movement},
       {"mesh_audit", Lane::Long, false, mesh_audit},

@@ -120,6 +120,24 @@ TEST_F(DeskTest, BoneBeginsInTheScansOwnSamples) {
   EXPECT_TRUE(desk_->state()["scans"][0]["patient"].is_null());
 }
 
+TEST_F(DeskTest, TheLargestPartOfAnOverlapHasAPlace) {
+  desk_->open(folder_ / "ball.nrrd", {});
+  add({{"id", "moved"}, {"do", "move"}, {"object", "bone"}, {"translate_mm", {6, 0, 0}}});
+  add({{"id", "both"}, {"do", "combine"}, {"expression", "bone & moved"}});
+  add({{"id", "none"}, {"do", "combine"}, {"expression", "bone - bone"}});
+  desk_->evaluate({}, false, {});
+  const auto part = [&](const char* id) {
+    return find_word("largest_part").answer(*desk_, {{"object", id}}, {});
+  };
+  const Json both = part("both");
+  EXPECT_EQ(both["parts"], 1);
+  EXPECT_GT(both["mm3"], 0.0);
+  EXPECT_NEAR(both["at_mm"][0].get<double>(), 3.0, 0.5);
+  EXPECT_NEAR(both["at_mm"][1].get<double>(), 0.0, 0.5);
+  EXPECT_TRUE(part("none")["at_mm"].is_null());
+  EXPECT_THROW(part("nobody"), voxel::Error);
+}
+
 TEST_F(DeskTest, ALandmarkFarFromBoneIsNotCalledSnapped) {
   desk_->open(folder_ / "ball.nrrd", {});
   desk_->evaluate({}, false, {});
