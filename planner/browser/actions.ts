@@ -2,7 +2,7 @@
 // What a person does to the plan: each is a request to the server, whose answer is the plan's new state.
 import {objects_of_plan} from "./drawn_objects";
 import {Hello, Measured, Measurement, PlanState, Step} from "./protocol";
-import {first_scan, kept_view, leave_plan, notify, PaneSetting, set, State, state, steps, usual_panes} from "./state";
+import {first_scan, kept_view, leave_plan, leave_scan, notify, PaneSetting, set, State, state, steps, usual_panes} from "./state";
 import {add, scaled, Vec3} from "./base/vector";
 import {Refusal, Wire} from "./wire";
 
@@ -28,7 +28,12 @@ export async function try_to<Answer>(
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;
     if (error.code === "lost") return lost();
-    if (error.code !== "cancelled") notify(error.message, "error");
+    if (error.code === "changed" && state.plan) {
+      const {path} = state.plan;
+      notify(error.message, "error", {label: "Load the plan's file", run: () => void open_plan({path})});
+    } else if (error.code !== "cancelled") {
+      notify(error.message, "error");
+    }
     return null;
   }
 }
@@ -47,6 +52,7 @@ export function take_plan(plan: PlanState|null): void {
     return set({plan: null, page: "start"});
   }
   const is_new = plan.path !== state.plan?.path || state.page === "start";
+  if (!is_new && has_other_scan(plan)) leave_scan();
   if (!is_new)
     return set({
       plan: {...plan, measurements: plan.measurements ?? known_measurements(plan)},
@@ -63,6 +69,12 @@ export function take_plan(plan: PlanState|null): void {
     jobs: plan.jobs ?? []
   });
   void evaluate();
+}
+
+// Whether a scan's file is another one than before; a further scan replaces none.
+function has_other_scan(plan: PlanState): boolean {
+  const before = state.plan?.plan.scans ?? {};
+  return Object.entries(before).some(([name, scan]) => plan.plan.scans?.[name]?.path !== scan.path);
 }
 
 // A kept pane of an earlier page may lack a field.
@@ -175,7 +187,9 @@ export const measure = (kind: string, fields: object): Promise<MeasureAnswer|nul
 
 /// Places a landmark, or moves it, on the nearest surface or as it is. Answers where it lies then.
 export async function put_landmark(name: string, point: Vec3, snap: boolean): Promise<Vec3|null> {
-  const answer = await try_to<{point: Vec3}>("landmark", {name, point, snap});
+  const answer = await try_to<{point: Vec3; snapped: boolean}>("landmark", {name, point, snap});
+  if (answer && snap && !answer.snapped)
+    notify(`No bone lies near ${name.replace(/_/g, " ")}: it stays where you clicked. Look at its depth in a second view.`, "warning");
   return answer?.point ?? null;
 }
 
@@ -204,9 +218,10 @@ export function done(id: number): void {
   set({jobs: state.jobs.filter((job) => job.id !== id)});
 }
 
-/// Where a file of the server is fetched, with this window's token.
+/// Where a file of the server is fetched. This window's token stands in the path, so that links in a report
+/// reach the files beside it.
 export const file_url = (name: string): string =>
-    `/file/${encodeURIComponent(name)}?token=${encodeURIComponent(token())}`;
+    `/file/${[token(), ...name.split("/")].map(encodeURIComponent).join("/")}`;
 export const token = (): string => new URLSearchParams(location.search).get("token") ?? "";
 
 export function download(name: string): void {

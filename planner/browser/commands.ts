@@ -3,7 +3,7 @@
 import {add_step, change_history, edit, evaluate, free_id, open_plan, try_to} from "./actions";
 import {ask_text} from "./base/dialog";
 import {objects_of_plan} from "./drawn_objects";
-import {makes_shape} from "./operations";
+import {makes_body, makes_shape} from "./operations";
 import {all_panes, fit_all, show_in} from "./pane/pane_grid";
 import {change_pane} from "./pane/panes";
 import {Step} from "./protocol";
@@ -11,7 +11,7 @@ import {guess_landmarks} from "./tool/point_tools";
 import {cut_selected} from "./tool/region_tool";
 import {new_step} from "./panel/schema_form";
 import {operations} from "./operations";
-import {notify, selected_step, set, state, step_of, usual_panes} from "./state";
+import {hide_patient, notify, selected_step, set, state, step_of, usual_panes} from "./state";
 import {change_theme} from "./base/theme";
 import {all_tools, take_tool} from "./tool/tool";
 import {plane_names, view_names} from "./base/view_frame";
@@ -92,7 +92,7 @@ export function map_contacts(): void {
     return bounds ? (bounds[0][2] + bounds[1][2]) / 2 : null;
   };
   const shown =
-      objects_of_plan().flatMap((one) => (one.id ? [one.id] : [])).filter((id) => step_of(id)?.do !== "mask");
+      objects_of_plan().flatMap((one) => (one.id ? [one.id] : [])).filter((id) => makes_body(step_of(id)));
   const object = step && shown.includes(step.id) ? step.id : shown[shown.length - 1];
   const reference = shown.find((id) => id !== object);
   if (!object || !reference)
@@ -194,6 +194,11 @@ export function all_commands(): Command[] {
       run: show_cephalometry
     },
     {name: "Show the scan's audit", run: () => dialogs.audit()},
+    {
+      name: state.hides_patient ? "Show the patient" : "Hide the patient",
+      says: "Name, number and dates, on every screen of this browser and in new reports.",
+      run: () => hide_patient(!state.hides_patient)
+    },
     {
       name: "Export",
       says: "Surfaces for print, decks of finite elements, label maps.",

@@ -2,8 +2,8 @@
 // Which objects of the plan are drawn, in what colour: by default the pieces as they end up, and what they
 // have in common.
 import {DrawnObject, Step} from "./protocol";
-import {makes_shape, moves_object, operands} from "./operations";
-import {is_elsewhere, shown_scan, state, steps} from "./state";
+import {makes_body, makes_shape, moves_object, operands} from "./operations";
+import {bone_low, is_elsewhere, shown_scan, state, steps} from "./state";
 
 const bone = ["#ede3cc", "#d9c7a0", "#cfd3d6"];
 const moved = ["#e08a3c", "#3fa7a0", "#a678de", "#d0649b", "#7fae3e"];
@@ -59,7 +59,7 @@ export function look_of(id: string): Shown {
         earlier.filter(is_displaced).length,
         is_piece(step) ? earlier.filter((other) => is_piece(other) && !is_left_out(other, all)).length : 0);
     const visible = !is_used_up(id, all);
-    if (step.do === "mask")
+    if (makes_shape(step) && !makes_body(step))
       usual = {colour: mask_colour, opacity: 0.35, visible};
     else if (is_overlap(step, all))
       usual = {colour: overlap_colour, opacity: 1, visible};
@@ -75,7 +75,7 @@ export function look_of(id: string): Shown {
   return {
     colour: look.colour ?? usual.colour,
     opacity: look.opacity ?? usual.opacity,
-    visible: look.visible ?? usual.visible,
+    visible: look.visible ?? (usual.visible && !all.some((other) => other.id === look.behind)),
   };
 }
 
@@ -85,8 +85,7 @@ export const object_ids = (): string[] => steps().filter(makes_shape).map((step)
 /// What the panes ask the server to draw: the plan's objects, or the bone of a scan that lies elsewhere.
 export function drawn_objects(): DrawnObject[] {
   if (!is_elsewhere()) return objects_of_plan();
-  const low = state.hello?.tissues.find((tissue) => tissue.name === "bone")?.low ?? 300;
-  return [{window: {scan: shown_scan(), low, alone: true}, colour: bone[0]!, opacity: 1}];
+  return [{window: {scan: shown_scan(), low: bone_low(shown_scan()), alone: true}, colour: bone[0]!, opacity: 1}];
 }
 
 /// The plan's objects that are turned on, and a window that is being set.

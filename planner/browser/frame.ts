@@ -7,6 +7,7 @@ import {button, Child, el, fill} from "./base/html";
 import {icon, IconName, is_icon} from "./base/icons";
 import {cut_selected} from "./tool/region_tool";
 import {dismiss, set, state, watch} from "./state";
+import {patient_button} from "./panel/patient";
 import {change_theme} from "./base/theme";
 import {active_tool, all_tools, take_tool} from "./tool/tool";
 
@@ -21,6 +22,7 @@ export function make_bar(host: HTMLElement): void {
             [el("span", {class: "logo"}), el("b", {}, "Octotomy")], "Start page", () => set({page: "start"}),
             {class: "brand ghost"}),
         plan ? el("span", {class: "plan-name", title: plan.path}, plan.name) : null,
+        plan ? patient_button() : null,
         plan ? button(
                    [icon("branch", 14), plan.branch], "New branch. The plan as it is stays on this one",
                    () => void new_branch(),
@@ -53,7 +55,7 @@ export function make_bar(host: HTMLElement): void {
         button(icon("theme", 17), "Dark or light", change_theme, {class: "ghost"}),
         button(icon("help", 17), "Keys and help. ?", () => dialogs.help(), {class: "ghost"}));
   };
-  watch(["plan", "page"], again);
+  watch(["plan", "page", "hides_patient"], again);
   again();
 }
 
@@ -150,7 +152,11 @@ export function make_notices(host: HTMLElement): void {
               (notice) => el(
                   "div",
                   {class: `notice ${notice.level}`, role: notice.level === "error" ? "alert" : "status"},
-                  el("span", {}, notice.message),
+                  el("span", {}, notice.message), notice.act ? button(notice.act.label, notice.act.label, () => {
+                    dismiss(notice.key);
+                    notice.act?.run();
+                  }) :
+                                                                null,
                   button(icon("close", 14), "Close", () => dismiss(notice.key), {class: "ghost small"})))));
 }
 

@@ -24,6 +24,10 @@ export function schema_of(step: Step): Schema|undefined {
 export const makes_shape = (step: Step): boolean =>
     ["object", "tool"].includes(schema_of(step)?.["x-makes"] ?? "");
 
+/// Whether a step makes a body that is certified, measured and exported: no tool, as a mask is.
+export const makes_body = (step: Step|undefined): boolean =>
+    step !== undefined && schema_of(step)?.["x-makes"] === "object";
+
 /// Whether a step's object is another one's, moved rigidly.
 export const moves_object = (step: Step): boolean => schema_of(step)?.["x-moves"] !== undefined;
 

@@ -37,6 +37,24 @@ export interface ScanState {
   range?: [number, number];
   unit?: string;
   window_suggestion?: [number, number]|null;
+  bone_low?: number|null;  // where bone begins in this scan's own samples
+  patient?: Patient|null;  // null: the scan states none
+}
+/// Whom a scan is of; null where the scan does not state it.
+export interface Patient {
+  name: string|null;
+  number: string|null;
+  issuer: string|null;
+  birth_date: string|null;
+  sex: string|null;
+  study_date: string|null;
+}
+/// A plane about which an object was mirrored; the fit's values are null where it was given.
+export interface MirrorPlane {
+  plane: {point_mm: Vec3; normal: Vec3};
+  rms_mm: number|null;
+  kept_share: number|null;
+  converged: boolean|null;
 }
 export interface ObjectState {
   id: string;
@@ -45,6 +63,7 @@ export interface ObjectState {
   evaluated?: boolean;
   bounds_mm?: [Vec3, Vec3]|null;
   error?: string|null;
+  mirror?: MirrorPlane;
   certificate?: Certificate|null;
   volume?: Measured|null;
   area?: Measured|null;
@@ -202,4 +221,5 @@ export interface FrameHeader {
 export interface Notice {
   message: string;
   level: "info"|"warning"|"error";
+  act?: {label: string; run(): void};  // what mends it
 }

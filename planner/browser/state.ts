@@ -19,6 +19,7 @@ export interface ObjectLook {
   colour?: string;
   visible?: boolean;
   opacity?: number;
+  behind?: string;  // a step whose objects stand in this one's place, as long as the plan has that step
 }
 export interface Preview {
   object: string;
@@ -52,6 +53,7 @@ export interface State {
   scan: string|null;  // the scan that panes show; null: the patient's
   page: "start"|"audit"|"plan";
   theme: "system"|"light"|"dark";
+  hides_patient: boolean;  // no screen or report of this window names the patient
   panes: PaneSetting[];
   maximised: number|null;
   active_pane: number;
@@ -121,6 +123,7 @@ const first: State = {
   plan: null,
   page: "start",
   theme: "system",
+  hides_patient: localStorage.getItem("octotomy_hides_patient") === "yes",
   panes: usual_panes(),
   active_pane: 0,
   cross_mm: [0, 0, 0],
@@ -162,6 +165,12 @@ export function watch(keys: Key[], call: () => void): void {
   watchers.push({keys: new Set(keys), call});
 }
 
+/// Shows the patient, or hides whom the scan is of on every screen and in new reports. This browser keeps it.
+export function hide_patient(hides_patient: boolean): void {
+  localStorage.setItem("octotomy_hides_patient", hides_patient ? "yes" : "no");
+  set({hides_patient});
+}
+
 const plan_leavers: (() => void)[] = [];
 /// Calls back when the window leaves a plan, so that no part of the page carries a value of one patient into
 /// the next plan.
@@ -172,6 +181,12 @@ export function on_leaving_plan(call: () => void): void {
 export function leave_plan(): void {
   for (const call of plan_leavers) call();
   set(without_plan());
+}
+/// The same of what belongs to a scan whose file another one has replaced in the same plan: tools and their
+/// drafts. How objects are shown stays.
+export function leave_scan(): void {
+  for (const call of plan_leavers) call();
+  set({draft_window: null, draft_step: null, preview: null, overlap_mm3: null, marked: null, guesses: []});
 }
 
 // How a window looks at a plan is kept in the browser, by the plan's path; the plan itself is the server's.
@@ -214,17 +229,20 @@ export const selected_step = (): Step|undefined => step_of(state.selected);
 export const first_scan = (): string => state.plan?.scans[0]?.name ?? "ct";
 export const shown_scan = (): string =>
     state.plan?.scans.find((scan) => scan.name === state.scan)?.name ?? first_scan();
+/// Where bone begins in a scan's own samples: 300 HU says nothing of a scan without Hounsfield units.
+export const bone_low = (scan: string): number =>
+    state.plan?.scans.find((one) => one.name === scan)?.bone_low ?? 300;
 /// Whether panes show a scan that lies in a frame of its own, as a donor's: the plan's objects are not in it.
 export const is_elsewhere = (): boolean =>
     shown_scan() !== first_scan() && shown_scan() in (state.plan?.plan.scans ?? {});
 
 let next_notice = 1;
 /// Tells the person something; an error stays until it is closed.
-export function notify(message: string, level: Notice["level"] = "info"): void {
+export function notify(message: string, level: Notice["level"] = "info", act?: Notice["act"]): void {
   const key = next_notice++;
   set({
     notices:
-        [...state.notices.filter((notice) => notice.message !== message).slice(-2), {message, level, key}]
+        [...state.notices.filter((notice) => notice.message !== message).slice(-2), {message, level, act, key}]
   });
   if (level !== "error") window.setTimeout(() => dismiss(key), level === "info" ? 4000 : 8000);
 }

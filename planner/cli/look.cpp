@@ -7,6 +7,7 @@
 #include "planner/report/result_folder.h"
 #include "planner/table/number_format.h"
 #include "planner/verb/numbers.h"
+#include "planner/verb/plan_in.h"
 #include "planner/verb/scan_in.h"
 
 namespace octotomy::planner::cli {
@@ -17,6 +18,7 @@ struct LookText {
   std::filesystem::path out;
   LookOptions options;
   ScanIn in;
+  bool anonymous = false;
 };
 
 int look(Program& program, LookText& text) {
@@ -27,6 +29,7 @@ int look(Program& program, LookText& text) {
   text.options.seen = [&](Result first) {
     ResultFolder output(text.out);
     if (output.replaces()) return;
+    first.anonymous = text.anonymous;
     write_result_files(first, output.path(), {program.stop.get_token(), {}});
     early = output.publish_early();
     // Only to people: a script reads one line of how the verb ended.
@@ -40,6 +43,7 @@ int look(Program& program, LookText& text) {
     if (!text.options.bone_low) program.note_tissues({"bone"});
     if (!text.options.skin_low) program.note_tissues({"skin"});
   }
+  result.anonymous = text.anonymous;
   if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
   const Json json = write_result(result, text.out, {program.stop.get_token(), program.progress()});
   std::vector<std::pair<std::string, std::string>> rows;
@@ -77,6 +81,7 @@ void add_look(Program& program) {
   verb.add_option("--skin", text->options.skin_low, "Lower bound of all within the skin; default -300 HU")
       ->check(finite())
       ->type_name("LOW");
+  add_anonymous(verb, text->anonymous);
   add_scan_options(verb, text->in);
 }
 

@@ -94,6 +94,7 @@ int run(Program& program, const RunText& text, Plan plan, const std::function<vo
   Result result;
   result.plan = std::move(plan);
   result.as_pdf = text.as_pdf;
+  result.anonymous = text.anonymous;
   if (text.as_pdf) need_pdf_printer();
   need_result_folder(text.out, result_names(result.plan));
   EvaluateOptions options = evaluate_options(program);
@@ -136,6 +137,13 @@ void add_certify(CLI::App& verb, Certify& certify) {
       "--no-certificates", [&certify] { certify = Certify::Never; }, "The same as --certify never");
 }
 
+void add_anonymous(CLI::App& verb, bool& anonymous) {
+  verb.add_flag(
+      "--anonymous", anonymous,
+      "The report names no patient, and audits quote none; names of files stay. Default: the report "
+      "states name, number, birth date and study date where the scan does");
+}
+
 void add_plan_verbs(Program& program) {
   program.verb("schema", "The JSON schema of plans, from the table of operations",
                "octotomy schema > plan.schema.json", [&program] {
@@ -156,6 +164,7 @@ void add_plan_verbs(Program& program) {
   add_certify(verb, text->certify);
   verb.add_flag("--pdf", text->as_pdf,
                 "Print the report as report.pdf, too; takes WeasyPrint or Chromium on the PATH");
+  add_anonymous(verb, text->anonymous);
   const auto seen = std::make_shared<PreviewText>();
   CLI::App& draws =
       program.verb("preview", "Draws one step of a plan, without certificates",

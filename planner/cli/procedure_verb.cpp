@@ -149,6 +149,7 @@ void add_procedure(Program& program) {
   verb.add_option("-o,--out", text->out, "The .plan.json, which stands alone and may be edited");
   verb.add_option("--report", text->report, "Replays the plan into this folder at once, as run does");
   add_certify(verb, text->certify);
+  add_anonymous(verb, text->anonymous);
 }
 
 }  // namespace octotomy::planner::cli

@@ -2,9 +2,11 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdlib>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "planner/cli/verbs.h"
@@ -30,9 +32,12 @@ struct ServeText {
 };
 
 /// Starts the desktop's browser; nothing is said where there is none. Every user of the machine can read the
-/// arguments of a process, and the URL holds the token: a page in a folder closed to others leads there.
+/// arguments of a process, and the URL holds the token: a page that only its owner may read leads there.
 void open_browser(const std::string& url, const fs::path& closed_folder) {
   const fs::path page = closed_folder / "planner.html";
+  const int file = ::open(page.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (file < 0) return warn("--open: " + page.string() + " cannot be written: open the address by hand");
+  ::close(file);
   std::ofstream(page) << "<!doctype html><meta charset=utf-8><meta name=referrer content=no-referrer>"
                          "<meta http-equiv=refresh content='0;url="
                       << url << "'>\n";

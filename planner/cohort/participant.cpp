@@ -133,6 +133,7 @@ ScanAudits answer(const Plan& plan, const Subject& subject, const ParticipantOpt
                   const fs::path& folder) {
   Result result;
   result.plan = plan;
+  result.anonymous = true;  // a cohort knows its subjects by their labels
   for (auto& [name, scan] : result.plan.scans) scan.path = subject.scans.at(name);
   result.evaluation = evaluate(result.plan, {options.stop, options.progress, true});
   Json json;

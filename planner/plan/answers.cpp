@@ -4,6 +4,7 @@
 #include "planner/plan/in_step.h"
 #include "planner/plan/sha256.h"
 #include "planner/plan/trial.h"
+#include "planner/table/fault.h"
 #include "planner/table/json.h"
 
 namespace octotomy::planner {
@@ -77,9 +78,18 @@ std::vector<Exported> write_files(const Plan& plan, const Evaluation& evaluation
   Kept kept;
   for (const Step& step : plan.steps)
     if (step.action.operation().makes == Makes::File) {
-      if (const auto begun = evaluation.ahead.find(step.id); begun != evaluation.ahead.end())
-        begun->second->finish(kept, timings, options.stop, options.progress);
-      files.push_back(write_file(plan, evaluation, step, folder, timings, kept, options));
+      try {
+        if (const auto begun = evaluation.ahead.find(step.id); begun != evaluation.ahead.end())
+          begun->second->finish(kept, timings, options.stop, options.progress);
+        files.push_back(write_file(plan, evaluation, step, folder, timings, kept, options));
+      } catch (const std::exception& error) {
+        if (!options.keeps_going || !is_no_answer(error)) throw;
+        Exported& lost = files.emplace_back();
+        lost.id = step.id;
+        for (const std::string& object : objects_used(step.action)) lost.object = object;
+        lost.path = path_written(step.action).string();
+        lost.findings.push_back(message_of(error));
+      }
     }
   return files;
 }

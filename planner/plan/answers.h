@@ -16,6 +16,9 @@ struct ExportOptions {
   std::stop_token stop{};
   /// Called with what is being done and a fraction of it, 0..1.
   std::function<void(const std::string& doing, double fraction)> progress{};
+  /// write_files(): a file that cannot be made is not written, with a finding that says why, and the others
+  /// are. Else its error ends them all.
+  bool keeps_going = false;
 };
 
 /// The answers of a plan's measurements, in the order of their steps, each number with its half-width and the

@@ -177,11 +177,11 @@ class PlanHistory::Database {
     state.next();
     const std::string again = ": open it again and repeat the change";
     if (state.number(0) != current_ || state.text(1) != branch_)
-      throw std::runtime_error(plan_.string() + ": another program changed this plan, which is now at edit " +
-                               std::to_string(state.number(0)) + again);
+      throw OtherWriter(plan_.string() + ": another program changed this plan, which is now at edit " +
+                        std::to_string(state.number(0)) + again);
     const std::string sum = sha256_of(read_text(plan_));
     if (sum != state.text(2) && sum != sum_of(current_))
-      throw std::runtime_error(plan_.string() + ": another program wrote this file" + again);
+      throw OtherWriter(plan_.string() + ": another program wrote this file" + again);
   }
   bool undo() {
     const std::optional<std::int64_t> parent = parent_of(current_);

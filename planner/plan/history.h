@@ -5,10 +5,16 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace octotomy::planner {
+
+/// Another program has changed a plan's file or its history: it has to be opened again.
+struct OtherWriter : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// One state of a plan's text.
 struct PlanEdit {
@@ -31,10 +37,9 @@ struct PlanEdit {
 /// A plan that is a link is the file behind it, and its permissions are its history's too.
 ///
 /// Members throw std::runtime_error with path and reason where the database is none, damaged or of a newer
-/// version, where another writer came first, or a name is unknown; voxel::Error, Resource, where the disk
-/// gives out.
-/// Cost: an edit stores what it changed and a few syncs of the disk; opening does not depend on the number of
-/// edits.
+/// version, or a name is unknown; OtherWriter where another writer came first; voxel::Error, Resource, where
+/// the disk gives out. Cost: an edit stores what it changed and a few syncs of the disk; opening does not
+/// depend on the number of edits.
 class PlanHistory {
  public:
   enum class Access { Write, Read };

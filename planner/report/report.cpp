@@ -12,6 +12,7 @@
 #include "planner/measure/result_json.h"
 #include "planner/report/contact_report.h"
 #include "planner/report/credibility.h"
+#include "planner/report/patient.h"
 #include "planner/report/pdf.h"
 #include "planner/report/report_page.h"
 #include "planner/report/result_folder.h"
@@ -210,6 +211,7 @@ std::vector<std::filesystem::path> result_names(const Plan& plan) {
 }
 
 Json write_result_files(Result& result, const std::filesystem::path& folder, const ExportOptions& options) {
+  if (result.anonymous) leave_out_patients(result);
   {
     const Stopwatch watch(result.evaluation.timings, "measure");
     result.measurements = measurements_json(result.plan, result.evaluation);

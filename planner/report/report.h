@@ -40,6 +40,7 @@ struct Result {
   std::vector<std::uint8_t> cephalogram;  ///< PNG; empty without such landmarks or samples
   std::vector<SignatureCheck> signatures;
   bool as_pdf = false;                   ///< the report is printed as report.pdf, too
+  bool anonymous = false;                ///< report, tables and JSON name no patient: leave_out_patients()
   std::vector<voxel::Finding> findings;  ///< on the plan as a whole, beside those of its parts
 };
 
@@ -77,9 +78,11 @@ nlohmann::ordered_json result_json(const Result& result);
 /// Paths in the result's folder that need_result_folder() is asked about before a plan is evaluated.
 std::vector<std::filesystem::path> result_names(const Plan& plan);
 
-/// Writes what a result's folder holds into `folder`, which is there and is nobody's result yet: a part of a
-/// larger result, as ResultFolder::path(). Otherwise as write_result(). Throws as the writers do, and
-/// Stopped.
+/// Writes what a result's folder holds into `folder`. Only report.html and report.pdf name the patient, and
+/// neither does where the result is anonymous; result.json and the tables never do, except where an audit
+/// quotes the patients of files that do not belong together. The folder is there and is nobody's result yet:
+/// a part of a larger result, as ResultFolder::path(). Otherwise as write_result(). Throws as the writers do,
+/// and Stopped.
 nlohmann::ordered_json write_result_files(Result& result, const std::filesystem::path& folder,
                                           const ExportOptions& options = {});
 

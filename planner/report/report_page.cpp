@@ -18,6 +18,7 @@
 #include "planner/report/flap_tables.h"
 #include "planner/report/html.h"
 #include "planner/report/landmark_tables.h"
+#include "planner/report/patient.h"
 #include "planner/report/trial_tables.h"
 #include "planner/table/number_format.h"
 #include "voxel/view/annotation.h"
@@ -39,13 +40,25 @@ std::string signatures(const Result& result) {
   return lines;
 }
 
+/// Whom the report is about.
+std::string patients(const Result& result) {
+  std::string lines;
+  if (result.anonymous) {
+    lines = "left out as asked";
+  } else {
+    for (const std::string& line : patient_lines(result.evaluation))
+      lines += (lines.empty() ? "" : "; ") + escaped(line);
+  }
+  return element("p class=\"patient\"", element("b", "Patient: ") + lines);
+}
+
 std::string heading(const Result& result) {
   std::string scans;
   for (const ScanRecord& scan : result.evaluation.scans)
     scans += (scans.empty() ? "" : ", ") +
              escaped(scan.made_by.empty() ? scan.path.generic_string() : scan.made_by);
   const std::string left =
-      element("div", element("h1", escaped(result.plan.name)) +
+      element("div", element("h1", escaped(result.plan.name)) + patients(result) +
                          element("p class=\"soft\"", "Scan " + scans + " \u00b7 Octotomy " OCTOTOMY_VERSION) +
                          signatures(result));
   return element("header", left + overall_verdict(verdict_counts(result.evaluation)));

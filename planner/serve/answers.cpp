@@ -19,6 +19,7 @@
 #include "planner/serve/pane_fields.h"
 #include "planner/serve/told_measurement.h"
 #include "planner/table/json_file.h"
+#include "voxel/filter/components.h"
 #include "voxel/measure/measure.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/space/error.h"
@@ -180,6 +181,21 @@ Json overlap(Desk& desk, const Json& said, const Watched& watched) {
   refuse("with: name at least one other object");
 }
 
+Json largest_part(Desk& desk, const Json& said, const Watched&) {
+  const std::string id = said.at("object");
+  const Snapshot snapshot = desk.snapshot();
+  if (snapshot.evaluation)
+    for (const Object& object : snapshot.evaluation->objects) {
+      if (object.id != id) continue;
+      const voxel::Components parts = voxel::components(object.voxel.octree);
+      const voxel::Measures largest = voxel::measure(parts.largest);
+      return {{"parts", parts.voxel_counts.size()},
+              {"mm3", largest.volume_mm3},
+              {"at_mm", largest.centroid_mm ? planner::to_json(*largest.centroid_mm) : Json(nullptr)}};
+    }
+  refuse("'" + id + "' is not evaluated yet");
+}
+
 Json movement(Desk& desk, const Json& said, const Watched&) {
   const Snapshot snapshot = desk.snapshot();
   if (!snapshot.evaluation) refuse("nothing is evaluated yet");
@@ -216,13 +232,14 @@ Json place_landmark(Desk& desk, const Json& said, const Watched&) {
   const std::string name = said.at("name");
   const auto asked = point_of(said, "point");
   if (!asked) refuse("point: is missing");
-  glm::dvec3 p_mm = *asked;
+  std::optional<glm::dvec3> on_bone;
   const Snapshot snapshot = desk.snapshot();
   if (said.value("snap", false) && snapshot.evaluation)
-    p_mm = snapped(*snapshot.evaluation, p_mm, said.value("object", "")).value_or(p_mm);
+    on_bone = snapped(*snapshot.evaluation, *asked, said.value("object", ""));
+  glm::dvec3 p_mm = on_bone.value_or(*asked);
   for (int axis = 0; axis < 3; ++axis) p_mm[axis] = std::round(p_mm[axis] * 1e4) / 1e4;
   desk.with_document([&](Document& document) { document.place_landmark(name, planner::to_json(p_mm)); });
-  return {{"point", planner::to_json(p_mm)}};
+  return {{"point", planner::to_json(p_mm)}, {"snapped", on_bone.has_value()}};
 }
 
 Json find_landmarks(Desk& desk, const Json& said, const Watched& watched) {
@@ -260,24 +277,59 @@ Json export_file(Desk& desk, const Json& said, const Watched& watched) {
           {"findings", exported.findings}};
 }
 
-Json report(Desk& desk, const Json&, const Watched& watched) {
+namespace {
+
+/// The plan of a snapshot without steps that have no answer; a finding for each of them.
+Plan with_answers(const Snapshot& made, std::vector<voxel::Finding>& findings) {
+  Plan plan = *made.plan;
+  std::erase_if(plan.steps, [&](const Step& step) {
+    const std::set<std::string> needed = needed_for(*made.plan, {step.id});
+    const auto failed = std::find_if(made.errors.begin(), made.errors.end(),
+                                     [&](const auto& each) { return needed.contains(each.first); });
+    if (failed == made.errors.end()) return false;
+    const bool is_own = made.errors.contains(step.id);
+    findings.push_back(
+        {"step", voxel::Verdict::Fail,
+         is_own ? "'" + step.id + "' is left out, as it failed: " + made.errors.at(step.id)
+                : "'" + step.id + "' is left out, as it needs '" + failed->first + "', which failed"});
+    return true;
+  });
+  return plan;
+}
+
+}  // namespace
+
+Json report(Desk& desk, const Json& said, const Watched& watched) {
   const fs::path folder = desk.folders.need_within(unused(files_folder(desk) / "report"));
+  const Snapshot made = desk.evaluate({}, true, watched);
   Result result;
-  result.plan = desk.with_document([](const Document& document) { return *document.plan(); });
-  result.evaluation = desk.evaluate(result.plan, {}, true, watched);
+  result.plan = with_answers(made, result.findings);
+  result.evaluation = *made.evaluation;
+  result.anonymous = said.value("anonymous", false);
   result.pictures = plan_pictures(result.plan, result.evaluation);
   // The result appears as a whole by itself.
   fs::create_directories(folder.parent_path());
-  write_result(result, folder, {watched.stop, watched.progress});
+  write_result(result, folder, {watched.stop, watched.progress, true});
+  Json left_out = Json::array();
+  for (const Step& step : made.plan->steps)
+    if (std::none_of(result.plan.steps.begin(), result.plan.steps.end(),
+                     [&](const Step& kept) { return kept.id == step.id; }))
+      left_out.push_back(step.id);
+  for (const Exported& exported : result.exported)
+    if (!exported.written) left_out.push_back(exported.id);
   return {{"folder", folder.string()},
           {"file", folder.filename().string() + "/report.html"},
-          {"counts", planner::to_json(verdict_counts(result.evaluation))}};
+          {"counts", planner::to_json(verdict_counts(result.evaluation))},
+          {"left_out", left_out}};
 }
 
 Json outcome(Desk& desk, const Json& said, const Watched& watched) {
   const fs::path path = desk.folders.need_within(said.at("path").get<std::string>());
-  const Plan plan = desk.with_document([](const Document& document) { return *document.plan(); });
-  const Evaluation before = desk.evaluate(plan, {}, true, watched);
+  need_readable_samples(desk.folders, path);
+  const Snapshot made = desk.evaluate({}, true, watched);
+  std::vector<voxel::Finding> left_out;
+  const Plan plan = with_answers(made, left_out);
+  const Evaluation& before = *made.evaluation;
   const voxel::Progress progress{watched.stop, [&](double share) {
                                    if (watched.progress) watched.progress("pieces on the later scan", share);
                                  }};
@@ -288,6 +340,7 @@ Json outcome(Desk& desk, const Json& said, const Watched& watched) {
   options.unmoved = said.value("unmoved", "");
   options.progress = progress;
   Json json = planner::to_json(outcome_of(plan, before, voxel::read_scene(path, reading), options));
+  for (const voxel::Finding& finding : left_out) json["unmoved"]["findings"].push_back(finding.detail);
   json["path"] = path.string();
   return json;
 }

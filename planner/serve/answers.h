@@ -14,18 +14,23 @@ Json measure(Desk& desk, const Json& said, const Watched& watched);
 Json certify(Desk& desk, const Json& said, const Watched& watched);
 /// {"object", "with", "move"} -> {"mm3"}, in voxels.
 Json overlap(Desk& desk, const Json& said, const Watched& watched);
+/// {"object"} -> {"parts", "mm3", "at_mm"}: its connected parts, and the centroid of the largest; null where
+/// it is empty.
+Json largest_part(Desk& desk, const Json& said, const Watched& watched);
 /// {"path", "frame", "unit"} -> {"audit"}: what a mesh file says of its frame and unit, and how its size and
 /// place fit the plan's first scan. The path is a plan's.
 Json mesh_audit(Desk& desk, const Json& said, const Watched& watched);
 /// {"object"} -> {"rows"}: its movement in words.
 Json movement(Desk& desk, const Json& said, const Watched& watched);
-/// {"name", "point", "snap"} -> {"point"}: names a point, on the nearest bone where it snaps.
+/// {"name", "point", "snap"} -> {"point", "snapped"}: names a point, on the nearest bone where it snaps and
+/// one is near.
 Json place_landmark(Desk& desk, const Json& said, const Watched& watched);
 /// {"object"} -> {"landmarks", "missing", "findings"}: a first guess, which places none.
 Json find_landmarks(Desk& desk, const Json& said, const Watched& watched);
 /// {"object", "path"} -> {"file"}, which is written into the plan's folder of exports.
 Json export_file(Desk& desk, const Json& said, const Watched& watched);
-/// {} -> {"folder", "file"}.
+/// {"anonymous"} -> {"folder", "file", "counts", "left_out"}: a report of all that has an answer. Steps that
+/// failed, and those that need them, are left out, each with a finding.
 Json report(Desk& desk, const Json& said, const Watched& watched);
 /// {"path", "low", "unmoved"} -> the outcome's JSON: what a later scan shows of the plan.
 Json outcome(Desk& desk, const Json& said, const Watched& watched);

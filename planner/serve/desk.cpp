@@ -8,11 +8,14 @@
 #include "planner/picture/colour.h"
 #include "planner/plan/answers.h"
 #include "planner/plan/dependence.h"
+#include "planner/report/patient.h"
 #include "planner/serve/new_plan.h"
 #include "planner/serve/told_measurement.h"
 #include "planner/table/fault.h"
 #include "planner/table/number_format.h"
 #include "planner/table/plan_universe.h"
+#include "voxel/filter/tissue.h"
+#include "voxel/scan/read_scene.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner::serve {
@@ -51,6 +54,7 @@ Json scan_json(const ScanRecord& scan) {
   for (Json& line : json["audit"]) line["sentence"] = line.value("detail", "");
   json["bounds_mm"] = box_json(voxel::bounds(scan.lattice));
   json["window_suggestion"] = tones_of(scan);
+  json["patient"] = patient_json(scan.identity);
   return json;
 }
 
@@ -70,8 +74,29 @@ Json certificate_json(const verify::Certificate& certificate) {
 /// A measure step of an object, for its recommended sizes.
 constexpr const char* size_of = "size_of_";
 
-/// The plan's steps that measure what is there, each as a page shows it.
-Json measurements_of(Plan plan, const Evaluation& evaluation) {
+/// The measurements of a plan; of steps that cannot be answered `errors` has the reason, by their ids.
+Json answered(const Plan& plan, const Evaluation& evaluation, std::map<std::string, std::string>& errors) {
+  try {
+    return measurements_json(plan, evaluation);
+  } catch (const std::exception& error) {
+    if (!is_no_answer(error)) throw;
+  }
+  Json list = Json::array();
+  Plan alone = plan;
+  for (const Step& step : plan.steps) {
+    alone.steps = {step};
+    try {
+      list.push_back(measurements_json(alone, evaluation).front());
+    } catch (const std::exception& error) {
+      if (!is_no_answer(error)) throw;
+      errors.emplace(step.id, message_of(error));
+    }
+  }
+  return list;
+}
+
+/// The plan's steps that measure what is there, each as a page shows it; `errors` as of answered().
+Json measurements_of(Plan plan, const Evaluation& evaluation, std::map<std::string, std::string>& errors) {
   const auto is_there = [&](const std::string& id) {
     return std::any_of(evaluation.objects.begin(), evaluation.objects.end(),
                        [&](const Object& object) { return object.id == id; });
@@ -82,10 +107,18 @@ Json measurements_of(Plan plan, const Evaluation& evaluation) {
            !std::all_of(used.begin(), used.end(), is_there);
   });
   Json list = Json::array();
-  for (const Json& measured : measurements_json(plan, evaluation)) {
-    Json told = told_measurement(measured);
+  for (const Json& answer : answered(plan, evaluation, errors)) {
+    Json told = told_measurement(answer);
     if (!told.is_null()) list.push_back(std::move(told));
   }
+  for (const Step& step : plan.steps)
+    if (const auto failed = errors.find(step.id); failed != errors.end())
+      list.push_back({{"id", step.id},
+                      {"says", "no answer"},
+                      {"value", nullptr},
+                      {"unit", "mm"},
+                      {"half_width", nullptr},
+                      {"sentence", failed->second}});
   return list;
 }
 
@@ -117,6 +150,7 @@ void Desk::open(const fs::path& path, const Watched& watched) {
   const voxel::Progress progress{watched.stop, [&](double share) {
                                    if (watched.progress) watched.progress("read " + path.string(), share);
                                  }};
+  if (!is_plan(path)) need_readable_samples(folders, path);
   const fs::path plan = is_plan(path) ? path : plan_of_scan(path, working_folder_, progress);
   auto document = std::make_unique<Document>(plan, folders);
   folders.open(plan);
@@ -157,6 +191,10 @@ Evaluation Desk::evaluate(const Plan& plan, const std::vector<std::string>& step
   options.keep_scans = true;
   options.cache = &cache;
   options.only_look_up = only_look_up;
+  options.read_scene = [this](const fs::path& path, const voxel::ReadOptions& how) {
+    if (!how.raw) need_readable_samples(folders, path);
+    return voxel::read_scene(path, how);
+  };
   return planner::evaluate(plan, options);
 }
 
@@ -182,7 +220,9 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
   }
   if (steps.empty())
     for (const Step& step : made.plan->steps)
-      if (makes_object(step) || step.action.operation().makes == Makes::Scan) wanted.push_back(step.id);
+      // Of a certification measurements and files are wanted too, and what they need.
+      if (certify || makes_object(step) || step.action.operation().makes == Makes::Scan)
+        wanted.push_back(step.id);
   std::string doing;
   Watched watching = watched;
   watching.progress = [&](const std::string& what, double share) {
@@ -207,7 +247,7 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
     }
   }
   if (certify) keep_certified(*made.plan, *made.evaluation);
-  made.measurements = measurements_of(*made.plan, *made.evaluation);
+  made.measurements = measurements_of(*made.plan, *made.evaluation, made.errors);
   const std::lock_guard lock(mutex_);
   // What was certified of an earlier state of the plan is no picture of the present one.
   const bool is_present = document_ && opened == opened_ && (!certify || document_->plan() == made.plan);
@@ -295,6 +335,11 @@ Json Desk::object_json(const Snapshot& snapshot, const std::string& id) const {
     json["bounds_mm"] = extents ? box_json(*extents) : Json(nullptr);
     json["volume"] = {{"value", object.voxel.measures.volume_mm3}, {"unit", "mm3"}};
     if (object.certificate) json["certificate"] = certificate_json(*object.certificate);
+    if (const auto plane = object.mesh.details.find("plane"); plane != object.mesh.details.end()) {
+      json["mirror"] = {{"plane", *plane}};
+      for (const char* key : {"rms_mm", "kept_share", "converged"})
+        json["mirror"][key] = object.mesh.details.value(key, Json(nullptr));
+    }
   }
   return json;
 }
@@ -317,6 +362,18 @@ Json Desk::objects_json(const Plan& plan) const {
   return list;
 }
 
+double Desk::bone_low(const std::string& scan) const {
+  const auto loaded = snapshot_.evaluation->loaded.find(scan);
+  if (loaded == snapshot_.evaluation->loaded.end() || !loaded->second) return *voxel::tissue("bone")->low;
+  const std::shared_ptr<const voxel::Scene>& scene = loaded->second->shared;
+  auto& [of, low] = bone_lows_[scan];
+  if (of.lock() != scene) {
+    of = scene;
+    low = planner::serve::bone_low(*scene);
+  }
+  return low;
+}
+
 Json Desk::state() const {
   const std::lock_guard lock(mutex_);
   if (document_ == nullptr) return nullptr;
@@ -331,6 +388,7 @@ Json Desk::state() const {
   json["landmarks"] = Json::array();
   for (const NamedPoint& landmark : plan.landmarks)
     json["landmarks"].push_back({{"name", landmark.name}, {"point", planner::to_json(landmark.p_mm)}});
+  for (Json& scan : json["scans"]) scan["bone_low"] = bone_low(scan["name"]);
   json["measurements"] = snapshot_.measurements;
   json["universe"] = nullptr;
   if (snapshot_.evaluation) {

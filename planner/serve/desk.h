@@ -95,6 +95,8 @@ class Desk {
  private:
   Document& need_document() const;
   Json objects_json(const Plan& plan) const;
+  /// bone_low() of a scan of the snapshot, which is looked for once.
+  double bone_low(const std::string& scan) const;
   /// The certificates and sizes of what was evaluated in both kernels, by the keys of the steps.
   void keep_certified(const Plan& plan, const Evaluation& evaluation);
 
@@ -103,6 +105,7 @@ class Desk {
   std::unique_ptr<Document> document_;
   std::uint64_t opened_ = 0;  ///< documents so far: what is evaluated of an earlier one is not kept
   Snapshot snapshot_;
+  mutable std::map<std::string, std::pair<std::weak_ptr<const voxel::Scene>, double>> bone_lows_;
   /// Of a step: what decides its answer, and what was certified of it.
   struct Certified {
     std::string key;

@@ -98,16 +98,22 @@ Document::Document(const std::filesystem::path& path, const Folders& folders)
 }
 
 void Document::read_again() {
-  Plan plan = parse_plan(history_->text(), path_.parent_path());
+  Plan plan = readable(history_->text());
   plan.file = path_;
   plan_ = std::make_shared<const Plan>(std::move(plan));
 }
 
-Plan Document::parsed(const Json& json) const {
-  need_landmarks_within(json, path_.parent_path(), folders_);
-  Plan plan = parse_plan(json_text(json, 2) + "\n", path_.parent_path());
+Plan Document::readable(const std::string& text) const {
+  // A text that is no JSON is refused by parse_plan(), which then has read no file.
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_object()) need_landmarks_within(json, path_.parent_path(), folders_);
+  Plan plan = parse_plan(text, path_.parent_path());
   need_readable_files(plan, folders_);
   return plan;
+}
+
+Plan Document::parsed(const Json& json) const {
+  return readable(json_text(json, 2) + "\n");
 }
 
 Plan Document::with_steps(const Json& steps) const {
@@ -147,21 +153,34 @@ void Document::record(const Json& json, const std::string& what) {
   read_again();
 }
 
+template <typename Move>
+void Document::move(const Move& to) {
+  const std::int64_t edit = history_->current();
+  const std::string branch = history_->branch();
+  to();
+  try {
+    read_again();
+  } catch (...) {
+    if (history_->branch() != branch) history_->go_to(branch);
+    history_->go_to(std::to_string(edit));
+    throw;
+  }
+}
+
 bool Document::undo() {
-  const bool done = history_->undo();
-  read_again();
+  bool done = false;
+  move([&] { done = history_->undo(); });
   return done;
 }
 
 bool Document::redo() {
-  const bool done = history_->redo();
-  read_again();
+  bool done = false;
+  move([&] { done = history_->redo(); });
   return done;
 }
 
 void Document::go_to(const std::string& where) {
-  history_->go_to(where);
-  read_again();
+  move([&] { history_->go_to(where); });
 }
 
 void Document::begin_branch(const std::string& name) {
@@ -173,9 +192,7 @@ void Document::name_version(const std::string& name) {
 }
 
 Json Document::difference_of(std::int64_t a, std::int64_t b) const {
-  const auto plan_of = [&](std::int64_t edit) {
-    return parse_plan(history_->text_of(edit), path_.parent_path());
-  };
+  const auto plan_of = [&](std::int64_t edit) { return readable(history_->text_of(edit)); };
   return planner::to_json(difference(plan_of(a), plan_of(b)));
 }
 

@@ -40,6 +40,7 @@ class Document {
   void record(const Json& json, const std::string& what);
   /// Throws std::runtime_error where the plan's file is no longer this plan: another program wrote it.
   void need_saved() { history_->need_no_other_writer(); }
+  /// Throw as parsed() where the state reads what lies in no open folder; then nothing is changed.
   bool undo();
   bool redo();
   void go_to(const std::string& where);
@@ -52,7 +53,13 @@ class Document {
   Json history_json() const;
 
  private:
+  /// A text as a plan of this document's folder that reads what it may: the history may come from others,
+  /// as the plan may.
+  Plan readable(const std::string& text) const;
   void read_again();
+  /// Makes another state of the history the current one; stays at the present one where that may not be read.
+  template <typename Move>
+  void move(const Move& to);
 
   std::filesystem::path path_;
   const Folders& folders_;

@@ -8,6 +8,7 @@
 #include "planner/table/control_character.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/space/error.h"
+#include "voxel/volume/volume_header.h"
 
 namespace octotomy::planner::serve {
 namespace {
@@ -121,6 +122,23 @@ fs::path Folders::need_readable(const fs::path& path) const {
   std::vector<fs::path> places = opened_;
   places.insert(places.end(), readable_.begin(), readable_.end());
   return need_below(places, path);
+}
+
+void need_readable_samples(const Folders& folders, const fs::path& scan) {
+  if (!fs::is_regular_file(scan)) return;
+  const std::optional<voxel::VolumeFormat> format = voxel::readable_volume_format(scan);
+  if (!format) return;
+  std::vector<fs::path> files;
+  try {
+    files = voxel::read_volume_header(scan, *format).samples.files;
+  } catch (const voxel::Error&) {
+    return;  // whoever reads the scan refuses it, and says why
+  }
+  const fs::path beside = fs::weakly_canonical(fs::absolute(scan)).parent_path();
+  for (const fs::path& file : files) {
+    const std::optional<fs::path> real = reached(fs::absolute(file));
+    if (!real || !holds(beside, *real)) folders.need_readable(fs::absolute(file));
+  }
 }
 
 fs::path need_plain_name(const std::string& name) {

@@ -28,6 +28,10 @@ class Folders {
   std::vector<std::filesystem::path> opened_, readable_;
 };
 
+/// Throws voxel::Error, Input, where a scan's header names a file of samples that lies neither beside it nor
+/// where plans may read: paths in headers are no permissions either. Does nothing for other kinds of scans.
+void need_readable_samples(const Folders& folders, const std::filesystem::path& scan);
+
 /// A name that stays below whatever folder it is put in: its parts are no "..", none begins with a dot, and
 /// there are at most two. Throws voxel::Error, Input, for any other.
 std::filesystem::path need_plain_name(const std::string& name);

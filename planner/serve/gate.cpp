@@ -62,6 +62,15 @@ Target parse_target(std::string_view text) {
   return target;
 }
 
+std::optional<FileTarget> file_of(const Target& target) {
+  const std::string place = "/file/";
+  if (!target.path.starts_with(place)) return {};
+  const std::string rest = target.path.substr(place.size());
+  const std::size_t slash = rest.find('/');
+  if (slash == std::string::npos) return FileTarget{"", rest};
+  return FileTarget{rest.substr(0, slash), rest.substr(slash + 1)};
+}
+
 std::string new_token() {
   std::random_device device;
   std::string token;

@@ -19,6 +19,13 @@ struct Target {
 /// Throws std::runtime_error where a percent sign is not followed by two hexadecimal digits, or a byte is 0.
 Target parse_target(std::string_view text);
 
+/// A file that was made, by the target "/file/TOKEN/report/report.html". The token stands in the path, so
+/// that links within the report reach the files beside it. None for any other target.
+struct FileTarget {
+  std::string token, name;
+};
+std::optional<FileTarget> file_of(const Target& target);
+
 /// What a request says of who sends it. Empty: it does not say it.
 struct Caller {
   std::string host, origin, token;

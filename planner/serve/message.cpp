@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <zlib.h>
 
+#include "planner/plan/history.h"
 #include "planner/table/fault.h"
 #include "planner/table/json_file.h"
 #include "voxel/space/error.h"
@@ -48,7 +49,10 @@ Message refusal_to(std::int64_t id, const std::exception& error, const LineOf& l
     said = "the request lacks a value or has one of another type: " + said.substr(said.find(']') + 1);
     fault = Fault::Input;
   }
-  return text_of({{"id", id}, {"error", {{"message", line_of(said)}, {"code", to_string(fault)}}}});
+  // The page offers to load the file then.
+  const bool is_other_writer = dynamic_cast<const OtherWriter*>(&error) != nullptr;
+  const std::string code = is_other_writer ? "changed" : to_string(fault);
+  return text_of({{"id", id}, {"error", {{"message", line_of(said)}, {"code", code}}}});
 }
 
 Message event(const std::string& name, const Json& said) {

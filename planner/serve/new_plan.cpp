@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
 #include "planner/report/first_look.h"
 #include "planner/serve/folders.h"
@@ -29,12 +30,17 @@ bool is_plan_of(const fs::path& plan, const fs::path& scan) {
   return entry.is_object() && entry.value("path", "") == scan.string();
 }
 
+}  // namespace
+
 double bone_low(const voxel::Scene& scene) {
   if (scene.meaning == voxel::Meaning::Hounsfield) return *voxel::tissue("bone")->low;
-  return thresholds_of(scene).upper;
+  if (scene.meaning == voxel::Meaning::Label) return 1.0;
+  try {
+    return thresholds_of(scene).upper;
+  } catch (const std::runtime_error&) {
+    return voxel::range(scene).high;  // the samples are all alike: no threshold parts them
+  }
 }
-
-}  // namespace
 
 fs::path plan_of_scan(const fs::path& scan, const fs::path& folder, const voxel::Progress& progress) {
   const fs::path place = folder / (plain_stem(scan) + ".plan.json");

@@ -174,6 +174,7 @@ Json joined(const Json& steps, const Json& of_procedure, const std::string& scan
 
 Json procedure(Desk& desk, const Json& said, const Watched&) {
   const Procedure procedure = read_procedure(said.at("name").get<std::string>());
+  Json ids = Json::array();
   desk.with_document([&](Document& document) {
     Json whole = document.json();
     ProcedureInput input;
@@ -190,8 +191,11 @@ Json procedure(Desk& desk, const Json& said, const Watched&) {
     const Json made = plan_of(procedure, input);
     whole["steps"] = joined(whole["steps"], made.at("steps"), whole["scans"].begin().key());
     document.record(whole, procedure.name);
+    for (const Step& step : document.plan()->steps)
+      for (const Json& own : made.at("steps"))
+        if (own.at("id") == step.id && step.action.operation().makes == Makes::Object) ids.push_back(step.id);
   });
-  return nullptr;
+  return {{"made", ids}};
 }
 
 Json diff(Desk& desk, const Json& said, const Watched&) {
@@ -226,6 +230,7 @@ const std::vector<Word>& words() {
       {"command", Lane::Desk, false, command_of_step},
       {"evaluate", Lane::Evaluate, false, evaluate, true},
       {"overlap", Lane::Overlap, false, overlap},
+      {"largest_part", Lane::Long, false, largest_part},
       {"measure", Lane::Long, false, measure},
       {"movement", Lane::Long, false, movement},
       {"mesh_audit", Lane::Long, false, mesh_audit},

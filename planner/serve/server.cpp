@@ -196,8 +196,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
         return refuse(http::status::bad_request, "a WebSocket is expected");
       return std::make_shared<Socket>(std::move(stream_), context_)->run(upgrade);
     }
-    if (target.path.starts_with("/file/")) {
-      if (!refused(context_.gate.refusal(caller))) send_file(target.path.substr(6));
+    if (auto named = file_of(target)) {
+      if (!refused(context_.gate.refusal({caller.host, caller.origin, named->token}))) send_file(named->name);
       return;
     }
     const std::string path = target.path == "/" ? "/index.html" : target.path;

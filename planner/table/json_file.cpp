@@ -41,6 +41,11 @@ int json_levels(std::string_view text) {
   return deepest;
 }
 
+std::string without_last_read(std::string message) {
+  if (const std::size_t at = message.find("; last read: "); at != std::string::npos) message.resize(at);
+  return message;
+}
+
 void need_shallow_json(std::string_view text) {
   if (json_levels(text) > most_json_levels)
     refuse("", "is nested more than " + std::to_string(most_json_levels) + " deep");

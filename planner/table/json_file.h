@@ -26,14 +26,18 @@ int json_levels(std::string_view text);
 /// Throws if a text is deeper than most_json_levels.
 void need_shallow_json(std::string_view text);
 
-/// Throws std::runtime_error if a text is not JSON or too deep.
+/// A parser's message without the bytes that it read last: they may be those of a file that holds a secret.
+/// Line and column stay.
+std::string without_last_read(std::string message);
+
+/// Throws std::runtime_error if a text is not JSON or too deep. The message quotes nothing of the text.
 template <typename AnyJson = nlohmann::json>
 AnyJson parse_json(std::string_view text) {
   need_shallow_json(text);
   try {
     return AnyJson::parse(text);
   } catch (const typename AnyJson::exception& error) {
-    refuse("", std::string("is no JSON: ") + error.what());
+    refuse("", std::string("is no JSON: ") + without_last_read(error.what()));
   }
 }
 

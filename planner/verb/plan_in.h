@@ -44,12 +44,15 @@ struct RunText : PlanIn {
   std::filesystem::path out;
   Certify certify = Certify::Now;
   bool as_pdf = false;
+  bool anonymous = false;
 };
 /// Replays a plan into a result's folder and says what came of it; the exit status.
 int run(Program& program, const RunText& text);
 /// The same of a plan that was read. `beside` is called once when the result is first written: for what is
 /// there with it, or not at all.
 int run(Program& program, const RunText& text, Plan plan, const std::function<void()>& beside = {});
+/// Adds --anonymous to a verb that writes a report.
+void add_anonymous(CLI::App& verb, bool& anonymous);
 /// Adds --certify to a verb that replays a plan.
 void add_certify(CLI::App& verb, Certify& certify);
 

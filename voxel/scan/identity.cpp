@@ -49,6 +49,7 @@ Identity identity_of(const DicomFile& file) {
   identity.id_issuer = trimmed(file.readable_text(0x00100021));
   identity.birth_date = trimmed(file.text(0x00100030));
   identity.sex = trimmed(file.text(0x00100040));
+  identity.study_date = trimmed(file.text(0x00080020));
   return identity;
 }
 

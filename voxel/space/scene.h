@@ -53,6 +53,7 @@ struct Identity {
   std::string sex = {};         ///< M, F or O
   std::string series_uid = {};  ///< of a scan that was read of a DICOM series
   std::vector<std::string> referred_series_uids = {};  ///< of a structure set: the series it was drawn on
+  std::string study_date = {};  ///< YYYYMMDD
 };
 
 /// Samples on a lattice, x fastest.

@@ -5,6 +5,7 @@ import {open_dialog} from "../base/dialog";
 import {look_of, object_ids} from "../drawn_objects";
 import {button, el} from "../base/html";
 import {icon} from "../base/icons";
+import {makes_body} from "../operations";
 import {all_panes} from "../pane/pane_grid";
 import {audit_rows} from "../panel/audit";
 import {scan_facts} from "./start_page";
@@ -23,7 +24,7 @@ const kinds: [string, string, string][] = [
 /// Export and print: which object, as what, as a file once or as a step that every run writes.
 export function open_export(): void {
   const dialog = open_dialog("Export and print", "export");
-  const objects = object_ids().filter((id) => step_of(id)?.do !== "mask");
+  const objects = object_ids().filter((id) => makes_body(step_of(id)));
   let object = state.selected && objects.includes(state.selected) ?
       state.selected :
       objects.filter((id) => look_of(id).visible).pop() ?? objects[0] ?? "";
@@ -97,9 +98,12 @@ export function open_export(): void {
 
 export async function write_report(): Promise<void> {
   const job = busy("Writing the report");
-  const answer = await try_to<{folder: string; file: string}>("report");
+  const answer = await try_to<{folder: string; file: string; left_out: string[]}>(
+      "report", {anonymous: state.hides_patient});
   done(job);
   if (!answer) return;
+  if (answer.left_out.length)
+    notify(`The report lacks what failed: ${answer.left_out.join(", ")}. Its findings say why.`, "warning");
   void evaluate(true);  // the report has certified everything: badges show it
   const dialog = open_dialog("Report", "report");
   const frame: HTMLIFrameElement = el("iframe", {

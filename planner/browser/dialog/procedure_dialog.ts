@@ -6,8 +6,9 @@ import {Dialog, open_dialog} from "../base/dialog";
 import {objects_of_plan} from "../drawn_objects";
 import {open_picker} from "./files";
 import {button, Child, el} from "../base/html";
+import {label_of} from "../panel/schema_form";
 import {ask_for_landmarks} from "../tool/point_tools";
-import {ProcedureSays} from "../protocol";
+import {PlanState, ProcedureSays} from "../protocol";
 import {on_leaving_plan, set, state} from "../state";
 import {Vec3} from "../base/vector";
 
@@ -15,6 +16,8 @@ const values: {[name: string]: number} = {};
 let pending_procedure: string|null = null;
 on_leaving_plan(() => {
   pending_procedure = null;
+  // A value is this patient's, as a threshold or an advancement.
+  for (const name of Object.keys(values)) delete values[name];
 });
 
 /// Chooses a procedure, has its landmarks placed, takes its values and adds its steps.
@@ -49,9 +52,16 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays): Child {
         chosen.values.map((one) => [one.name, values[`${chosen.name}.${one.name}`] ?? one.default]));
     const before = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));
     dialog.close();
-    if (!await change_plan("procedure", {name: chosen.name, landmarks, values: set_values})) return;
-    // The pieces take the place of what was shown before.
-    const hidden = before.map((id) => [id, {...state.looks[id], visible: false}] as const);
+    const planned: (PlanState&{made?: string[]})|null =
+        await change_plan("procedure", {name: chosen.name, landmarks, values: set_values});
+    if (!planned) return;
+    // The pieces take the place of what was shown before, until the procedure is undone.
+    const made = planned.made ?? [];
+    const behind = made[made.length - 1];
+    const hidden = before.filter((id) => behind && !made.includes(id)).map((id) => {
+      const {visible: _visible, ...look} = state.looks[id] ?? {};
+      return [id, {...look, behind}] as const;
+    });
     set({looks: {...state.looks, ...Object.fromEntries(hidden)}});
     void evaluate();
   };
@@ -75,7 +85,7 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays): Child {
              chosen.values.map(
                  (one) =>
                      el("label", {class: "field", "data-tip": `${one.says}. From ${one.low} to ${one.high}.`},
-                        el("span", {}, one.name.replace(/_(mm|deg)$/, "").replace(/_/g, " ")), el("input", {
+                        el("span", {}, label_of(one.name)), el("input", {
                           type: "number",
                           step: "any",
                           min: one.low,

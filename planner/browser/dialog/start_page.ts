@@ -4,6 +4,7 @@ import {open_plan} from "../actions";
 import {audit_rows} from "../panel/audit";
 import {grouped} from "../panel/certificate_badge";
 import {dialogs} from "../commands";
+import {patient_button, patient_facts} from "../panel/patient";
 import {upload} from "./files";
 import {button, Child, el, fill} from "../base/html";
 import {icon, IconName} from "../base/icons";
@@ -19,7 +20,7 @@ export function make_start(host: HTMLElement): void {
     if (state.page === "start") fill(host, start());
     if (state.page === "audit") fill(host, audit_page());
   };
-  watch(["page", "hello", "plan", "jobs"], again);
+  watch(["page", "hello", "plan", "jobs", "hides_patient"], again);
   again();
 }
 
@@ -66,7 +67,7 @@ function offer(name: IconName, title: string, says: string, run: () => void, mor
 export function scan_facts(scan: ScanState): Child {
   const fact = (name: string, value: string): Child => [el("dt", {}, name), el("dd", {}, value)];
   return el(
-      "dl", {class: "facts"}, scan.dims ? fact("Samples", scan.dims.join(" × ")) : null,
+      "dl", {class: "facts"}, patient_facts(scan), scan.dims ? fact("Samples", scan.dims.join(" × ")) : null,
       scan.spacing_mm ? fact("Spacing", `${scan.spacing_mm.map((x) => x.toFixed(2)).join(" × ")} mm`) : null,
       fact(
           "Extent",
@@ -101,5 +102,6 @@ function audit_page(): Child {
                if (state.tour === null) take_tool("window");
              },
              {class: "primary big", autofocus: true}),
-         button("Another scan", "Back to the start page", () => set({page: "start"}), {class: "big"})));
+         button("Another scan", "Back to the start page", () => set({page: "start"}), {class: "big"}),
+         patient_button()));
 }

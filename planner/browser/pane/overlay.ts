@@ -2,6 +2,7 @@
 // What is drawn over a pane's picture: edge letters, scale, cross-hair, regions, landmarks, measured lines,
 // marks and the handles of the tool that is in hand.
 import {begin_ink, dot_at, ink, keep_words_off, label, line, sentence, text, TextLook} from "../base/ink";
+import {draw_mirror_plane} from "./mirror_plane";
 import {draw_trace} from "./oblique";
 import type {Pane} from "./panes";
 import {Json, Measurement, Step} from "../protocol";
@@ -21,6 +22,7 @@ export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): voi
     draw_trace(pane, context);
     if (!is_elsewhere()) draw_regions(pane, context);
     if (!is_elsewhere()) draw_measures(pane, context);
+    if (!is_elsewhere()) draw_mirror_plane(pane, context, step_of(state.selected));
     draw_landmarks(pane, context);
     if (state.marked) draw_mark(pane, context, state.marked.at_mm);
     active_tool()?.draw?.(pane, context);

@@ -7,7 +7,7 @@ import {icon} from "../base/icons";
 import {change_pane, Pane} from "./panes";
 import {FrameHeader} from "../protocol";
 import {first_scan, on_leaving_plan, PaneSetting, set, shown_scan, State, state, watch} from "../state";
-import {active_tool} from "../tool/tool";
+import {active_tool, take_tool} from "../tool/tool";
 import {Vec2, Vec3} from "../base/vector";
 import {plane_names, PlaneName, turned, view_names, ViewName} from "../base/view_frame";
 import {attach_input} from "./view_input";
@@ -108,6 +108,8 @@ export function show_scan(name: string|null): void {
   const before = shown_scan();
   const next = name ?? first_scan();
   if (next === before || !state.plan) return;
+  // What a tool has begun is of the scan that was shown; landmarks of a procedure lie on several.
+  if (state.tool !== "landmark") take_tool("navigate");
   left_at.set(before, {panes: state.panes, cross_mm: state.cross_mm, grey: state.grey});
   const {panes: fits, ...looked} = left_at.get(next) ?? fitted(state.plan, next);
   set({

@@ -3,7 +3,7 @@
 import {drawn_objects, is_overlap} from "../drawn_objects";
 import {makes_shape} from "../operations";
 import type {Pane} from "./panes";
-import {PaneRequest} from "../protocol";
+import {DrawnObject, PaneRequest} from "../protocol";
 import {is_elsewhere, PaneSetting, shown_scan, state, step_of, steps} from "../state";
 import {dark_ground, is_dark} from "../base/theme";
 import {directions_of} from "../base/view_frame";
@@ -34,8 +34,24 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
     request.overlap = true;
     request.objects = shown.filter((object) => !object.id || !is_stale(object.id));
   }
+  if (!pane.is_slice && !is_elsewhere() && !state.compare && has_interference(request))
+    request.objects = request.objects.map(seen_through);
   return request;
 }
+
+/// Whether pieces lie in each other in what is drawn: interference lies within bone, where opaque bone would
+/// hide it. A picture that has to follow a drag is not made translucent.
+function has_interference({preview, objects, dragging}: PaneRequest): boolean {
+  if (preview) return !dragging && (state.overlap_mm3 ?? 0) > 0;
+  return objects.some(({id}) => id !== undefined && is_stale(id) && volume_of(id) > 0);
+}
+const volume_of = (id: string): number => state.plan?.objects.find((one) => one.id === id)?.volume?.value ?? 0;
+
+/// An object through which interference shows. Half opaque surfaces are still picked.
+const see_through = 0.5;
+const seen_through = (object: DrawnObject): DrawnObject => object.id !== undefined && is_stale(object.id) ?
+    object :
+    {...object, opacity: Math.min(object.opacity, see_through)};
 
 function add_view(request: PaneRequest, setting: PaneSetting): void {
   request.view = setting.view;

@@ -55,7 +55,15 @@ export class Pane {
   }
   /// Whether a newer picture than the shown one is wanted or under way.
   get is_busy(): boolean {
-    return this.is_wanted || this.in_flight > 0;
+    return this.is_wanted || this.in_flight > 0 || this.lacks_planes;
+  }
+  /// Whether a position has a known place: a slice has, and a view at rest once its planes are here.
+  get has_places(): boolean {
+    return this.is_slice || !this.picture || (this.picture.header.quality === "rest" && !this.lacks_planes);
+  }
+  // The planes of a picture at rest come a little after it.
+  private get lacks_planes(): boolean {
+    return this.picture?.header.quality === "rest" && this.picture.planes === null;
   }
   /// Whether a picture takes so long that the person is told.
   get is_slow(): boolean {
@@ -181,7 +189,9 @@ export class Pane {
     this.canvas.dispatchEvent(
         new CustomEvent("picture", {bubbles: true, detail: {latency_ms, quality: header.quality}}));
     if (header.overlap_mm3 !== undefined && state.preview) set({overlap_mm3: header.overlap_mm3});
-    if (header.quality === "rest") picture.planes = await planes_of(header, parts);
+    if (header.quality !== "rest") return;
+    picture.planes = await planes_of(header, parts);
+    this.redraw();
   }
 
   /// What a pixel position of the canvas shows: a point of a surface or of the slice, and the object. Null

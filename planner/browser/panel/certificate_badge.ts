@@ -16,8 +16,27 @@ const signs = {
   FAIL: "✕"
 } as const;
 
-/// The badge. Its tip is the certificate's sentence; a click goes to the certificate's place in all panes.
-export function badge(id: string, certificate: Certificate|null|undefined): Child {
+/// Whether a number's interval is wider than the number, which then says nothing of its size.
+export const is_wider_than_its_value = (measured: Measured|null|undefined): boolean =>
+    measured !== null && measured !== undefined && measured.value !== null &&
+    (measured.half_width ?? 0) > Math.abs(measured.value);
+
+/// What a certificate is worth beside a number: with an interval wider than the value a doubt at best.
+export function judged(
+    certificate: Certificate|null|undefined, measured: Measured|null|undefined): Certificate|null|undefined {
+  if (certificate?.verdict !== "PASS" || !is_wider_than_its_value(measured)) return certificate;
+  return {
+    ...certificate,
+    verdict: "WARN",
+    sentence: `The interval is wider than the value: its size is not known. ${certificate.sentence}`
+  };
+}
+
+/// The badge of a number. Its tip is the certificate's sentence; a click goes to the certificate's place in all
+/// panes.
+export function badge(
+    id: string, of_kernels: Certificate|null|undefined, measured?: Measured|null): Child {
+  const certificate = judged(of_kernels, measured);
   if (!certificate)
     return el(
         "span", {
@@ -48,10 +67,11 @@ export function badge(id: string, certificate: Certificate|null|undefined): Chil
 /// "56 764 ± 310 mm³", grouped and with as many digits as the half-width leaves.
 export function measured_text(measured: Measured|null|undefined): string {
   if (!measured || measured.value === null || !Number.isFinite(measured.value)) return "–";
-  const unit = measured.unit.replace("mm3", "mm³").replace("mm2", "mm²").replace("deg", "°");
+  const unit = measured.unit.replace("mm3", "mm³").replace("mm2", "mm²").replace("deg", "°").replace(
+      "per_mm", "per mm");
   const half = measured.half_width ?? null;
   const is_length = unit === "mm" || unit === "°";
-  const digits = is_length ? 2 : Math.abs(measured.value) < 100 ? 1 : 0;
+  const digits = unit === "per mm" ? 4 : is_length ? 2 : Math.abs(measured.value) < 100 ? 1 : 0;
   const number = grouped(measured.value, digits);
   return half === null || half === 0 ?
       `${number} ${unit}` :

@@ -3,11 +3,12 @@
 // how far each piece and landmark moves.
 import {add_step, replace_step} from "../actions";
 import {mesh_audit} from "./audit";
-import {badge, measured_text} from "./certificate_badge";
+import {badge, judged, measured_text} from "./certificate_badge";
 import {is_piece} from "../drawn_objects";
-import {makes_shape} from "../operations";
+import {makes_body} from "../operations";
 import {button, Child, el, fill, fill_tabs} from "../base/html";
 import {icon, is_icon} from "../base/icons";
+import {mirror_rows} from "./mirror_rows";
 import {movement_fields} from "./move_fields";
 import {fetch_movement, movement} from "./movement_panel";
 import {numbers} from "./numbers_panel";
@@ -92,19 +93,20 @@ function tool_card(): Child {
 
 function step_card(step: Step, has_motion: boolean): Child {
   const object = state.plan?.objects.find((one) => one.id === step.id);
-  const certificate = object?.certificate;
+  const certificate = judged(object?.certificate, object?.volume);
   const is_number = step.do === "measure";
   const found = is_number ? state.plan?.measurements?.find((one) => one.id === step.id) : undefined;
   return el(
       "section", {class: "card"},
       el("h3", {}, step.id.replace(/_/g, " "), el("small", {}, step.do.replace(/_/g, " ")),
          el("span", {class: "spring"}),
-         makes_shape(step) && step.do !== "mask" ? badge(step.id, certificate) : null),
+         makes_body(step) ? badge(step.id, certificate, object?.volume) : null),
       object?.error ? el("p", {class: "error"}, object.error) : null,
       object?.volume ? el("p", {class: "reading"}, el("b", {}, measured_text(object.volume)),
                           object.area ? `  ·  ${measured_text(object.area)}` : "") :
                                         null,
       found ? el("p", {class: "reading"}, el("b", {}, measured_text(found))) : null,
+      mirror_rows(step),
       certificate ? el("p", {class: `sentence ${certificate.verdict.toLowerCase()}`}, certificate.sentence) :
                     null,
       step_form(

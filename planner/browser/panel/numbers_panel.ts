@@ -1,22 +1,28 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The plan's numbers: volumes and measurements with their certificates.
-import {badge, measured_text} from "./certificate_badge";
+import {try_to} from "../actions";
+import {badge, grouped, judged, measured_text} from "./certificate_badge";
 import {certify_all} from "../commands";
 import {is_overlap} from "../drawn_objects";
 import {button, Child, el} from "../base/html";
 import {icon} from "../base/icons";
+import {makes_body} from "../operations";
+import {show_place} from "../pane/pane_grid";
 import {Measurement} from "../protocol";
 import {set, state, step_of, steps} from "../state";
 import {step_words} from "./step_lists";
+import {Vec3} from "../base/vector";
 
 export function numbers(): Child {
   const all = steps();
   const objects =
-      (state.plan?.objects ?? []).filter((object) => step_of(object.id) && step_of(object.id)?.do !== "mask");
+      (state.plan?.objects ?? []).filter((object) => makes_body(step_of(object.id)));
   const measurements = state.plan?.measurements ?? [];
   const counts = {PASS: 0, WARN: 0, FAIL: 0};
-  for (const object of objects)
-    if (object.certificate) counts[object.certificate.verdict]++;
+  for (const object of objects) {
+    const certificate = judged(object.certificate, object.volume);
+    if (certificate) counts[certificate.verdict]++;
+  }
   const certified = counts.PASS + counts.WARN + counts.FAIL;
   return [
     el("section", {class: "card"},
@@ -36,10 +42,19 @@ export function numbers(): Child {
                onclick: () => set({selected: object.id})
              },
              el("th", {scope: "row"}, object.id.replace(/_/g, " "),
-                is_overlap(step, all) && !object.id.includes("overlap") ? el("small", {}, " overlap") : null),
+                is_overlap(step, all) && !object.id.includes("overlap") ? el("small", {}, " overlap") : null,
+                is_overlap(step, all) && (object.volume?.value ?? 0) > 0 ?
+                    button(
+                        "Show", `Shows the largest part of ${object.id} in all panes`,
+                        (event) => {
+                          event.stopPropagation();
+                          void show_largest(object.id);
+                        },
+                        {class: "small", "data-key": `show-${object.id}`}) :
+                    null),
              el("td", {}, el("div", {}, measured_text(object.volume)),
                 object.area ? el("small", {}, measured_text(object.area)) : null),
-             el("td", {class: "badge-cell"}, badge(object.id, object.certificate)));
+             el("td", {class: "badge-cell"}, badge(object.id, object.certificate, object.volume)));
        }))),
     el("table", {class: "numbers"}, el("caption", {}, "Measurements"),
        el("tbody", {},
@@ -47,6 +62,18 @@ export function numbers(): Child {
               measurements.map(measurement_row) :
               el("tr", {}, el("td", {class: "says"}, "Measure with the distance (D) and angle (A) tools.")))),
   ];
+}
+
+/// Brings all panes to the largest place where two pieces lie in each other.
+async function show_largest(object: string): Promise<void> {
+  const part = await try_to<{parts: number; mm3: number; at_mm: Vec3 | null}>("largest_part", {object});
+  if (!part?.at_mm) return;
+  const {looks} = state;
+  set({selected: object, looks: {...looks, [object]: {...looks[object], visible: true}}});
+  show_place(
+      part.at_mm,
+      `the largest of ${part.parts} ${part.parts === 1 ? "part" : "parts"} of ${object.replace(/_/g, " ")}: ${
+          grouped(part.mm3)} mm³`);
 }
 
 function measurement_row(found: Measurement): Child {
@@ -63,5 +90,5 @@ function measurement_row(found: Measurement): Child {
       el("th", {scope: "row"}, found.id.replace(/_/g, " "),
          el("small", {}, ` ${found.says ?? (step ? step_words(step) : "")}`)),
       el("td", {}, measured_text(found)),
-      el("td", {class: "badge-cell"}, badge(found.id, object?.certificate)));
+      el("td", {class: "badge-cell"}, badge(found.id, object?.certificate, found)));
 }

@@ -7,7 +7,9 @@ import {button, Child, el} from "../base/html";
 import {Json, Schema, Step} from "../protocol";
 import {state} from "../state";
 
-const label_of = (field: string): string => field.replace(/_(mm|deg|mm2|mm3)$/, "").replace(/_/g, " ");
+/// A field's name for people; its unit stands behind the value.
+export const label_of = (field: string): string =>
+    field.replace(/_(mm|deg|mm2|mm3|mpa)$/, "").replace(/_/g, " ");
 
 /// A form for a step's fields; `changed` gets the whole step anew. `elsewhere` are fields that stand in
 /// another card.

@@ -5,7 +5,7 @@ import {motion_words} from "../base/anatomical";
 import {badge} from "./certificate_badge";
 import {copy_command, name_version, new_branch, remove_step} from "../commands";
 import {look_of, object_ids} from "../drawn_objects";
-import {makes_shape} from "../operations";
+import {makes_body, makes_shape} from "../operations";
 import {button, Child, el, fill, fill_tabs} from "../base/html";
 import {icon} from "../base/icons";
 import {show_scan} from "../pane/pane_grid";
@@ -87,7 +87,7 @@ function objects(): Child {
              onchange: (event: Event) => change_look(id, {colour: (event.target as HTMLInputElement).value}),
            }),
            el("button", {type: "button", class: "name"}, id.replace(/_/g, " ")),
-           object?.kind === "mask" ? null : badge(id, object?.certificate), eye(id)),
+           object?.kind === "mask" ? null : badge(id, object?.certificate, object?.volume), eye(id)),
         el("label", {class: "opacity", "data-tip": "Opacity"}, shown, el("input", {
              type: "range",
              min: 0.05,
@@ -156,7 +156,7 @@ function step_rows(): Child {
              el("button",
                 {type: "button", class: "name", "aria-current": state.selected === step.id ? "step" : null},
                 step.id.replace(/_/g, " ")),
-             makes_shape(step) && step.do !== "mask" ? badge(step.id, object?.certificate) : null,
+             makes_body(step) ? badge(step.id, object?.certificate, object?.volume) : null,
              makes_shape(step) ? eye(step.id) : null, step_menu(step)),
           el("p", {class: "words"}, el("b", {}, step.do.replace(/_/g, " ")), " ", step_words(step)),
           object?.error ? el("p", {class: "error"}, object.error) : null);

@@ -3,8 +3,8 @@
 // is a step.
 import {add_step, replace_step, window_step} from "../actions";
 import {button, Child, el} from "../base/html";
-import {Step, Tissue} from "../protocol";
-import {DraftWindow, first_scan, selected_step, set, state, step_of, steps} from "../state";
+import {ScanState, Step, Tissue} from "../protocol";
+import {bone_low, DraftWindow, first_scan, selected_step, set, state, step_of, steps} from "../state";
 import {take_tool, Tool} from "../tool/tool";
 
 const usual: Tissue[] = [
@@ -13,10 +13,15 @@ const usual: Tissue[] = [
   {name: "soft_tissue", low: -29, high: 150},
   {name: "fat", low: -190, high: -30},
 ];
-const range = (): [number, number] => {
-  const [low, high] = state.plan?.scans[0]?.range ?? [-1000, 3000];
+const scan_of = (name: string): ScanState|undefined => state.plan?.scans.find((scan) => scan.name === name);
+/// Tissues are known in Hounsfield units alone.
+const is_in_hu = (name: string): boolean => (scan_of(name)?.unit ?? "HU") === "HU";
+/// The ends of the sliders: of Hounsfield units those of tissues, else all samples that the scan has.
+function range(scan: string): [number, number] {
+  const [low, high] = scan_of(scan)?.range ?? [-1000, 3000];
+  if (!is_in_hu(scan)) return [Math.floor(low), Math.ceil(high)];
   return [Math.max(-1024, Math.floor(low)), Math.min(4000, Math.ceil(high))];
-};
+}
 const edited = (): Step|undefined => (selected_step()?.do === "window" ? selected_step() : undefined);
 
 export const window_tool: Tool = {
@@ -34,7 +39,7 @@ export const window_tool: Tool = {
       replaces: step.id,
       ...(step.high === undefined ? {} : {high: Number(step.high)})
     } :
-                                      {scan: first_scan(), low: 300};
+                                      {scan: first_scan(), low: bone_low(first_scan())};
     set({draft_window: draft, selected: step?.id ?? null});
   },
   left() {
@@ -61,7 +66,7 @@ async function apply(): Promise<void> {
 function panel(): Child {
   const draft = state.draft_window;
   if (!draft) return null;
-  const [least, most] = range();
+  const [least, most] = range(draft.scan);
   const tissues = state.hello?.tissues.length ? state.hello.tissues : usual;
   const change = (part: Partial<DraftWindow>): void => set({draft_window: {...draft, ...part}});
   const slider = (label: string, value: number, key: string, take: (value: number) => void): Child => {
@@ -89,7 +94,10 @@ function panel(): Child {
         typed);
   };
   return [
-    el("div", {class: "presets", role: "group", "aria-label": "Tissues"}, tissues.map((tissue) => {
+    !is_in_hu(draft.scan) ?
+        el("p", {class: "says"},
+           "The samples of this scan are no Hounsfield units, so no tissue has known thresholds in them.") :
+        el("div", {class: "presets", role: "group", "aria-label": "Tissues"}, tissues.map((tissue) => {
       const on = draft.low === (tissue.low ?? least) && draft.high === (tissue.high ?? undefined);
       return button(
           tissue.name.replace(/_/g, " "),

@@ -4,7 +4,7 @@ import {try_to} from "../actions";
 import {button, Child, el} from "../base/html";
 import {ink, label} from "../base/ink";
 import {Vec2} from "../base/vector";
-import {makes_shape, operands} from "../operations";
+import {makes_body, operands} from "../operations";
 import {is_drawn} from "../pane/overlay";
 import type {Pane} from "../pane/panes";
 import {LandmarkGuess, Step} from "../protocol";
@@ -23,7 +23,7 @@ interface Found {
 /// Asks for a guess on the selected object, or on the first one, that is made of no other; true where there
 /// is one.
 export async function ask_guesses(): Promise<boolean> {
-  const is_whole = (step: Step): boolean => makes_shape(step) && step.do !== "mask" && !operands(step).length;
+  const is_whole = (step: Step): boolean => makes_body(step) && !operands(step).length;
   const object = [selected_step(), ...steps()].find((step) => step && is_whole(step))?.id;
   if (!object) {
     notify("Set bone first: landmarks are guessed on its surface.", "warning");

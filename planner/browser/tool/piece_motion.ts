@@ -3,7 +3,7 @@
 import {add_steps, free_id, replace_step} from "../actions";
 import {directions, lps, motion_words} from "../base/anatomical";
 import {is_overlap, look_of} from "../drawn_objects";
-import {makes_shape} from "../operations";
+import {makes_body} from "../operations";
 import {mark_mm} from "../pane/overlay";
 import {Json, Motion, Step} from "../protocol";
 import {selected_step, set, state, steps} from "../state";
@@ -12,7 +12,7 @@ import {add, scaled, Vec3} from "../base/vector";
 /// The piece that the tool moves: the selected move's, or the selected object itself.
 export function piece(): {source: string; step: Step | undefined}|null {
   const step = selected_step();
-  if (!step || !makes_shape(step) || step.do === "mask") return null;
+  if (!step || !makes_body(step)) return null;
   if (step.do === "move" && typeof step.object === "string") return {source: step.object, step};
   const moved = steps().find((one) => one.do === "move" && one.object === step.id);
   return moved ? {source: step.id, step: moved} : {source: step.id, step: undefined};
@@ -38,7 +38,7 @@ export function centre_of(id: string): Vec3 {
 /// What a piece must not run into: the shown objects that stay.
 function others(source: string, moved: string|undefined): string[] {
   return steps()
-      .filter((step) => makes_shape(step) && step.do !== "mask" && step.id !== source && step.id !== moved)
+      .filter((step) => makes_body(step) && step.id !== source && step.id !== moved)
       .filter((step) => look_of(step.id).visible && !is_overlap(step, steps()) && step.object !== source)
       .map((step) => step.id);
 }

@@ -41,6 +41,10 @@ function landmark_at(pane: Pane, at: Vec2): {name: string; point: Vec3}|undefine
 /// The place under the pointer. A view shows no depth beside its surfaces: nothing is placed there, and the
 /// person is told.
 function place_at(pane: Pane, at: Vec2): Vec3|null {
+  if (!pane.has_places) {
+    notify("The picture is still being drawn: click again once it is at rest.", "warning");
+    return null;
+  }
   if (!pane.is_beside(at)) return hundredths(pane.point_at(at));
   notify("No surface lies there, so the point has no depth: click on an object, or in a slice.", "warning");
   return null;
@@ -206,7 +210,7 @@ export const landmark_tool: Tool = {
     return true;
   },
   move({pane, at}) {
-    if (!held || pane.is_beside(at)) return;
+    if (!held || !pane.has_places || pane.is_beside(at)) return;
     held.point = hundredths(pane.point_at(at));
     pane.redraw();
   },
@@ -307,7 +311,9 @@ export const arch_tool: Tool = {
     show_in(2, "axial");
   },
   down({pane, at}) {
-    set({arch_mm: [...state.arch_mm, hundredths(pane.point_at(at))]});
+    const point = place_at(pane, at);
+    if (!point) return true;
+    set({arch_mm: [...state.arch_mm, point]});
     pane.redraw();
     return true;
   },

@@ -3,7 +3,7 @@
 // corner, Enter or the first corner closes; corners are dragged, Delete takes one away.
 import {add_step, add_steps, edit, free_id, replace_step} from "../actions";
 import {look_of} from "../drawn_objects";
-import {makes_shape, operands} from "../operations";
+import {makes_body, operands} from "../operations";
 import {button, el} from "../base/html";
 import {dot_at, ink, line, text} from "../base/ink";
 import {is_of_panes, region_view, regions_of, uv_pixel} from "../pane/overlay";
@@ -128,7 +128,7 @@ export const region_tool: Tool = {
 function cut_target(mask: Step|undefined): string|undefined {
   if (!mask) return undefined;
   const before = steps().slice(0, steps().findIndex((step) => step.id === mask.id));
-  const solid = before.filter((step) => makes_shape(step) && step.do !== "mask");
+  const solid = before.filter((step) => makes_body(step));
   return (solid.filter((step) => look_of(step.id).visible).pop() ?? solid.pop())?.id;
 }
 

@@ -7,8 +7,12 @@
 #include <gtest/gtest.h>
 #include <thread>
 
+#include "planner/report/first_look.h"
+#include "planner/serve/new_plan.h"
 #include "planner/serve/requests.h"
+#include "tests/file_bytes.h"
 #include "tests/planner/ball_scan.h"
+#include "voxel/scan/read_scene.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner::serve {
@@ -60,6 +64,90 @@ TEST_F(DeskTest, AStepThatFailsTakesOnlyThoseThatNeedItAlong) {
   const Json state = desk_->state();
   for (const Json& object : state["objects"])
     EXPECT_EQ(object.contains("error"), object["id"] == "lost") << object;
+}
+
+TEST_F(DeskTest, AReportLeavesOutWhatFailedAndSaysSo) {
+  desk_->open(folder_ / "ball.nrrd", {});
+  add({{"id", "lost"}, {"do", "import"}, {"path", "nowhere.stl"}});
+  add({{"id", "more"}, {"do", "combine"}, {"expression", "bone | lost"}});
+  add({{"id", "more_size"}, {"do", "measure"}, {"object", "more"}});
+  add({{"id", "lost_file"}, {"do", "export"}, {"object", "lost"}, {"path", "lost.stl"}});
+  add({{"id", "size"}, {"do", "measure"}, {"object", "bone"}});
+  add({{"id", "file"}, {"do", "export"}, {"object", "bone"}, {"path", "bone.stl"}});
+  const Json made = find_word("report").answer(*desk_, Json::object(), {});
+  EXPECT_EQ(made["left_out"], Json({"lost", "more", "more_size", "lost_file"}));
+  EXPECT_EQ(made["counts"]["PASS"], 1);
+  const fs::path folder = made["folder"].get<std::string>();
+  EXPECT_TRUE(fs::exists(folder / "bone.stl"));
+  const Json result = Json::parse(std::ifstream(folder / "result.json"));
+  ASSERT_EQ(result["certificates"].size(), 1U);
+  EXPECT_EQ(result["measurements"].size(), 1U);
+  int failed = 0;
+  for (const Json& finding : result["findings"]) failed += finding["verdict"] == "FAIL" ? 1 : 0;
+  EXPECT_EQ(failed, 4) << result["findings"];
+  EXPECT_NE(tests::bytes_of(folder / "report.html").find("nowhere.stl"), std::string::npos)
+      << "the report says why";
+  const Snapshot certified = desk_->evaluate({}, true, {});
+  EXPECT_TRUE(certified.evaluation->object("bone").certificate.has_value());
+}
+
+TEST_F(DeskTest, AMeasurementThatFailsLeavesTheOthersTheirAnswers) {
+  desk_->open(folder_ / "ball.nrrd", {});
+  add({{"id", "wide"}, {"do", "measure"}, {"points_mm", {{-8, 0, 0}, {8, 0, 0}}}});
+  add({{"id", "nowhere"},
+       {"do", "airway"},
+       {"object", "bone"},
+       {"begin", {100, 0, 0}},
+       {"end", {-100, 0, 0}}});
+  const Snapshot made = desk_->evaluate({}, true, {});
+  ASSERT_EQ(made.errors.count("nowhere"), 1U);
+  ASSERT_EQ(made.measurements.size(), 2U);
+  EXPECT_EQ(made.measurements[0]["value"], 16.0);
+  EXPECT_TRUE(made.measurements[1]["value"].is_null());
+  EXPECT_EQ(made.measurements[1]["sentence"], made.errors.at("nowhere"));
+}
+
+TEST_F(DeskTest, BoneBeginsInTheScansOwnSamples) {
+  desk_->open(folder_ / "ball.nrrd", {});
+  voxel::Scene ball = voxel::read_scene(folder_ / "ball.nrrd");
+  EXPECT_EQ(desk_->state()["scans"][0]["bone_low"], bone_low(ball));
+  ball.meaning = voxel::Meaning::Hounsfield;
+  EXPECT_EQ(bone_low(ball), 300.0);
+  ball.meaning = voxel::Meaning::Label;
+  EXPECT_EQ(bone_low(ball), 1.0);
+  ball.meaning = voxel::Meaning::Raw;
+  EXPECT_EQ(bone_low(ball), thresholds_of(ball).upper);
+  EXPECT_TRUE(desk_->state()["scans"][0]["patient"].is_null());
+}
+
+TEST_F(DeskTest, TheLargestPartOfAnOverlapHasAPlace) {
+  desk_->open(folder_ / "ball.nrrd", {});
+  add({{"id", "moved"}, {"do", "move"}, {"object", "bone"}, {"translate_mm", {6, 0, 0}}});
+  add({{"id", "both"}, {"do", "combine"}, {"expression", "bone & moved"}});
+  add({{"id", "none"}, {"do", "combine"}, {"expression", "bone - bone"}});
+  desk_->evaluate({}, false, {});
+  const auto part = [&](const char* id) {
+    return find_word("largest_part").answer(*desk_, {{"object", id}}, {});
+  };
+  const Json both = part("both");
+  EXPECT_EQ(both["parts"], 1);
+  EXPECT_GT(both["mm3"], 0.0);
+  EXPECT_NEAR(both["at_mm"][0].get<double>(), 3.0, 0.5);
+  EXPECT_NEAR(both["at_mm"][1].get<double>(), 0.0, 0.5);
+  EXPECT_TRUE(part("none")["at_mm"].is_null());
+  EXPECT_THROW(part("nobody"), voxel::Error);
+}
+
+TEST_F(DeskTest, ALandmarkFarFromBoneIsNotCalledSnapped) {
+  desk_->open(folder_ / "ball.nrrd", {});
+  desk_->evaluate({}, false, {});
+  const auto placed = [&](const Json& point) {
+    return find_word("landmark").answer(*desk_, {{"name", "a"}, {"point", point}, {"snap", true}}, {});
+  };
+  EXPECT_EQ(placed({0, -9, 0})["snapped"], true);
+  const Json far = placed({11.5, -11.5, -11.5});
+  EXPECT_EQ(far["snapped"], false);
+  EXPECT_EQ(far["point"], Json({11.5, -11.5, -11.5}));
 }
 
 TEST_F(DeskTest, APreviewIsTheMoveStepsObject) {

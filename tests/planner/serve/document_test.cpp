@@ -67,6 +67,30 @@ TEST_F(DocumentTest, APlanThatReadsOutsideOfTheOpenFoldersIsNotOpenedUnlessItMay
   EXPECT_NO_THROW(Document(plan("/etc/passwd", bone), folders_));
 }
 
+TEST_F(DocumentTest, AHistoryThatCameWithAPlanOpensNothingEither) {
+  const std::filesystem::path path = folder_ / "a.plan.json";
+  const Json own = document_->json();
+  document_.reset();
+  {
+    PlanHistory history(path);
+    Json scan = own, file = own;
+    scan["scans"]["ct"]["path"] = "/etc/passwd";
+    file["steps"].push_back({{"id", "l"}, {"do", "import"}, {"path", "/etc/passwd.stl"}});
+    history.record(scan.dump(), "another scan");
+    history.record(file.dump(), "a file");
+    history.record(own.dump(), "as before");
+  }
+  document_ = std::make_unique<Document>(path, folders_);
+  EXPECT_THROW(document_->undo(), voxel::Error);
+  EXPECT_THROW(document_->go_to("2"), voxel::Error);
+  EXPECT_THROW(document_->difference_of(1, 2), voxel::Error);
+  EXPECT_EQ(document_->json(), own);
+  EXPECT_EQ(document_->history_json()["edit"], 4) << "the refused states are not the current one";
+  EXPECT_EQ(Json::parse(std::ifstream(path)), own) << "the file is the plan";
+  document_->go_to("1");
+  EXPECT_EQ(document_->history_json()["edit"], 1);
+}
+
 TEST_F(DocumentTest, APlanThatAnotherProgramWroteIsNotCalledSaved) {
   EXPECT_NO_THROW(document_->need_saved());
   document_->edit({{"add", {{"step", skin_}}}, {"what", "add the skin"}});

@@ -68,6 +68,25 @@ TEST_F(FoldersTest, ALinkToNothingIsJudgedByWhatAWriteWouldMake) {
   EXPECT_TRUE(fs::exists(root_ / "open/within/new.json"));
 }
 
+TEST_F(FoldersTest, AHeaderNamesSamplesBesideItOrInOpenFoldersOnly) {
+  const auto header = [&](const std::string& data) {
+    const fs::path path = root_ / "open/h.mhd";
+    std::ofstream(path) << "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n"
+                           "ElementSpacing = 1 1 1\nElementDataFile = "
+                        << data << "\n";
+    return path;
+  };
+  std::ofstream(root_ / "open/h.raw") << "12345678";
+  std::ofstream(root_ / "shut/h.raw") << "12345678";
+  fs::create_symlink(root_ / "shut/h.raw", root_ / "open/linked.raw");
+  EXPECT_NO_THROW(need_readable_samples(folders_, header("h.raw")));
+  EXPECT_THROW(need_readable_samples(folders_, header((root_ / "shut/h.raw").string())), voxel::Error);
+  EXPECT_THROW(need_readable_samples(folders_, header("../shut/h.raw")), voxel::Error);
+  EXPECT_THROW(need_readable_samples(folders_, header("linked.raw")), voxel::Error);
+  folders_.allow_reading(root_ / "shut/h.raw");
+  EXPECT_NO_THROW(need_readable_samples(folders_, header("../shut/h.raw")));
+}
+
 TEST_F(FoldersTest, AFileOpensItsFolderAndThatOnce) {
   folders_.open(root_ / "shut/b.nrrd");
   folders_.open(root_ / "open/within");

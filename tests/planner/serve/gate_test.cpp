@@ -35,6 +35,16 @@ TEST(Gate, ABrowserSaysNoOriginWhenItOpensThePage) {
   EXPECT_TRUE(gate.refusal_of_host({"localhost:81", "", ""}));
 }
 
+TEST(Gate, AFileIsNamedBehindTheTokenSoThatItsLinksKeepIt) {
+  const auto file = file_of(parse_target("/file/0123/report/a%20b.html"));
+  ASSERT_TRUE(file);
+  EXPECT_EQ(file->token, "0123");
+  EXPECT_EQ(file->name, "report/a b.html");
+  EXPECT_TRUE(gate.refusal({"localhost:80", "", file_of(parse_target("/file/a.stl"))->token}));
+  EXPECT_TRUE(gate.refusal({"localhost:80", "", file_of(parse_target("/file//a.stl?token=0123"))->token}));
+  EXPECT_FALSE(file_of(parse_target("/index.html")));
+}
+
 TEST(Gate, TokensAreLongAndDiffer) {
   std::set<std::string> tokens;
   for (int i = 0; i < 100; ++i) tokens.insert(new_token());

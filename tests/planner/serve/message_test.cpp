@@ -5,6 +5,7 @@
 #include <new>
 
 #include "brep/mesh/error.h"
+#include "planner/plan/history.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner::serve {
@@ -44,6 +45,7 @@ TEST(Refusal, HasTheCodeOfEitherKernel) {
   EXPECT_EQ(code_of(brep::Error(brep::ErrorCode::Resource, "")), "resource");
   EXPECT_EQ(code_of(std::bad_alloc()), "resource");
   EXPECT_EQ(code_of(std::runtime_error("")), "input");
+  EXPECT_EQ(code_of(OtherWriter("")), "changed") << "the page offers to load the file";
   try {
     (void)Json::object().at("missing");
     FAIL();

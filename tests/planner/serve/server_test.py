@@ -4,7 +4,9 @@ import json
 import math
 import os
 import pathlib
+import posixpath
 import random
+import re
 import resource
 import shutil
 import socket
@@ -115,7 +117,7 @@ class Gate(Served):
                 self.window.ask("edit", what="reads elsewhere", **said)
         token = self.server.token
         for name in ("../head.nrrd", "..%2f..%2f..%2f..%2fetc/passwd", "%2fetc%2fpasswd"):
-            self.assertNotEqual(self.server.http(f"/file/{name}?token={token}")[0], 200, name)
+            self.assertNotEqual(self.server.http(f"/file/{token}/{name}")[0], 200, name)
         outside.close()
 
     def test_nothing_is_written_through_a_link_that_leads_out(self):
@@ -364,7 +366,7 @@ class Desk(Served):
         self.assertEqual(known["moved"]["certificate"]["verdict"], "PASS")
         self.assertGreater(known["moved"]["volume"]["half_width"], 0)
         exported = self.window.ask("export", object="moved", path="moved.stl")
-        status, _, body = self.server.http(f"/file/{exported['file']}?token={self.server.token}")
+        status, _, body = self.server.http(f"/file/{self.server.token}/{exported['file']}")
         self.assertEqual((status, body), (200, pathlib.Path(exported["path"]).read_bytes()))
         told = self.window.ask("command", step="moved")
         self.assertIn('plan.move("moved", object="piece", by={"forward_mm": 6.0})', told["python"])
@@ -395,6 +397,8 @@ class Desk(Served):
         state = self.window.ask("procedure", name="le_fort_i", landmarks=marks, values={"forward_mm": 5})
         self.assertEqual({mark["name"] for mark in state["landmarks"]}, {"mine", *marks})
         self.assertIn("bone", [step["id"] for step in state["plan"]["steps"]])
+        objects = {entry["id"] for entry in state["objects"]}
+        self.assertEqual(set(state["made"]), objects - {"bone"}, "what the procedure made, and nothing older")
         made = self.window.ask("evaluate")["objects"]
         self.assertTrue(all(entry["evaluated"] for entry in made), made)
         words = " ".join(row["words"] for row in self.window.ask("movement")["rows"])
@@ -559,6 +563,68 @@ class Begun(unittest.TestCase):
             folder = pathlib.Path(window.ask("report")["folder"])
             self.assertEqual(folder.name, name)
             self.assertTrue((folder / "report.html").exists())
+
+    def test_the_links_of_a_report_reach_the_files_beside_it(self):
+        server, window = self.begun()
+        file = window.ask("report")["file"]
+        status, _, body = server.http(f"/file/{server.token}/{file}")
+        self.assertEqual(status, 200)
+        linked = re.findall(r'<a href="([^"#:]+)"', body.decode())
+        self.assertIn("credibility.html", linked)
+        for link in linked:
+            self.assertEqual(server.http(f"/file/{server.token}/{posixpath.dirname(file)}/{link}")[0], 200, link)
+        for refused in (f"/file/{file}", f"/file/{'0' * 32}/{file}", f"/file/{file}?token={server.token}"):
+            self.assertEqual(server.http(refused)[0], 403, refused)
+
+    def test_a_plans_scan_opens_its_folder_neither_for_listing_nor_for_writing(self):
+        with tempfile.TemporaryDirectory() as name:
+            elsewhere = pathlib.Path(name).resolve()
+            shutil.copy(self.folder / "head.nrrd", elsewhere / "far.nrrd")
+            (self.folder / "far.plan.json").write_text(json.dumps({
+                "octotomy_plan": 1, "name": "far", "scans": {"ct": {"path": str(elsewhere / "far.nrrd")}},
+                "steps": [{"id": "bone", "do": "window", "scan": "ct", "low": 300}]}))
+            server = Server(PROGRAM, self.folder, "far.plan.json")
+            self.addCleanup(server.kill)
+            window = Window(server)
+            self.addCleanup(window.close)
+            self.assertEqual(window.ask("hello")["folders"], [str(self.folder)])
+            for said in ({"folder": str(elsewhere)}, {"folder": "/etc"}):
+                with self.assertRaisesRegex(RuntimeError, "no folder that is open"):
+                    window.ask("list", **said)
+            with self.assertRaisesRegex(RuntimeError, "no folder that is open"):
+                window.ask("save", path=str(elsewhere / "copy.plan.json"))
+            self.assertEqual(os.listdir(elsewhere), ["far.nrrd"])
+
+    def test_a_headers_data_file_is_no_permission(self):
+        (self.folder / "secret.mhd").write_text(
+            "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementType = MET_UCHAR\nElementSpacing = 1 1 1\n"
+            "ElementDataFile = /etc/passwd\n")
+        _, window = self.begun()
+        with self.assertRaisesRegex(RuntimeError, "/etc/passwd: lies in no folder that is open"):
+            window.ask("open", path="secret.mhd")
+
+    def test_the_token_is_on_no_command_line(self):
+        tools = self.folder / "tools"
+        tools.mkdir()
+        seen = self.folder / "seen"
+        (tools / "xdg-open").write_text(
+            f"#!/bin/sh\n{{ echo \"$*\"; stat -c %a \"$1\"; cat \"$1\"; }} >'{seen}.part'\nmv '{seen}.part' '{seen}'\n")
+        (tools / "xdg-open").chmod(0o755)
+        path = os.environ["PATH"]
+        os.environ["PATH"] = f"{tools}:{path}"
+        try:
+            server = Server(PROGRAM, self.folder, "--open")
+        finally:
+            os.environ["PATH"] = path
+        self.addCleanup(server.kill)
+        end = time.monotonic() + 60
+        while not seen.exists():
+            self.assertLess(time.monotonic(), end, "no browser was started")
+            time.sleep(0.01)
+        arguments, mode, page = seen.read_text().split("\n", 2)
+        self.assertNotIn(server.token, arguments)
+        self.assertEqual(mode, "600")
+        self.assertIn(server.url, page)
 
     def test_an_export_leaves_the_files_of_others_alone(self):
         folder = self.folder / "head files"

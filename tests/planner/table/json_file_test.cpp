@@ -49,6 +49,15 @@ TYPED_TEST(JsonText, CountsNoBracketsInTextsAndNoneThatAreClosed) {
   EXPECT_NE(refusal<TypeParam>("[1,").find("is no JSON"), std::string::npos);
 }
 
+TYPED_TEST(JsonText, IsNotQuotedWhereItIsNone) {
+  for (const char* secret : {"root:x:0:0", "[1, secret]", R"({"a": "secret)", R"({"a" "secret"})"}) {
+    const std::string said = refusal<TypeParam>(secret);
+    EXPECT_NE(said.find("line 1, column"), std::string::npos) << said;
+    for (const char* quoted : {"last read", "secret", "'r'"})
+      EXPECT_EQ(said.find(quoted), std::string::npos) << said;
+  }
+}
+
 TEST(JsonFile, ThatIsTooDeepIsNamed) {
   const tests::ScratchFolder folder;
   const std::filesystem::path path = folder / "deep.json";

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Whom the plan is about, and the switch that hides it.
+import {button, Child, el} from "../base/html";
+import {icon} from "../base/icons";
+import {Patient, ScanState} from "../protocol";
+import {hide_patient, state} from "../state";
+
+const hidden = "patient hidden";
+const unstated = "patient not stated";
+
+/// "Doe, Jane · A17 · 1970-01-31": enough to know a patient by.
+function short_words(patient: Patient|null|undefined): string {
+  if (!patient) return unstated;
+  return [patient.name, patient.number, patient.birth_date].filter(Boolean).join(" · ");
+}
+
+/// The patient of the plan's first scan in the bar, as a button that hides or shows it.
+export function patient_button(): Child {
+  const scan = state.plan?.scans[0];
+  if (!scan) return null;
+  const words = state.hides_patient ? hidden : short_words(scan.patient);
+  return button(
+      [icon(state.hides_patient ? "eye_off" : "eye", 14), words],
+      state.hides_patient ? "Shows whom the scan is of, here and in new reports" :
+                            "Hides whom the scan is of, here and in new reports",
+      () => hide_patient(!state.hides_patient),
+      {class: "ghost small patient", "aria-label": `${words}. ${state.hides_patient ? "Show" : "Hide"} the patient`});
+}
+
+/// Lines of a scan's facts.
+export function patient_facts(scan: ScanState): Child {
+  const fact = (name: string, value: string): Child => [el("dt", {}, name), el("dd", {}, value)];
+  if (state.hides_patient) return fact("Patient", hidden);
+  const patient = scan.patient;
+  if (!patient) return fact("Patient", "not stated by the scan");
+  return [
+    fact("Patient", patient.name ?? "name not stated"),
+    fact("Number", [patient.number ?? "not stated", patient.issuer].filter(Boolean).join(", ")),
+    fact("Born", [patient.birth_date ?? "not stated", patient.sex].filter(Boolean).join(", ")),
+    fact("Study of", patient.study_date ?? "not stated"),
+  ];
+}

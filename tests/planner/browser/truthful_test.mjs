@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// On the head phantom, what the page shows is the plan's own: whom it is about, values of one plan in the next, objects after
+// a procedure is undone, a plan that another program wrote, a mirror's plane, interference within bone.
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import { after, before, test } from 'node:test';
+import { PlannerWindow, lay_phantom, start_server } from './planner_window.mjs';
+
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'octotomy-truthful-'));
+const plan_path = path.join(folder, 'one.plan.json'), other_path = path.join(folder, 'other.plan.json');
+const marks = {
+  piriform_left: [12, -84, -25], piriform_right: [-12, -84, -25], buttress_left: [30, -68, -28], buttress_right: [-30, -68, -28],
+  pterygoid_left: [20, -39, -30], pterygoid_right: [-20, -39, -30], incisor: [0, -85, -57.5], molar_left: [27, -52, -57.5], molar_right: [-27, -52, -57.5],
+};
+const plan_of = (name, low) => ({
+  octotomy_plan: 1, name, scans: { ct: { path: 'head_phantom.nrrd' } },
+  steps: [
+    { id: 'landmarks', do: 'landmarks', points: Object.entries(marks).map(([mark, point_mm]) => ({ name: mark, point_mm })) },
+    { id: 'bone', do: 'window', scan: 'ct', low },
+  ],
+});
+let server;
+let one;
+const newest = (pane) => one.frames.filter(({ header }) => header.pane === pane).pop()?.header;
+const written = () => one.plan(plan_path);
+
+async function open(name) {
+  await one.click(one.page.locator('.brand'));
+  await one.click('Scan or plan');
+  await one.click(one.page.locator('.file', { hasText: `${name}.plan.json` }));
+  await one.until(async () => (await one.page.locator('.plan-name').innerText()) === name, `${name} open`);
+  const go_on = one.page.getByRole('button', { name: 'Continue' });
+  if (await go_on.isVisible()) await one.click(go_on);
+  await one.press('Escape');
+  await one.at_rest();
+}
+
+before(async () => {
+  lay_phantom(folder, 2);
+  fs.writeFileSync(plan_path, JSON.stringify(plan_of('one', 300)));
+  fs.writeFileSync(other_path, JSON.stringify(plan_of('other', 662)));
+  server = await start_server(folder);
+  one = await PlannerWindow.open(server.url);
+  await open('one');
+});
+after(async () => {
+  await one?.close();
+  server?.stop();
+  fs.rmSync(folder, { recursive: true, force: true });
+});
+
+test('the page says whom the plan is about, and hides it on demand', async () => {
+  const patient = one.page.locator('.bar .patient');
+  assert.match(await patient.innerText(), /patient not stated/);
+  await one.click(patient);
+  await one.until(async () => /patient hidden/.test(await patient.innerText()), 'the patient hidden');
+  await one.command("Show the scan's audit");
+  assert.match(await one.page.locator('dialog .facts').first().innerText(), /patient hidden/);
+  await one.press('Escape');
+  await one.click(patient);
+  await one.until(async () => /not stated/.test(await patient.innerText()), 'the patient shown');
+});
+
+test('no value of a tool or a procedure goes into another plan', async () => {
+  await open('other');
+  await one.press('w');
+  await one.until(async () => (await one.page.locator('[data-key="low"]').inputValue()) === '662', 'its own threshold');
+  await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));
+  await one.click(one.page.locator('dialog').getByRole('button', { name: /^Le Fort I/ }).first());
+  const forward = one.page.locator('dialog [name="forward_mm"]');
+  const usual = await forward.inputValue();
+  await forward.fill('9');
+  await forward.press('Tab');
+  await one.press('Escape');
+  await open('one');
+  assert.equal(await one.page.locator('[data-key="low"]').count(), 0, 'the tool is put down');
+  await one.press('w');
+  await one.until(async () => (await one.page.locator('[data-key="low"]').inputValue()) === '300', 'the threshold of this plan');
+  await one.press('Escape');
+  await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));
+  await one.click(one.page.locator('dialog').getByRole('button', { name: /^Le Fort I/ }).first());
+  assert.equal(await forward.inputValue(), usual);
+  await one.press('Escape');
+});
+
+test('a procedure that is undone leaves what was shown before', async () => {
+  await one.until(() => newest(0)?.objects?.includes('bone'), 'bone shown');
+  await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));
+  await one.click(one.page.locator('dialog').getByRole('button', { name: /^Le Fort I/ }).first());
+  await one.click('Plan it');
+  await one.until(() => newest(0)?.objects?.length && !newest(0).objects.includes('bone'), 'the pieces in its place');
+  await one.press('Control+z');
+  await one.until(() => newest(0)?.objects?.includes('bone'), 'bone shown again');
+  await one.press('Control+y');
+  await one.until(() => newest(0)?.objects?.length && !newest(0).objects.includes('bone'), 'the pieces again');
+  await one.press('Control+z');
+  await one.until(() => newest(0)?.objects?.includes('bone'), 'bone at last');
+});
+
+test('a plan that another program wrote is not called saved, and a button loads it', async () => {
+  const changed = written();
+  changed.name = 'changed outside';
+  fs.writeFileSync(plan_path, JSON.stringify(changed));
+  await one.press('Control+s');
+  const notice = one.page.locator('.notice.error', { hasText: 'another program wrote this file' });
+  await notice.waitFor();
+  assert.equal(await one.page.locator('.notice', { hasText: 'Saved.' }).count(), 0);
+  await one.click(notice.getByRole('button', { name: "Load the plan's file" }));
+  await one.until(async () => (await one.page.locator('.plan-name').innerText()) === 'changed outside', 'the file as it is');
+  await one.at_rest();
+  await one.press('Control+s');
+  await one.page.locator('.notice', { hasText: 'Saved.' }).waitFor();
+});
+
+test('a mirror image is about the plane that fits, which is shown with its residual and can be moved', async () => {
+  await one.select('bone');
+  await one.command('Mirror the selected object');
+  const twin = () => written().steps.find((step) => step.do === 'mirror');
+  assert.equal((await one.until(twin, 'the mirror step')).fit, true);
+  await one.until(async () => /Fitted: .* mm apart/.test(await one.page.locator('.inspector').innerText()), 'the residual');
+  await one.type('bone_mirrored.plane', 2);
+  await one.until(() => twin().normal, 'the plane in the plan');
+  assert.equal(twin().fit, undefined);
+  assert.ok(Math.abs(Math.abs(twin().point_mm.reduce((sum, x, i) => sum + x * twin().normal[i], 0)) - 2) < 1, `${twin().point_mm}`);
+  await one.press('Control+z');
+  await one.press('Control+z');
+  await one.until(() => !twin(), 'the plan as before');
+});
+
+test('interference shows through bone, and a button goes to it', async () => {
+  const changed = written();
+  changed.steps.push(
+    { id: 'cut', do: 'mask', regions: [{ view: 'anterior', polygons_mm: [[[-40, -60], [40, -60], [40, -25], [-40, -25]]] },
+      { view: 'left', polygons_mm: [[[-90, -60], [-20, -60], [-20, -25], [-90, -25]]] }] },
+    { id: 'piece', do: 'combine', expression: 'bone & cut' }, { id: 'rest', do: 'combine', expression: 'bone - cut' },
+    { id: 'moved', do: 'move', object: 'piece', by: { forward_mm: -3, up_mm: 3 } }, { id: 'both', do: 'combine', expression: 'rest & moved' },
+  );
+  fs.writeFileSync(other_path, JSON.stringify({ ...changed, name: 'other' }));
+  await open('other');
+  await one.until(() => newest(0)?.objects?.includes('both'), 'the overlap drawn');
+  await one.tab('Numbers');
+  await one.page.locator('[data-key="show-both"]').waitFor();
+  await one.at_rest();
+  assert.ok((await red_pixels(0)) > 50, 'red shows through the bone');
+  await one.click(one.page.locator('[data-key="show-both"]'));
+  await one.page.locator('.status', { hasText: /largest of \d+ parts? of both/ }).waitFor();
+});
+
+/// Pixels of a pane in which red prevails by far.
+const red_pixels = (pane) => one.page.evaluate((number) => {
+  const canvas = document.querySelectorAll('.pane canvas')[number];
+  const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  let count = 0;
+  for (let i = 0; i < data.length; i += 4) if (data[i] > data[i + 1] + 40 && data[i] > data[i + 2] + 40) count++;
+  return count;
+}, pane);
+
+test('the console stayed empty', () => assert.deepEqual(one.problems, []));
