@@ -4,12 +4,34 @@
 #include <algorithm>
 
 #include "planner/operation/trace.h"
+#include "verify/certificate/certify_alone.h"
 #include "verify/certificate/certify_bounded.h"
 #include "verify/witness/witness.h"
 
 namespace octotomy::planner {
+namespace {
+
+/// The witness ends with the universe, as the answers have been cut there. Booleans on the way may have moved
+/// surfaces.
+verify::Witness within_universe(const Object& made) {
+  const voxel::Box world = voxel::bounds(made.voxel.octree.universe().lattice());
+  const verify::Witness within = verify::both(made.witness, verify::witness_of_box(world));
+  return made.bound.shift_mm > 0.0 ? verify::loosened(within, made.bound.shift_mm) : within;
+}
+
+void lower_by_caveats(Object& made) {
+  for (const Caveat& caveat : made.caveats) verify::lower(*made.certificate, caveat.verdict, caveat.reason);
+}
+
+}  // namespace
 
 void certify(Object& made, const std::string& title, const voxel::Progress& progress) {
+  if (!made.mesh.within) {
+    made.certificate = verify::certify_alone(
+        made.voxel.octree, {title, made.voxel.lineage, made.voxel.makers, within_universe(made)}, progress);
+    made.certificate->shared_values = made.shared_values;
+    return lower_by_caveats(made);
+  }
   verify::BoundInputs inputs;
   inputs.operation = title;
   inputs.voxel_lineage = made.voxel.lineage;
@@ -24,16 +46,13 @@ void certify(Object& made, const std::string& title, const voxel::Progress& prog
   inputs.measured_apart_mm = made.bound.measured_apart_mm;
   inputs.voxels_are_samples = made.bound.voxels_are_samples;
   inputs.is_surely_empty = made.is_surely_empty;
-  // What lies outside of the universe has been cut away from both answers.
-  const voxel::Box world = voxel::bounds(made.voxel.octree.universe().lattice());
-  inputs.witness = verify::both(made.witness, verify::witness_of_box(world));
-  if (made.bound.shift_mm > 0.0) inputs.witness = verify::loosened(inputs.witness, made.bound.shift_mm);
+  inputs.witness = within_universe(made);
   made.certificate = verify::certify_bounded(made.voxel.octree, *made.mesh.within, inputs, progress);
   made.certificate->voxel.makers = made.voxel.makers;
   made.certificate->mesh.makers = made.mesh.makers;
   made.certificate->shared_values = made.shared_values;
   verify::judge_independence(*made.certificate);
-  for (const Caveat& caveat : made.caveats) verify::lower(*made.certificate, caveat.verdict, caveat.reason);
+  lower_by_caveats(made);
 }
 
 }  // namespace octotomy::planner

@@ -11,6 +11,7 @@
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "planner/table/same_patient.h"
+#include "verify/witness/slice_witness.h"
 #include "verify/witness/witness.h"
 #include "voxel/solid/region_mask.h"
 #include "voxel/space/view.h"
@@ -157,8 +158,19 @@ void triangles(const Mask& mask, const MeshBench& bench, MeshSide& made) {
   made.lineage = "prisms of the regions";
 }
 
-void bound(const Mask& mask, const BoundBench& bench, Object& made) {
-  if (mask.regions.empty()) return;
+/// Contours as the plan's reader returns them. What they enclose is read anew.
+verify::Witness witness_of(const voxel::SliceMask& mask) {
+  verify::DrawnStack stack{mask.view.look,
+                           mask.view.up,
+                           mask.view.right,
+                           {},
+                           mask.between == voxel::SliceMask::Between::ShapeBased};
+  for (const voxel::SliceMask::Slice& slice : mask.slices)
+    stack.slices.push_back({slice.position_mm, slice.polygons_mm});
+  return verify::witness_of_slices(stack);
+}
+
+void bound_regions(const Mask& mask, const BoundBench& bench, Object& made) {
   const auto turned = held(mask, bench.objects);
   if (!turned) made.bound.planes = planes_of(mask_of(mask));
   std::vector<verify::DrawnRegion> drawn;
@@ -166,6 +178,14 @@ void bound(const Mask& mask, const BoundBench& bench, Object& made) {
   made.witness = verify::witness_of_regions(drawn);
   if (turned) made.witness = verify::carried(made.witness, *turned);
   if (made.mesh.whole) made.walls = {{made.id, *made.mesh.whole}};
+}
+
+void bound(const Mask& mask, const BoundBench& bench, Object& made) {
+  if (!mask.regions.empty()) bound_regions(mask, bench, made);
+  if (mask.slices.empty()) return;
+  verify::Witness slices =
+      witness_of(read_slices(bench.folder / mask.slices, SlicesOptions{mask.structure, mask.bridge_mm}).mask);
+  made.witness = mask.regions.empty() ? std::move(slices) : verify::both(made.witness, std::move(slices));
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "planner/table/same_patient.h"
+#include "verify/witness/grown_witness.h"
 #include "verify/witness/witness.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/label_map.h"
@@ -372,12 +373,31 @@ void settle_parts(const Segment& segment, const LoadedScan& scan, const voxel::U
                 universe, segment.largest || segment.components ? std::nullopt : segment.at_least_mm3, made);
 }
 
+/// The samples that seeds choose, in a window or grown. Empty where other choices of voxels come between, and
+/// where voxels are no samples: what joins parts depends on the resampling then.
+verify::Witness witness_of_seeds(const Segment& segment, const LoadedScan& scan, bool voxels_are_samples) {
+  if (segment.seeds_mm.empty() || !voxels_are_samples || chooses_parts(segment) || segment.label ||
+      segment.named || !segment.regions.empty() || segment.open_mm || segment.close_mm)
+    return {};
+  verify::GrownFrom from{.seeds_mm = segment.seeds_mm, .tolerance = segment.tolerance};
+  if (segment.window) {
+    from.low = segment.window->low;
+    from.high = segment.window->high_or_infinity();
+  }
+  from.neighbours = segment.neighbours;
+  // A grey octree keeps whole numbers of steps.
+  if (std::holds_alternative<voxel::FloatSamples>(scan.scene().samples)) from.rounding = scan.grey.step();
+  verify::Witness grown = verify::witness_of_grown(scan.scene(), from);
+  return segment.fill ? verify::witness_of_filled(std::move(grown)) : std::move(grown);
+}
+
 void bound(const Segment& segment, const BoundBench& bench, Object& made) {
   const LoadedScan& scan = bench.scan(segment.scan.name);
   const voxel::Lattice& lattice = scan.scene().lattice;
   made.bound.spacing_mm = lattice.spacing_mm();
   made.bound.scan_box_mm = voxel::bounds(lattice);
   made.bound.voxels_are_samples = on_samples(lattice, bench.universe.lattice());
+  made.witness = witness_of_seeds(segment, scan, made.bound.voxels_are_samples);
   // Depth is interpolated where samples pass the lower bound; an upper bound inside the object breaks that.
   if (!segment.window || why_voxels_alone(segment) != nullptr) return;
   made.bound.windows = {{.grey = scan.grey,

@@ -346,7 +346,7 @@ class Evaluator {
     object.findings.insert(object.findings.end(), object.voxel.findings.begin(), object.voxel.findings.end());
     if (with_mesh_.contains(step.id)) make_mesh(step, value, object);
     if (!operation.voxel) voxelise(object);
-    operation.bound(value, {result_.universe, result_.objects, scan_}, object);
+    operation.bound(value, {result_.universe, result_.objects, scan_, plan_.folder}, object);
     object.bound.shift_mm += object.mesh.shift_mm;
     take_within(object);
     return object;
@@ -398,7 +398,8 @@ class Evaluator {
     add_caveats(made_of, object);
     add_makers(made_of, !told.empty(), object);
     if (options_.ahead) work_ahead(object);
-    if (object.mesh.within && options_.certify && options_.meshes && !object.is_tool && operation.voxel) {
+    if (has_certificate(object) && options_.certify && options_.meshes && !object.is_tool &&
+        operation.voxel) {
       if (certifies_beside()) {
         Uncertified& made = uncertified_.emplace_back(Uncertified{object, result_.objects.size(), {}, {}});
         made.certify = [&made](const std::stop_token& stop) {

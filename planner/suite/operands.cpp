@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brep/mesh/solid.h"
+#include "convert/surface/cuberille.h"
+#include "planner/file/file_kind.h"
 #include "planner/file/mesh_file.h"
 #include "planner/file/mesh_in.h"
+#include "planner/file/octree_in.h"
 #include "planner/suite/suites.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
@@ -47,10 +51,20 @@ struct Question {
   std::optional<fs::path> answer;
 };
 
-/// All voxels that have a label; on the lattice `onto` where that is given and has them.
+/// All voxels of an .octree file, or all that have a label; on the lattice `onto` where that is given and has
+/// them.
 voxel::Octree labelled(const Program& program, const fs::path& path, Timings& timings,
                        voxel::Lattice& lattice, const voxel::Lattice* onto = nullptr,
                        bool may_be_empty = false) {
+  if (is_octree(path)) {
+    const voxel::OctreeFile file = read_timed(path, timings);
+    const auto* const octree = std::get_if<voxel::Octree>(&file.tree);
+    if (octree == nullptr)
+      throw std::runtime_error(path.string() + ": holds grey values: make a binary octree of it first");
+    lattice = octree->universe().lattice();
+    if (octree->is_empty() && !may_be_empty) throw std::runtime_error(path.string() + ": holds no voxel");
+    return *octree;
+  }
   const Stopwatch watch(timings, "read");
   voxel::Scene scene = voxel::read_scene(path);
   program.note_scan(path, scene);
@@ -111,6 +125,65 @@ Answered of_label_maps(Program& program, const Question& asked, Timings& timings
   return answered;
 }
 
+/// The boundary of a set's voxels, and the set's universe.
+struct SetAsSolid {
+  brep::Solid solid;
+  voxel::Universe universe;
+};
+SetAsSolid solid_of_set(const Program& program, const fs::path& path, Timings& timings) {
+  voxel::Lattice lattice;
+  const voxel::Octree set = labelled(program, path, timings, lattice);
+  return {brep::trusted_solid(convert::triangles_of(convert::cuberille(set, convert::Touching::Apart,
+                                                                       {program.stop.get_token(), {}})),
+                              brep::Proof::Construction),
+          set.universe()};
+}
+
+/// Whether a solid ends within a universe, so that no voxel of it is lost there.
+bool holds(const voxel::Universe& universe, const brep::Solid& solid) {
+  const voxel::Lattice lattice = universe.lattice();
+  const brep::Size& size = solid.size();
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p_mm((corner & 1) != 0 ? size.high_mm.x : size.low_mm.x,
+                          (corner & 2) != 0 ? size.high_mm.y : size.low_mm.y,
+                          (corner & 4) != 0 ? size.high_mm.z : size.low_mm.z);
+    const glm::dvec3 voxel = lattice.voxel(p_mm);
+    if (glm::any(glm::lessThan(voxel, glm::dvec3(-0.5))) ||
+        glm::any(glm::greaterThan(voxel, glm::dvec3(universe.side() - 0.5))))
+      return false;
+  }
+  return true;
+}
+
+/// A mesh and a set of voxels: both kernels have the set as the boundary of its voxels. They are compared in
+/// the set's own voxels where these hold the mesh, so that the octree has the set as it is.
+Answered of_mesh_and_set(Program& program, const Question& asked, const VerifyText& text, Timings& timings) {
+  const bool is_mesh_first = is_mesh(asked.a);
+  const fs::path &mesh_file = is_mesh_first ? asked.a : asked.b,
+                 &set_file = is_mesh_first ? asked.b : asked.a;
+  const brep::Solid mesh = read_solid(mesh_file, timings);
+  const SetAsSolid set = solid_of_set(program, set_file, timings);
+  verify::MeshOperationOptions options{text.operand_voxel_mm, {}, {program.stop.get_token(), {}}};
+  if (asked.answer && !is_mesh(*asked.answer) && !holds(set.universe, mesh))
+    throw std::runtime_error(mesh_file.string() + ": reaches beyond the voxels of " + set_file.string() +
+                             ", so that voxels cannot hold the answer: give the answer as a mesh");
+  if (!text.operand_voxel_mm || (asked.answer && !is_mesh(*asked.answer))) {
+    const glm::dvec3 spacing_mm = set.universe.lattice().spacing_mm();
+    options.voxel_mm = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+    if (holds(set.universe, mesh)) options.universe = set.universe;
+  }
+  const Stopwatch watch(timings, "verify");
+  verify::OperationAnswers answers =
+      verify::certify_operation(is_mesh_first ? mesh : set.solid, operation_of(asked.operation),
+                                is_mesh_first ? set.solid : mesh, options);
+  answers.certificate.operation = asked.a.string() + " " + asked.operation + " " + asked.b.string() + ", " +
+                                  set_file.filename().string() + " as the boundary of its voxels";
+  return {{*answers.octree, answers.solid, answers.shift_mm, answers.findings},
+          {answers.certificate},
+          {},
+          set.universe.lattice()};
+}
+
 Answered of_meshes(Program& program, const Question& asked, const VerifyText& text, Timings& timings) {
   const brep::Solid left = read_solid(asked.a, timings), right = read_solid(asked.b, timings);
   verify::MeshOperationOptions options{text.operand_voxel_mm, {}, {program.stop.get_token(), {}}};
@@ -148,12 +221,12 @@ std::vector<verify::Certificate> judged(const fs::path& answer, const verify::Ke
 
 /// The kernels' certificates, then those of the answer.
 Answered answered(Program& program, const Question& asked, const VerifyText& text, Timings& timings) {
-  if (is_mesh(asked.a) != is_mesh(asked.b))
-    throw CLI::ValidationError("verify", "two meshes or two label maps, not one of each");
-  if (!is_mesh(asked.a) && text.operand_voxel_mm)
-    throw CLI::ValidationError("--voxel", "label maps have voxels of their own");
-  Answered found =
-      is_mesh(asked.a) ? of_meshes(program, asked, text, timings) : of_label_maps(program, asked, timings);
+  const bool a_is_mesh = is_mesh(asked.a), b_is_mesh = is_mesh(asked.b);
+  if (!a_is_mesh && !b_is_mesh && text.operand_voxel_mm)
+    throw CLI::ValidationError("--voxel", "label maps and octrees have voxels of their own");
+  Answered found = a_is_mesh != b_is_mesh ? of_mesh_and_set(program, asked, text, timings)
+                   : a_is_mesh            ? of_meshes(program, asked, text, timings)
+                                          : of_label_maps(program, asked, timings);
   if (asked.answer)
     for (verify::Certificate& certificate :
          judged(*asked.answer, found.kernels, found.lattice ? &*found.lattice : nullptr, program, timings)) {

@@ -109,7 +109,7 @@ void add_verify_verbs(Program& program) {
       [&program, text, named] { return verify(program, *text, *named); });
   verb.add_option(
           "subject", text->subject,
-          "A .plan.json; or A OP B: two meshes or two label maps of any program, and union, intersection "
+          "A .plan.json; or A OP B: meshes, label maps or octrees of any program, and union, intersection "
           "or difference; or a folder or .json file of such questions with their results")
       ->expected(1, 3)
       ->type_name("PLAN | A OP B | FOLDER");

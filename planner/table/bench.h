@@ -123,6 +123,7 @@ struct BoundBench {
   const voxel::Universe& universe;
   const Objects& objects;
   const Scans& scan;
+  std::filesystem::path folder = {};  ///< paths of files are relative to it
 };
 
 /// The bench of operations that make numbers or files from objects.

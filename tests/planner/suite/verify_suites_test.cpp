@@ -245,9 +245,21 @@ TEST_F(Verify, AVoxelThatHoldsBothMeshesIsNoEvidenceAndNoSuccess) {
   EXPECT_EQ(run(question + " --accept-unresolved").status, 0);
 }
 
+TEST_F(Verify, AMeshAndALabelMapAreBroughtToBothKernels) {
+  for (const std::string& question :
+       {at("a.ply") + " union " + at("b.nrrd"), at("b.nrrd") + " difference " + at("a.ply")}) {
+    const auto answer = run("verify " + question + " --accept-unresolved --json");
+    EXPECT_EQ(answer.errors.find("not one of each"), std::string::npos) << answer.errors;
+    const tests::SortedJson json = tests::SortedJson::parse(answer.out);
+    EXPECT_EQ(json["certificates"].size(), 1U) << question;
+    EXPECT_NE(json["certificates"][0]["operation"].get<std::string>().find("boundary of its voxels"),
+              std::string::npos);
+    EXPECT_EQ(json["counts"]["FAIL"], 0) << answer.out;
+  }
+}
+
 TEST_F(Verify, WhatCannotBeUnderstoodIsRefusedByName) {
   expect_refused(run("verify " + at("a.ply") + " minus " + at("b.ply")), "minus");
-  expect_refused(run("verify " + at("a.ply") + " union " + at("b.nrrd")), "not one of each");
   expect_refused(run("verify " + at("a.ply") + " union " + at("none.ply")), "none.ply");
   expect_refused(run("verify --seed 3"), "--random");
   expect_refused(run("verify " + at("a.nrrd") + " union " + at("b.nrrd") + " --voxel 1"), "--voxel");

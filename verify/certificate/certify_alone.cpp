@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "verify/certificate/certify_alone.h"
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <tbb/parallel_for.h>
+#include <utility>
+#include <vector>
+
+#include "voxel/measure/measure.h"
+#include "voxel/space/rounded.h"
+
+namespace octotomy::verify {
+namespace {
+
+/// What the witness reads at the centres of some voxels.
+struct CentreCount {
+  std::uint64_t surplus = 0, lacking = 0;  ///< voxels that must not be there, and that must
+  std::uint64_t on_surface = 0, unknown = 0;
+  std::uint64_t by_witness = 0;  ///< inside; where either side is allowed, as the octree has it
+  std::optional<glm::ivec3> first_surplus, first_lacking;
+
+  void add(const CentreCount& other) {
+    surplus += other.surplus;
+    lacking += other.lacking;
+    on_surface += other.on_surface;
+    unknown += other.unknown;
+    by_witness += other.by_witness;
+    if (!first_surplus) first_surplus = other.first_surplus;
+    if (!first_lacking) first_lacking = other.first_lacking;
+  }
+  void add(const glm::ivec3& voxel, bool is_inside, const Word& word) {
+    if (word.in && word.out) {
+      ++(word.near ? on_surface : unknown);
+      by_witness += is_inside ? 1 : 0;
+      return;
+    }
+    by_witness += word.in ? 1 : 0;
+    if (word.allows(is_inside)) return;
+    ++(is_inside ? surplus : lacking);
+    std::optional<glm::ivec3>& first = is_inside ? first_surplus : first_lacking;
+    if (!first) first = voxel;
+  }
+};
+
+CentreCount counted(const voxel::Octree& octree, const Witness& witness, const std::stop_token& stop) {
+  const voxel::Lattice lattice = octree.universe().lattice();
+  const int side = octree.universe().side();
+  std::vector<CentreCount> layers(static_cast<std::size_t>(side));
+  tbb::parallel_for(0, side, [&](int z) {
+    if (stop.stop_requested()) return;
+    CentreCount& layer = layers[static_cast<std::size_t>(z)];
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        const glm::ivec3 voxel(x, y, z);
+        layer.add(voxel, octree.contains(voxel), witness.words(lattice.lps_mm(glm::dvec3(voxel))).voxel);
+      }
+  });
+  CentreCount all;
+  for (const CentreCount& layer : layers) all.add(layer);
+  return all;
+}
+
+}  // namespace
+
+Certificate certify_alone(const voxel::Octree& octree, const AloneInputs& inputs,
+                          const voxel::Progress& progress) {
+  const CentreCount count = counted(octree, inputs.witness, progress.stop);
+  progress.at(0.9);
+  const voxel::Lattice lattice = octree.universe().lattice();
+  const double voxel_mm3 = lattice.voxel_mm3();
+  const auto mm3 = [&](std::uint64_t voxels) { return static_cast<double>(voxels) * voxel_mm3; };
+  const voxel::Measures measures = voxel::measure(octree);
+  Certificate certificate;
+  certificate.operation = inputs.operation;
+  certificate.voxel = {inputs.lineage, measures.volume_mm3, measures.area_crofton13_mm2, measures.centroid_mm,
+                       inputs.makers};
+  certificate.mesh = {"no mesh: the witness's own reading at the centre of every voxel",
+                      mm3(count.by_witness), 0.0, std::nullopt, inputs.makers};
+  certificate.difference_mm3 = certificate.voxel.volume_mm3 - certificate.mesh.volume_mm3;
+  certificate.symmetric_difference_mm3 = mm3(count.surplus + count.lacking);
+  add_comparison(certificate, {.quantity = "centres of voxels on the wrong side",
+                               .unit = "",
+                               .difference = static_cast<double>(count.surplus + count.lacking),
+                               .tolerance = 0.0,
+                               .formula = "0: the witness reads every centre",
+                               .statement = "Centres of % voxels are on the wrong side"});
+  if (count.surplus + count.lacking > 0) {
+    const bool is_lack = count.lacking > count.surplus;
+    const double volume_mm3 = mm3(is_lack ? count.lacking : count.surplus);
+    certificate.worst = {lattice.lps_mm(glm::dvec3(is_lack ? *count.first_lacking : *count.first_surplus)),
+                         std::cbrt(volume_mm3),
+                         is_lack ? "the voxels lack a part there that the witness has"
+                                 : "the voxels have a part there that the witness lacks",
+                         volume_mm3};
+    certificate.reasons.push_back(text_of(*certificate.worst));
+  }
+  // Where either side is allowed, any answer passes.
+  certificate.limit = DetectionLimit{voxel_mm3 + mm3(count.on_surface + count.unknown), std::nullopt};
+  constexpr const char* alone = "Not independent: the voxel kernel alone made this object";
+  if (count.unknown > 0)
+    lower(certificate, Verdict::Warn,
+          std::string(alone) + ", and its witness does not know the side of " +
+              voxel::rounded(mm3(count.unknown)) + " mm3 of voxels.");
+  else
+    certificate.reasons.push_back(std::string(alone) + "; its witness judged the centre of every voxel.");
+  judge_evidence(certificate);
+  judge_emptiness(certificate, certificate.unseen_mm3());
+  progress.at(1.0);
+  return certificate;
+}
+
+}  // namespace octotomy::verify

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "verify/certificate/certificate.h"
+#include "verify/witness/reading.h"
+#include "voxel/space/progress.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::verify {
+
+struct AloneInputs {
+  std::string operation;
+  std::string lineage;              ///< of the voxels
+  std::vector<std::string> makers;  ///< of the voxels, as of Answer
+  Witness witness;                  ///< not empty; ends with the universe, as the voxels do
+};
+
+/// Judges an object that the voxel kernel alone made (tier Bounded): at the centre of every voxel of the
+/// universe, inside and outside of the object, its witness must allow the side. The witness's own reading
+/// stands in the place of the mesh kernel's answer, with the voxels' makers: the certificate is not
+/// independent and says so. It passes only where the witness is sure of the side, or has a surface within
+/// rounding, at every centre. Otherwise the verdict is WARN at best, with the volume that nobody judged.
+/// Throws voxel::Stopped. Cost: a reading of the witness for each voxel of the universe.
+Certificate certify_alone(const voxel::Octree& octree, const AloneInputs& inputs,
+                          const voxel::Progress& progress = {});
+
+}  // namespace octotomy::verify

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "verify/witness/reading.h"
+#include "voxel/space/scene.h"
+
+namespace octotomy::verify {
+
+/// What grows from where, through a scan's own samples.
+struct GrownFrom {
+  std::vector<glm::dvec3> seeds_mm;  ///< LPS; each begins at the nearest sample
+  /// Grows through the samples in the range of the seeds' samples, widened by this at both ends. None:
+  /// through those in low..high, both included; seeds outside of that grow nothing.
+  std::optional<double> tolerance = {};
+  double low = 0.0, high = std::numeric_limits<double>::infinity();
+  int neighbours = 6;  ///< 6 by faces, 18 by edges too, 26 by corners too
+  /// By how much a kernel may have rounded a sample, in the scan's unit. Samples that near a bound may belong
+  /// or not, and so may all that hangs on them.
+  double rounding = 0.0;
+};
+
+/// The samples that a path of neighbours joins to a seed, by a flood of this source's own. For voxels whose
+/// centres are the samples: at a sample both words are certain, beyond the scan all is outside. Elsewhere a
+/// point is certain where the eight samples about it agree. Throws std::invalid_argument without seeds, for a
+/// seed beyond the scan, and for other neighbours. Cost: linear in the samples; a byte for each is kept.
+Witness witness_of_grown(const voxel::Scene& scan, const GrownFrom& from);
+
+}  // namespace octotomy::verify

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// A point is `near` where its value changes sign within near_mm, in the plane or across it:
+//   in the plane  A value is a distance, or a weighted mean of two, and changes no faster than places do.
+//   across        The value is read near_mm before and behind the point as well, because it jumps halfway
+//                 between slices and at both ends of the stack.
+// near_mm is the width of contours, and the rounding of coordinates after several motions.
+#include "verify/witness/slice_witness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+namespace octotomy::verify {
+namespace {
+
+/// Readers of contours take centres within a millionth of a millimetre of a contour as on it.
+constexpr double contour_width_mm = 2e-6;
+/// Of coordinates, as a share of them.
+constexpr double rounded_share = 1e-8;
+constexpr double far_outside_mm = std::numeric_limits<double>::infinity();
+
+/// The outline of one slice.
+class Outline {
+ public:
+  explicit Outline(const std::vector<std::vector<glm::dvec2>>& polygons_mm) {
+    for (const auto& polygon : polygons_mm)
+      for (std::size_t i = 0; i < polygon.size(); ++i)
+        sides_.push_back({polygon[i], polygon[i + 1 == polygon.size() ? 0 : i + 1]});
+    for (const Side& side : sides_) {
+      low_ = glm::min(low_, glm::min(side.from, side.to));
+      high_ = glm::max(high_, glm::max(side.from, side.to));
+    }
+  }
+
+  bool empty() const { return sides_.empty(); }
+  const glm::dvec2& low_mm() const { return low_; }
+  const glm::dvec2& high_mm() const { return high_; }
+
+  /// Distance to the outline, negative inside; infinite if the slice is empty.
+  double signed_distance_mm(const glm::dvec2& p) const {
+    double square = far_outside_mm;
+    bool is_inside = false;
+    for (const Side& side : sides_) {
+      const glm::dvec2 edge = side.to - side.from, rel = p - side.from;
+      const double length2 = glm::dot(edge, edge);
+      const double t = length2 > 0.0 ? std::clamp(glm::dot(rel, edge) / length2, 0.0, 1.0) : 0.0;
+      const glm::dvec2 apart = rel - t * edge;
+      square = std::min(square, glm::dot(apart, apart));
+      // Of an edge that crosses the height of p, the crossing's place on that height.
+      if ((side.from.y > p.y) != (side.to.y > p.y) &&
+          p.x < side.from.x + (p.y - side.from.y) / (side.to.y - side.from.y) * (side.to.x - side.from.x))
+        is_inside = !is_inside;
+    }
+    const double distance_mm = std::sqrt(square);
+    return is_inside ? -distance_mm : distance_mm;
+  }
+
+ private:
+  struct Side {
+    glm::dvec2 from, to;
+  };
+  std::vector<Side> sides_;
+  glm::dvec2 low_{std::numeric_limits<double>::infinity()}, high_{-std::numeric_limits<double>::infinity()};
+};
+
+class SliceWitness {
+ public:
+  explicit SliceWitness(const DrawnStack& stack)
+      : look_(stack.look), up_(stack.up), right_(stack.right), is_interpolated_(stack.is_interpolated) {
+    if (stack.slices.size() < 2) throw std::invalid_argument("a stack of contours needs two slices or more");
+    for (const DrawnStack::Slice& slice : stack.slices) {
+      if (!at_mm_.empty() && !(slice.position_mm > at_mm_.back()))
+        throw std::invalid_argument("the slices of a stack of contours do not ascend");
+      at_mm_.push_back(slice.position_mm);
+      outlines_.emplace_back(slice.polygons_mm);
+      if (outlines_.back().empty()) continue;
+      low_ = glm::min(low_, outlines_.back().low_mm());
+      high_ = glm::max(high_, outlines_.back().high_mm());
+    }
+    const std::size_t last = at_mm_.size() - 1;
+    begin_mm_ = at_mm_[0] - 0.5 * (at_mm_[1] - at_mm_[0]);
+    end_mm_ = at_mm_[last] + 0.5 * (at_mm_[last] - at_mm_[last - 1]);
+  }
+
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm) const {
+    const double near_mm = contour_width_mm + rounded_share * glm::length(p_mm) + slack_mm;
+    const glm::dvec2 p(glm::dot(p_mm, right_), glm::dot(p_mm, up_));
+    const double at_mm = glm::dot(p_mm, look_);
+    // Between outlines the interpolated one lies within the box of both.
+    if (glm::any(glm::lessThan(p, low_ - near_mm)) || glm::any(glm::greaterThan(p, high_ + near_mm)) ||
+        at_mm < begin_mm_ - near_mm || at_mm > end_mm_ + near_mm)
+      return {certainly_out, certainly_out, 0};
+    bool is_near = false, is_in = false, is_out = false;
+    for (const double across_mm : {-near_mm, 0.0, near_mm}) {
+      const double value_mm = value(p, at_mm + across_mm);
+      is_near = is_near || std::abs(value_mm) <= near_mm;
+      (value_mm <= 0.0 ? is_in : is_out) = true;
+    }
+    const Word word = is_near || (is_in && is_out) ? on_surface : is_in ? certainly_in : certainly_out;
+    // A mesh of such a surface may have a vertex anywhere on it.
+    return {word, word, word.near ? 2 : 0};
+  }
+
+ private:
+  double value(const glm::dvec2& p, double at_mm) const {
+    if (at_mm < begin_mm_ || at_mm > end_mm_) return far_outside_mm;
+    if (at_mm <= at_mm_.front()) return outlines_.front().signed_distance_mm(p);
+    if (at_mm >= at_mm_.back()) return outlines_.back().signed_distance_mm(p);
+    std::size_t next = 1;
+    while (at_mm_[next] < at_mm) ++next;
+    const Outline &a = outlines_[next - 1], &b = outlines_[next];
+    const double share = (at_mm - at_mm_[next - 1]) / (at_mm_[next] - at_mm_[next - 1]);
+    if (is_interpolated_ && !a.empty() && !b.empty())
+      return (1.0 - share) * a.signed_distance_mm(p) + share * b.signed_distance_mm(p);
+    return (share <= 0.5 ? a : b).signed_distance_mm(p);
+  }
+
+  glm::dvec3 look_, up_, right_;
+  bool is_interpolated_;
+  std::vector<double> at_mm_;
+  std::vector<Outline> outlines_;
+  glm::dvec2 low_{std::numeric_limits<double>::infinity()}, high_{-std::numeric_limits<double>::infinity()};
+  double begin_mm_ = 0.0, end_mm_ = 0.0;
+};
+
+}  // namespace
+
+Witness witness_of_slices(const DrawnStack& stack) {
+  const auto read = std::make_shared<const SliceWitness>(stack);
+  return [read](const glm::dvec3& p_mm, double slack_mm) { return (*read)(p_mm, slack_mm); };
+}
+
+}  // namespace octotomy::verify
