@@ -25,6 +25,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "planner/cli/verb_groups.h"
 #include "planner/cli/verbs.h"
 #include "planner/suite/suite.h"
 #include "planner/table/fault.h"
@@ -231,6 +232,7 @@ int parse_and_run(int count, char** arguments) {
   cli::add_cephalometry(program);
   cli::add_outcome(program);
   cli::add_serve(program);
+  cli::group_verbs(app);
   try {
     app.parse(count, arguments);
     need_named_outputs(app);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "tests/file_bytes.h"
@@ -30,6 +31,34 @@ TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
     EXPECT_NE(answer.out.find("Example:"), std::string::npos) << verb;
     EXPECT_NE(answer.out.find("--json"), std::string::npos) << verb;
   }
+}
+
+TEST_F(CommandLine, HelpListsEveryVerbInExactlyOneGroup) {
+  // A line of help that holds a verb: under a heading, two blanks before its name.
+  std::istringstream help(run("--help").out);
+  std::map<std::string, int> lines;
+  int groups = 0;
+  bool is_in_group = false;
+  for (std::string line; std::getline(help, line);) {
+    if (line == "Example:") break;
+    EXPECT_NE(line, "Subcommands:") << "a verb has no group: planner/cli/verb_groups.cpp";
+    if (line.ends_with(':') && line != "Options:") {
+      ++groups;
+      is_in_group = true;
+    } else if (is_in_group && line.starts_with("  ")) {
+      ++lines[line.substr(2, line.find(' ', 2) - 2)];
+    }
+  }
+  EXPECT_EQ(groups, 9);
+  // The words of the last case of the completion: all verbs, then options.
+  const std::string completion = run("--manual bash").out, start = "    *) words='";
+  const std::size_t at = completion.find(start);
+  ASSERT_NE(at, std::string::npos);
+  std::istringstream words(completion.substr(at + start.size()));
+  std::size_t verbs = 0;
+  for (std::string word; words >> word && !word.starts_with('-'); ++verbs) EXPECT_EQ(lines[word], 1) << word;
+  EXPECT_GT(verbs, 40u);
+  EXPECT_EQ(lines.size(), verbs);
 }
 
 TEST_F(CommandLine, TheManualAndTheCompletionsNameEveryVerbAndItsOptions) {
