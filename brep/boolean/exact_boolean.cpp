@@ -118,43 +118,65 @@ struct Watched : pmp::Corefinement::Default_visitor<Surface> {
   void triangulating_faces_step() { advance(); }
 };
 
-}  // namespace
+/// The surfaces cut by each other, and the results asked for.
+struct Cut {
+  ExactTriangles a, b;
+  std::array<std::optional<ExactTriangles>, 4> results;  ///< of those asked for, the manifold ones
+};
 
-ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b, const Progress& progress) {
+Cut cut(const Solid& a, const Solid& b, const std::vector<ResultPlace>& asked, const Progress& progress) {
   Surface exact_a = surface_of(a, "a"), exact_b = surface_of(b, "b");
-  const Rational of_a = six_volumes(triangles_of(exact_a)), of_b = six_volumes(triangles_of(exact_b));
   std::array<Surface, 4> surfaces;
   std::array<boost::optional<Surface*>, 4> output;
   static_assert(int{pmp::Corefinement::UNION} == int{of_union} &&
                 int{pmp::Corefinement::INTERSECTION} == int{of_intersection} &&
-                int{pmp::Corefinement::TM1_MINUS_TM2} == int{of_a_minus_b});
-  const ResultPlace wanted = operation == Operation::Union          ? of_union
-                             : operation == Operation::Intersection ? of_intersection
-                                                                    : of_a_minus_b;
-  for (const ResultPlace r : {wanted, of_union, of_intersection}) output[r] = &surfaces[r];
+                int{pmp::Corefinement::TM1_MINUS_TM2} == int{of_a_minus_b} &&
+                int{pmp::Corefinement::TM2_MINUS_TM1} == int{of_b_minus_a});
+  for (const ResultPlace r : asked) output[r] = &surfaces[r];
   Watched watched;
   watched.progress = &progress;
   const std::array<bool, 4> manifold = pmp::corefine_and_compute_boolean_operations(
       exact_a, exact_b, output, CGAL::parameters::visitor(watched));
-  for (std::size_t r = 0; r < output.size(); ++r)
-    if (output[r] && !manifold[r])
-      throw Error(
-          ErrorCode::Geometry,
-          "no exact Boolean: a result would not be manifold, as the surfaces only touch; without exactness "
-          "one is moved by far less than matters");
+  Cut made{triangles_of(exact_a), triangles_of(exact_b), {}};
+  for (const ResultPlace r : asked)
+    if (manifold[r]) made.results[r] = triangles_of(surfaces[r]);
+  return made;
+}
+
+}  // namespace
+
+ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b, const Progress& progress) {
+  const Rational of_a = six_volumes(triangles_of(surface_of(a, "a"))),
+                 of_b = six_volumes(triangles_of(surface_of(b, "b")));
+  const ResultPlace wanted = operation == Operation::Union          ? of_union
+                             : operation == Operation::Intersection ? of_intersection
+                                                                    : of_a_minus_b;
+  std::vector<ResultPlace> asked = {of_union, of_intersection};
+  if (wanted == of_a_minus_b) asked.push_back(wanted);
+  Cut made = cut(a, b, asked, progress);
+  // Solids that touch along an edge have a union that is not manifold; the differences prove the rest.
+  if (!made.results[of_union] && wanted != of_union)
+    made = cut(a, b, {of_intersection, of_a_minus_b, of_b_minus_a}, progress);
+  auto& results = made.results;
+  const bool by_differences = !results[of_union];
+  if (!results[wanted] || !results[of_intersection] ||
+      (by_differences && (wanted == of_union || !results[of_a_minus_b] || !results[of_b_minus_a])))
+    throw Error(
+        ErrorCode::Geometry,
+        "no exact Boolean: a result would not be manifold, as the surfaces only touch; without exactness "
+        "one is moved by far less than matters");
 
   progress.at(0.9);
-  std::array<std::optional<ExactTriangles>, 4> results;
-  for (std::size_t r = 0; r < output.size(); ++r)
-    if (output[r]) results[r] = triangles_of(surfaces[r]);
-  correct_contrary_shells(triangles_of(exact_a), triangles_of(exact_b), results,
-                          Kernel().less_xyz_3_object());
-  const Rational united = six_volumes(*results[of_union]), common = six_volumes(*results[of_intersection]);
-  prove(of_a + of_b, united + common, "|A| + |B| = |A u B| + |A n B|");
+  correct_contrary_shells(made.a, made.b, results, Kernel().less_xyz_3_object());
+  const Rational common = six_volumes(*results[of_intersection]);
+  const Rational united = by_differences ? of_a + of_b - common : six_volumes(*results[of_union]);
+  if (!by_differences) prove(of_a + of_b, united + common, "|A| + |B| = |A u B| + |A n B|");
   const Rational result = operation == Operation::Union          ? united
                           : operation == Operation::Intersection ? common
                                                                  : six_volumes(*results[wanted]);
-  if (operation == Operation::Difference) prove(of_a, result + common, "|A| = |A - B| + |A n B|");
+  if (by_differences || operation == Operation::Difference)
+    prove(of_a, six_volumes(*results[of_a_minus_b]) + common, "|A| = |A - B| + |A n B|");
+  if (by_differences) prove(of_b, six_volumes(*results[of_b_minus_a]) + common, "|B| = |B - A| + |A n B|");
 
   std::size_t moved = 0;
   const Solid solid = trusted_solid(rounded(*results[wanted], moved), Proof::Rounded);

@@ -303,6 +303,7 @@ std::vector<std::uint8_t> mark_degenerate(const Triangles& triangles, Health& he
 struct PlacedShells {
   double volume_mm3 = 0.0;
   bool all_face_inward = false;
+  std::size_t overlapping = 0;  ///< shells turned outward whose probe lies within others turned outward
 };
 
 /// Counts shells on the wrong side of the others: the shells around one must add up to no winding where it is
@@ -312,7 +313,7 @@ PlacedShells place_shells(const Triangles& triangles, const std::vector<std::uin
                           const std::vector<std::uint32_t>& shell, const MortonTree* tree, Health& health,
                           Offenders& offenders) {
   assert(health.closed && health.nonmanifold_edges == 0 && health.misoriented_edges == 0);
-  PlacedShells placed{0.0, true};
+  PlacedShells placed{0.0, true, 0};
   for (const ShellPlace& place : shell_places({triangles, first, shell}, tree)) {
     placed.volume_mm3 += place.volume_mm3;
     // Turned over, volume and winding change their signs.
@@ -320,6 +321,7 @@ PlacedShells place_shells(const Triangles& triangles, const std::vector<std::uin
                              place.winding == (place.volume_mm3 < 0.0 ? 0 : -1);
     if (place.winding == (place.volume_mm3 > 0.0 ? 0 : 1)) continue;
     ++health.misplaced_shells;
+    placed.overlapping += place.volume_mm3 > 0.0 && place.winding > 0;
     Offenders::note(offenders.misplaced, place.shell);
   }
   return placed;
@@ -378,8 +380,9 @@ void tell(const Triangles& triangles, Health& health, const Offenders& offenders
             " mm3: turn its triangles over (first: " + "triangle " + std::to_string(offenders.misplaced) +
             place_of(triangles, offenders.misplaced) + ")");
   } else {
+    const std::string overlap = placed.overlapping == 0 ? "" : ", as shells that face outward overlap";
     say(Defect::MisplacedShell, health.misplaced_shells,
-        "shells that face the wrong way for the shells around them", offenders.misplaced);
+        "shells that face the wrong way for the shells around them" + overlap, offenders.misplaced);
     if (is_placed && !(placed.volume_mm3 > 0.0))
       add(Defect::InsideOut, "the volume is " + std::to_string(placed.volume_mm3) +
                                  " mm3: the triangles face inward or enclose nothing");

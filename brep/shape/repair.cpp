@@ -31,6 +31,7 @@
 #include "brep/shape/decimate.h"
 #include "brep/shape/enclose.h"
 #include "brep/shape/fill_holes.h"
+#include "brep/shape/unite_shells.h"
 #include "brep/shape/untangle.h"
 
 namespace octotomy::brep {
@@ -145,12 +146,17 @@ class Mender {
     });
   }
 
+  /// What becomes of closed shells within others. Alternating: inward within an odd number of them, outward
+  /// else. AsGiven: that came in with all triangles alike stay as they came, outward as bodies to unite,
+  /// inward as cavities, where the shells around them make a body there.
+  enum class Nested { Alternating, AsGiven };
+
   /// Whether it turned any.
-  bool orient() {
+  bool orient(Nested nested = Nested::Alternating) {
     std::vector<std::uint8_t> turned(repair_.surface.faces.size(), 0);
     const Across across = across_of(repair_.surface);
     const std::vector<std::uint32_t> shell = wind_alike(across, turned);
-    place_shells(across, shell, turned);
+    place_shells(across, shell, nested, turned);
     bool any = false;
     for (std::size_t f = 0; f < turned.size(); ++f) {
       if (!turned[f]) continue;
@@ -193,6 +199,17 @@ class Mender {
     for (const std::uint32_t f : done.face_origin) origin.push_back(origin_[f]);
     origin_ = std::move(origin);
     repair_.surface = std::move(done.surface);
+  }
+
+  /// Whether the shells have a union by Booleans.
+  bool unite(const std::stop_token& stop) {
+    split();
+    std::optional<UnitedShells> united = united_shells(repair_.surface, stop);
+    if (!united || !health(united->surface).solid()) return false;
+    replace(std::move(united->surface), "solid", "cut or taken out, as closed shells were united");
+    change("solid", std::to_string(united->bodies) + " closed shells were united by a Boolean", {});
+    for (const std::string& finding : united->findings) change("solid", "of the union: " + finding, {});
+    return true;
   }
 
   void enclose(const RepairOptions& options) {
@@ -442,11 +459,12 @@ class Mender {
     return shells;
   }
 
-  /// Other closed shells that have all of a shell's probes inside; those that cross it do not.
-  static std::size_t shells_around(std::uint32_t first, const Shell& own,
-                                   const std::map<std::uint32_t, Shell>& shells,
-                                   const std::vector<std::uint32_t>& shell, const Triangles& wound,
-                                   const SurfaceTree& tree) {
+  /// Other closed shells that have all of a shell's probes inside; those that cross it do not. By their first
+  /// triangles.
+  static std::vector<std::uint32_t> shells_around(std::uint32_t first, const Shell& own,
+                                                  const std::map<std::uint32_t, Shell>& shells,
+                                                  const std::vector<std::uint32_t>& shell,
+                                                  const Triangles& wound, const SurfaceTree& tree) {
     std::map<std::uint32_t, std::size_t> containing;
     std::size_t probes = 0;
     for (const auto& probe : own.probes) {
@@ -457,15 +475,15 @@ class Mender {
         if (shell[crossing.face] != first) within[shell[crossing.face]] ^= true;
       for (const auto& [other, is_within] : within) containing[other] += is_within;
     }
-    return static_cast<std::size_t>(
-        std::count_if(containing.begin(), containing.end(), [&](const auto& other) {
-          return other.second == probes && probes > 0 && shells.at(other.first).is_closed;
-        }));
+    std::vector<std::uint32_t> around;
+    for (const auto& [other, count] : containing)
+      if (count == probes && probes > 0 && shells.at(other).is_closed) around.push_back(other);
+    return around;
   }
 
-  /// Turns closed shells outward, or inward within an odd number of other closed ones; of open ones, so that
-  /// fewer of their triangles have been turned.
-  void place_shells(const Across& across, const std::vector<std::uint32_t>& shell,
+  /// Turns closed shells outward, or inward as `nested` says; of open ones, so that fewer of their triangles
+  /// have been turned.
+  void place_shells(const Across& across, const std::vector<std::uint32_t>& shell, Nested nested,
                     std::vector<std::uint8_t>& turned) {
     assert(turned.size() == repair_.surface.faces.size() && shell.size() == turned.size());
     Triangles wound = repair_.surface;
@@ -473,10 +491,25 @@ class Mender {
       if (turned[f]) std::swap(wound.faces[f][1], wound.faces[f][2]);
     const std::map<std::uint32_t, Shell> shells = shells_of(wound, across, shell, turned);
     const SurfaceTree tree(wound);
+    std::map<std::uint32_t, std::vector<std::uint32_t>> around;
+    for (const auto& [first, own] : shells)
+      if (own.is_closed) around[first] = shells_around(first, own, shells, shell, wound, tree);
+    // Where an outermost shell came in turned inward, or in part, no shell's way says what it is.
+    const bool ways_hold =
+        nested == Nested::AsGiven && std::all_of(around.begin(), around.end(), [&](const auto& place) {
+          const Shell& own = shells.at(place.first);
+          return !place.second.empty() || (own.turns == 0 && own.volume_mm3 > 0.0);
+        });
     for (const auto& [first, own] : shells) {
       bool wrong = 2 * own.turns > own.faces.size();
-      if (own.is_closed)
-        wrong = (own.volume_mm3 < 0.0) != (shells_around(first, own, shells, shell, wound, tree) % 2 == 1);
+      if (own.is_closed) {
+        const std::vector<std::uint32_t>& others = around.at(first);
+        wrong = (own.volume_mm3 < 0.0) != (others.size() % 2 == 1);
+        int winding = 0;
+        for (const std::uint32_t other : others) winding += shells.at(other).volume_mm3 > 0.0 ? 1 : -1;
+        if (ways_hold && own.turns == 0 && !others.empty())
+          wrong = own.volume_mm3 < 0.0 ? winding < 1 : winding < 0;
+      }
       if (wrong)
         for (const std::uint32_t f : own.faces) turned[f] ^= 1u;
     }
@@ -572,13 +605,14 @@ void connect(Mender& mender, const RepairOptions& options) {
   if (solid && !options.weld_mm && mender.is_open()) mender.weld(weld_share() * mender.extent_mm());
   if (options.remove_flat || solid) mender.remove_repeats();
   if (options.remove_duplicates || solid) mender.remove_duplicates();
-  if (options.orient || solid) mender.orient();
+  const auto nested = solid ? Mender::Nested::AsGiven : Mender::Nested::Alternating;
+  if (options.orient || solid) mender.orient(nested);
   if (options.remove_flat || solid) mender.flip_flat();
   if (solid) mender.split();
   if (solid) mender.remove_films();
   if (options.fill_holes || solid) mender.fill_holes(options.longest_hole_mm);
   if (solid) mender.remove_films();
-  if ((options.orient && options.fill_holes) || solid) mender.orient();
+  if ((options.orient && options.fill_holes) || solid) mender.orient(nested);
 }
 
 /// Triangles above which a solid is enclosed at once, without trying to keep the rest of the surface.
@@ -587,6 +621,9 @@ constexpr std::size_t most_untangled = 100'000;
 void make_solid(Mender& mender, double before_mm3, const RepairOptions& options) {
   Health now = health(mender.surface());
   if (now.solid() && !options.hull) return;
+  if (now.closed && now.shells > 1 && !options.hull && !options.cell_mm &&
+      mender.unite(options.progress.stop))
+    return;
   const std::size_t triangles = mender.surface().faces.size();
   if (!options.hull && !options.cell_mm && now.closed && triangles <= most_untangled &&
       now.self_intersections <= triangles / 10) {
@@ -629,7 +666,7 @@ Repair repair(const Triangles& surface, const RepairOptions& options) {
   return mender.result();
 }
 
-RepairEffect repair_effect(const Triangles& before, const Triangles& after) {
+RepairEffect repair_effect(const Triangles& before, const Triangles& after, const KnownSolids& solids) {
   const auto finite_of = [](const Triangles& surface) {
     Triangles finite{surface.points_mm, {}};
     const auto is_finite = [](const glm::dvec3& p) { return std::isfinite(glm::dot(p, glm::dvec3(1.0))); };
@@ -645,9 +682,11 @@ RepairEffect repair_effect(const Triangles& before, const Triangles& after) {
   effect.volume_before_mm3 = volumes.all.a_mm3;
   if (volumes.lines > 0)
     effect.open_line_share = static_cast<double>(volumes.open_lines) / static_cast<double>(volumes.lines);
-  effect.volume_after_mm3 = line_volumes(is, {}).all.a_mm3;
-  effect.area_before_mm2 = size_of(was).area_mm2;
-  effect.area_after_mm2 = size_of(is).area_mm2;
+  const Size size_before = size_of(was), size_after = size_of(is);
+  if (solids.before) effect.volume_before_mm3 = size_before.volume_mm3;
+  effect.volume_after_mm3 = solids.after ? size_after.volume_mm3 : line_volumes(is, {}).all.a_mm3;
+  effect.area_before_mm2 = size_before.area_mm2;
+  effect.area_after_mm2 = size_after.area_mm2;
   const auto measure = [&](const Triangles& from, const Triangles& to) {
     if (from.faces.empty() || to.faces.empty()) return;
     // Each point once, then the triangles' middles.

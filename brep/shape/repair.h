@@ -27,7 +27,9 @@ struct RepairOptions {
   /// surface there.
   bool remove_intersections = false;
   /// Closed and free of self-intersection in any case: where the steps above, those of them too that were not
-  /// asked for, leave no solid, the surface is made anew by enclose(). Its cell and hull:
+  /// asked for, leave no solid, closed shells are united by united_shells(); where that has no answer, the
+  /// surface is made anew by enclose(). Closed shells within others stay bodies or cavities as they are
+  /// turned, where all outermost ones came in turned outward. The cell and hull of enclose():
   bool solid = false;
   std::optional<double> cell_mm = std::nullopt;
   bool hull = false;
@@ -64,16 +66,22 @@ Repair repair(const Triangles& surface, const RepairOptions& options);
 
 /// How far one surface is from another that was made of it.
 struct RepairEffect {
-  double volume_before_mm3 = 0.0, volume_after_mm3 = 0.0;  ///< by line_volumes(), also of open surfaces
-  double open_line_share = 0.0;                            ///< of the lines that the volume before leaves out
+  /// Of solids the exact sum over their triangles; of other surfaces, also open ones, by line_volumes().
+  double volume_before_mm3 = 0.0, volume_after_mm3 = 0.0;
+  double open_line_share = 0.0;  ///< of the lines that the volume before leaves out
   double area_before_mm2 = 0.0, area_after_mm2 = 0.0;
   /// Of corners and middles of triangles of either surface from the other.
   double largest_distance_mm = 0.0;
   glm::dvec3 largest_at_mm{0.0};
 };
 
+/// Which of both surfaces health() has found to be solids.
+struct KnownSolids {
+  bool before = false, after = false;
+};
+
 /// Precondition: both have triangles. Triangles with points that are not finite are left out. Cost: n log n,
 /// parallel.
-RepairEffect repair_effect(const Triangles& before, const Triangles& after);
+RepairEffect repair_effect(const Triangles& before, const Triangles& after, const KnownSolids& solids = {});
 
 }  // namespace octotomy::brep

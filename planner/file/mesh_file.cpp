@@ -59,7 +59,9 @@ brep::Solid read_mended_solid(const std::filesystem::path& path, Timings& timing
     options.solid = true;
     options.progress = progress;
     const brep::Repair repaired = brep::repair(triangles, options);
-    const brep::RepairEffect effect = brep::repair_effect(triangles, repaired.surface);
+    brep::Solid solid = brep::solid_of(repaired.surface);
+    const brep::RepairEffect effect =
+        brep::repair_effect(triangles, repaired.surface, {.before = false, .after = true});
     findings.push_back(
         path.filename().string() + " is no solid (" + health.findings.front() + "), so it was mended: " +
         (repaired.enclosed_cell_mm
@@ -68,7 +70,7 @@ brep::Solid read_mended_solid(const std::filesystem::path& path, Timings& timing
         ", volume from " + grouped(effect.volume_before_mm3, 1) + " to " +
         grouped(effect.volume_after_mm3, 1) + " mm\u00b3, nowhere further apart than " +
         three_figures(effect.largest_distance_mm) + " mm; octotomy repair --solid lists each change");
-    return brep::solid_of(repaired.surface);
+    return solid;
   } catch (const brep::Error& error) {
     throw brep::Error(error.code(), path.string() + ": " + error.what());
   }

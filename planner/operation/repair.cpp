@@ -77,14 +77,19 @@ Mended mended(const Repair& repair, const std::filesystem::path& path, const vox
 }
 
 /// What was done and what came of it.
-Json told(const Mended& made, const brep::RepairEffect& effect) {
+Json told(const Mended& made, const brep::RepairEffect& effect, const brep::KnownSolids& solids) {
+  const auto estimator = [](bool is_solid) {
+    return is_solid ? "divergence theorem over the mesh"
+                    : "lengths inside on parallel lines; lines through holes are left out";
+  };
   return {{"changes", changes_json(made.repaired.changes)},
           {"left", changes_json(made.repaired.left)},
           {"method", made.repaired.enclosed_cell_mm ? "enclosed" : "mended"},
           {"cell_mm", made.repaired.enclosed_cell_mm ? Json(*made.repaired.enclosed_cell_mm) : Json(nullptr)},
           {"volume_before_mm3", effect.volume_before_mm3},
           {"volume_after_mm3", effect.volume_after_mm3},
-          {"volume_estimator", "lengths inside on parallel lines; lines through holes are left out"},
+          {"volume_before_estimator", estimator(solids.before)},
+          {"volume_after_estimator", estimator(solids.after)},
           {"open_line_share", effect.open_line_share},
           {"area_before_mm2", effect.area_before_mm2},
           {"area_after_mm2", effect.area_after_mm2},
@@ -102,7 +107,9 @@ void triangles(const Repair& repair, const MeshBench& bench, MeshSide& made) {
   if (!health.solid())
     throw std::runtime_error(repair.path.string() + ": is still not a solid: " + health.findings.front() +
                              "; ask for more to be mended");
-  made.details = told(mended_mesh, brep::repair_effect(mended_mesh.read, mended_mesh.repaired.surface));
+  constexpr brep::KnownSolids solids{.before = false, .after = true};
+  made.details =
+      told(mended_mesh, brep::repair_effect(mended_mesh.read, mended_mesh.repaired.surface, solids), solids);
   made.whole = brep::trusted_solid(mended_mesh.repaired.surface, brep::Proof::Construction);
   made.lineage = "triangles of " + repair.path.filename().string() + ", mended";
 }
@@ -138,8 +145,6 @@ FileAnswer on_files(const Repair& repair, const FileBench& bench) {
     return run();
   };
   const brep::Health before = timed("health", [&] { return brep::health(without_wild_points(read)); });
-  const brep::RepairEffect effect =
-      timed("effect", [&] { return brep::repair_effect(read, repaired.surface); });
   Outputs outputs;
   brep::Health after;
   outputs.write(repair.out, [&](const std::filesystem::path& file) {
@@ -150,13 +155,17 @@ FileAnswer on_files(const Repair& repair, const FileBench& bench) {
     });
   });
   outputs.commit();
+  const brep::KnownSolids solids{.before = before.solid(),
+                                 .after = after.solid() || brep::health(repaired.surface).solid()};
+  const brep::RepairEffect effect =
+      timed("effect", [&] { return brep::repair_effect(read, repaired.surface, solids); });
   FileAnswer answer;
   for (const brep::Change& left : repaired.left) answer.findings.push_back(left.step + ": " + left.what);
-  if (!after.solid() && brep::health(repaired.surface).solid())
+  if (!after.solid() && solids.after)
     answer.findings.push_back("the surface is a solid, but as " + repair.out.extension().string() +
                               " has it, rounded, it is none: write .ply, .off or .vtp");
   answer.json = {{"path", repair.out.string()}};
-  answer.json.update(told(made, effect));
+  answer.json.update(told(made, effect, solids));
   answer.json["before"] = to_json(before);
   answer.json["health"] = to_json(after);
   answer.json["findings"] = answer.findings;

@@ -8,6 +8,7 @@
 #include "brep/mesh/measure.h"
 #include "brep/mesh/split_fans.h"
 #include "convert/deck/deck.h"
+#include "convert/deck/second_order.h"
 #include "convert/tet/octree_tetrahedra.h"
 #include "convert/tet/region_tetrahedra.h"
 #include "convert/tet/separate_regions.h"
@@ -310,10 +311,18 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
     deck.progress = bench.progress("writing");
     convert::write_deck(tetrahedra, asked.out, deck);
   }
+  // Of the deck as written: sides of order 2 have nodes that the linear elements lack.
+  std::size_t nodes = tetrahedra.nodes_mm.size();
+  std::vector<convert::NodeSet> written_sets = deck.node_sets;
+  if (asked.order == 2) {
+    convert::SecondOrder written = convert::second_order(tetrahedra, deck);
+    nodes = written.tetrahedra.nodes_mm.size();
+    written_sets = std::move(written.options.node_sets);
+  }
   Json node_sets = Json::object();
-  for (const convert::NodeSet& set : deck.node_sets) node_sets[set.name] = set.nodes.size();
+  for (const convert::NodeSet& set : written_sets) node_sets[set.name] = set.nodes.size();
   FileAnswer answer{{{"path", asked.out.string()},
-                     {"nodes", tetrahedra.nodes_mm.size()},
+                     {"nodes", nodes},
                      {"tets", tetrahedra.tets.size()},
                      {"regions", filled.regions},
                      {"volume_mm3", quality.volume_mm3},

@@ -42,6 +42,16 @@ TEST(ExactBoolean, RefusesWhatHasNoSolidAnswer) {
                std::invalid_argument);
 }
 
+TEST(ExactBoolean, SolidsThatTouchAtAnEdgeHaveNothingInCommon) {
+  const Solid a = solid_of(shapes::box({0, 0, 0}, {2, 2, 2})),
+              b = solid_of(shapes::box({2, 2, 0}, {4, 4, 2}));
+  const ExactBoolean common = exact_boolean(a, Operation::Intersection, b);
+  EXPECT_TRUE(common.solid.empty());
+  EXPECT_EQ(common.result_mm3, 0.0);
+  EXPECT_EQ(common.united_mm3, 16.0);
+  EXPECT_EQ(exact_boolean(a, Operation::Difference, b).result_mm3, 8.0);
+}
+
 TEST(ExactBoolean, AnOperandThatMeetsItselfDoesNotPassForASolid) {
   // Two balls in one mesh that overlap: their common part counts twice in the volume but not in the result.
   const Triangles twice =

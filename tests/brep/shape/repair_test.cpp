@@ -87,6 +87,44 @@ TEST(Repair, ShellsFaceOutwardAndCavitiesInward) {
   EXPECT_EQ(count_of(mended, "orient"), 24);
 }
 
+/// A solid of the surface by its Booleans, never by enclosing.
+double united_mm3(const Triangles& surface, std::size_t shells) {
+  RepairOptions options;
+  options.solid = true;
+  const Repair mended = repair(surface, options);
+  EXPECT_FALSE(mended.enclosed_cell_mm.has_value());
+  const Health found = health(mended.surface);
+  EXPECT_TRUE(found.solid());
+  EXPECT_EQ(found.shells, shells);
+  return size_of(mended.surface).volume_mm3;
+}
+
+TEST(Repair, ClosedShellsThatOverlapAreUnitedByTheirBoolean) {
+  const Triangles cube = shapes::box({0, 0, 0}, {2, 2, 2}), other = shapes::box({1, 1, 1}, {3, 3, 3});
+  EXPECT_NEAR(united_mm3(shapes::together(cube, other), 1), 15, 1e-12);
+  EXPECT_NEAR(united_mm3(shapes::together(cube, shapes::inside_out(other)), 1), 15, 1e-12) << "one turned";
+  const Triangles flush = shapes::box({2, 0, 0}, {4, 2, 2});
+  EXPECT_NEAR(united_mm3(shapes::together(cube, flush), 1), 16, 1e-12) << "a face in common";
+}
+
+TEST(Repair, ShellsWithinAnotherAreBodiesOrCavitiesAsTheyAreTurned) {
+  const Triangles outer = shapes::box({0, 0, 0}, {4, 4, 4}), inner = shapes::box({1, 1, 1}, {3, 3, 3});
+  EXPECT_NEAR(united_mm3(shapes::together(outer, inner), 1), 64, 1e-12);
+  const Triangles hollow = shapes::together(outer, shapes::inside_out(inner));
+  EXPECT_NEAR(united_mm3(hollow, 2), 56, 1e-12);
+  EXPECT_NEAR(united_mm3(shapes::inside_out(hollow), 2), 56, 1e-12) << "inside out as a whole";
+  // A body in the wall of the hollow one fills one of the cavity's eight unit cubes: 56 + 27 - 7.
+  EXPECT_NEAR(united_mm3(shapes::together(hollow, shapes::box({2, 2, 2}, {5, 5, 5})), 2), 76, 1e-12);
+}
+
+TEST(Repair, VolumesOfSolidsAreTheirTriangles) {
+  const Triangles thin = shapes::box({0, 0, 0}, {1.0 / 3.0, 0.7, 11});
+  const double exact = size_of(thin).volume_mm3;
+  const RepairEffect effect = repair_effect(thin, thin, {.before = true, .after = true});
+  EXPECT_EQ(effect.volume_before_mm3, exact);
+  EXPECT_EQ(effect.volume_after_mm3, exact);
+}
+
 TEST(Repair, AMoebiusStripCannotBeOrientedAndThatIsTold) {
   Triangles strip;
   constexpr std::uint32_t n = 12;
