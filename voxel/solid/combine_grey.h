@@ -21,10 +21,12 @@ struct GreyResult {
 /// The voxels of an expression with their samples, as a grey octree whose ranges are computed from the
 /// result. A voxel's sample is that of the first window of the expression, in reading order, that contains
 /// the voxel and is not under a complement or to the right of a minus. If there is none, it is the sample of
-/// the first window whose complement contains the voxel, and otherwise `filled`. Samples of moved windows are
-/// interpolated once and rounded, halves upward. The voxels are those of combine(). Throws
-/// std::invalid_argument if the windows' samples have different steps. Parallel; same bits on any thread
-/// count. Memory: the samples of the blocks that contain a voxel. Source: thesis 7.2 for grey operands.
+/// the first window whose complement contains the voxel, and otherwise `filled`. Of a union's operands only
+/// those that contain the voxel give samples: in `move(h & c, m) | (h - c)` a voxel of `h - c` alone keeps
+/// the sample of `h` at rest. Samples of moved windows are interpolated once and rounded, halves upward. The
+/// voxels are those of combine(). Throws std::invalid_argument if the windows' samples have different steps.
+/// Parallel; same bits on any thread count. Memory: the samples of the blocks that contain a voxel. Source:
+/// thesis 7.2 for grey operands.
 GreyOctree combine_grey(const Universe& universe, const Expression& expression,
                         const GreyResult& options = {});
 

@@ -79,12 +79,14 @@ class Expression {
   /// if it is none.
   friend Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still);
 
+  /// A part of another expression, shared with it. Precondition: not null.
+  explicit Expression(std::shared_ptr<const Term> term) : term_(std::move(term)) {}
+
   const Term& term() const { return *term_; }
 
  private:
   friend Expression carried(const Expression& a, const glm::dmat4& moved_from_still);
   explicit Expression(Leaf leaf);
-  explicit Expression(std::shared_ptr<const Term> term) : term_(std::move(term)) {}
   Expression(Kind kind, const Expression& a, const Expression& b);
   std::shared_ptr<const Term> term_;
 };

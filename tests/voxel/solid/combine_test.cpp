@@ -453,5 +453,42 @@ TEST(CombineGrey, FilledVoxelsOfSamplesInStepsHaveTheirValueInTheScansUnit) {
   EXPECT_THROW(combine_grey(universe, all | Expression(window_of(other, 0.0))), std::invalid_argument);
 }
 
+TEST(CombineGrey, ASampleIsOfTheOperandThatOwnsTheVoxelInEitherOrder) {
+  const Universe universe = unit_universe(4);
+  Scene scene;
+  scene.lattice = universe.lattice();
+  Int16Samples samples(4096);
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<std::int16_t>(i);
+  scene.samples = samples;
+  const Expression head = Window{grey_octree_of(universe, scene), 0, 32767};
+  const Expression cut = octree_of_box(universe, {2, 2, 2}, {6, 6, 6});
+  for (const double x_mm : {3.0, 2.5}) {
+    Motion motion;
+    motion.translate_mm = {x_mm, 0, 0};
+    const Expression piece = moved(head & cut, moved_from_still(motion));
+    const Expression rest = head - cut;
+    const GreyOctree alone = combine_grey(universe, piece);
+    const GreyOctree still = combine_grey(universe, rest);
+    const auto differing = [&](const Expression& whole, const GreyOctree& first, const GreyOctree& second) {
+      const GreyOctree made = combine_grey(universe, whole);
+      int count = 0;
+      for (int i = 0; i < 4096; ++i) {
+        const glm::ivec3 at(i & 15, (i >> 4) & 15, i >> 8);
+        const std::int16_t expected = first.scan().contains(at) ? first.sample(at) : second.sample(at);
+        count += made.sample(at) != expected ? 1 : 0;
+      }
+      return count;
+    };
+    EXPECT_EQ(differing(piece | rest, alone, still), 0) << x_mm;
+    EXPECT_EQ(differing(rest | piece, still, alone), 0) << x_mm;
+    // The same union as the complement of an intersection.
+    EXPECT_EQ(differing(~(~piece & ~rest), alone, still), 0) << x_mm;
+    EXPECT_EQ(differing(~(~piece - rest), alone, still), 0) << x_mm;
+    const GreyOctree both = combine_grey(universe, piece | rest);
+    EXPECT_EQ(both.sample({12, 3, 3}), 12 + 16 * 3 + 256 * 3) << "the rest is not moved";
+    EXPECT_FALSE(both.scan().contains({2, 3, 3})) << "the gap behind the piece";
+  }
+}
+
 }  // namespace
 }  // namespace octotomy::voxel
