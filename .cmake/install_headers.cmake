@@ -6,7 +6,7 @@ file(GLOB_RECURSE pages RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/voxel/README.md ${S
 set(found)
 foreach(page ${pages})
   get_filename_component(room ${page} DIRECTORY)
-  if(room MATCHES "^planner/(cli|suite|verb)(/|$)")
+  if(room MATCHES "^planner/cli(/|$)")
     continue()
   endif()
   file(READ ${SOURCE_DIR}/${page} text)

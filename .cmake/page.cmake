@@ -1,4 +1,4 @@
-# Bundles planner/browser and writes it as a source: cmake -DESBUILD= -DBROWSER= -DFOLDER= -DOUT= -P page.cmake
+# Bundles planner/browser/page and writes it as a source: cmake -DESBUILD= -DBROWSER= -DFOLDER= -DOUT= -P page.cmake
 file(REMOVE_RECURSE ${FOLDER})
 file(MAKE_DIRECTORY ${FOLDER})
 function(bundle source target)
@@ -40,8 +40,8 @@ foreach(pair "app.js=text/javascript; charset=utf-8" "app.css=text/css; charset=
   string(APPEND entries "      {\"/${name}\", \"${type}\", {file_${number}, ${size}}},\n")
   math(EXPR number "${number} + 1")
 endforeach()
-file(WRITE ${OUT} "// Made by .cmake/page.cmake of planner/browser.
-#include \"planner/serve/page.h\"
+file(WRITE ${OUT} "// Made by .cmake/page.cmake of planner/browser/page.
+#include \"planner/browser/server/page.h\"
 
 namespace octotomy::planner::serve {
 namespace {

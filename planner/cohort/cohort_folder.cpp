@@ -14,9 +14,9 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "planner/operation/table/json.h"
 #include "planner/plan/sha256.h"
-#include "planner/report/result_folder.h"
-#include "planner/table/json.h"
+#include "planner/result/report/result_folder.h"
 #include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"

@@ -9,9 +9,9 @@
 #include "planner/cohort/participant.h"
 #include "planner/cohort/plots.h"
 #include "planner/cohort/statistics.h"
-#include "planner/report/result_folder.h"
-#include "planner/table/csv.h"
-#include "planner/table/json.h"
+#include "planner/operation/table/csv.h"
+#include "planner/operation/table/json.h"
+#include "planner/result/report/result_folder.h"
 #include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 

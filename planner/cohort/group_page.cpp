@@ -3,8 +3,8 @@
 
 #include <map>
 
-#include "planner/report/html.h"
-#include "planner/table/number_format.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/result/report/html.h"
 
 namespace octotomy::planner {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "planner/report/html.h"
+#include "planner/result/report/html.h"
 
 namespace octotomy::planner {
 namespace {

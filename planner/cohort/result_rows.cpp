@@ -6,9 +6,9 @@
 #include <charconv>
 #include <set>
 
+#include "planner/operation/table/csv.h"
+#include "planner/operation/table/json.h"
 #include "planner/plan/sha256.h"
-#include "planner/table/csv.h"
-#include "planner/table/json.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <set>
 
-#include "planner/table/csv.h"
-#include "planner/table/nearest_name.h"
+#include "planner/operation/table/csv.h"
+#include "planner/operation/table/nearest_name.h"
 #include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "planner/table/operation.h"
+#include "planner/operation/table/operation.h"
 
 namespace octotomy::planner {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/plan/answers.h"
 
+#include "planner/operation/table/fault.h"
+#include "planner/operation/table/json.h"
 #include "planner/plan/in_step.h"
 #include "planner/plan/sha256.h"
 #include "planner/plan/trial.h"
-#include "planner/table/fault.h"
-#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {

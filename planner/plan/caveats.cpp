@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
-#include "planner/measure/result_json.h"
-#include "planner/operation/trace.h"
-#include "planner/table/number_format.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/table/number_format.h"
 #include "voxel/space/rounded.h"
 
 namespace octotomy::planner {

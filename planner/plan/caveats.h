@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "planner/table/bench.h"
-#include "planner/table/object.h"
-#include "planner/table/operation.h"
+#include "planner/operation/table/bench.h"
+#include "planner/operation/table/object.h"
+#include "planner/operation/table/operation.h"
 #include "verify/certificate/necks.h"
 
 // What forbids an object's certificate a PASS however well both kernels agree: samples that nobody measured,

@@ -3,9 +3,9 @@
 
 #include <stdexcept>
 
+#include "planner/operation/table/field_json.h"
+#include "planner/operation/table/json.h"
 #include "planner/plan/sha256.h"
-#include "planner/table/field_json.h"
-#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {

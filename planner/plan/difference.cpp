@@ -3,8 +3,8 @@
 
 #include <map>
 
-#include "planner/table/field_json.h"
-#include "planner/table/json.h"
+#include "planner/operation/table/field_json.h"
+#include "planner/operation/table/json.h"
 
 namespace octotomy::planner {
 namespace {

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "planner/operation/table/bench.h"
+#include "planner/operation/table/object.h"
+#include "planner/operation/table/plan_universe.h"
+#include "planner/operation/table/stopwatch.h"
 #include "planner/plan/ahead.h"
 #include "planner/plan/object_cache.h"
 #include "planner/plan/plan.h"
-#include "planner/table/bench.h"
-#include "planner/table/object.h"
-#include "planner/table/plan_universe.h"
-#include "planner/table/stopwatch.h"
 
 namespace octotomy::planner {
 

@@ -24,10 +24,10 @@
 #include <unistd.h>
 #include <utility>
 
-#include "planner/file/output_path.h"
+#include "planner/operation/file/output_path.h"
+#include "planner/operation/table/control_character.h"
+#include "planner/operation/table/nearest_name.h"
 #include "planner/plan/sha256.h"
-#include "planner/table/control_character.h"
-#include "planner/table/nearest_name.h"
 #include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"

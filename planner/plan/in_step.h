@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "planner/table/fault.h"
+#include "planner/operation/table/fault.h"
 
 namespace octotomy::planner {
 

@@ -10,7 +10,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "planner/table/json.h"
+#include "planner/operation/table/json.h"
 
 namespace octotomy::planner {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "planner/table/json_file.h"
+#include "planner/operation/table/json_file.h"
 
 namespace octotomy::planner {
 

@@ -10,8 +10,8 @@
 #include <optional>
 #include <string>
 
-#include "planner/table/bench.h"
-#include "planner/table/object.h"
+#include "planner/operation/table/bench.h"
+#include "planner/operation/table/object.h"
 
 namespace octotomy::planner {
 

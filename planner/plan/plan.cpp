@@ -11,13 +11,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "planner/operation/table/field_json.h"
+#include "planner/operation/table/json.h"
+#include "planner/operation/table/json_file.h"
+#include "planner/operation/table/nearest_name.h"
 #include "planner/plan/migration.h"
 #include "planner/plan/plan_keys.h"
 #include "planner/plan/signature.h"
-#include "planner/table/field_json.h"
-#include "planner/table/json.h"
-#include "planner/table/json_file.h"
-#include "planner/table/nearest_name.h"
 #include "voxel/space/regular_file.h"
 
 namespace octotomy::planner {

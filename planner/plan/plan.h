@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "planner/table/operation.h"
+#include "planner/operation/table/operation.h"
 #include "voxel/scan/read_scene.h"
 
 namespace octotomy::planner {

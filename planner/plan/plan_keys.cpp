@@ -4,8 +4,8 @@
 #include <cctype>
 #include <utility>
 
-#include "planner/table/json.h"
-#include "planner/table/nearest_name.h"
+#include "planner/operation/table/json.h"
+#include "planner/operation/table/nearest_name.h"
 
 namespace octotomy::planner {
 

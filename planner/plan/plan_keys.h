@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "planner/table/json_file.h"
+#include "planner/operation/table/json_file.h"
 
 namespace octotomy::planner {
 

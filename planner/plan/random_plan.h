@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "planner/measure/result_json.h"
+#include "planner/operation/measure/result_json.h"
 #include "verify/question/expression_tree.h"
 #include "verify/question/random_expression.h"
 

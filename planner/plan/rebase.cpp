@@ -5,8 +5,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "planner/operation/table/json.h"
 #include "planner/plan/dependence.h"
-#include "planner/table/json.h"
 #include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <ctime>
 
+#include "planner/operation/table/json.h"
 #include "planner/plan/plan_keys.h"
 #include "planner/plan/sha256.h"
-#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {

@@ -12,13 +12,13 @@
 #include <limits>
 #include <set>
 
-#include "planner/anatomy/head_directions.h"
-#include "planner/anatomy/movement.h"
-#include "planner/measure/near_surfaces.h"
-#include "planner/operation/combine.h"
-#include "planner/operation/move.h"
+#include "planner/operation/anatomy/head_directions.h"
+#include "planner/operation/anatomy/movement.h"
+#include "planner/operation/measure/near_surfaces.h"
+#include "planner/operation/motion/move.h"
+#include "planner/operation/object/combine.h"
+#include "planner/operation/table/json.h"
 #include "planner/plan/dependence.h"
-#include "planner/table/json.h"
 #include "verify/interval/size_interval.h"
 #include "verify/phantom/chance.h"
 #include "voxel/solid/combine.h"

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "planner/measure/trials.h"
+#include "planner/operation/measure/trials.h"
 #include "planner/plan/evaluate.h"
 
 namespace octotomy::planner {

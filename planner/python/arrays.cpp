@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "planner/table/number_format.h"
+#include "planner/operation/table/number_format.h"
 
 namespace octotomy::planner::python {
 namespace {

@@ -3,9 +3,9 @@
 #include <array>
 #include <string>
 
+#include "planner/operation/table/fault.h"
 #include "planner/python/arrays.h"
 #include "planner/python/module.h"
-#include "planner/table/fault.h"
 
 namespace octotomy::planner::python {
 namespace {

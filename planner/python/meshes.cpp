@@ -12,12 +12,12 @@
 #include "brep/mesh/health.h"
 #include "brep/mesh/solid.h"
 #include "convert/surface/isosurface.h"
-#include "planner/file/mesh_in.h"
-#include "planner/measure/result_json.h"
+#include "planner/operation/file/mesh_in.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/table/number_format.h"
 #include "planner/python/arrays.h"
 #include "planner/python/module.h"
 #include "planner/python/waiting.h"
-#include "planner/table/number_format.h"
 #include "voxel/space/scene.h"
 
 namespace octotomy::planner::python {

@@ -6,7 +6,7 @@
 #include <pybind11/stl/filesystem.h>
 #include <variant>
 
-#include "planner/measure/result_json.h"
+#include "planner/operation/measure/result_json.h"
 #include "planner/python/arrays.h"
 #include "planner/python/module.h"
 #include "planner/python/waiting.h"

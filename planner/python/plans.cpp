@@ -5,14 +5,14 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "planner/measure/result_json.h"
+#include "planner/operation/measure/result_json.h"
 #include "planner/plan/answers.h"
 #include "planner/plan/evaluate.h"
 #include "planner/python/arrays.h"
 #include "planner/python/module.h"
 #include "planner/python/waiting.h"
-#include "planner/report/report.h"
-#include "planner/report/result_folder.h"
+#include "planner/result/report/report.h"
+#include "planner/result/report/result_folder.h"
 
 namespace octotomy::planner::python {
 namespace {

@@ -8,14 +8,14 @@
 #include <pybind11/stl/filesystem.h>
 #include <string>
 
-#include "planner/file/label_table.h"
-#include "planner/file/write_label_table.h"
-#include "planner/measure/result_json.h"
+#include "planner/operation/file/label_table.h"
+#include "planner/operation/file/write_label_table.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/table/control_character.h"
+#include "planner/operation/table/plan_universe.h"
 #include "planner/python/arrays.h"
 #include "planner/python/module.h"
 #include "planner/python/waiting.h"
-#include "planner/table/control_character.h"
-#include "planner/table/plan_universe.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/tree/grey_octree.h"

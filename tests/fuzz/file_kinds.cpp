@@ -458,7 +458,7 @@ class Kinds {
         {"verify", "MUTANT"})
         .beside = {at("box.stl")};
     add("procedure", "mine.procedure.json",
-        bytes_of(OCTOTOMY_SOURCE_DIR "/planner/procedure/genioplasty.procedure.json"),
+        bytes_of(OCTOTOMY_SOURCE_DIR "/planner/procedure/template/genioplasty.procedure.json"),
         {"procedure", "MUTANT", "--scan", at("head.nrrd"), "--landmarks", at("chin.json"), "--set",
          "forward_mm=5", "--voxel", "12", "-o", "OUT.plan.json"});
     add("definitions", "mine.json", definitions,

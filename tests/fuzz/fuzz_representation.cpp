@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "planner/file/representation.h"
+#include "planner/operation/file/representation.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 2) return 0;

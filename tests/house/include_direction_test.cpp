@@ -292,6 +292,11 @@ TEST(Rooms, AForbiddenArrowIsSeen) {
   EXPECT_EQ(arrow("voxel/filter/smooth.cpp", "#include \"voxel/scan/read_scene.h\"").size(), 1u);
   EXPECT_EQ(arrow("voxel/cellar/wine.h", "#include \"voxel/tree/octree.h\"").size(), 1u);
   EXPECT_EQ(arrow("voxel/solid/combine.h", "#include \"voxel/tree/octree.h\"").size(), 0u);
+  // Within a folder of a folder, and from one such folder to another.
+  EXPECT_EQ(arrow("planner/operation/file/a.h", "#include \"planner/operation/object/trace.h\"").size(), 1u);
+  EXPECT_EQ(arrow("planner/operation/file/a.h", "#include \"planner/result/report/report.h\"").size(), 1u);
+  EXPECT_EQ(arrow("planner/result/report/a.h", "#include \"planner/operation/object/trace.h\"").size(), 0u);
+  EXPECT_EQ(arrow("planner/operation/loose.h", "#include \"planner/operation/object/trace.h\"").size(), 1u);
   EXPECT_EQ(
       arrow("convert/voxel/voxelise.h", "#include \"brep/mesh/mesh.h\"\n#include \"voxel/tree/octree.h\"")
           .size(),
@@ -336,13 +341,12 @@ TEST(Rooms, AnOverfullOneIsSeen) {
   EXPECT_EQ(overfull_rooms(sources), Offences{});
 }
 
-TEST(Rooms, EverySourceHasOneAndEveryRoomAPage) {
+TEST(Rooms, EverySourceHasOneAndEveryPlaceAPage) {
   EXPECT_EQ(homeless(house()), Offences{});
   EXPECT_EQ(
       homeless({{"voxel/loose.h", {}}, {"brep/cellar/wine.h", {}}, {"verify/phantom/implicit_solid.h", {}}}),
       (Offences{"brep/cellar/wine.h", "voxel/loose.h"}));
   for (const auto& [place, beside] : arrows()) {
-    if (!is_room(place)) continue;
     EXPECT_NE(page_of(place), "") << place;
   }
 }

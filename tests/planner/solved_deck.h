@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "convert/deck/calculix_result.h"
-#include "planner/deck/region_deck.h"
+#include "planner/operation/deck/region_deck.h"
 #include "tests/run_command.h"
 #include "tests/voxel/scratch_folder.h"
 

@@ -3,7 +3,7 @@
 
 #include <fcntl.h>
 
-#include "tests/planner/cli/command_line.h"
+#include "tests/planner/cli/program/command_line.h"
 #include "tests/planner/cohort/orphans.h"
 
 namespace octotomy::planner {

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+#include "planner/operation/table/json.h"
 #include "planner/plan/answers.h"
 #include "planner/plan/evaluate.h"
-#include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
 
 namespace octotomy::planner {

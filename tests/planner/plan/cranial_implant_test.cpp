@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-#include "planner/measure/near_surfaces.h"
+#include "planner/operation/measure/near_surfaces.h"
 #include "planner/plan/evaluate.h"
-#include "planner/procedure/procedure.h"
+#include "planner/procedure/template/procedure.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/reference_data.h"
 #include "voxel/solid/combine.h"

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "planner/operation/table/json.h"
 #include "planner/plan/sha256.h"
-#include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/reference_data.h"
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "planner/operation/table/json.h"
 #include "planner/plan/difference.h"
-#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "planner/table/json.h"
+#include "planner/operation/table/json.h"
 
 namespace octotomy::planner {
 namespace {

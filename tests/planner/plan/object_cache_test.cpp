@@ -7,7 +7,7 @@
 #include <ctime>
 #include <gtest/gtest.h>
 
-#include "planner/measure/result_json.h"
+#include "planner/operation/measure/result_json.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {

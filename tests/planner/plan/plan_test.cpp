@@ -5,9 +5,9 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
-#include "planner/operation/mask.h"
-#include "planner/table/field_json.h"
-#include "planner/table/json.h"
+#include "planner/operation/object/mask.h"
+#include "planner/operation/table/field_json.h"
+#include "planner/operation/table/json.h"
 #include "tests/voxel/scratch_folder.h"
 
 namespace octotomy::planner {

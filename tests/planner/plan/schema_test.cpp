@@ -2,8 +2,8 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "planner/operation/table/json.h"
 #include "planner/plan/plan.h"
-#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {

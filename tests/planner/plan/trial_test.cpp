@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "planner/operation/table/json.h"
 #include "planner/plan/answers.h"
-#include "planner/table/json.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {

@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/browser/server/desk.h"
+
+#include <algorithm>
+#include <set>
+
+#include "planner/browser/server/new_plan.h"
+#include "planner/browser/server/told_measurement.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/picture/colour.h"
+#include "planner/operation/table/fault.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/plan_universe.h"
+#include "planner/plan/answers.h"
+#include "planner/plan/dependence.h"
+#include "planner/result/report/patient.h"
+#include "voxel/filter/tissue.h"
+#include "voxel/scan/read_scene.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::planner::serve {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Answers that a session keeps, and their memory, of objects and of scans. A certification of a head takes
+/// 400 MB: the last two are kept, so that undo and redo find theirs.
+constexpr std::size_t most_answers = 512;
+constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
+
+bool makes_object(const Step& step) {
+  return step.action.operation().makes == Makes::Object;
+}
+
+/// Keys of steps that tell whether an answer is still that of the plan.
+std::map<std::string, std::string> keys_of(const Plan& plan) {
+  return step_keys(plan, plan.voxel_mm ? std::to_string(*plan.voxel_mm) : "", [&](const std::string& scan) {
+    return state_of_path(scan_path(plan, plan.scans.at(scan)));
+  });
+}
+
+Json box_json(const voxel::Box& box) {
+  return {planner::to_json(box.low_mm), planner::to_json(box.high_mm)};
+}
+
+/// Black and white of slices, as level and width.
+Json tones_of(const ScanRecord& scan) {
+  if (scan.meaning == voxel::Meaning::Hounsfield) return {500.0, 2000.0};
+  return {0.5 * (scan.range.low + scan.range.high), std::max(1.0, scan.range.high - scan.range.low)};
+}
+
+Json scan_json(const ScanRecord& scan) {
+  Json json = planner::to_json(scan);
+  for (Json& line : json["audit"]) line["sentence"] = line.value("detail", "");
+  json["bounds_mm"] = box_json(voxel::bounds(scan.lattice));
+  json["window_suggestion"] = tones_of(scan);
+  json["patient"] = patient_json(scan.identity);
+  return json;
+}
+
+Json certificate_json(const verify::Certificate& certificate) {
+  Json json = planner::to_json(certificate);
+  std::string sentence = verify::verdict_text(certificate);
+  if (certificate.verdict == voxel::Verdict::Pass) sentence += ": both kernels agree";
+  if (certificate.limit)
+    sentence += "; a part of " + three_figures(certificate.limit->volume_mm3) +
+                " mm\u00b3 that is lost or added would have been seen";
+  for (const std::string& reason : certificate.reasons) sentence += ". " + reason;
+  json["sentence"] = sentence;
+  json["place"] = certificate.worst ? planner::to_json(certificate.worst->at_mm) : Json(nullptr);
+  return json;
+}
+
+/// A measure step of an object, for its recommended sizes.
+constexpr const char* size_of = "size_of_";
+
+/// The measurements of a plan; of steps that cannot be answered `errors` has the reason, by their ids.
+Json answered(const Plan& plan, const Evaluation& evaluation, std::map<std::string, std::string>& errors) {
+  try {
+    return measurements_json(plan, evaluation);
+  } catch (const std::exception& error) {
+    if (!is_no_answer(error)) throw;
+  }
+  Json list = Json::array();
+  Plan alone = plan;
+  for (const Step& step : plan.steps) {
+    alone.steps = {step};
+    try {
+      list.push_back(measurements_json(alone, evaluation).front());
+    } catch (const std::exception& error) {
+      if (!is_no_answer(error)) throw;
+      errors.emplace(step.id, message_of(error));
+    }
+  }
+  return list;
+}
+
+/// The plan's steps that measure what is there, each as a page shows it; `errors` as of answered().
+Json measurements_of(Plan plan, const Evaluation& evaluation, std::map<std::string, std::string>& errors) {
+  const auto is_there = [&](const std::string& id) {
+    return std::any_of(evaluation.objects.begin(), evaluation.objects.end(),
+                       [&](const Object& object) { return object.id == id; });
+  };
+  std::erase_if(plan.steps, [&](const Step& step) {
+    const std::vector<std::string> used = objects_used(step.action);
+    return step.action.operation().makes != Makes::Measurement ||
+           !std::all_of(used.begin(), used.end(), is_there);
+  });
+  Json list = Json::array();
+  for (const Json& answer : answered(plan, evaluation, errors)) {
+    Json told = told_measurement(answer);
+    if (!told.is_null()) list.push_back(std::move(told));
+  }
+  for (const Step& step : plan.steps)
+    if (const auto failed = errors.find(step.id); failed != errors.end())
+      list.push_back({{"id", step.id},
+                      {"says", "no answer"},
+                      {"value", nullptr},
+                      {"unit", "mm"},
+                      {"half_width", nullptr},
+                      {"sentence", failed->second}});
+  return list;
+}
+
+/// The steps that are wanted and need none of those that failed.
+std::vector<std::string> steps_without(const Plan& plan, const std::vector<std::string>& wanted,
+                                       const std::map<std::string, std::string>& errors) {
+  std::vector<std::string> kept;
+  for (const std::string& id : wanted) {
+    const std::set<std::string> needed = needed_for(plan, {id});
+    if (std::none_of(errors.begin(), errors.end(),
+                     [&](const auto& failed) { return needed.contains(failed.first); }))
+      kept.push_back(id);
+  }
+  return kept;
+}
+
+}  // namespace
+
+bool is_plan(const fs::path& path) {
+  return path.extension() == ".json";
+}
+
+Desk::Desk(fs::path working_folder)
+    : cache(most_answers, most_bytes), working_folder_(std::move(working_folder)) {
+  folders.open(working_folder_);
+}
+
+void Desk::open(const fs::path& path, const Watched& watched) {
+  const voxel::Progress progress{watched.stop, [&](double share) {
+                                   if (watched.progress) watched.progress("read " + path.string(), share);
+                                 }};
+  if (!is_plan(path)) need_readable_samples(folders, path);
+  const fs::path plan = is_plan(path) ? path : plan_of_scan(path, working_folder_, progress);
+  auto document = std::make_unique<Document>(plan, folders);
+  folders.open(plan);
+  {
+    const std::lock_guard lock(mutex_);
+    document_ = std::move(document);
+    ++opened_;
+    snapshot_ = {};
+    certified_.clear();
+  }
+  // The scans, so that the page has their audit and slices before any object.
+  Plan without_steps = with_document([](const Document& opened) { return *opened.plan(); });
+  without_steps.steps.clear();
+  auto evaluation = std::make_shared<const Evaluation>(evaluate(without_steps, {}, false, watched));
+  const std::lock_guard lock(mutex_);
+  if (document_ && !snapshot_.evaluation)
+    snapshot_ = {document_->plan(), std::move(evaluation), {}, Json::array()};
+}
+
+void Desk::close_within(std::chrono::milliseconds most) {
+  const std::unique_lock lock(mutex_, most);
+  if (lock.owns_lock()) document_.reset();
+}
+
+Document& Desk::need_document() const {
+  if (document_ == nullptr)
+    throw voxel::Error(voxel::ErrorCode::Input, "no plan is open: open a scan, a plan or the head phantom");
+  return *document_;
+}
+
+Evaluation Desk::evaluate(const Plan& plan, const std::vector<std::string>& steps, bool certify,
+                          const Watched& watched, bool only_look_up) {
+  EvaluateOptions options;
+  options.stop = watched.stop;
+  options.progress = watched.progress;
+  options.certify = options.meshes = certify;
+  options.wanted = steps;
+  options.keep_scans = true;
+  options.cache = &cache;
+  options.only_look_up = only_look_up;
+  options.read_scene = [this](const fs::path& path, const voxel::ReadOptions& how) {
+    if (!how.raw) need_readable_samples(folders, path);
+    return voxel::read_scene(path, how);
+  };
+  return planner::evaluate(plan, options);
+}
+
+Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, const Watched& watched) {
+  Snapshot made;
+  std::uint64_t opened = 0;
+  std::vector<std::string> wanted = steps;
+  {
+    const std::lock_guard lock(mutex_);
+    made.plan = need_document().plan();
+    opened = opened_;
+    // A window that asked before an undo reached it names steps that have gone.
+    std::erase_if(wanted, [&](const std::string& id) {
+      const auto& all = made.plan->steps;
+      return !certify &&
+             std::none_of(all.begin(), all.end(), [&](const Step& step) { return step.id == id; });
+    });
+    // What pictures show already stays in them.
+    if (!steps.empty() && !certify && snapshot_.evaluation)
+      for (const Step& step : made.plan->steps)
+        if (makes_object(step) && object_json(snapshot_, step.id)["evaluated"] == true)
+          wanted.push_back(step.id);
+  }
+  if (steps.empty())
+    for (const Step& step : made.plan->steps)
+      // Of a certification measurements and files are wanted too, and what they need.
+      if (certify || makes_object(step) || step.action.operation().makes == Makes::Scan)
+        wanted.push_back(step.id);
+  std::string doing;
+  Watched watching = watched;
+  watching.progress = [&](const std::string& what, double share) {
+    doing = what;
+    if (watched.progress) watched.progress(what, share);
+  };
+  while (true) {
+    const std::vector<std::string> left = steps_without(*made.plan, wanted, made.errors);
+    try {
+      Plan plan = *made.plan;
+      if (left.empty()) plan.steps.clear();
+      made.evaluation = std::make_shared<const Evaluation>(evaluate(plan, left, certify, watching));
+      break;
+    } catch (const std::exception& error) {
+      if (fault_of(error) == Fault::Cancelled) throw;
+      // Progress tells the step that is done as its verb and id.
+      const std::string id = doing.substr(doing.find(' ') + 1);
+      const auto& all = made.plan->steps;
+      const bool is_step =
+          std::any_of(all.begin(), all.end(), [&](const Step& step) { return step.id == id; });
+      if (!is_step || !made.errors.emplace(id, message_of(error)).second) throw;
+    }
+  }
+  if (certify) keep_certified(*made.plan, *made.evaluation);
+  made.measurements = measurements_of(*made.plan, *made.evaluation, made.errors);
+  const std::lock_guard lock(mutex_);
+  // What was certified of an earlier state of the plan is no picture of the present one.
+  const bool is_present = document_ && opened == opened_ && (!certify || document_->plan() == made.plan);
+  if (is_present && (!certify || steps.empty())) snapshot_ = made;
+  return made;
+}
+
+void Desk::keep_certified(const Plan& plan, const Evaluation& evaluation) {
+  Json measures = Json::array();
+  for (const Object& object : evaluation.objects)
+    if (!object.is_tool && !object.voxel.octree.is_empty())
+      measures.push_back({{"id", size_of + object.id}, {"do", "measure"}, {"object", object.id}});
+  Json whole = Json::parse(plan.text);
+  for (const Json& step : measures) whole["steps"].push_back(step);
+  Plan measuring = parse_plan(whole.dump(), plan.folder);
+  std::erase_if(measuring.steps, [](const Step& step) { return !step.id.starts_with(size_of); });
+  const std::map<std::string, std::string> keys = keys_of(plan);
+  std::map<std::string, Certified> found;
+  for (const Object& object : evaluation.objects) {
+    found[object.id] = {keys.at(object.id), Json::object()};
+    if (object.certificate) found[object.id].said["certificate"] = certificate_json(*object.certificate);
+  }
+  for (const Json& measured : measurements_json(measuring, evaluation))
+    for (const char* size : {"volume", "area"}) found[measured.at("object")].said[size] = measured.at(size);
+  const std::lock_guard lock(mutex_);
+  for (auto& [id, said] : found) certified_[id] = std::move(said);
+}
+
+Snapshot Desk::snapshot() const {
+  const std::lock_guard lock(mutex_);
+  return snapshot_;
+}
+
+voxel::GreyOctree Desk::alone(const Snapshot& snapshot, const std::string& scan) {
+  const auto loaded = snapshot.evaluation->loaded.find(scan);
+  if (loaded == snapshot.evaluation->loaded.end())
+    throw voxel::Error(voxel::ErrorCode::Input, "there is no scan '" + scan + "'");
+  const auto& [shared, grey] = *loaded->second;
+  const std::lock_guard lock(alone_mutex_);
+  if (!alone_ || alone_->first != shared)
+    alone_.emplace(shared, voxel::grey_octree_of(universe_of(*shared, snapshot.plan->voxel_mm), *shared,
+                                                 grey.background())
+                               .with_scan(shared));
+  return alone_->second;
+}
+
+Desk::Preview Desk::preview(const std::string& object, const Json& move, const std::vector<std::string>& with,
+                            const std::stop_token& stop) {
+  Json step = move;
+  step["id"] = Preview::moved;
+  step["do"] = "move";
+  step["object"] = object;
+  Json steps = Json::array({step});
+  std::string others;
+  for (const std::string& name : with)
+    if (name != object) others += (others.empty() ? "" : " | ") + name;
+  if (!others.empty())
+    steps.push_back({{"id", Preview::overlap},
+                     {"do", "combine"},
+                     {"expression", std::string(Preview::moved) + " & (" + others + ")"}});
+  const std::lock_guard lock(preview_mutex_);
+  const Plan plan = with_document([&](const Document& document) { return document.with_steps(steps); });
+  for (const auto& [text, made] : previews_)
+    if (text == plan.text) return made;
+  std::vector<std::string> wanted{Preview::moved};
+  if (!others.empty()) wanted.emplace_back(Preview::overlap);
+  Preview made{std::make_shared<const Evaluation>(evaluate(plan, wanted, false, {stop, {}}, true))};
+  constexpr std::size_t most_previews = 4;
+  previews_.emplace_back(plan.text, made);
+  if (previews_.size() > most_previews) previews_.pop_front();
+  return made;
+}
+
+Json Desk::object_json(const Snapshot& snapshot, const std::string& id) const {
+  Json json{{"id", id}, {"evaluated", false}};
+  if (const auto failed = snapshot.errors.find(id); failed != snapshot.errors.end())
+    json["error"] = failed->second;
+  if (!snapshot.evaluation) return json;
+  for (const Object& object : snapshot.evaluation->objects) {
+    if (object.id != id) continue;
+    json["evaluated"] = true;
+    json["definition"] = object.definition;
+    json["findings"] = object.findings;
+    const auto& extents = object.voxel.measures.extents;
+    json["bounds_mm"] = extents ? box_json(*extents) : Json(nullptr);
+    json["volume"] = {{"value", object.voxel.measures.volume_mm3}, {"unit", "mm3"}};
+    if (object.certificate) json["certificate"] = certificate_json(*object.certificate);
+    if (const auto plane = object.mesh.details.find("plane"); plane != object.mesh.details.end()) {
+      json["mirror"] = {{"plane", *plane}};
+      for (const char* key : {"rms_mm", "kept_share", "converged"})
+        json["mirror"][key] = object.mesh.details.value(key, Json(nullptr));
+    }
+  }
+  return json;
+}
+
+Json Desk::objects_json(const Plan& plan) const {
+  Json list = Json::array();
+  std::map<std::string, std::string> keys;
+  if (!certified_.empty()) keys = keys_of(plan);
+  std::size_t number = 0;
+  for (const Step& step : plan.steps) {
+    if (!makes_object(step)) continue;
+    const Operation& operation = step.action.operation();
+    Json json = object_json(snapshot_, step.id);
+    json["kind"] = operation.is_tool ? "mask" : operation.name;
+    json["colour"] = text_of_colour(colour_of(number++));
+    const auto known = certified_.find(step.id);
+    if (known != certified_.end() && known->second.key == keys[step.id]) json.update(known->second.said);
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+double Desk::bone_low(const std::string& scan) const {
+  const auto loaded = snapshot_.evaluation->loaded.find(scan);
+  if (loaded == snapshot_.evaluation->loaded.end() || !loaded->second) return *voxel::tissue("bone")->low;
+  const std::shared_ptr<const voxel::Scene>& scene = loaded->second->shared;
+  auto& [of, low] = bone_lows_[scan];
+  if (of.lock() != scene) {
+    of = scene;
+    low = planner::serve::bone_low(*scene);
+  }
+  return low;
+}
+
+Json Desk::state() const {
+  const std::lock_guard lock(mutex_);
+  if (document_ == nullptr) return nullptr;
+  const Plan& plan = *document_->plan();
+  Json json{{"path", document_->path().string()}, {"name", plan.name}, {"dirty", false}};
+  json.update(document_->history_json());
+  json["plan"] = Json::parse(plan.text);
+  json["scans"] = Json::array();
+  if (snapshot_.evaluation)
+    for (const ScanRecord& scan : snapshot_.evaluation->scans) json["scans"].push_back(scan_json(scan));
+  json["objects"] = objects_json(plan);
+  json["landmarks"] = Json::array();
+  for (const NamedPoint& landmark : plan.landmarks)
+    json["landmarks"].push_back({{"name", landmark.name}, {"point", planner::to_json(landmark.p_mm)}});
+  for (Json& scan : json["scans"]) scan["bone_low"] = bone_low(scan["name"]);
+  json["measurements"] = snapshot_.measurements;
+  json["universe"] = nullptr;
+  if (snapshot_.evaluation) {
+    const voxel::Lattice lattice = snapshot_.evaluation->universe.lattice();
+    json["universe"] = {{"voxel_mm", lattice.spacing_mm().x},
+                        {"voxels", lattice.dims.x},
+                        {"bounds_mm", box_json(voxel::bounds(lattice))}};
+  }
+  return json;
+}
+
+}  // namespace octotomy::planner::serve

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "planner/browser/server/document.h"
+#include "planner/browser/server/folders.h"
+#include "planner/browser/server/message.h"
+#include "planner/plan/evaluate.h"
+
+namespace octotomy::planner::serve {
+
+/// How long work is watched and stopped.
+struct Watched {
+  std::stop_token stop;
+  std::function<void(const std::string& doing, double share)> progress;
+};
+
+/// A plan as it was evaluated last. It never changes, so that pictures are drawn of it while the plan goes
+/// on.
+struct Snapshot {
+  std::shared_ptr<const Plan> plan;
+  std::shared_ptr<const Evaluation> evaluation;
+  std::map<std::string, std::string> errors;  ///< of the steps that could not be evaluated
+  Json measurements = Json::array();          ///< of the plan's steps that measure
+};
+
+/// Whether a path is a plan's, by its name; any other is taken for a scan's.
+bool is_plan(const std::filesystem::path& path);
+
+/// The one plan that all windows work on, its objects and its files. All members may be called from any
+/// thread.
+class Desk {
+ public:
+  explicit Desk(std::filesystem::path working_folder);
+
+  Folders folders;
+  ObjectCache cache;
+
+  const std::filesystem::path& working_folder() const { return working_folder_; }
+  /// Opens a plan, or a scan with a plan of its own (new_plan.h), in place of what is open.
+  void open(const std::filesystem::path& path, const Watched& watched);
+
+  /// Closes the document once the edit that is under way has ended, so that its history is whole. Does
+  /// nothing where that takes longer than `most`.
+  void close_within(std::chrono::milliseconds most);
+
+  /// Does something with the document while nobody else does; returns what it returns. Throws voxel::Error,
+  /// Input, where none is open.
+  template <typename Work>
+  auto with_document(const Work& work) const {
+    const std::lock_guard lock(mutex_);
+    return work(need_document());
+  }
+
+  /// Evaluates steps of the plan and those that they need; none named: all. Without `certify` in voxels
+  /// alone; then what comes of it is the snapshot, and a name that the plan lacks is passed over. A step that
+  /// cannot be evaluated is left out, with those that need it. Throws Stopped, and what evaluate() throws
+  /// where no step is at fault.
+  Snapshot evaluate(const std::vector<std::string>& steps, bool certify, const Watched& watched);
+  /// The same of another plan, which is no snapshot; `only_look_up` as in EvaluateOptions.
+  Evaluation evaluate(const Plan& plan, const std::vector<std::string>& steps, bool certify,
+                      const Watched& watched, bool only_look_up = false);
+  Snapshot snapshot() const;
+
+  /// A scan in a universe about itself: that of a donor lies elsewhere than the patient's. The newest is
+  /// kept.
+  voxel::GreyOctree alone(const Snapshot& snapshot, const std::string& scan);
+
+  /// A plan's object moved as a step "move" would, in voxels alone, and what of it lies in other objects.
+  struct Preview {
+    std::shared_ptr<const Evaluation> evaluation;
+    static constexpr const char* moved = "dragged_piece";
+    static constexpr const char* overlap = "dragged_overlap";
+  };
+  Preview preview(const std::string& object, const Json& move, const std::vector<std::string>& with,
+                  const std::stop_token& stop);
+
+  /// What a page shows of the plan; null where none is open.
+  Json state() const;
+  /// What it shows of one object.
+  Json object_json(const Snapshot& snapshot, const std::string& id) const;
+
+ private:
+  Document& need_document() const;
+  Json objects_json(const Plan& plan) const;
+  /// bone_low() of a scan of the snapshot, which is looked for once.
+  double bone_low(const std::string& scan) const;
+  /// The certificates and sizes of what was evaluated in both kernels, by the keys of the steps.
+  void keep_certified(const Plan& plan, const Evaluation& evaluation);
+
+  std::filesystem::path working_folder_;
+  mutable std::timed_mutex mutex_;  ///< of all below
+  std::unique_ptr<Document> document_;
+  std::uint64_t opened_ = 0;  ///< documents so far: what is evaluated of an earlier one is not kept
+  Snapshot snapshot_;
+  mutable std::map<std::string, std::pair<std::weak_ptr<const voxel::Scene>, double>> bone_lows_;
+  /// Of a step: what decides its answer, and what was certified of it.
+  struct Certified {
+    std::string key;
+    Json said;  ///< "certificate", "volume", "area"
+  };
+  std::map<std::string, Certified> certified_;
+
+  std::mutex alone_mutex_;
+  std::optional<std::pair<std::shared_ptr<const voxel::Scene>, voxel::GreyOctree>> alone_;
+
+  std::mutex preview_mutex_;
+  /// The newest last, by the text of their plans: panes of one window ask for the same.
+  std::deque<std::pair<std::string, Preview>> previews_;
+};
+
+}  // namespace octotomy::planner::serve

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/browser/server/requests.h"
+
+#include <algorithm>
+
+#include "planner/browser/server/answers.h"
+#include "planner/browser/server/new_plan.h"
+#include "planner/browser/server/pane_fields.h"
+#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/output_path.h"
+#include "planner/operation/table/nearest_name.h"
+#include "planner/plan/plan.h"
+#include "planner/plan/rebase.h"
+#include "planner/procedure/template/procedure.h"
+#include "voxel/filter/tissue.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::planner::serve {
+namespace {
+
+namespace fs = std::filesystem;
+
+Json procedures_json() {
+  Json list = Json::array();
+  for (const std::string& name : procedures()) {
+    const Procedure procedure = read_procedure(name);
+    Json json{{"name", name},
+              {"says", procedure.says},
+              {"landmarks", Json::array()},
+              {"scans", Json::array()},
+              {"values", Json::array()}};
+    for (const ProcedureLandmark& landmark : procedure.landmarks)
+      json["landmarks"].push_back(
+          {{"name", landmark.name}, {"says", landmark.says}, {"scan", landmark.scan}});
+    for (const ProcedureScan& scan : procedure.scans)
+      json["scans"].push_back({{"name", scan.name}, {"says", scan.says}});
+    for (const ProcedureValue& value : procedure.values)
+      json["values"].push_back({{"name", value.name},
+                                {"unit", unit_of_name(value.name)},
+                                {"default", value.preset},
+                                {"says", value.says},
+                                {"low", value.least},
+                                {"high", value.most}});
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+Json hello(Desk& desk, const Json&, const Watched&) {
+  Json tissues = Json::array(), folders = Json::array();
+  for (const voxel::Tissue& tissue : voxel::tissues())
+    tissues.push_back({{"name", std::string(tissue.name)},
+                       {"low", tissue.low ? Json(*tissue.low) : Json(nullptr)},
+                       {"high", tissue.high ? Json(*tissue.high) : Json(nullptr)},
+                       {"source", std::string(tissue.source)}});
+  for (const fs::path& folder : desk.folders.opened()) folders.push_back(folder.string());
+  return {{"version", OCTOTOMY_VERSION},
+          {"units", {{"length", "mm"}, {"angle", "deg"}, {"frame", "LPS"}}},
+          {"plan_state", desk.state()},
+          {"schema", plan_schema()},
+          {"procedures", procedures_json()},
+          {"tissues", tissues},
+          {"folders", folders}};
+}
+
+Json open(Desk& desk, const Json& said, const Watched& watched) {
+  if (said.contains("phantom")) {
+    const voxel::Progress progress{watched.stop, [&](double share) {
+                                     if (watched.progress) watched.progress("making the head phantom", share);
+                                   }};
+    const fs::path place = desk.folders.need_within(desk.working_folder() / "head_phantom.nrrd");
+    desk.open(phantom_at(place, progress), watched);
+  } else {
+    desk.open(desk.folders.need_within(said.at("path").get<std::string>()), watched);
+  }
+  return nullptr;
+}
+
+/// Whether a file is no scan: a plan's history, or records of something else.
+bool is_beside(const std::string& name) {
+  return name.find(".plan.json.") != std::string::npos || name.ends_with(".json");
+}
+
+Json list(Desk& desk, const Json& said, const Watched&) {
+  constexpr std::size_t most_entries = 5000;
+  const fs::path folder = desk.folders.need_within(said.value("folder", desk.working_folder().string()));
+  Json entries = Json::array();
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entries.size() == most_entries) break;
+    const std::string name = entry.path().filename();
+    if (name.starts_with(".")) continue;
+    std::error_code failed;
+    const bool is_folder = entry.is_directory(failed);
+    entries.push_back({{"name", name},
+                       {"kind", is_folder                      ? "folder"
+                                : name.ends_with(".plan.json") ? "plan"
+                                : is_beside(name)              ? "other"
+                                                               : "file"},
+                       {"size", is_folder ? 0 : entry.file_size(failed)}});
+  }
+  std::sort(entries.begin(), entries.end(), [](const Json& a, const Json& b) {
+    return std::pair(a["kind"] != "folder", a["name"]) < std::pair(b["kind"] != "folder", b["name"]);
+  });
+  return {{"folder", folder.string()}, {"entries", entries}};
+}
+
+/// A change of the document.
+template <typename Change>
+auto change(const Change& work) {
+  return [work](Desk& desk, const Json& said, const Watched&) -> Json {
+    desk.with_document([&](Document& document) { work(document, said); });
+    return nullptr;
+  };
+}
+
+Json save(Desk& desk, const Json& said, const Watched&) {
+  const bool is_own = !said.contains("path") || said["path"].is_null();
+  const auto plan = desk.with_document([&](Document& document) {
+    if (is_own) document.need_saved();
+    return document.plan();
+  });
+  if (is_own) return {{"path", plan->file.string()}};
+  const fs::path to = desk.folders.need_within(said["path"].get<std::string>());
+  if (to.extension() != ".json")
+    throw voxel::Error(voxel::ErrorCode::Input, to.string() + ": a plan's name ends in .plan.json");
+  if (fs::exists(to))
+    throw voxel::Error(voxel::ErrorCode::Input, to.string() + ": is there already; choose another name");
+  need_folder_of(to);
+  write_whole(to, rebased(*plan, to.parent_path()).text);
+  return {{"path", to.string()}};
+}
+
+Json evaluate(Desk& desk, const Json& said, const Watched& watched) {
+  const bool certify = said.value("certify", false);
+  const Snapshot made = desk.evaluate(said.value("objects", std::vector<std::string>{}), certify, watched);
+  const Json state = desk.state();
+  return {
+      {"objects", state.at("objects")}, {"measurements", made.measurements}, {"scans", state.at("scans")}};
+}
+
+/// Whether a step names what later ones use: it stands before them, and there is one of its kind.
+bool is_of_names(const Json& step) {
+  return step["do"] == "landmarks" || step["do"] == "head_position";
+}
+
+/// The steps of a plan and those of a procedure, whose scan is called "ct". One of the procedure takes the
+/// place of the one of its id, or of its kind where it is of names; landmarks of other names stay.
+Json joined(const Json& steps, const Json& of_procedure, const std::string& scan) {
+  Json names = Json::array(), kept = Json::array(), others = Json::array();
+  for (Json step : of_procedure) {
+    if (step.value("scan", "") == "ct") step["scan"] = scan;
+    (is_of_names(step) ? names : others).push_back(std::move(step));
+  }
+  for (const Json& step : steps) {
+    const auto same_kind = std::find_if(names.begin(), names.end(), [&](const Json& name) {
+      return is_of_names(step) && name["do"] == step["do"];
+    });
+    if (same_kind != names.end()) {
+      for (const Json& point : step.value("points", Json::array())) {
+        Json& points = (*same_kind)["points"];
+        if (std::none_of(points.begin(), points.end(),
+                         [&](const Json& known) { return known["name"] == point["name"]; }))
+          points.push_back(point);
+      }
+    } else if (std::none_of(others.begin(), others.end(),
+                            [&](const Json& other) { return other["id"] == step["id"]; })) {
+      kept.push_back(step);
+    }
+  }
+  for (const Json* part : {&kept, &others})
+    for (const Json& step : *part) names.push_back(step);
+  return names;
+}
+
+Json procedure(Desk& desk, const Json& said, const Watched&) {
+  const Procedure procedure = read_procedure(said.at("name").get<std::string>());
+  Json ids = Json::array();
+  desk.with_document([&](Document& document) {
+    Json whole = document.json();
+    ProcedureInput input;
+    input.folder = document.path().parent_path();
+    input.scan = whole.at("scans").front();
+    for (const ProcedureScan& scan : procedure.scans)
+      if (whole["scans"].contains(scan.name)) input.further_scans[scan.name] = whole["scans"][scan.name];
+    input.voxel_mm = document.plan()->voxel_mm.value_or(1.0);
+    for (const auto& [name, point] : said.at("landmarks").items())
+      if (const auto p_mm = point_of(said.at("landmarks"), name.c_str()))
+        input.landmarks.push_back({name, *p_mm});
+    const Json values = said.value("values", Json::object());
+    for (const auto& [name, value] : values.items()) input.values[name] = value.get<double>();
+    const Json made = plan_of(procedure, input);
+    whole["steps"] = joined(whole["steps"], made.at("steps"), whole["scans"].begin().key());
+    document.record(whole, procedure.name);
+    for (const Step& step : document.plan()->steps)
+      for (const Json& own : made.at("steps"))
+        if (own.at("id") == step.id && step.action.operation().makes == Makes::Object) ids.push_back(step.id);
+  });
+  return {{"made", ids}};
+}
+
+Json diff(Desk& desk, const Json& said, const Watched&) {
+  const auto edit_of = [&](const char* key) { return said.at(key).get<std::int64_t>(); };
+  return desk.with_document(
+      [&](const Document& document) -> Json { return document.difference_of(edit_of("a"), edit_of("b")); });
+}
+
+}  // namespace
+
+const std::vector<Word>& words() {
+  static const std::vector<Word> all{
+      {"hello", Lane::Desk, false, hello},
+      {"open", Lane::Long, true, open},
+      {"list", Lane::Desk, false, list},
+      {"save", Lane::Desk, false, save},
+      {"edit", Lane::Desk, true, change([](Document& document, const Json& said) { document.edit(said); })},
+      {"undo", Lane::Desk, true, change([](Document& document, const Json&) { document.undo(); })},
+      {"redo", Lane::Desk, true, change([](Document& document, const Json&) { document.redo(); })},
+      {"go_to", Lane::Desk, true, change([](Document& document, const Json& said) {
+         const Json& where = said.at("where");
+         document.go_to(where.is_string() ? where.get<std::string>() : where.dump());
+       })},
+      {"branch", Lane::Desk, true,
+       change([](Document& document, const Json& said) { document.begin_branch(said.at("name")); })},
+      {"name_version", Lane::Desk, true,
+       change([](Document& document, const Json& said) { document.name_version(said.at("name")); })},
+      {"diff", Lane::Desk, false, diff},
+      {"procedure", Lane::Desk, true, procedure},
+      {"landmark", Lane::Desk, true, place_landmark},
+      {"find_landmarks", Lane::Long, false, find_landmarks},
+      {"command", Lane::Desk, false, command_of_step},
+      {"evaluate", Lane::Evaluate, false, evaluate, true},
+      {"overlap", Lane::Overlap, false, overlap},
+      {"largest_part", Lane::Long, false, largest_part},
+      {"measure", Lane::Long, false, measure},
+      {"movement", Lane::Long, false, movement},
+      {"mesh_audit", Lane::Long, false, mesh_audit},
+      {"certify", Lane::Long, false, certify, true},
+      {"export", Lane::Long, false, export_file},
+      {"report", Lane::Long, false, report},
+      {"outcome", Lane::Long, false, outcome},
+  };
+  return all;
+}
+
+const Word& find_word(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Word& word : words()) {
+    if (word.name == name) return word;
+    names.push_back(word.name);
+  }
+  // Looking for the nearest word takes time by the name's length.
+  constexpr std::size_t longest_typed = 60;
+  throw voxel::Error(
+      voxel::ErrorCode::Input,
+      "there is no request '" + name + "'" + (name.size() <= longest_typed ? suggestion(name, names) : ""));
+}
+
+}  // namespace octotomy::planner::serve

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <stop_token>
+#include <string>
+
+#include "planner/browser/server/service.h"
+
+namespace octotomy::planner::serve {
+
+struct ServerOptions {
+  std::string address = "127.0.0.1";  ///< of the interface to listen on
+  int port = 0;                       ///< 0: a free one
+  std::string token;
+  /// Called once with the page's address, token included, when it can be opened.
+  std::function<void(const std::string& url)> ready;
+};
+
+/// A server that listens before it runs: who calls meanwhile waits, and no work is done for an address that
+/// cannot be had.
+class Server {
+ public:
+  /// Throws std::runtime_error where it cannot listen there.
+  explicit Server(ServerOptions options);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// Serves the page, its files and its WebSockets until the stop token is set; once. What one caller sends
+  /// ends at most that caller's connection.
+  void run(Service& service, Desk& desk, const std::stop_token& stop);
+
+ private:
+  struct Port;
+  ServerOptions options_;
+  std::unique_ptr<Port> port_;
+};
+
+}  // namespace octotomy::planner::serve

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/browser/server/service.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "planner/browser/server/slice_pane.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::planner::serve {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// What all moving panes together may take of a thirtieth of a second; the page draws in the rest.
+constexpr double most_round_ms = 24.0;
+/// A single pane is no coarser for the sake of more frames than screens show.
+constexpr double most_frame_ms = 14.0;
+
+/// Progress is told at most so often.
+constexpr std::chrono::milliseconds tell_every{100};
+
+/// Runs work and gives every error, of whatever kind, to `refuse`.
+template <typename Work, typename Refuse>
+void guarded(const Work& work, const Refuse& refuse) noexcept {
+  try {
+    try {
+      work();
+    } catch (const std::exception& error) {
+      refuse(error);
+    } catch (...) {
+      refuse(std::runtime_error("an error without a message: please report it"));
+    }
+  } catch (...) {
+    // Not even the refusal could be sent: the window has gone, or memory has.
+  }
+}
+
+}  // namespace
+
+Service::Service(Desk& desk, LineOf line_of) : desk_(desk), line_of_(std::move(line_of)) {
+  for (const Lane lane : {Lane::Desk, Lane::Evaluate, Lane::Certify, Lane::Overlap, Lane::Long})
+    lanes_[lane] = std::make_unique<LaneQueue>(lane != Lane::Desk && lane != Lane::Long);
+  drawing_ = std::jthread([this](const std::stop_token& stop) { draw(stop); });
+}
+
+Service::~Service() {
+  lanes_.clear();
+}
+
+std::uint64_t Service::open_window(Send send_to) {
+  const std::lock_guard lock(mutex_);
+  auto window = std::make_shared<Window>();
+  window->send = std::move(send_to);
+  windows_[++last_window_] = std::move(window);
+  return last_window_;
+}
+
+void Service::close_window(std::uint64_t window) {
+  {
+    const std::lock_guard lock(mutex_);
+    windows_.erase(window);
+  }
+  panes_.close_window(window);
+  for (const auto& [lane, queue] : lanes_) queue->close_window(window);
+}
+
+std::shared_ptr<Service::Window> Service::find(std::uint64_t window) {
+  const std::lock_guard lock(mutex_);
+  const auto found = windows_.find(window);
+  return found == windows_.end() ? nullptr : found->second;
+}
+
+void Service::send(std::uint64_t window, Message message) {
+  if (const auto found = find(window)) found->send(std::move(message));
+}
+
+void Service::tell_all(const Message& message) {
+  std::map<std::uint64_t, std::shared_ptr<Window>> all;
+  {
+    const std::lock_guard lock(mutex_);
+    all = windows_;
+  }
+  for (const auto& [id, window] : all) window->send(message);
+}
+
+void Service::tell_plan() {
+  tell_all(event("plan", {{"plan_state", desk_.state()}}));
+}
+
+void Service::receive(std::uint64_t window, const std::string& text) {
+  std::int64_t id = 0;
+  guarded(
+      [&] {
+        Request request = parse_request(text);
+        id = request.id;
+        take(window, std::move(request));
+      },
+      [&](const std::exception& error) { refuse(window, id, error); });
+}
+
+void Service::take(std::uint64_t window, Request request) {
+  const Json& said = request.said;
+  const auto pane = [&] { return PaneName{window, said.value("pane", 0)}; };
+  if (request.what == "shown") return panes_.shown(pane(), said.value("frame", std::int64_t{0}));
+  // So that a page knows a silent line from a cut one.
+  if (request.what == "alive") return send(window, answer_to(request.id, Json::object()));
+  if (request.what == "cancel") {
+    const std::int64_t target = said.value("target", std::int64_t{0});
+    const auto waited = panes_.withdraw(window, target);
+    if (waited) drop(*waited, "the picture was cancelled");
+    bool is_here = waited || panes_.stop(window, target);
+    for (const auto& [lane, queue] : lanes_) is_here = queue->cancel(window, target) || is_here;
+    return send(window, answer_to(request.id, {{"cancelled", is_here}}));
+  }
+  if (request.what == "close_pane") {
+    if (const auto waited = panes_.close(pane())) drop(*waited, "the pane was closed");
+    return send(window, answer_to(request.id, Json::object()));
+  }
+  if (request.what == "pane") {
+    const int number = said.value("pane", 0);
+    if (number < 0 || number > 15) throw voxel::Error(voxel::ErrorCode::Input, "pane: must be 0 to 15");
+    const bool is_moving = said.value("dragging", false);
+    // The older request is refused before the newer can be drawn: a pane's answers come in their order.
+    if (const auto older = panes_.withdraw(pane())) drop(*older, "a newer picture of the pane was asked for");
+    return panes_.ask({pane(), std::move(request), is_moving});
+  }
+  const Word& word = find_word(request.what);
+  const bool certifies = word.lane == Lane::Evaluate && said.value("certify", false);
+  const auto of_window = find(window);
+  if (of_window == nullptr) return;
+  if (of_window->waiting >= most_waiting)
+    throw voxel::Error(voxel::ErrorCode::Resource, "too many requests wait for their answers");
+  ++of_window->waiting;
+  const auto asked = std::make_shared<const Request>(std::move(request));
+  const auto leave = std::shared_ptr<void>(nullptr, [of_window](void*) { --of_window->waiting; });
+  lanes_.at(certifies ? Lane::Certify : word.lane)
+      ->put({window, asked->id,
+             [this, window, asked, &word, leave](const std::stop_token& stop) {
+               answer(window, *asked, word, stop);
+             },
+             [this, window, asked, leave] {
+               refuse(window, asked->id, Stopped("a newer request took its place"));
+             }});
+}
+
+void Service::answer(std::uint64_t window, const Request& request, const Word& word,
+                     const std::stop_token& stop) {
+  Clock::time_point told{};
+  bool was_told = false;
+  const Clock::time_point start = Clock::now();
+  Watched watched{stop, [&](const std::string& doing, double share) {
+                    if (Clock::now() - told < tell_every) return;
+                    told = Clock::now();
+                    was_told = true;
+                    const double spent_s = std::chrono::duration<double>(told - start).count();
+                    send(window,
+                         event("progress", {{"job", request.id},
+                                            {"what", doing},
+                                            {"share", share},
+                                            {"left_s", share > 0.02 ? Json(spent_s * (1.0 - share) / share)
+                                                                    : Json(nullptr)}}));
+                  }};
+  guarded(
+      [&] {
+        Json ok = word.answer(desk_, request.said, watched);
+        if (word.changes_plan) {
+          Json state = desk_.state();
+          tell_all(event("plan", {{"plan_state", state}}));
+          if (ok.is_object()) state.update(ok);
+          ok = std::move(state);
+        }
+        if (word.lane == Lane::Evaluate) tell_all(event("objects", ok));
+        if (word.changes_objects) tell_plan();
+        send(window, answer_to(request.id, ok));
+      },
+      [&](const std::exception& error) { refuse(window, request.id, error); });
+  if (was_told) guarded([&] { send(window, event("job_done", {{"job", request.id}})); }, [](const auto&) {});
+}
+
+void Service::refuse(std::uint64_t window, std::int64_t id, const std::exception& error) {
+  send(window, refusal_to(id, error, line_of_));
+}
+
+void Service::drop(const PaneQueue::Asked& asked, const char* why) {
+  refuse(asked.name.window, asked.request.id, Stopped(why));
+}
+
+void Service::draw(const std::stop_token& over) {
+  while (const auto asked = panes_.next(over)) {
+    const std::stop_token stop = asked->stop.get_token();
+    const std::stop_callback end(over, [source = asked->stop]() mutable { source.request_stop(); });
+    guarded(
+        [&] {
+          if (find(asked->name.window) == nullptr) {
+            std::erase_if(views_, [&](const auto& view) { return view.first.window == asked->name.window; });
+            return;
+          }
+          if (asked->request.said.value("kind", "view") == "slice")
+            return send(asked->name.window, draw_slice(desk_, asked->request, stop));
+          auto& view = views_[asked->name];
+          if (view == nullptr) view = std::make_unique<ViewPane>();
+          send(asked->name.window,
+               view->draw(desk_, asked->request,
+                          std::min(most_frame_ms, most_round_ms / panes_.moving_panes()), stop));
+        },
+        [&](const std::exception& error) {
+          panes_.shown(asked->name, asked->request.id);
+          refuse(asked->name.window, asked->request.id, error);
+        });
+    // Windows that have gone leave their drawers.
+    guarded(
+        [&] { std::erase_if(views_, [&](const auto& view) { return find(view.first.window) == nullptr; }); },
+        [](const auto&) {});
+  }
+}
+
+}  // namespace octotomy::planner::serve

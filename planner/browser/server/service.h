@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "planner/browser/server/desk.h"
+#include "planner/browser/server/lane_queue.h"
+#include "planner/browser/server/message.h"
+#include "planner/browser/server/pane_queue.h"
+#include "planner/browser/server/requests.h"
+#include "planner/browser/server/view_pane.h"
+
+namespace octotomy::planner::serve {
+
+/// The windows that look at one desk, and the threads that answer them: one draws, one edits, one evaluates,
+/// one certifies, one tells overlaps, one does long work. Every request is answered once, also where it
+/// fails. All members may be called from any thread.
+class Service {
+ public:
+  /// Takes a message for a window's socket; may be called from any thread and must not wait.
+  using Send = std::function<void(Message message)>;
+
+  /// `line_of` makes the messages of refusals.
+  Service(Desk& desk, LineOf line_of);
+  ~Service();
+  Service(const Service&) = delete;
+  Service& operator=(const Service&) = delete;
+
+  const LineOf& line_of() const { return line_of_; }
+  std::uint64_t open_window(Send send);
+  void close_window(std::uint64_t window);
+  /// Takes a message of a window; what it asks is answered later.
+  void receive(std::uint64_t window, const std::string& text);
+
+ private:
+  /// The most requests of a window that wait: a page asks far fewer.
+  static constexpr int most_waiting = 500;
+  struct Window {
+    Send send;
+    std::atomic<int> waiting{0};
+  };
+  std::shared_ptr<Window> find(std::uint64_t window);
+  void send(std::uint64_t window, Message message);
+  void tell_all(const Message& message);
+  void tell_plan();
+  void take(std::uint64_t window, Request request);
+  void answer(std::uint64_t window, const Request& request, const Word& word, const std::stop_token& stop);
+  void refuse(std::uint64_t window, std::int64_t id, const std::exception& error);
+  /// Answers a picture that waited and is not drawn.
+  void drop(const PaneQueue::Asked& asked, const char* why);
+  void draw(const std::stop_token& over);
+
+  Desk& desk_;
+  LineOf line_of_;
+  std::mutex mutex_;
+  std::map<std::uint64_t, std::shared_ptr<Window>> windows_;
+  std::uint64_t last_window_ = 0;
+  PaneQueue panes_;
+  std::map<PaneName, std::unique_ptr<ViewPane>> views_;  ///< of the drawing thread alone
+  std::map<Lane, std::unique_ptr<LaneQueue>> lanes_;
+  std::jthread drawing_;
+};
+
+}  // namespace octotomy::planner::serve

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <stop_token>
+
+#include "planner/browser/server/desk.h"
+#include "planner/browser/server/message.h"
+
+namespace octotomy::planner::serve {
+
+/// A frame for a request "pane" of the kind "slice": a plane of the scan in grey tones with the outlines of
+/// objects, and, in `threshold`, tinted. While something moves a JPEG; at rest a PNG with the samples under
+/// the pixels. Throws std::runtime_error for what cannot be read; Stopped.
+Message draw_slice(Desk& desk, const Request& request, const std::stop_token& stop);
+
+}  // namespace octotomy::planner::serve

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "planner/browser/server/message.h"
+
+namespace octotomy::planner::serve {
+
+/// {"id", "says", "value", "unit", "half_width", "sentence", "details"} of one of measurements_json(): a
+/// distance, an angle, a gap, or a size. Null where it has no number, as the gap to an empty object.
+Json told_measurement(const Json& measured);
+
+/// A number of an answer as a page shows it; `what` begins its sentence.
+Json told(const Json& value, const std::string& unit, const Json& half_width, const std::string& what);
+
+}  // namespace octotomy::planner::serve

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "planner/browser/server/desk.h"
+#include "planner/browser/server/message.h"
+#include "voxel/view/renderer.h"
+
+namespace octotomy::planner::serve {
+
+/// Draws one pane's views, frame after frame. One thread at a time may use it.
+class ViewPane {
+ public:
+  /// A frame for a request "pane" of the kind "view". While something moves a JPEG, of fewer pixels where
+  /// frames of all would take longer than `most_ms`; at rest the PNG that `octotomy render` writes, with the
+  /// depth and the object of every pixel. Throws std::runtime_error for what cannot be read; Stopped.
+  Message draw(Desk& desk, const Request& request, double most_ms, const std::stop_token& stop);
+
+ private:
+  struct Drawing;
+  /// The objects of a request, one that is dragged in its new place.
+  void add_objects(Desk& desk, const Json& said, Drawing& drawing, const std::stop_token& stop);
+  /// Colours one of them by its distance to another; "mutual": both by each other.
+  void colour(const Json& colour_by, Drawing& drawing);
+  /// A window of a scan that is no step yet; with "alone" about the scan itself, wherever it lies.
+  voxel::DrawnObject threshold(Desk& desk, const Snapshot& snapshot, const Json& window);
+  Message moving(Drawing& drawing, double most_ms);
+
+  voxel::Renderer renderer_;
+  double full_frame_ms_ = 0.0;  ///< of a frame of all pixels, as the last ones took
+  std::string threshold_of_;
+  std::shared_ptr<const voxel::Octree> threshold_;
+  std::shared_ptr<const Evaluation> scalar_evaluation_;
+  std::map<std::string, std::shared_ptr<const voxel::SurfaceScalar>> scalars_;  ///< by objects and range
+};
+
+}  // namespace octotomy::planner::serve

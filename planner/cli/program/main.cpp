@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// The program: reads the command line, runs the chosen verb and turns what it throws into an exit status:
+// 2 for what the user can mend, 3 for time, memory and disk, 70 for a mistake in the program.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <string>
+#include <sysexits.h>
+#include <system_error>
+#include <tbb/global_control.h>
+#include <thread>
+#include <unistd.h>
+
+#include "planner/cli/program/verb_groups.h"
+#include "planner/cli/program/verbs.h"
+#include "planner/cli/suite/suite.h"
+#include "planner/cli/verb/manual.h"
+#include "planner/cli/verb/progress_line.h"
+#include "planner/cli/verb/verb.h"
+#include "planner/operation/table/fault.h"
+#include "voxel/space/error.h"
+#include "voxel/space/memory_need.h"
+#include "voxel/space/unfinished_folder.h"
+#include "voxel/space/write_failure.h"
+
+namespace {
+
+using octotomy::planner::cli::Program;
+namespace cli = octotomy::planner::cli;
+using octotomy::planner::Fault;
+
+std::atomic<int> interrupts{0};
+std::atomic<bool> is_processor_time_over{false};
+
+/// Handles a signal, unless whoever started the program had it ignored, as nohup does with SIGHUP.
+void heed(int signal, void (*handler)(int)) {
+  if (std::signal(signal, handler) == SIG_IGN) std::signal(signal, SIG_IGN);
+}
+
+/// Which signals ask for an end, and which a failed call tells of anyway. A second SIGINT or SIGTERM ends the
+/// process at once; SIGHUP counts once, as a terminal that closes may send it twice. SIGXCPU, of a limit on
+/// processor time, is the same as --time-limit. SIGQUIT keeps its meaning, an end at once with a core: as
+/// after SIGKILL, the next run removes what is left.
+void heed_signals() {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { ++interrupts; });
+  heed(SIGHUP, [](int) {
+    int none = 0;
+    interrupts.compare_exchange_strong(none, 1);
+  });
+  heed(SIGXCPU, [](int) { is_processor_time_over = true; });
+  // A reader that goes away and a limit on the size of files: the call that writes fails with EPIPE or EFBIG.
+  // Handled instead of ignored, as programs that are started inherit what is ignored.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) heed(signal, [](int) {});
+}
+
+/// Says why and ends the process without the verb, whose threads may still work: what they have not finished
+/// is removed, and the processes that they started end with this one.
+[[noreturn]] void end_now(const char* why) {
+  octotomy::voxel::remove_unfinished();
+  cli::end_progress();
+  cli::warn(why);
+  std::_Exit(cli::out_of_resources);
+}
+
+constexpr const char* out_of_memory =
+    "out of memory: nothing was written; use larger voxels (universe, voxel_mm), a smaller scan, or raise "
+    "--memory";
+
+/// An allocation failed, or a thread met an error that nobody could take: most likely no further thread could
+/// be started. Ends the process here and now: code that goes on without its memory may crash or wait for
+/// ever.
+[[noreturn]] void end_for_want(const char* why) {
+  static std::atomic_flag ending;
+  if (ending.test_and_set()) ::pause();
+  octotomy::voxel::lift_memory_limit();
+  end_now(why);
+}
+
+/// An error that no code handles, on whatever thread. Want of memory or of threads ends there, too.
+[[noreturn]] void end_of_no_handler() {
+  std::string what = "an error without a handler";
+  try {
+    if (std::current_exception() == nullptr) throw std::bad_alloc();  // no thread could be joined or started
+    throw;
+  } catch (const std::exception& error) {
+    const Fault fault = octotomy::planner::fault_of(error);
+    if (fault == Fault::Resource || dynamic_cast<const std::system_error*>(&error) != nullptr)
+      end_for_want(
+          "out of memory or of threads: nothing was written; use larger voxels, fewer --threads, or raise "
+          "--memory");
+    what = error.what();
+  } catch (...) {
+  }
+  octotomy::voxel::remove_unfinished();
+  cli::end_progress();
+  cli::warn(octotomy::planner::message_of(octotomy::planner::InternalError(what)));
+  std::_Exit(EX_SOFTWARE);
+}
+
+/// Asks the verb to stop when its time is over or the user interrupts, and ends the process where the verb
+/// does not heed it, or a second interrupt comes. Ends with its scope.
+class Watch {
+ public:
+  explicit Watch(Program& program)
+      : thread_([&program](const std::stop_token& over) { run(program, over); }) {}
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  /// A verb that looks at its stop token ends by itself within this; the message is then its own.
+  static constexpr std::chrono::milliseconds grace{150};
+  static constexpr std::chrono::milliseconds look_every{5};
+
+  static void run(Program& program, const std::stop_token& over) {
+    const Clock::time_point start = Clock::now();
+    const bool shows = program.shows_progress();
+    std::optional<Clock::time_point> asked;
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any end;  // wakes at once, where a sleep would delay the program's end
+    while (!end.wait_for(lock, over, look_every, [&over] { return over.stop_requested(); })) {
+      if (octotomy::voxel::is_memory_over()) end_for_want(out_of_memory);
+      if (shows) cli::show_silent_work();
+      const bool late = is_processor_time_over ||
+                        (program.time_limit_s &&
+                         std::chrono::duration<double>(Clock::now() - start).count() > *program.time_limit_s);
+      if (interrupts > 1) end_now("interrupted twice: ended at once, what was unfinished is removed");
+      if (!late && interrupts == 0) continue;
+      program.stop.request_stop();
+      if (!asked) asked = Clock::now();
+      if (Clock::now() < *asked + grace) continue;
+      // A verb that has its answer may give it, unless it is interrupted: its reader may never read.
+      if (has_last_word(cli::Speaker::Watch))
+        end_now(interrupts > 0 ? "interrupted: nothing was written" : "out of time: nothing was written");
+      if (interrupts > 0) end_now("interrupted while the answer was written");
+    }
+  }
+
+  std::jthread thread_;
+};
+
+/// An error's text on one line: what, where, what to try.
+int refuse(const std::string& text, int status) {
+  while (!has_last_word(cli::Speaker::Verb)) std::this_thread::sleep_for(std::chrono::seconds(1));
+  cli::warn(text);
+  return status;
+}
+
+/// The exit status of an error.
+int status_of(Fault fault) {
+  if (fault == Fault::Internal) return EX_SOFTWARE;
+  return fault == Fault::Cancelled || fault == Fault::Resource ? cli::out_of_resources : cli::bad_input;
+}
+
+int run_chosen(Program& program) {
+  try {
+    std::unique_ptr<tbb::global_control> threads;
+    if (program.threads)
+      threads = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                      static_cast<std::size_t>(*program.threads));
+    if (program.memory_gb) {
+      octotomy::voxel::limit_memory(static_cast<std::uint64_t>(std::min(*program.memory_gb, 1e9) * 1e9));
+      std::set_new_handler([] { end_for_want(out_of_memory); });
+      if (octotomy::voxel::is_memory_over()) end_for_want(out_of_memory);
+    }
+    const Watch watch(program);
+    const cli::FindingsOfRun findings;
+    return program.chosen();
+  } catch (const std::bad_alloc&) {
+    return refuse(out_of_memory, cli::out_of_resources);
+  } catch (const std::exception& error) {
+    return refuse(octotomy::planner::message_of(error), status_of(octotomy::planner::fault_of(error)));
+  }
+}
+
+/// Refuses an output of no name, which a script's empty variable gives.
+void need_named_outputs(const CLI::App& verb) {
+  for (const CLI::Option* option : verb.get_options())
+    if (option->check_sname("o") && option->count() > 0 && option->results().back().empty())
+      throw CLI::ValidationError("-o", "has no name: say which file or folder to write");
+  for (const CLI::App* chosen : verb.get_subcommands()) need_named_outputs(*chosen);
+}
+
+/// Help and version go to standard output, which may be full.
+int say_help(const CLI::App& app, const CLI::ParseError& error) {
+  app.exit(error);
+  std::cout.flush();
+  if (std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return cli::done;
+  return refuse("standard output: " + std::generic_category().message(errno),
+                status_of(octotomy::planner::fault_of(std::system_error(errno, std::generic_category()))));
+}
+
+int parse_and_run(int count, char** arguments) {
+  CLI::App app(
+      "Plans an operation on a skull in two geometry kernels that check each other.\n"
+      "Lengths are in mm, angles in degrees, coordinates in DICOM's patient frame (LPS).",
+      "octotomy");
+  app.set_version_flag("--version", "octotomy " OCTOTOMY_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Example:\n"
+      "  octotomy phantom head -o head.nrrd\n"
+      "  octotomy run planner/le_fort_i.plan.json --scan ct=head.nrrd -o report\n"
+      "Exit status: 0 done, 1 the kernels disagree or verify lacks evidence, 2 wrong usage or bad input, 3 "
+      "out of time, memory or disk, 70 a mistake in the program.");
+  cli::add_manual(app);
+  Program program(app, {arguments + std::min(1, count), arguments + count});
+  cli::add_look(program);
+  cli::add_plan_verbs(program);
+  cli::add_verify_verbs(program);
+  cli::add_info(program);
+  cli::add_convert(program);
+  cli::add_mark(program);
+  cli::add_prepare(program);
+  cli::add_segment(program);
+  cli::add_operation_verbs(program);
+  cli::add_phantom(program);
+  cli::add_cohort(program);
+  cli::add_cephalometry(program);
+  cli::add_outcome(program);
+  cli::add_serve(program);
+  cli::group_verbs(app);
+  try {
+    app.parse(count, arguments);
+    need_named_outputs(app);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return say_help(app, error);
+    if (count > 1 && arguments[1][0] != '-' && app.get_subcommands().empty())
+      return refuse(cli::unknown_verb(app, arguments[1]), cli::bad_input);
+    return refuse(std::string(error.what()) + "; see octotomy --help", cli::bad_input);
+  } catch (const std::filesystem::filesystem_error& error) {
+    // A path that is too long, or in a folder that is closed.
+    return refuse(error.path1().string() + ": " + error.code().message(), cli::bad_input);
+  }
+  return run_chosen(program);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  heed_signals();
+  std::set_terminate(end_of_no_handler);
+  try {
+    return parse_and_run(count, arguments);
+  } catch (const std::bad_alloc&) {
+    // Of run_chosen()'s errors only this gets past it; a line that is no allocation can still be said.
+    std::fputs("octotomy: out of memory\n", stderr);
+    return cli::out_of_resources;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "octotomy: %s\n", octotomy::planner::message_of(error).c_str());
+    return EX_SOFTWARE;
+  }
+}

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "planner/browser/server/folders.h"
+#include "planner/browser/server/gate.h"
+#include "planner/browser/server/server.h"
+#include "planner/cli/program/verbs.h"
+#include "planner/cli/verb/verb.h"
+#include "planner/operation/table/json_file.h"
+#include "planner/plan/dependence.h"
+#include "planner/plan/plan.h"
+#include "voxel/space/unfinished_folder.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ServeText {
+  std::vector<fs::path> paths;
+  serve::ServerOptions options;
+  fs::path token_file;
+  bool open = false;
+};
+
+/// Starts the desktop's browser; nothing is said where there is none. Every user of the machine can read the
+/// arguments of a process, and the URL holds the token: a page that only its owner may read leads there.
+void open_browser(const std::string& url, const fs::path& closed_folder) {
+  const fs::path page = closed_folder / "planner.html";
+  const int file = ::open(page.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (file < 0) return warn("--open: " + page.string() + " cannot be written: open the address by hand");
+  ::close(file);
+  std::ofstream(page) << "<!doctype html><meta charset=utf-8><meta name=referrer content=no-referrer>"
+                         "<meta http-equiv=refresh content='0;url="
+                      << url << "'>\n";
+  if (::fork() != 0) return;
+  ::execlp("xdg-open", "xdg-open", page.c_str(), nullptr);
+  ::_exit(1);
+}
+
+/// The plan or scan to begin with. Throws std::runtime_error where two are named.
+std::optional<fs::path> beginning_of(const std::vector<fs::path>& paths) {
+  std::optional<fs::path> beginning;
+  for (const fs::path& path : paths) {
+    if (fs::is_directory(path) && paths.size() > 1) continue;
+    if (beginning) throw std::runtime_error("name one plan or scan; others may be folders");
+    beginning = fs::canonical(path);
+  }
+  return beginning;
+}
+
+/// A plan that was named on the command line reads its own scans and files, wherever they lie.
+void allow_reading_of(const Plan& plan, serve::Folders& folders) {
+  for (const auto& [name, scan] : plan.scans) folders.allow_reading(scan_path(plan, scan));
+  for (const Step& step : plan.steps)
+    for (const fs::path& file : files_read(step)) folders.allow_reading(plan.folder / file);
+}
+
+/// Ends the program after the server: every edit is on the disk, and work that is under way is nobody's any
+/// more and may take long to stop. An edit ends before names are forbidden to change, as it changes some.
+[[noreturn]] void end_program(serve::Desk& desk, bool is_out_of_time) {
+  constexpr std::chrono::milliseconds longest_edit{100};
+  while (!has_last_word(Speaker::Verb)) ::pause();
+  desk.close_within(longest_edit);
+  voxel::remove_unfinished();
+  if (is_out_of_time) warn("out of time: the server has ended; every edit is in the plan's file");
+  std::_Exit(is_out_of_time ? out_of_resources : done);
+}
+
+int run(Program& program, ServeText& text) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  // All that can be refused comes before a plan is written.
+  const std::optional<fs::path> beginning = beginning_of(text.paths);
+  text.options.token = text.token_file.empty() ? serve::new_token() : serve::token_in(text.token_file);
+  std::optional<voxel::UnfinishedFolder> closed_folder;
+  text.options.ready = [&](const std::string& url) {
+    Json json = answer({});
+    json.erase("timings_ms");
+    json["url"] = url;
+    const std::string line = program.json ? json_text(json) + "\n" : "Open " + url + "\nCtrl-C ends it.\n";
+    std::fputs(line.c_str(), stdout);
+    std::fflush(stdout);
+    if (text.open)
+      open_browser(url, closed_folder.emplace(fs::temp_directory_path(), ".octotomy-open-").path());
+  };
+  serve::Server server(text.options);
+  if (text.options.address != "127.0.0.1" && text.options.address != "::1")
+    warn("--listen " + text.options.address +
+         ": others on the network reach this server, and read what they send and get: nothing is encrypted");
+  serve::Desk desk(fs::current_path());
+  for (const fs::path& path : text.paths) desk.folders.open(path);
+  if (beginning && serve::is_plan(*beginning)) allow_reading_of(read_plan(*beginning), desk.folders);
+  if (beginning) desk.open(*beginning, {program.stop.get_token(), program.progress()});
+  serve::Service service(desk, line_of);
+  server.run(service, desk, program.stop.get_token());
+  // The watch began to count shortly before or after this verb did.
+  constexpr std::chrono::duration<double> margin{0.1};
+  end_program(desk, program.time_limit_s && Clock::now() - start + margin >=
+                                                std::chrono::duration<double>(*program.time_limit_s));
+}
+
+}  // namespace
+
+void add_serve(Program& program) {
+  const auto text = std::make_shared<ServeText>();
+  CLI::App& verb = program.verb("serve", "Opens the planner in a browser; nothing leaves this machine",
+                                "octotomy serve head.nrrd --open\n"
+                                "  octotomy serve le_fort_i.plan.json",
+                                [&program, text] { return run(program, *text); });
+  verb.add_option("paths", text->paths,
+                  "A plan or a scan to begin with, and folders that the page may open files of")
+      ->check(CLI::ExistingPath);
+  verb.add_option("--port", text->options.port, "Port to listen on; default: a free one")
+      ->check(CLI::Range(0, 65535));
+  verb.add_option("--token-file", text->token_file,
+                  "Keeps the address's token in this file: with the same --port, pages that are open find a "
+                  "server that was started again");
+  verb.add_flag("--open", text->open, "Opens the desktop's browser");
+  verb.add_option("--listen", text->options.address,
+                  "Address of another interface, so that other machines reach the server; default 127.0.0.1");
+}
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "planner/cli/verb/verb.h"
+
+// Each of these adds the verbs of its file.
+namespace octotomy::planner::cli {
+
+/// A verb for every operation of the table that works on files: a plan of one step. Its options, their
+/// checks and its help come from the operation's fields.
+void add_operation_verbs(Program& program);
+void add_info(Program& program);
+void add_convert(Program& program);
+void add_phantom(Program& program);
+void add_prepare(Program& program);
+void add_segment(Program& program);
+void add_plan_verbs(Program& program);
+void add_plan_document(Program& program);  ///< plan diff, plan merge, plan history
+void add_procedure(Program& program);
+void add_look(Program& program);
+void add_mark(Program& program);
+void add_cohort(Program& program);
+void add_cephalometry(Program& program);
+void add_outcome(Program& program);
+void add_serve(Program& program);
+
+}  // namespace octotomy::planner::cli

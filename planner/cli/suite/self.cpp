@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Of each part that the program starts or loads: whether it is there, carries the program's own mark of its
+// build, and does a small piece of work whose answer is known.
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iterator>
+
+#include "convert/tet/mesher_process.h"
+#include "planner/cli/suite/suites.h"
+#include "voxel/scan/dicom_codec.h"
+#include "voxel/scan/image_file.h"
+#include "voxel/space/helper_file.h"
+
+extern "C" const char octotomy_build_mark[];
+
+namespace octotomy::planner::cli {
+namespace {
+
+/// The mark without its last word, which is the build's.
+std::string mark_prefix() {
+  return "octotomy build mark ";
+}
+
+/// The mark in a file's bytes; empty: it has none.
+std::string mark_in(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t at = bytes.find(mark_prefix());
+  if (at == std::string::npos) return {};
+  const std::size_t end = bytes.find(' ', at + mark_prefix().size());
+  return bytes.substr(at, end == std::string::npos ? end : end + 1 - at);
+}
+
+/// A tetrahedron with edges of some 10 mm.
+convert::MesherInput tetrahedron() {
+  return {{{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {0, 0, 10}},
+          {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}},
+          {},
+          {5.0, 5.0, 5.0, 5.0}};
+}
+
+bool is_filled(const convert::MesherOutcome& outcome, double least_mm3, double most_mm3) {
+  double six_volumes = 0.0;
+  for (const auto& tet : outcome.tetrahedra) {
+    const glm::dvec3& p = outcome.points_mm[tet[0]];
+    six_volumes +=
+        std::abs(glm::dot(outcome.points_mm[tet[1]] - p,
+                          glm::cross(outcome.points_mm[tet[2]] - p, outcome.points_mm[tet[3]] - p)));
+  }
+  return !outcome.failure && six_volumes >= 6.0 * least_mm3 && six_volumes <= 6.0 * most_mm3;
+}
+
+bool tetgen_fills() {
+  return is_filled(convert::run_tetgen(tetrahedron(), "pYQ", {}), 166.6, 166.7);
+}
+
+bool mesh3_fills() {
+  convert::MesherInput input = tetrahedron();
+  input.holes_mm = input.points_mm;
+  return is_filled(convert::run_mesh3(input, convert::Mesh3Sizes(), {}), 100.0, 200.0);
+}
+
+/// A cube of six voxels a side in an empty border.
+bool mesh3_fills_labels() {
+  constexpr int side = 12, low = 3, high = 8;
+  convert::LabelImage image{
+      glm::ivec3(side), glm::dvec3(1.0), std::vector<std::uint8_t>(side * side * side, 0), {}};
+  for (int z = low; z <= high; ++z)
+    for (int y = low; y <= high; ++y)
+      for (int x = low; x <= high; ++x) image.labels[static_cast<std::size_t>(x + side * (y + side * z))] = 1;
+  for (const double at : {low - 0.5, high + 0.5})
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::dvec3 p(0.5 * (low + high));
+      p[axis] = at;
+      image.start_mm.push_back(p);
+    }
+  return is_filled(convert::run_mesh3(image, {2.0, 0.3, 3.0}, {}), 150.0, 230.0);
+}
+
+/// Two rows of three pixels in run lengths: 0 1 2, 3 3 3.
+bool codec_decompresses() {
+  std::string frame(64, '\0');
+  frame[0] = 1;   // segments
+  frame[4] = 64;  // where the first one begins
+  frame += std::string("\x02\x00\x01\x02\xfe\x03", 6);
+  voxel::CompressedFrame compressed{"1.2.840.10008.1.2.5", 3, 2, 8, 8, 7, false, {frame}};
+  return voxel::decompress(compressed) == std::string("\x00\x01\x02\x03\x03\x03", 6);
+}
+
+bool image_is_encoded() {
+  const std::vector<std::uint8_t> jpeg = voxel::encode_image("jpeg", {2, 1}, {255, 0, 0, 0, 0, 255});
+  return jpeg.size() > 2 && jpeg[0] == 0xff && jpeg[1] == 0xd8;
+}
+
+struct Part {
+  const char* file;
+  const char* does;
+  bool (*works)();
+};
+constexpr Part parts[] = {{"octotomy-tetgen", "tetrahedra by TetGen", tetgen_fills},
+                          {"octotomy-mesh3", "tetrahedra by Mesh_3", mesh3_fills},
+                          {"octotomy-mesh3-labels", "tetrahedra of regions", mesh3_fills_labels},
+                          {"octotomy_dicom_codec", "compressed DICOM", codec_decompresses},
+                          {"octotomy_image_io.so", "pictures", image_is_encoded}};
+
+/// What is wrong with a part; empty: nothing. `path` is where it was found.
+std::string trouble_of(const Part& part, std::filesystem::path& path) {
+  try {
+    path = voxel::helper_file(part.file);
+    const std::string mark = mark_in(path);
+    if (mark.empty()) return "has no mark of a build: it is damaged or of an earlier version";
+    if (mark != octotomy_build_mark) return "is of another build than the program: install both again";
+    return part.works() ? "" : "starts, but its answer to a small question is wrong";
+  } catch (const voxel::Stopped&) {
+    throw;
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+SuiteAnswer run_self(Program& program, const VerifyText&) {
+  SuiteAnswer answer;
+  const Stopwatch watch(answer.timings, "self");
+  const std::string build =
+      std::string(octotomy_build_mark).substr(mark_prefix().size(), 16);  // enough to tell builds apart
+  Json told = Json::array();
+  std::vector<std::pair<std::string, std::string>> rows{{"octotomy", OCTOTOMY_VERSION ", build " + build}};
+  for (const Part& part : parts) {
+    if (program.stop.stop_requested()) throw Stopped("stopped between parts");
+    std::filesystem::path path;
+    const std::string trouble = trouble_of(part, path);
+    answer.held = answer.held && trouble.empty();
+    told.push_back({{"part", part.file},
+                    {"does", part.does},
+                    {"path", path.string()},
+                    {"works", trouble.empty()},
+                    {"trouble", trouble.empty() ? Json(nullptr) : Json(trouble)}});
+    rows.emplace_back(
+        part.file, trouble.empty() ? std::string("same build, works: ") + part.does : "NOT FIT: " + trouble);
+  }
+  answer.more = {{"build", build}, {"parts", told}};
+  answer.text = lines(rows);
+  return answer;
+}
+
+CLI::Option* add_self(CLI::App& verb, VerifyText& text) {
+  return verb.add_flag("--self", text.self,
+                       "A suite: whether the installed parts are of one build, start and work");
+}
+
+}  // namespace
+
+const Suite self_suite{add_self, run_self};
+
+}  // namespace octotomy::planner::cli

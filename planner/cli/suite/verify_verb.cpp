@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+
+#include "planner/cli/suite/suite.h"
+#include "planner/cli/suite/suites.h"
+#include "planner/result/report/result_folder.h"
+#include "planner/result/report/verification.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+/// The suites there are.
+const std::vector<Suite>& suites() {
+  static const std::vector<Suite> all{fault_suite, phantoms_suite, random_suite, self_suite, thesis_suite};
+  return all;
+}
+
+SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
+  Result result;
+  result.plan = plan_of(program, text);
+  result.evaluation = evaluated(program, result.plan, evaluate_options(program));
+  SuiteAnswer answer;
+  answer.timings = result.evaluation.timings;
+  answer.certificates = result_json(result)["certificates"];
+  answer.counts = verdict_counts(result.evaluation);
+  answer.text = verdict_text(result.evaluation);
+  need_evidence(answer, text);
+  std::string uncertified;
+  for (const Object& object : result.evaluation.objects) {
+    if (!object.certificate && !object.is_tool)
+      uncertified += (uncertified.empty() ? "'" : ", '") + object.id + "'";
+    if (object.certificate)
+      verify::keep_worse(answer.worst, {*object.certificate, object.voxel.octree, object.mesh.within});
+    else
+      answer.not_covered.push_back(object.id + ", " + object.definition + ": " +
+                                   (object.is_tool            ? "a mask is certified with what it cuts"
+                                    : object.findings.empty() ? "there is no mesh"
+                                                              : object.findings.front()));
+  }
+  if (!uncertified.empty())
+    warn("no certificate of " + uncertified + ": nothing was verified of these, the findings say why");
+  return answer;
+}
+
+/// What was named: a suite by its option, or a plan.
+SuiteAnswer chosen(Program& program, VerifyText& text, const std::vector<CLI::Option*>& named) {
+  const Suite* suite = nullptr;
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    if (named[i]->count() == 0) continue;
+    if (suite != nullptr || !text.subject.empty())
+      throw CLI::ValidationError(named[i]->get_name(), "one thing at a time: a plan or a single suite");
+    suite = &suites()[i];
+  }
+  if (suite != nullptr) return suite->run(program, text);
+  if (text.subject.size() != 1 && text.subject.size() != 3)
+    throw CLI::ValidationError("verify", "name one plan, A OP B, or a suite; see octotomy verify --help");
+  const bool operands = text.subject.size() == 3;
+  for (std::size_t i = 0; i < text.subject.size(); i += 2)
+    if (!std::filesystem::exists(text.subject[i]))
+      throw CLI::ValidationError("subject", "no such file: " + text.subject[i]);
+  if (operands) return verify_operands(program, text);
+  if (text.answer) throw CLI::ValidationError("--answer", "for A OP B only");
+  if (holds_questions(text.subject.front())) return verify_questions(program, text);
+  if (text.operand_voxel_mm) throw CLI::ValidationError("--voxel", "for A OP B of two meshes only");
+  text.plan = text.subject.front();
+  return verify_plan(program, text);
+}
+
+/// As it was asked for.
+std::string subject_of(const VerifyText& text, const std::vector<CLI::Option*>& named) {
+  std::string subject;
+  for (const std::string& word : text.subject) subject += (subject.empty() ? "" : " ") + word;
+  for (const CLI::Option* option : named) {
+    if (option->count() == 0) continue;
+    subject = option->get_name();
+    if (text.random_count > 0)
+      subject += " " + std::to_string(text.random_count) + " --seed " + std::to_string(text.seed);
+  }
+  return subject;
+}
+
+int verify(Program& program, VerifyText& text, const std::vector<CLI::Option*>& named) {
+  if (text.report) need_result_folder(*text.report, {"report.html", "result.json"});
+  SuiteAnswer found = chosen(program, text, named);
+  Json json = answer(found.timings);
+  json["certificates"] = found.certificates;
+  json["counts"] = to_json(found.counts);
+  json.update(found.more);
+  if (text.report) {
+    write_verification(
+        {subject_of(text, named), found.counts, json, std::move(found.not_covered), std::move(found.worst)},
+        *text.report);
+    json["report"] = (*text.report / "report.html").string();
+    found.text += lines({{"report", (*text.report / "report.html").string()}});
+  }
+  program.say(json, found.text);
+  if (found.counts.fail > 0) warn("the kernels disagree (a FAIL verdict)");
+  return found.counts.fail > 0 || !found.held ? disagreement : done;
+}
+
+}  // namespace
+
+void add_verify_verbs(Program& program) {
+  const auto text = std::make_shared<VerifyText>();
+  const auto named = std::make_shared<std::vector<CLI::Option*>>();
+  CLI::App& verb = program.verb(
+      "verify", "Both kernels on one question: a plan's steps, an operation on two files, or a suite",
+      "octotomy verify planner/le_fort_i.plan.json --scan ct=head.nrrd --json",
+      [&program, text, named] { return verify(program, *text, *named); });
+  verb.add_option(
+          "subject", text->subject,
+          "A .plan.json; or A OP B: meshes, label maps or octrees of any program, and union, intersection "
+          "or difference; or a folder or .json file of such questions with their results")
+      ->expected(1, 3)
+      ->type_name("PLAN | A OP B | FOLDER");
+  add_plan_options(verb, *text);
+  add_operand_options(verb, *text);
+  verb.add_flag(
+      "--accept-unresolved", text->accept_unresolved,
+      "Status 0 although a verdict is PASS for lack of evidence alone: voxels too coarse for the object");
+  verb.add_option("--report", text->report,
+                  "A folder for report.html, one page with verdicts, plots and pictures, and result.json")
+      ->type_name("FOLDER");
+  for (const Suite& suite : suites()) named->push_back(suite.add(verb, *text));
+}
+
+}  // namespace octotomy::planner::cli

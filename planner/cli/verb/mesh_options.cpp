@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/verb/mesh_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "planner/operation/file/mesh_in.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+std::vector<std::string> words_of(const CLI::App& verb, const char* name) {
+  const CLI::Option* option = verb.get_option_no_throw(name);
+  return option == nullptr ? std::vector<std::string>{} : option->results();
+}
+
+}  // namespace
+
+void add_mesh_options(CLI::App& verb) {
+  const auto add = [&](const char* name, const char* says) {
+    if (verb.get_option_no_throw(name) != nullptr) return;
+    // The words stay with the option.
+    verb.add_option_function<std::vector<std::string>>(
+            name, [](const std::vector<std::string>&) {}, says)
+        ->expected(1)
+        ->take_all()
+        ->group("mesh");
+  };
+  add("--frame",
+      "Where x, y and z of mesh files point, whatever the files say: LPS, RAS, or three other letters of L "
+      "or "
+      "R, A or P, S or I; of one file as FILE=RAS");
+  add("--unit",
+      "Unit of mesh files, whatever they say: um, mm, cm, m, inch or foot; of one file as FILE=inch");
+}
+
+void choose_mesh_options(const CLI::App& verb) {
+  choose_mesh_reading(words_of(verb, "--frame"), words_of(verb, "--unit"));
+}
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/anatomy/movement.h"
+
+#include "planner/operation/anatomy/head_directions.h"
+#include "planner/operation/table/json.h"
+#include "voxel/measure/measure.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::planner {
+namespace {
+
+constexpr double reach_mm = 3.0;
+
+Json point_json(const glm::dvec3& p) {
+  return {p.x, p.y, p.z};
+}
+
+/// The displacement along the head's directions, and in words.
+Json displacement_json(const glm::dvec3& by_mm, const glm::dmat3& lps_from_head) {
+  const Displacement along = displacement_of(by_mm, lps_from_head);
+  return {{"forward_mm", along.forward_mm},
+          {"left_mm", along.left_mm},
+          {"up_mm", along.up_mm},
+          {"words", in_words(along)}};
+}
+
+/// The bone of scans' windows that no moved object is or comes from; none where nothing moves or stays.
+std::optional<voxel::Expression> staying_bone(const Objects& objects) {
+  std::optional<voxel::Expression> staying, pieces;
+  const auto add = [](std::optional<voxel::Expression>& all, const voxel::Octree& octree) {
+    all = all ? *all | voxel::Expression(octree) : voxel::Expression(octree);
+  };
+  for (const Object& object : objects) {
+    if (object.moved && !objects.at(object.moved->object).moved)
+      add(pieces, objects.at(object.moved->object).voxel.octree);
+    if (!object.is_tool && !object.moved && object.shown) add(staying, object.voxel.octree);
+  }
+  if (!staying || !pieces) return std::nullopt;
+  return voxel::Expression(voxel::combine(objects.front().voxel.octree.universe(), *staying - *pieces));
+}
+
+/// Whether a piece has bone nearer to a landmark than what stays has: `at_mm` is the landmark's place with
+/// the piece, `still_mm` its place in the scan.
+bool nearer(const voxel::Octree& piece, const std::optional<voxel::Expression>& staying,
+            const glm::dvec3& at_mm, const glm::dvec3& still_mm) {
+  for (const double radius_mm : {0.5, 1.0, 2.0, reach_mm}) {
+    const auto in_reach = [&](const voxel::Expression& bone, const glm::dvec3& p_mm) {
+      return voxel::measure(
+                 voxel::combine(piece.universe(), bone & voxel::Expression(voxel::Sphere{p_mm, radius_mm})))
+          .volume_mm3;
+    };
+    const double of_piece = in_reach(voxel::Expression(piece), at_mm),
+                 of_others = staying ? in_reach(*staying, still_mm) : 0.0;
+    // On a cut both have about half; it goes with the piece, which the cut was planned for.
+    if (of_piece > 0.0 || of_others > 0.0) return of_piece > 0.5 * of_others;
+  }
+  return false;
+}
+
+Json movement_json(const Object& object, const Objects& objects, const std::vector<NamedPoint>& landmarks,
+                   const std::optional<voxel::Expression>& staying) {
+  const glm::dmat3& head = objects.lps_from_head;
+  const glm::dmat4& motion = object.moved->motion;
+  const Object& still = objects.at(object.moved->object);
+  const glm::dmat4 before = moved_since_made(objects, still.id);
+  const Turns turns = turns_of(glm::dmat3(motion), head);
+  Json json{{"object", object.id},      {"from", still.id},           {"pitch_deg", turns.pitch_deg},
+            {"yaw_deg", turns.yaw_deg}, {"roll_deg", turns.roll_deg}, {"words", in_words(turns)},
+            {"centroid", nullptr},      {"landmarks", Json::array()}};
+  if (const std::optional<glm::dvec3>& centre = still.voxel.measures.centroid_mm) {
+    json["centroid"] = displacement_json(carried(motion, *centre) - *centre, head);
+    json["words"] = json["centroid"]["words"].get<std::string>() + "; " + in_words(turns);
+  }
+  for (const NamedPoint& landmark : landmarks) {
+    const glm::dvec3 from_mm = carried(before, landmark.p_mm), to_mm = carried(motion, from_mm);
+    if (!nearer(still.voxel.octree, staying, from_mm, landmark.p_mm)) continue;
+    Json row{{"name", landmark.name}};
+    row.update(displacement_json(to_mm - from_mm, head));
+    row["to_mm"] = point_json(to_mm);
+    if (still.moved) row["since_scan"] = displacement_json(to_mm - landmark.p_mm, head);
+    json["landmarks"].push_back(std::move(row));
+  }
+  json.update(object.moved->details);
+  return json;
+}
+
+}  // namespace
+
+Json movements_json(const Objects& objects, const std::vector<NamedPoint>& landmarks) {
+  const std::optional<voxel::Expression> staying = landmarks.empty() ? std::nullopt : staying_bone(objects);
+  Json all = Json::array();
+  for (const Object& object : objects)
+    if (object.moved) all.push_back(movement_json(object, objects, landmarks, staying));
+  return all;
+}
+
+std::vector<MovedLandmark> moved_landmarks(const Objects& objects, const std::vector<NamedPoint>& landmarks) {
+  const std::optional<voxel::Expression> staying = staying_bone(objects);
+  std::vector<MovedLandmark> moved;
+  for (const NamedPoint& landmark : landmarks) {
+    moved.push_back({landmark, glm::dmat4(1.0)});
+    for (const Object& object : objects) {
+      if (!object.moved) continue;
+      const Object& still = objects.at(object.moved->object);
+      const glm::dmat4 before = moved_since_made(objects, still.id);
+      if (nearer(still.voxel.octree, staying, carried(before, landmark.p_mm), landmark.p_mm))
+        moved.back().moved_from_still = object.moved->motion * before;
+    }
+  }
+  return moved;
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Tetrahedra for finite elements: an object's filling, several objects as regions, or one that others hold.
+#include "convert/deck/deck.h"
+
+#include <algorithm>
+
+#include "convert/deck/deck_names.h"
+#include "convert/tet/midline.h"
+#include "planner/operation/deck/cut_surfaces.h"
+#include "planner/operation/deck/deck_step.h"
+#include "planner/operation/deck/filling.h"
+#include "planner/operation/deck/refinement.h"
+#include "planner/operation/deck/region_deck.h"
+#include "planner/operation/file/output_path.h"
+#include "planner/operation/table/fault.h"
+#include "planner/operation/table/nearest_name.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+bool contains(const std::vector<ObjectName>& names, const std::string& name) {
+  return std::any_of(names.begin(), names.end(), [&](const ObjectName& each) { return each.name == name; });
+}
+
+std::vector<std::string> region_names(const Deck& deck) {
+  std::vector<std::string> names;
+  for (const ObjectName& region : deck.regions) names.push_back(region.name);
+  names.push_back(deck.object.name);
+  return names;
+}
+
+void check_held(const Deck& deck, const Place& place) {
+  if (place.scope != nullptr)
+    for (const ObjectName& moved : deck.moved)
+      if (const Operation& maker = place.scope->maker_of(moved.name); !maker.is_motion)
+        place.at("moved").refuse("'" + moved.name + "' was made by '" + maker.name +
+                                 "', which moves nothing: name the result of a step that moves an object, or "
+                                 "list it as fixed");
+  if ((deck.element_mm || deck.material) && !deck.is_held())
+    place.refuse("'element_mm' and 'material' are of an object that others hold: add 'moved' or 'fixed'");
+}
+
+void check_regions(const Deck& deck, const Place& place) {
+  const std::vector<std::string> names = region_names(deck);
+  for (const auto& [one, other] : deck.sliding) {
+    for (const std::string& name : {one, other})
+      if (std::find(names.begin(), names.end(), name) == names.end())
+        place.at("sliding").refuse("'" + name + "' is no region of this deck" + suggestion(name, names));
+    if (one == other) place.at("sliding").refuse("'" + one + "' cannot slide on itself: cut it in two");
+  }
+  for (const auto& [name, unused] : deck.materials)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      place.at("materials").refuse("unknown key '" + name + "'" + suggestion(name, names));
+  if (deck.regions.empty()) {
+    const char* alone = deck.smooth_mm            ? "smooth_mm"
+                        : deck.has_contact()      ? "between"
+                        : !deck.sliding.empty()   ? "sliding"
+                        : !deck.materials.empty() ? "materials"
+                                                  : nullptr;
+    if (alone != nullptr) place.at(alone).refuse("is of several regions: add 'regions', or leave it out");
+    return;
+  }
+  if (deck.fallback && !deck.smooth_mm)
+    place.at("fallback").refuse("regions are made of voxels unless 'smooth_mm' is there: leave it out");
+  if (!deck.smooth_mm) return;
+  if (deck.element_mm)
+    place.at("element_mm").refuse("is of voxels, and 'smooth_mm' of smooth elements: leave one out");
+  for (const std::vector<ObjectName>* holders : {&deck.moved, &deck.fixed})
+    for (const ObjectName& holder : *holders)
+      if (holder.name != deck.object.name && !contains(deck.regions, holder.name))
+        place.at("smooth_mm")
+            .refuse("smooth elements do not lie on voxels: add '" + holder.name +
+                    "', which holds them, to 'regions', or leave 'smooth_mm' out");
+}
+
+void check(const Deck& deck, const Place& place) {
+  check_output_path(deck.path, {".inp", ".vtu", ".feb", ".msh", ".node"}, place.at("path"));
+  check_held(deck, place);
+  if (deck.fallback && deck.is_held() && !deck.smooth_mm)
+    place.at("fallback").refuse("what others hold is made of its voxels anyhow: leave it out");
+  if (deck.order == 2 && deck.path.extension() == ".node")
+    place.at("order").refuse("is of tetrahedra in .inp, .feb, .vtu or .msh: leave it out");
+  check_regions(deck, place);
+  if (deck.stiffness && (deck.is_held() || !deck.regions.empty()))
+    place.at("stiffness").refuse("is of one object that is filled: leave it out, or 'regions' and holders");
+  if (!deck.finer.empty() && !deck.smooth_mm && (deck.is_held() || !deck.regions.empty()))
+    place.at("finer").refuse("is not of voxels' elements: add 'smooth_mm', or leave it out");
+}
+
+/// The reason why there is nothing to write, or an empty text.
+std::string obstacle_of(const Object& object, const Deck& deck) {
+  const bool wants_mesh = !deck.is_held() && !deck.fallback && deck.regions.empty();
+  if (wants_mesh && !object.mesh.within) return "'" + object.id + "' has no mesh, see its findings";
+  const bool has_faces = object.mesh.within && !object.mesh.within->empty();
+  const bool is_empty =
+      wants_mesh ? !has_faces : object.voxel.octree.is_empty() && !(deck.fallback && has_faces);
+  return is_empty ? "'" + object.id + "' is empty" : "";
+}
+
+/// The set of nodes along the mid-line's plane.
+void add_midline(const convert::Tetrahedra& tetrahedra, const Deck& deck, convert::DeckOptions& options,
+                 Exported& made) {
+  if (!deck.midline) return;
+  convert::NodeSet set{"MIDLINE",
+                       convert::midline_nodes(tetrahedra, deck.midline->point_mm, deck.midline->normal)};
+  if (set.nodes.empty())
+    made.findings.push_back("the plane of 'midline' passes the deck nowhere: there is no set MIDLINE");
+  else
+    options.node_sets.push_back(std::move(set));
+}
+
+void tell_written(const convert::Tetrahedra& tetrahedra, const convert::TetQuality& quality,
+                  const convert::DeckOptions& options, Exported& made) {
+  made.written = true;
+  made.content = grouped(static_cast<double>(tetrahedra.tets.size()), 0) + " tetrahedra, dihedral angles " +
+                 grouped(quality.min_dihedral_deg, 1) + "\u00b0 to " + grouped(quality.max_dihedral_deg, 1) +
+                 "\u00b0";
+  made.details["nodes"] = tetrahedra.nodes_mm.size();
+  made.details["tets"] = tetrahedra.tets.size();
+  made.details["volume_mm3"] = quality.volume_mm3;
+  for (const convert::NodeSet& set : options.node_sets)
+    made.details["node_sets"][set.name] = set.nodes.size();
+  for (const convert::DeckSurface& surface : options.surfaces)
+    made.details["surfaces"][surface.name] = surface.faces.size();
+  made.details["quality"] = quality_json(quality);
+}
+
+void write_elements(const convert::Tetrahedra& tetrahedra, convert::DeckOptions options, const Deck& deck,
+                    const AnswerBench& bench, Exported& made) {
+  const Stopwatch watch(bench.timings, "write");
+  const convert::TetQuality quality = convert::quality(tetrahedra);
+  made.details["method"] = tetrahedra.method;
+  options.title = deck.object.name + " = " + bench.objects.at(deck.object.name).definition;
+  options.second_order = deck.order == 2;
+  options.progress = bench.progress("writing " + made.path);
+  add_midline(tetrahedra, deck, options, made);
+  for (std::string& changed : convert::make_names_unique(tetrahedra, options))
+    made.findings.push_back(std::move(changed));
+  options.notes.insert(options.notes.begin(), bench.origins.begin(), bench.origins.end());
+  for (std::string& note : quality_notes(quality)) options.notes.push_back(std::move(note));
+  options.notes.insert(options.notes.end(), made.findings.begin(), made.findings.end());
+  convert::write_deck(tetrahedra, output_file(bench.folder, made.path), options);
+  tell_written(tetrahedra, quality, options, made);
+}
+
+/// A filling that decks of one object share.
+struct Filled {
+  Filling filling;
+  std::vector<convert::DeckSurface> surfaces;
+};
+
+/// The filling, or the reason why there is none.
+using Tried = std::variant<Filled, std::string>;
+
+Tried fill(const Object& object, const Deck& deck, const AnswerBench& bench) {
+  const Stopwatch watch(bench.timings, "tetrahedralise");
+  FillingOptions options;
+  options.fallback = deck.fallback;
+  options.progress = bench.progress("filling " + object.id + ", of the time allowed");
+  std::variant<Filling, std::string> filling;
+  try {
+    options.finer = refinements(bench.objects, deck);
+    filling = filling_of(object, options);
+  } catch (const std::exception& error) {
+    if (!is_no_answer(error)) throw;
+    return error.what();
+  }
+  if (const auto* why = std::get_if<std::string>(&filling)) return *why;
+  Filled filled{std::get<Filling>(std::move(filling)), {}};
+  if (object.mesh.within && !object.mesh.within->empty())
+    filled.surfaces = cut_surfaces(object, filled.filling.tetrahedra);
+  return filled;
+}
+
+/// The filling that decks of one object share, made by the first.
+const Tried& filled_once(const Object& object, const Deck& deck, const AnswerBench& bench) {
+  const std::string key = object.id + (deck.fallback ? " or its voxels" : "") + refinement_key(deck);
+  std::shared_ptr<const void>& kept = bench.kept[key];
+  if (!kept) kept = std::make_shared<const Tried>(fill(object, deck, bench));
+  return *static_cast<const Tried*>(kept.get());
+}
+
+/// The motion of all the steps that moved an object.
+glm::dmat4 moved_from_still(const Object& object, const Objects& objects) {
+  return object.moved ? object.moved->motion * moved_from_still(objects.at(object.moved->object), objects)
+                      : glm::dmat4(1.0);
+}
+
+std::vector<Field> stiffness_record() {
+  std::vector<Field> fields{field("scan", &Stiffness::scan, "The scan, in HU.").required()};
+  for (Field& field : stiffness_fields()) fields.push_back(std::move(field));
+  return fields;
+}
+
+void write_filled(const Object& object, const Deck& deck, const AnswerBench& bench, Exported& made) {
+  const Tried& tried = filled_once(object, deck, bench);
+  if (const auto* why = std::get_if<std::string>(&tried))
+    return made.findings.push_back("not written: " + *why);
+  const auto& [filling, surfaces] = std::get<Filled>(tried);
+  made.details["regions"] = filling.bodies;
+  made.details["fallback"] = filling.fallback;
+  made.findings = filling.findings;
+  convert::DeckOptions options;
+  options.surfaces = surfaces;
+  if (deck.stiffness) {
+    const Stopwatch watch(bench.timings, "materials");
+    const std::vector<std::string> findings = add_stiffness(
+        *deck.stiffness, filling.tetrahedra, glm::inverse(moved_from_still(object, bench.objects)),
+        bench.samples(deck.stiffness->scan.name), bench.progress("materials of " + object.id), options);
+    made.findings.insert(made.findings.end(), findings.begin(), findings.end());
+    made.details["materials"] = options.materials.size();
+  }
+  write_elements(filling.tetrahedra, std::move(options), deck, bench, made);
+}
+
+void write_regions(const Object& object, const Deck& deck, const AnswerBench& bench, Exported& made) {
+  RegionDeck regions;
+  const voxel::Progress progress = bench.progress("filling " + object.id);
+  try {
+    const Stopwatch watch(bench.timings, "tetrahedralise");
+    regions = region_deck(bench.objects, object, deck, progress);
+  } catch (const std::exception& error) {
+    if (!is_no_answer(error)) throw;
+    return made.findings.push_back(std::string("not written: ") + error.what());
+  }
+  made.findings = regions.findings;
+  made.details["regions"] = deck.regions.size() + 1;
+  made.details["contacts"] = regions.options.contacts.size();
+  made.details["fallback"] = regions.fallback;
+  write_elements(regions.tetrahedra, std::move(regions.options), deck, bench, made);
+}
+
+void write(const Deck& deck, const AnswerBench& bench, Exported& made) {
+  const Object& object = bench.objects.at(deck.object.name);
+  made.object = object.id;
+  made.path = output_path(deck.path).generic_string();
+  if (const std::string obstacle = obstacle_of(object, deck); !obstacle.empty())
+    return made.findings.push_back("not written: " + obstacle);
+  if (!deck.regions.empty() || deck.is_held())
+    write_regions(object, deck, bench, made);
+  else
+    write_filled(object, deck, bench, made);
+}
+
+/// Of one object the filling; several regions and what others hold take their time when they are written.
+void ahead(const Deck& deck, const AnswerBench& bench) {
+  const Object& object = bench.objects.at(deck.object.name);
+  if (deck.regions.empty() && !deck.is_held() && obstacle_of(object, deck).empty())
+    filled_once(object, deck, bench);
+}
+
+std::vector<Field> material_fields() {
+  return {field("youngs_modulus_mpa", &Deck::Material::youngs_modulus_mpa, "Young's modulus.")
+              .required()
+              .greater_than(0.0)
+              .for_example("0.015"),
+          field("poisson_ratio", &Deck::Material::poisson_ratio, "Poisson's ratio.")
+              .required()
+              .from(0.0)
+              .less_than(0.5)
+              .for_example("0.45")};
+}
+
+}  // namespace
+
+Operation deck_operation() {
+  return Describe<Deck>("deck", "Writes a deck of finite elements that fill an object.", Makes::File)
+      .takes(field("object", &Deck::object, "The object.").required())
+      .takes(
+          field("path", &Deck::path, "The file within the result's folder: .inp, .feb, .vtu, .msh or .node.")
+              .required())
+      .takes(field("moved", &Deck::moved, "Moved objects; the elements on them take their motion."))
+      .takes(field("fixed", &Deck::fixed, "Objects that hold the elements on them."))
+      .takes(field("element_mm", &Deck::element_mm,
+                   "Edge of the smallest elements of an object that others hold. Default: the voxels'.")
+                 .greater_than(0.0)
+                 .for_example("3.0"))
+      .takes(record("material", &Deck::material,
+                    "Material of an object that others hold. Default: soft tissue.", material_fields()))
+      .takes(field("fallback", &Deck::fallback,
+                   "Take the voxels' own elements, marked, where no mesher succeeds."))
+      .takes(records(
+                 "finer", &Deck::finer, "Smaller elements at points or along objects.",
+                 {field("at", &Deck::Finer::at, "A point [x, y, z], LPS mm, or an object's name.").required(),
+                  field("size_mm", &Deck::Finer::size_mm, "The elements' size there.")
+                      .required()
+                      .greater_than(0.0)
+                      .for_example("0.5")})
+                 .for_example("[{\"at\": [0, -80, 20], \"size_mm\": 0.5}]"))
+      .takes(field("regions", &Deck::regions, "Further objects, each a region of the same deck."))
+      .takes(field("order", &Deck::order, "1: four-node tetrahedra; 2: ten-node ones.").from(1).to(2))
+      .takes(
+          record("midline", &Deck::midline, "A plane; the surface's nodes along it become a set.",
+                 {field("point_mm", &Deck::Plane::point_mm, "A point of the plane, LPS.").required(),
+                  field("normal", &Deck::Plane::normal, "The plane's normal, LPS.").required().direction()}))
+      .takes(field("smooth_mm", &Deck::smooth_mm,
+                   "Size of smooth elements of several regions. Default: the voxels' own elements.")
+                 .greater_than(0.0)
+                 .for_example("3.0"))
+      .takes(field("between", &Deck::between, "Nodes between regions: shared, or apart with contact pairs.")
+                 .one_of({"shared", "contact"}))
+      .takes(field("sliding", &Deck::sliding, "Pairs of regions that slide on each other.")
+                 .for_example("[[\"upper_lip\", \"lower_lip\"]]"))
+      .takes(records_by_name("materials", &Deck::materials, "Materials of regions, by their names.",
+                             material_fields()))
+      .takes(
+          record("stiffness", &Deck::stiffness, "Materials of the elements from a scan.", stiffness_record()))
+      .example(R"({"id": "deck", "do": "deck", "object": "advanced", "path": "maxilla.inp"})")
+      .check(check)
+      .ahead(ahead)
+      .write(write);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "convert/deck/deck.h"
+#include "convert/deck/materials.h"
+#include "planner/operation/table/field.h"
+
+namespace octotomy::planner {
+
+/// Materials of elements from a scan in HU.
+struct Stiffness {
+  ScanName scan;
+  std::vector<double> density;  ///< g/cm3 = density[1] + density[0] HU; empty: not calibrated
+  std::string law = convert::MaterialOptions{}.law;
+  int bins = convert::MaterialOptions{}.bins;
+  double surface_depth_mm = convert::MaterialOptions{}.surface_depth_mm;
+  double poisson_ratio = convert::MaterialOptions{}.poisson_ratio;
+};
+
+/// Its fields but the scan.
+std::vector<Field> stiffness_fields();
+
+/// Gives each element the material of the scan's samples in it: adds materials, fields and a note to the
+/// deck; returns findings. `scan_from_deck` takes the deck's points to their place in the scan, LPS to LPS.
+std::vector<std::string> add_stiffness(const Stiffness& stiffness, const convert::Tetrahedra& tetrahedra,
+                                       const glm::dmat4& scan_from_deck, const voxel::Scene& scan,
+                                       const voxel::Progress& progress, convert::DeckOptions& deck);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,456 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Tetrahedra of a closed mesh or of octrees in files; in a plan it is the step deck.
+#include <algorithm>
+#include <cmath>
+
+#include "brep/mesh/components.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "brep/mesh/split_fans.h"
+#include "convert/deck/deck.h"
+#include "convert/deck/second_order.h"
+#include "convert/tet/octree_tetrahedra.h"
+#include "convert/tet/region_tetrahedra.h"
+#include "convert/tet/separate_regions.h"
+#include "convert/tet/tetrahedralise.h"
+#include "convert/voxel/voxelise.h"
+#include "convert/voxel/winding_number.h"
+#include "planner/operation/deck/filling.h"
+#include "planner/operation/deck/node_sets.h"
+#include "planner/operation/deck/stiffness.h"
+#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/landmarks_file.h"
+#include "planner/operation/file/mesh_file.h"
+#include "planner/operation/file/mesh_in.h"
+#include "planner/operation/file/octree_in.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/table/fault.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Tet {
+  ObjectName file;
+  std::filesystem::path out, landmarks;
+  std::string mesher = "best";
+  double dihedral_deg = convert::TetOptions{}.min_dihedral_deg,
+         radius_edge = convert::TetOptions{}.radius_edge;
+  std::optional<double> max_volume_mm3, voxel_mm, size_mm;
+  std::vector<std::string> finer, nodes, fixed, moved;
+  bool refine_boundary = false, mend = false, fallback = false, contact = false, msh_2_2 = false;
+  double seconds = 60.0;
+  std::vector<ObjectName> regions;
+  int order = 1;
+  std::filesystem::path scan;
+  std::vector<double> density;
+  std::string law = Stiffness{}.law;
+  int bins = Stiffness{}.bins;
+  double surface_depth_mm = Stiffness{}.surface_depth_mm, poisson_ratio = Stiffness{}.poisson_ratio;
+};
+
+/// Places of --finer: WHERE=SIZE, where a place is a point, a landmark's name or a mesh file.
+std::vector<convert::Refinement> refinements(const Tet& asked) {
+  std::vector<brep::Landmark> landmarks;
+  if (!asked.landmarks.empty()) landmarks = read_landmarks(asked.landmarks);
+  std::vector<convert::Refinement> places;
+  for (const std::string& word : asked.finer) {
+    const std::size_t equals = word.rfind('=');
+    const std::vector<double> size_mm =
+        equals == std::string::npos ? std::vector<double>{} : comma_numbers(word.substr(equals + 1));
+    if (size_mm.size() != 1 || size_mm[0] <= 0.0)
+      throw std::runtime_error("--finer: '" + word +
+                               "' says no size: for example 12,-80,4=0.5 or cut.stl=0.5");
+    const std::string where = word.substr(0, equals);
+    const auto landmark = std::find_if(landmarks.begin(), landmarks.end(),
+                                       [&](const brep::Landmark& known) { return known.name == where; });
+    convert::Refinement place;
+    place.size_mm = size_mm[0];
+    if (landmark != landmarks.end())
+      place.points_mm = {landmark->p_mm};
+    else if (const std::vector<double> p = comma_numbers(where); p.size() == 3)
+      place.points_mm = {{p[0], p[1], p[2]}};
+    else if (std::filesystem::exists(where))
+      place.surface = read_mesh_in(where);
+    else
+      throw std::runtime_error("--finer: '" + where +
+                               "' is no point x,y,z, no mesh file, and no landmark of --landmarks");
+    places.push_back(std::move(place));
+  }
+  return places;
+}
+
+convert::TetOptions options_of(const Tet& asked, const FileBench& bench) {
+  convert::TetOptions options;
+  options.min_dihedral_deg = asked.dihedral_deg;
+  options.radius_edge = asked.radius_edge;
+  options.keep_boundary = !asked.refine_boundary;
+  options.max_volume_mm3 = asked.max_volume_mm3;
+  options.mesher = asked.mesher == "tetgen"     ? convert::Mesher::TetGen
+                   : asked.mesher == "mesh3"    ? convert::Mesher::Mesh3
+                   : asked.mesher == "stuffing" ? convert::Mesher::Stuffing
+                                                : convert::Mesher::Best;
+  options.finer = refinements(asked);
+  options.time_limit = std::chrono::seconds(static_cast<long>(asked.seconds));
+  options.progress = bench.progress("filling, of the time allowed");
+  return options;
+}
+
+Stiffness stiffness_of(const Tet& asked) {
+  return {{}, asked.density, asked.law, asked.bins, asked.surface_depth_mm, asked.poisson_ratio};
+}
+
+/// What a deck is made of, and how it came about.
+struct Filled {
+  convert::Tetrahedra tetrahedra;
+  std::size_t regions = 1;
+  std::optional<std::string> fallback;  ///< why the elements are an octree's own
+  std::vector<std::string> findings;
+};
+
+/// A voxel's edge with which a solid has about 200 000 voxels.
+double fallback_voxel_mm(double volume_mm3) {
+  return std::cbrt(volume_mm3 / 200000.0);
+}
+
+voxel::Octree voxels_of(const Tet& asked, const brep::Triangles& triangles, bool solid) {
+  voxel::Box box{triangles.points_mm.front(), triangles.points_mm.front()};
+  for (const glm::dvec3& p : triangles.points_mm) {
+    box.low_mm = glm::min(box.low_mm, p);
+    box.high_mm = glm::max(box.high_mm, p);
+  }
+  const glm::dvec3 extent = box.high_mm - box.low_mm;
+  const double volume_mm3 = solid ? brep::size_of(triangles).volume_mm3 : extent.x * extent.y * extent.z;
+  const voxel::Universe universe =
+      voxel::universe_around(box, asked.voxel_mm.value_or(fallback_voxel_mm(volume_mm3)));
+  return solid ? convert::voxelise(universe, brep::linked(triangles))
+               : convert::voxelise_by_winding_number(universe, brep::joined_surface(triangles).surface);
+}
+
+/// Elements as they are made, or why the fallback is to be taken. Without --fallback throws where none are
+/// made, and keeps unfit ones with a finding.
+void fill(const Tet& asked, Filled& filled, const std::function<convert::Tetrahedra()>& make) {
+  try {
+    filled.tetrahedra = make();
+    filled.findings = filled.tetrahedra.findings;
+    const std::optional<std::string> unfit = convert::fault_in_shape(filled.tetrahedra);
+    if (!unfit) return;
+    if (asked.fallback)
+      filled.fallback = unfit;
+    else
+      filled.findings.push_back(*unfit + (is_octree(asked.file.name)
+                                              ? ": take another --size, or --fallback"
+                                              : ": mend or simplify the surface, or take --fallback"));
+  } catch (const std::exception& error) {
+    if (fault_of(error) == Fault::Cancelled)
+      throw voxel::Stopped("stopped before " + asked.out.string() + " was written");
+    if (!is_no_answer(error)) throw;
+    if (!asked.fallback)
+      throw voxel::Error(static_cast<voxel::ErrorCode>(fault_of(error)),
+                         std::string(error.what()) + "; or take --fallback");
+    filled.fallback = error.what();
+  }
+}
+
+/// In place of smooth elements those of an octree.
+void fall_back(Filled& filled, convert::Tetrahedra tetrahedra, const voxel::Universe& universe) {
+  filled.tetrahedra = std::move(tetrahedra);
+  filled.findings = {"fallback: " + *filled.fallback +
+                     "; the elements are an octree's, whose surface is in steps of " +
+                     grouped(universe.lattice().spacing_mm().x, 3) + " mm: do not read stresses there"};
+}
+
+/// A mesh and its health: that of a solid, unless the fallback is allowed.
+struct CheckedMesh {
+  brep::Triangles triangles;
+  brep::Health health;
+};
+
+/// Appends to the findings what mending did.
+CheckedMesh checked_mesh(const FileBench& bench, const Tet& asked, std::vector<std::string>& findings) {
+  CheckedMesh surface;
+  if (asked.mend) {
+    const voxel::Progress progress = bench.progress("repair");
+    surface.triangles = brep::triangles_of(
+        read_mended_solid(asked.file.name, bench.timings, findings, {progress.stop, progress.report}));
+  } else {
+    const Stopwatch watch(bench.timings, "read");
+    surface.triangles = read_mesh_in(asked.file.name);
+  }
+  if (surface.triangles.faces.empty()) throw std::runtime_error(asked.file.name + ": holds no triangles");
+  const Stopwatch watch(bench.timings, "health");
+  surface.health = brep::health(surface.triangles);
+  if (!surface.health.solid() && !asked.fallback)
+    throw std::runtime_error(asked.file.name + ": is not a solid: " + surface.health.findings.front() +
+                             "; let it be mended by --mend, octotomy info tells all; or take an octree's "
+                             "elements by --fallback, which need none");
+  return surface;
+}
+
+Filled of_mesh(const FileBench& bench, const Tet& asked) {
+  std::vector<std::string> mended;
+  const CheckedMesh surface = checked_mesh(bench, asked, mended);
+  const auto& [triangles, health] = surface;
+  Filled filled;
+  const Stopwatch watch(bench.timings, "tetrahedralise");
+  if (health.solid()) {
+    const brep::Mesh solid = brep::mesh_of(triangles);
+    filled.regions = brep::components(solid).size();
+    fill(asked, filled, [&] { return convert::tetrahedralise(solid, options_of(asked, bench)); });
+  } else {
+    filled.fallback = "the mesh is not a solid (" + health.findings.front() + ")";
+  }
+  if (filled.fallback) {
+    const voxel::Octree octree = voxels_of(asked, triangles, health.solid());
+    if (octree.is_empty())
+      throw std::runtime_error(asked.file.name + ": encloses no voxel: take smaller ones by --voxel");
+    fall_back(filled,
+              convert::tetrahedra_of(octree, convert::BoundaryCells::Nodes, bench.progress("elements")),
+              octree.universe());
+  }
+  filled.findings.insert(filled.findings.begin(), mended.begin(), mended.end());
+  return filled;
+}
+
+voxel::Octree octree_in(const std::filesystem::path& path, Timings& timings) {
+  voxel::OctreeFile file = read_timed(path, timings);
+  auto* octree = std::get_if<voxel::Octree>(&file.tree);
+  if (octree == nullptr)
+    throw std::runtime_error(
+        path.string() +
+        ": only a binary octree's voxels become elements: make its surface by octotomy mesh "
+        "and fill that");
+  return std::move(*octree);
+}
+
+/// The octree and the regions beside it: smooth elements where a size is asked for, or else the voxels' own.
+Filled of_octrees(const FileBench& bench, const Tet& asked) {
+  Timings& timings = bench.timings;
+  std::vector<voxel::Octree> octrees{octree_in(asked.file.name, timings)};
+  for (const ObjectName& path : asked.regions) octrees.push_back(octree_in(path.name, timings));
+  Filled filled;
+  filled.regions = octrees.size();
+  const Stopwatch watch(timings, "tetrahedralise");
+  if (asked.size_mm) {
+    convert::RegionMeshOptions options;
+    options.size_mm = *asked.size_mm;
+    const convert::TetOptions common = options_of(asked, bench);
+    options.min_dihedral_deg = common.min_dihedral_deg;
+    options.finer = common.finer;
+    options.time_limit = common.time_limit;
+    options.progress = common.progress;
+    fill(asked, filled, [&] { return convert::smooth_tetrahedra_of(octrees, options); });
+  } else {
+    filled.fallback = "an octree was given without a size of elements";
+  }
+  if (filled.fallback)
+    fall_back(filled,
+              convert::tetrahedra_of(octrees, convert::BoundaryCells::Nodes, bench.progress("elements")),
+              octrees.front().universe());
+  return filled;
+}
+
+convert::DeckOptions deck_of(const FileBench& bench, const Tet& asked, Filled& filled,
+                             const convert::TetQuality& quality) {
+  convert::DeckOptions deck;
+  deck.title = std::filesystem::path(asked.file.name).filename().string();
+  deck.msh_2_2 = asked.msh_2_2;
+  deck.second_order = asked.order == 2;
+  deck.surfaces = {{"SKIN", convert::surface_faces(filled.tetrahedra)}};
+  const auto name = [](std::uint32_t from, std::uint32_t to) {
+    return "REGION" + std::to_string(from + 1) + "_TO_REGION" + std::to_string(to + 1);
+  };
+  for (convert::Interface& between : convert::interfaces(filled.tetrahedra)) {
+    const std::string there = name(between.from, between.to), back = name(between.to, between.from);
+    deck.surfaces.push_back({there, std::move(between.faces)});
+    if (!asked.contact) continue;
+    deck.surfaces.push_back({back, std::move(between.opposite)});
+    deck.contacts.push_back({there, back, there});
+  }
+  if (asked.contact) filled.tetrahedra = convert::separate_regions(filled.tetrahedra);
+  std::vector<brep::Landmark> landmarks;
+  if (!asked.landmarks.empty()) landmarks = read_landmarks(asked.landmarks);
+  deck.node_sets = picked_node_sets(asked.nodes, landmarks, filled.tetrahedra);
+  deck.prescribed = prescribed_of(asked.fixed, asked.moved, deck.node_sets);
+  deck.notes = {std::string("octotomy ") + OCTOTOMY_VERSION};
+  for (std::string& note : quality_notes(quality)) deck.notes.push_back(std::move(note));
+  for (const std::string& finding : filled.findings) deck.notes.push_back(finding);
+  if (asked.scan.empty()) return deck;
+  const voxel::Scene scan = bench.read_scan(asked.scan);
+  const Stopwatch watch(bench.timings, "materials");
+  for (const std::string& finding : add_stiffness(stiffness_of(asked), filled.tetrahedra, glm::dmat4(1.0),
+                                                  scan, bench.progress("materials"), deck)) {
+    deck.notes.push_back(finding);
+    filled.findings.push_back(finding);
+  }
+  return deck;
+}
+
+FileAnswer on_files(const Tet& asked, const FileBench& bench) {
+  const bool of_voxels = is_octree(asked.file.name);
+  if (!convert::is_deck(asked.out))
+    throw std::runtime_error(asked.out.string() + ": a deck is written as " + convert::deck_extensions());
+  need_folder_of(asked.out);
+  convert::need_own_deck_files(asked.out);
+  if (!of_voxels && (!asked.regions.empty() || asked.size_mm || asked.contact))
+    throw std::runtime_error("--region, --size and --contact are of octrees: make one of " + asked.file.name +
+                             " by octotomy voxelise");
+  refinements(asked);
+  check_set_names(asked.nodes);
+  if (!asked.finer.empty() && of_voxels && !asked.size_mm)
+    throw std::runtime_error("--finer is not of voxels' own elements: give --size, too");
+  Filled filled = of_voxels ? of_octrees(bench, asked) : of_mesh(bench, asked);
+  const convert::Tetrahedra& tetrahedra = filled.tetrahedra;
+  const convert::TetQuality quality = convert::quality(tetrahedra);
+  convert::DeckOptions deck = deck_of(bench, asked, filled, quality);
+  if (bench.stop.stop_requested())
+    throw voxel::Stopped("stopped before " + asked.out.string() + " was written");
+  {
+    const Stopwatch watch(bench.timings, "write");
+    deck.progress = bench.progress("writing");
+    convert::write_deck(tetrahedra, asked.out, deck);
+  }
+  // Of the deck as written: sides of order 2 have nodes that the linear elements lack.
+  std::size_t nodes = tetrahedra.nodes_mm.size();
+  std::vector<convert::NodeSet> written_sets = deck.node_sets;
+  if (asked.order == 2) {
+    convert::SecondOrder written = convert::second_order(tetrahedra, deck);
+    nodes = written.tetrahedra.nodes_mm.size();
+    written_sets = std::move(written.options.node_sets);
+  }
+  Json node_sets = Json::object();
+  for (const convert::NodeSet& set : written_sets) node_sets[set.name] = set.nodes.size();
+  FileAnswer answer{{{"path", asked.out.string()},
+                     {"nodes", nodes},
+                     {"tets", tetrahedra.tets.size()},
+                     {"regions", filled.regions},
+                     {"volume_mm3", quality.volume_mm3},
+                     {"quality", quality_json(quality)},
+                     {"order", asked.order},
+                     {"method", tetrahedra.method},
+                     {"fallback", filled.fallback.has_value()},
+                     {"materials", deck.materials.size()},
+                     {"node_sets", node_sets},
+                     {"findings", filled.findings}}};
+  answer.findings = filled.findings;
+  answer.rows = {{"written", asked.out.string()},
+                 {"made by", tetrahedra.method},
+                 {"tetrahedra", grouped(static_cast<double>(tetrahedra.tets.size()), 0)},
+                 {"dihedral", grouped(quality.min_dihedral_deg, 1) + " to " +
+                                  grouped(quality.max_dihedral_deg, 1) + " degrees"}};
+  return answer;
+}
+
+std::vector<std::string> law_names() {
+  std::vector<std::string> laws;
+  for (const convert::StiffnessLaw& law : convert::stiffness_laws()) laws.push_back(law.name);
+  return laws;
+}
+
+}  // namespace
+
+Operation tet_operation() {
+  return Describe<Tet>("tet", "Fills a solid with quality tetrahedra for finite elements.", Makes::File)
+      .takes(
+          field("file", &Tet::file, "A closed mesh, or a binary .octree file.").required().positional("file"))
+      .takes(
+          field("out", &Tet::out,
+                "A deck: .inp (Abaqus, CalculiX), .feb (FEBio 4), .vtu, .msh (Gmsh 4.1) or .node (TetGen).")
+              .required())
+      .takes(field("mesher", &Tet::mesher,
+                   "tetgen keeps the surface; mesh3 (CGAL) puts one of its own in place, within a tenth of a "
+                   "triangle's size; stuffing cuts a lattice's cells to the surface, over 10 degrees on any "
+                   "triangles, less what is thinner than a cell; best: tetgen, mesh3 where angles stay under "
+                   "--dihedral, and stuffing where they stay under 5 degrees.")
+                 .one_of({"tetgen", "mesh3", "stuffing", "best"}))
+      .takes(field("dihedral_deg", &Tet::dihedral_deg, "Smallest dihedral angle that is aimed at.")
+                 .from(0.0)
+                 .to(30.0))
+      .takes(field("radius_edge", &Tet::radius_edge,
+                   "TetGen's largest circumradius by shortest edge; 1.2 is hard, 2 is easy.")
+                 .from(1.1)
+                 .to(10.0))
+      .takes(field("max_volume_mm3", &Tet::max_volume_mm3, "Largest tetrahedron.").greater_than(0.0))
+      .takes(field("finer", &Tet::finer,
+                   "WHERE=MM: elements with sides of about so many mm at a point x,y,z, a landmark or along "
+                   "a mesh file's surface, growing from there; deep inside only with --size; repeated.")
+                 .repeated())
+      .takes(field("nodes", &Tet::nodes,
+                   "NAME=WHERE: a set of surface nodes at a point x,y,z or a landmark, within a ball "
+                   "x,y,z,r, on a "
+                   "plane x,y,z,u,v,w through a point with a normal, or on a mesh file's surface; repeated.")
+                 .repeated())
+      .takes(
+          field("fixed", &Tet::fixed, "A set of nodes that stays: the deck ends in a static step; repeated.")
+              .repeated()
+              .called("fix"))
+      .takes(field("moved", &Tet::moved, "NAME=DX,DY,DZ: a set of nodes that moves by so many mm; repeated.")
+                 .repeated()
+                 .called("move"))
+      .takes(field("landmarks", &Tet::landmarks,
+                   "Landmarks that --finer and --nodes name: JSON, or 3D Slicer's markups.")
+                 .a_file())
+      .takes(field("refine_boundary", &Tet::refine_boundary,
+                   "Lets TetGen add points on the surface; by default it is kept as it is."))
+      .takes(field("seconds", &Tet::seconds, "Processor time that each run of a mesher may take.")
+                 .from(1.0)
+                 .to(86400.0))
+      .takes(field("mend", &Tet::mend, "A mesh that is no solid is mended first, as repair --solid does."))
+      .takes(
+          field("fallback", &Tet::fallback,
+                "Where the meshers fail or leave flat elements, or the mesh is no solid, takes an octree's "
+                "elements, marked as such."))
+      .takes(field("voxel_mm", &Tet::voxel_mm, "Edge of their smallest. Default: about 200 000 voxels.")
+                 .greater_than(0.0))
+      .takes(field("regions", &Tet::regions,
+                   "A further octree of the same universe, a region of its own; repeated.")
+                 .repeated()
+                 .called("region"))
+      .takes(field("size_mm", &Tet::size_mm,
+                   "Smooth quality elements of about this size, in place of the voxels' own.")
+                 .greater_than(0.0))
+      .takes(
+          field("contact", &Tet::contact,
+                "Regions have nodes of their own where they touch, and contact pairs there; default: shared "
+                "nodes."))
+      .takes(
+          field("order", &Tet::order, "1: four-node tetrahedra; 2: ten-node ones, with nodes on their sides.")
+              .from(1)
+              .to(2))
+      .takes(field("msh_2_2", &Tet::msh_2_2, "Writes .msh in Gmsh's version 2.2.").called("msh2"))
+      .takes(field("scan", &Tet::scan, "Takes each element's stiffness from this scan in HU."))
+      .takes(field("density", &Tet::density,
+                   "SLOPE,INTERCEPT: g/cm3 = intercept + slope HU, as the scan's calibration phantom says.")
+                 .from(2)
+                 .to(2)
+                 .comma_separated()
+                 .for_example("0.0009,0.05"))
+      .takes(field("law", &Tet::law, "Stiffness of a density.").one_of(law_names()))
+      .takes(field("bins", &Tet::bins, "Materials that elements are gathered into, by stiffness.")
+                 .from(1)
+                 .to(1000))
+      .takes(
+          field("surface_depth_mm", &Tet::surface_depth_mm,
+                "Takes what is nearer to the surface from this depth, as voxels there hold bone and what is "
+                "beside it; 0: from where it is.")
+              .from(0.0)
+              .to(20.0))
+      .takes(field("poisson_ratio", &Tet::poisson_ratio, "Poisson's ratio of them.")
+                 .from(0.0)
+                 .to(0.499)
+                 .called("poisson"))
+      .reads_scans()
+      .example(R"({"id": "deck", "do": "tet", "file": "maxilla", "out": "maxilla.inp"})")
+      .on_files(
+          "octotomy tet maxilla.stl -o maxilla.inp --radius-edge 1.4 --json\n"
+          "  octotomy tet scan.vtp --mend -o scan.inp\n"
+          "  octotomy tet plate.stl -o plate.inp --nodes CUT=0,0,-40,0,0,1 --nodes PIN=12,-80,4,3 --fix CUT "
+          "--move PIN=0,0,-0.5\n"
+          "  octotomy tet maxilla.stl -o maxilla.inp --finer 12,-80,4=0.5 --finer plate.stl=0.8\n"
+          "  octotomy tet maxilla.octree --region rest.octree --size 3 --contact -o head.inp\n"
+          "  octotomy tet maxilla.stl -o maxilla.feb --scan head.nrrd --density 0.0009,0.05",
+          on_files);
+}
+
+}  // namespace octotomy::planner

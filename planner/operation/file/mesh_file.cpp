@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/file/mesh_file.h"
+
+#include <exception>
+#include <tbb/parallel_for.h>
+#include <utility>
+
+#include "brep/mesh/error.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/split_fans.h"
+#include "brep/shape/repair.h"
+#include "planner/operation/file/mesh_in.h"
+#include "planner/operation/table/number_format.h"
+#include "voxel/space/disk_need.h"
+#include "voxel/space/staged_files.h"
+
+namespace octotomy::planner {
+namespace {
+
+brep::Linked joined(const std::filesystem::path& path, std::vector<std::string>& findings) {
+  brep::Triangles triangles = read_mesh_in(path);
+  try {
+    brep::JoinedSurface joined = brep::joined_surface(std::move(triangles));
+    for (const std::string& finding : joined.findings)
+      findings.push_back(path.filename().string() + ": " + finding);
+    return brep::linked(std::move(joined.surface));
+  } catch (const brep::Error& error) {
+    throw brep::Error(error.code(), path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+brep::Solid read_solid(const std::filesystem::path& path, Timings& timings) {
+  const Stopwatch watch(timings, "read");
+  const brep::Triangles triangles = read_mesh_in(path);
+  try {
+    return brep::solid_of(triangles);
+  } catch (const brep::Error& error) {
+    throw brep::Error(error.code(), path.string() + ": " + error.what() +
+                                        "; mend it first: octotomy repair " + path.filename().string() +
+                                        " --solid -o solid.ply");
+  }
+}
+
+brep::Solid read_mended_solid(const std::filesystem::path& path, Timings& timings,
+                              std::vector<std::string>& findings, const brep::Progress& progress) {
+  brep::Triangles triangles;
+  brep::Health health;
+  {
+    const Stopwatch watch(timings, "read");
+    triangles = read_mesh_in(path);
+    health = brep::health(triangles);
+    if (health.solid()) return brep::trusted_solid(triangles, brep::Proof::Health);
+  }
+  const Stopwatch watch(timings, "repair");
+  try {
+    brep::RepairOptions options;
+    options.solid = true;
+    options.progress = progress;
+    const brep::Repair repaired = brep::repair(triangles, options);
+    brep::Solid solid = brep::solid_of(repaired.surface);
+    const brep::RepairEffect effect =
+        brep::repair_effect(triangles, repaired.surface, {.before = false, .after = true});
+    findings.push_back(
+        path.filename().string() + " is no solid (" + health.findings.front() + "), so it was mended: " +
+        (repaired.enclosed_cell_mm
+             ? "enclosed anew by cells of " + three_figures(*repaired.enclosed_cell_mm) + " mm"
+             : grouped(static_cast<double>(repaired.changes.size()), 0) + " changes") +
+        ", volume from " + grouped(effect.volume_before_mm3, 1) + " to " +
+        grouped(effect.volume_after_mm3, 1) + " mm\u00b3, nowhere further apart than " +
+        three_figures(effect.largest_distance_mm) + " mm; octotomy repair --solid lists each change");
+    return solid;
+  } catch (const brep::Error& error) {
+    throw brep::Error(error.code(), path.string() + ": " + error.what());
+  }
+}
+
+brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings,
+                        std::vector<std::string>* findings) {
+  const Stopwatch watch(timings, "read");
+  std::vector<std::string> told;
+  const brep::Mesh mesh = brep::mesh_of(joined(path, told));
+  if (findings != nullptr) findings->insert(findings->end(), told.begin(), told.end());
+  return mesh;
+}
+
+std::array<brep::Linked, 2> read_surfaces(const std::array<std::filesystem::path, 2>& paths, Timings& timings,
+                                          std::vector<std::string>& findings) {
+  const Stopwatch watch(timings, "read");
+  std::array<brep::Linked, 2> surfaces;
+  std::array<std::vector<std::string>, 2> told;
+  std::array<std::exception_ptr, 2> failed;
+  tbb::parallel_for(std::size_t{0}, paths.size(), [&](std::size_t i) {
+    try {
+      surfaces[i] = joined(paths[i], told[i]);
+    } catch (...) {
+      failed[i] = std::current_exception();
+    }
+  });
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (failed[i]) std::rethrow_exception(failed[i]);
+    findings.insert(findings.end(), told[i].begin(), told[i].end());
+  }
+  return surfaces;
+}
+
+void write_surface(const brep::Triangles& triangles, const std::filesystem::path& out, Timings& timings,
+                   const brep::VertexData& data) {
+  const Stopwatch watch(timings, "write");
+  voxel::need_disk(out, brep::least_mesh_bytes(triangles.points_mm.size(), triangles.faces.size(), out));
+  voxel::StagedFiles staged(out.parent_path());
+  const std::filesystem::path file = staged.folder() / out.filename();
+  try {
+    brep::write_mesh(triangles, file, data);
+  } catch (const brep::Error& error) {
+    std::string reason = error.what();  // begins with the hidden name
+    if (reason.starts_with(file.string())) reason.replace(0, file.string().size(), out.string());
+    throw brep::Error(error.code(), reason);
+  }
+  staged.commit();
+}
+
+void write_surface(const brep::Mesh& mesh, const std::filesystem::path& out, Timings& timings,
+                   const brep::VertexData& data) {
+  write_surface(brep::triangles_of(mesh), out, timings, data);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "brep/io/read_mesh.h"
+#include "planner/operation/table/json.h"
+
+// How a run of the program reads the meshes that its command line names, and what it found in them.
+namespace octotomy::planner {
+
+/// A mesh file that was read, with its audit.
+struct MeshRecord {
+  std::filesystem::path path;
+  std::vector<brep::MeshFinding> audit;
+};
+
+/// Chooses frames and units for the meshes of this process, each as "RAS" or for one file as "box.stl=RAS",
+/// and forgets the files read so far. Throws std::runtime_error where one is no frame or no unit.
+void choose_mesh_reading(const std::vector<std::string>& frames, const std::vector<std::string>& units);
+
+/// Reads a mesh as chosen and keeps its audit for meshes_read(); any thread may call. Throws as
+/// brep::read_mesh().
+brep::Triangles read_mesh_in(const std::filesystem::path& path);
+/// The same with a frame and unit of its own.
+brep::Triangles read_mesh_in(const std::filesystem::path& path, const brep::MeshReadOptions& options);
+
+/// The meshes read since the last choice, each path once, by path.
+std::vector<MeshRecord> meshes_read();
+
+/// Choices that name a file, as "box.stl=RAS", of which none was read.
+std::vector<std::string> unused_choices();
+
+/// Keeps what was assumed of a file of landmarks for landmark_files_read(); any thread may call.
+void keep_landmark_audit(const std::filesystem::path& path, std::vector<brep::MeshFinding> audit);
+/// The files of landmarks read since the last choice that left something to be assumed, by path.
+std::vector<MeshRecord> landmark_files_read();
+
+/// The audit as a list of check, verdict and detail.
+Json to_json(const std::vector<brep::MeshFinding>& audit);
+
+/// What the audit warns of, one line a finding: "frame: the file names no frame".
+std::vector<std::string> warnings_of(const std::vector<brep::MeshFinding>& audit);
+
+}  // namespace octotomy::planner

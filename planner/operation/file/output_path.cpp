@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/file/output_path.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+
+#include "planner/operation/table/control_character.h"
+#include "planner/operation/table/nearest_name.h"
+#include "voxel/space/error.h"
+#include "voxel/space/file_text.h"
+#include "voxel/space/staged_files.h"
+#include "voxel/space/unfinished_folder.h"
+#include "voxel/space/write_failure.h"
+
+namespace octotomy::planner {
+
+void check_output_path(const std::filesystem::path& path, const std::vector<std::string>& extensions,
+                       const Place& place) {
+  const std::string name = output_path(path).generic_string();
+  if (has_control(name)) place.refuse("a path has no control characters: choose another name");
+  if (std::none_of(extensions.begin(), extensions.end(),
+                   [&](const std::string& known) { return name.ends_with(known); }))
+    place.refuse("nothing can be written as '" + name + "'" +
+                 suggestion(path.extension().string(), extensions));
+  if (place.scope == nullptr) return;
+  if (path.is_absolute() || name.starts_with("..") || name.starts_with("views/"))
+    place.refuse("'" + name + "' must be a path within the result folder, outside of views/");
+  place.scope->take_path(place.where, name);
+}
+
+std::filesystem::path output_file(const std::filesystem::path& folder, const std::filesystem::path& path) {
+  const std::filesystem::path name = output_path(path);
+  voxel::create_folders_in(folder, name.parent_path());
+  return folder / name;
+}
+
+std::filesystem::path output_path(const std::filesystem::path& path) {
+  return path.lexically_normal().generic_string();
+}
+
+void write_whole(const std::filesystem::path& path, const std::string& bytes) {
+  voxel::StagedFiles staged(std::filesystem::absolute(path).parent_path());
+  errno = 0;
+  std::ofstream file(staged.folder() / path.filename(), std::ios::binary);
+  file << bytes;
+  file.close();
+  if (!file) voxel::refuse_unwritten(path, errno);
+  staged.commit();
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "planner/operation/table/scope.h"
+
+namespace octotomy::planner {
+
+/// Refuses a path that is not within the result's folder, that an earlier step writes, or that ends in none
+/// of `extensions`.
+void check_output_path(const std::filesystem::path& path, const std::vector<std::string>& extensions,
+                       const Place& place);
+
+/// The file that a path names below a result's folder; makes the folders that it leads through, and the
+/// result's own folder never: where that was removed, nothing brings it back.
+std::filesystem::path output_file(const std::filesystem::path& folder, const std::filesystem::path& path);
+
+/// The path without "." and "..", as it is written and told.
+std::filesystem::path output_path(const std::filesystem::path& path);
+
+/// Writes a file beside its place and renames it there, so that an old one is never half gone. Throws
+/// voxel::Error with the path where the disk does not take it.
+void write_whole(const std::filesystem::path& path, const std::string& bytes);
+
+}  // namespace octotomy::planner

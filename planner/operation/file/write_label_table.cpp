@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/file/write_label_table.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "planner/operation/file/label_table.h"
+#include "planner/operation/file/output_path.h"
+#include "voxel/space/file_text.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The names of a table; none where it cannot be read.
+std::map<int, std::string> names_in(const fs::path& table) {
+  try {
+    return read_label_table(table).names;
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
+/// The names as label_table_text() spells them.
+std::map<int, std::string> spelled(const std::map<int, std::string>& names) {
+  std::map<std::string, int> count_of;
+  std::map<int, std::string> made;
+  for (const auto& [label, name] : names) {
+    std::string plain = name;
+    std::replace_if(
+        plain.begin(), plain.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+    ++count_of[plain];
+    made[label] = std::move(plain);
+  }
+  for (auto& [label, name] : made)
+    if (count_of[name] > 1) name += " (label " + std::to_string(label) + ")";
+  return made;
+}
+
+bool holds(const fs::path& table, const std::map<int, std::string>& names) {
+  const std::map<int, std::string> there = names_in(table);
+  return there == names || there == spelled(names);
+}
+
+/// Whether a file is byte for byte what label_table_text() makes of its names.
+bool is_written_here(const fs::path& table) {
+  const std::map<int, std::string> names = names_in(table);
+  if (names.empty() || !fs::is_regular_file(fs::symlink_status(table))) return false;
+  std::ifstream in(table, std::ios::binary);
+  return std::string{std::istreambuf_iterator<char>(in), {}} == label_table_text(names);
+}
+
+}  // namespace
+
+fs::path label_table_path(const fs::path& label_map) {
+  std::string name = label_map.filename().string();
+  if (voxel::extension_of(label_map) == ".gz") name.resize(name.size() - 3);
+  fs::path table = label_map.parent_path() / name;
+  if (voxel::lower_case(name).ends_with(".seg.nrrd")) table.replace_extension();
+  return table.replace_extension(".tsv");
+}
+
+std::string label_table_text(const std::map<int, std::string>& names) {
+  std::string text = "index\tname\n";
+  for (const auto& [label, name] : spelled(names)) text += std::to_string(label) + "\t" + name + "\n";
+  return text;
+}
+
+void need_label_table(const fs::path& label_map, const std::map<int, std::string>& names) {
+  const fs::path table = label_table_path(label_map);
+  if (!fs::exists(fs::symlink_status(table)) || holds(table, names)) return;
+  if (fs::exists(label_map) && is_written_here(table)) return;
+  throw std::runtime_error(table.string() +
+                           ": is there already and does not hold the names of the label map's labels, which "
+                           "are written to it: move it away, or choose another name for the label map");
+}
+
+std::vector<std::string> write_label_table(const fs::path& label_map,
+                                           const std::map<int, std::string>& names) {
+  if (label_table_of(label_map).names == names) return {};
+  need_label_table(label_map, names);
+  const fs::path table = label_table_path(label_map);
+  if (!holds(table, names)) write_whole(table, label_table_text(names));
+  std::vector<std::string> findings{"the names of the labels stand in " + table.string() +
+                                    ", as the label map's own file has no place for them"};
+  if (spelled(names) != names)
+    findings.push_back(table.string() +
+                       ": names of several labels got the number of each, and tabs and line "
+                       "breaks became blanks");
+  if (label_table_of(label_map).names != spelled(names))
+    findings.push_back(table.string() +
+                       ": names are read back otherwise than they were: compare them with the source, and "
+                       "name the labels by a table of your own (--names)");
+  return findings;
+}
+
+}  // namespace octotomy::planner

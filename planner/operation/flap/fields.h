@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "planner/operation/flap/design.h"
+#include "planner/operation/table/field.h"
+#include "planner/operation/table/scope.h"
+
+namespace octotomy::planner {
+
+/// What the steps of one free flap have in common: each finds the same cuts from the same fields.
+struct FlapFields {
+  std::vector<Mark> curve, stumps, donor;
+  Mark face;
+  glm::dvec3 facing{0, 0, -1};
+  double roll_deg = 0.0;
+  double start_mm = 0.0;
+  double kerf_mm = 1.0;
+  double reach_mm = 12.0;
+};
+
+FlapPlan plan_of(const FlapFields& fields);
+/// The segments; throws as flap_segments().
+std::vector<FlapSegment> segments_of(const FlapFields& fields);
+/// Refuses fields of which no flap can be made, and marks that move with an object.
+void check_flap(const FlapFields& fields, const Place& place);
+
+/// The fields as those of an operation that derives from FlapFields.
+template <typename Owner>
+std::vector<Field> flap_fields() {
+  const auto of = []<typename Value>(Value FlapFields::*member) {
+    return static_cast<Value Owner::*>(member);
+  };
+  return {field("curve", of(&FlapFields::curve),
+                "Corners of the new bone, one more than it has segments: [x, y, z] or landmarks.")
+              .required()
+              .from(2)
+              .to(9),
+          field("stumps", of(&FlapFields::stumps),
+                "Points on the bone that stays, behind the first and behind the last corner, so that the end "
+                "cuts halve their angles. Default: the end cuts are square.")
+              .from(2)
+              .to(2),
+          field("donor", of(&FlapFields::donor),
+                "Two points on the donor bone's axis, in its scan: the flap begins near the first.")
+              .required()
+              .from(2)
+              .to(2),
+          field("face", of(&FlapFields::face), "A point off that axis, on the face of the bone to be turned.")
+              .required(),
+          field("facing", of(&FlapFields::facing), "Where that face looks in the first segment, LPS.")
+              .direction(),
+          field("roll_deg", of(&FlapFields::roll_deg), "A further turn of all segments about their axes.")
+              .from(-180)
+              .to(180),
+          field("start_mm", of(&FlapFields::start_mm), "From the donor's first point to the first cut.")
+              .from(0)
+              .to(500),
+          field("kerf_mm", of(&FlapFields::kerf_mm), "The width of a saw cut on the donor.").from(0).to(5),
+          field("reach_mm", of(&FlapFields::reach_mm),
+                "The donor bone reaches this far from its axis; what lies further, as its neighbour, is left "
+                "out.")
+              .greater_than(0)
+              .to(60)};
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What a surgeon reads of a free flap: its segments in order, their lengths and angles, where the donor is
+// cut, and how much bone meets at every osteotomy. A contact area is the volume that both bones share within
+// a slab about the cut, over the slab's thickness: an object, so that both kernels answer it and it has a
+// certificate.
+#include <algorithm>
+#include <cmath>
+
+#include "planner/operation/flap/fields.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/table/json.h"
+#include "planner/operation/table/operation.h"
+#include "verify/certificate/certificate.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Flap : FlapFields {
+  std::vector<ObjectName> segments, contacts;
+  double slab_mm = 2.0;
+};
+
+void check(const Flap& flap, const Place& place) {
+  check_flap(flap, place);
+  const std::size_t count = flap.curve.size() - 1;
+  if (flap.segments.size() != count)
+    place.at("segments").refuse("must name " + std::to_string(count) + " objects, one a segment");
+  if (flap.contacts.size() != count + 1)
+    place.at("contacts").refuse("must name " + std::to_string(count + 1) + " objects, one an osteotomy");
+}
+
+Json cut_json(const FlapPlane& cut, double at_mm, double tilt_deg) {
+  return {{"at_mm", at_mm},
+          {"tilt_deg", tilt_deg},
+          {"donor_point_mm", to_json(cut.point_mm)},
+          {"donor_normal", to_json(cut.normal)}};
+}
+
+Json segment_json(const FlapSegment& segment, const Object& object, std::size_t number) {
+  return {
+      {"number", number},
+      {"object", object.id},
+      {"length_mm", segment.length_mm},
+      {"shortest_mm", segment.shortest_mm},
+      {"longest_mm", segment.longest_mm},
+      {"angle_to_last_deg", number == 1 ? Json(nullptr) : Json(segment.turn_deg)},
+      {"volume_mm3", object.voxel.measures.volume_mm3},
+      {"verdict", object.certificate ? Json(verify::to_string(object.certificate->verdict)) : Json(nullptr)},
+      {"first_cut", cut_json(segment.donor_start, segment.donor_start_mm, segment.start_tilt_deg)},
+      {"second_cut", cut_json(segment.donor_end, segment.donor_end_mm, segment.end_tilt_deg)}};
+}
+
+/// Through a slab the bones drift apart by the tangent of half their angle to either side. Of equal convex
+/// sections at most `reach_mm` wide to each side, the mean over the slab lacks at most this much.
+double drift_mm2(const Flap& flap, double turn_deg) {
+  const double mean_shift_mm = 0.25 * flap.slab_mm * 2.0 * std::tan(glm::radians(0.5 * turn_deg));
+  return mean_shift_mm * 2.0 * flap.reach_mm;
+}
+
+Json contact_json(const Flap& flap, const Object& object, const std::vector<FlapSegment>& segments,
+                  std::size_t cut) {
+  const auto side = [&](std::size_t number) {
+    return number == 0 || number > segments.size() ? Json("bone") : Json(flap.segments[number - 1].name);
+  };
+  Json json{{"number", cut + 1}, {"object", object.id}, {"between", {side(cut), side(cut + 1)}}};
+  const double voxels_mm2 = object.voxel.measures.volume_mm3 / flap.slab_mm;
+  json["contact_voxels_mm2"] = voxels_mm2;
+  json["contact_mesh_mm2"] = nullptr;
+  json["contact_mm2"] = voxels_mm2;
+  if (object.mesh.within)
+    json["contact_mesh_mm2"] = json["contact_mm2"] = object.mesh.within->size().volume_mm3 / flap.slab_mm;
+  json["tolerance_mm2"] = nullptr;
+  json["verdict"] = nullptr;
+  if (object.certificate) {
+    json["tolerance_mm2"] = object.certificate->tolerance_mm3 / flap.slab_mm;
+    json["verdict"] = verify::to_string(object.certificate->verdict);
+  }
+  const bool is_inner = cut > 0 && cut < segments.size();
+  json["slab_lacks_at_most_mm2"] = is_inner ? Json(drift_mm2(flap, segments[cut].turn_deg)) : Json(nullptr);
+  if (object.voxel.octree.is_empty())
+    json["finding"] = "no bone meets here: move the corner, or the donor's start";
+  return json;
+}
+
+Json measure(const Flap& flap, const AnswerBench& bench) {
+  const std::vector<FlapSegment> segments = segments_of(flap);
+  Json json{{"flap_segments", Json::array()},
+            {"osteotomies", Json::array()},
+            {"donor_used_mm", segments.back().donor_end_mm - segments.front().donor_start_mm},
+            {"contact_estimator", "volume that both bones share within " + Json(flap.slab_mm).dump() +
+                                      " mm about the cut, over that thickness"}};
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    json["flap_segments"].push_back(
+        segment_json(segments[i], bench.objects.at(flap.segments[i].name), i + 1));
+  for (std::size_t cut = 0; cut <= segments.size(); ++cut)
+    json["osteotomies"].push_back(
+        contact_json(flap, bench.objects.at(flap.contacts[cut].name), segments, cut));
+  return json;
+}
+
+}  // namespace
+
+Operation flap_operation() {
+  Describe<Flap> entry("flap", "Tells a free flap's segments, their order, cuts and contacts.",
+                       Makes::Measurement);
+  for (Field& each : flap_fields<Flap>()) std::move(entry).takes(std::move(each));
+  return std::move(entry)
+      .takes(field("segments", &Flap::segments, "The placed segments, in order along the curve.").required())
+      .takes(field("contacts", &Flap::contacts,
+                   "What both bones share in each osteotomy's slab, in order along the curve.")
+                 .required())
+      .takes(field("slab_mm", &Flap::slab_mm, "The thickness of these slabs.").greater_than(0).to(10))
+      .example(R"({"id": "flap", "do": "flap", "segments": ["skull"], "contacts": ["skull", "skull"],
+        "curve": [[-30, -60, -80], [0, -80, -85]],
+        "donor": [[30, 12, 90], [33, 15, -90]], "face": [45, 12, 90]})")
+      .check(check)
+      .measure(measure);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Spaces that cut a free flap: eight-sided beams along segments, mitred at their corners.
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "planner/operation/flap/fields.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "verify/witness/witness.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct FlapSpace : FlapFields {
+  std::string part = "segment";
+  int number = 1;
+  double slab_mm = 2.0;
+  double aside_mm = 18.0;
+};
+
+constexpr int sides = 8;
+
+/// A stretch of a beam between two cuts.
+struct Piece {
+  FlapPlane start, end;
+  glm::dvec3 along, across;
+};
+struct Beam {
+  std::vector<Piece> pieces;
+  double reach_mm = 0.0;  ///< from its axis to its sides
+};
+
+/// A direction square to a piece at an angle from where the face looks.
+glm::dvec3 square_at(const Piece& piece, double radians) {
+  return std::cos(radians) * piece.across + std::sin(radians) * glm::cross(piece.along, piece.across);
+}
+
+/// The slab of one thickness about a cut.
+Piece slab_about(const FlapPlane& cut, const glm::dvec3& across, double slab_mm) {
+  const glm::dvec3 aside = glm::normalize(across - cut.normal * glm::dot(cut.normal, across));
+  const glm::dvec3 half = 0.5 * slab_mm * cut.normal;
+  return {{cut.point_mm - half, cut.normal}, {cut.point_mm + half, cut.normal}, cut.normal, aside};
+}
+
+Beam beam_of(const FlapSpace& space) {
+  const std::vector<FlapSegment> segments = segments_of(space);
+  const auto piece = [](const FlapSegment& one) { return Piece{one.start, one.end, one.along, one.across}; };
+  if (space.part == "segment")
+    return {{piece(segments.at(static_cast<std::size_t>(space.number - 1)))}, space.reach_mm};
+  if (space.part == "osteotomy") {
+    const auto cut = static_cast<std::size_t>(space.number - 1);
+    const bool is_last = cut == segments.size();
+    const FlapSegment& one = segments.at(is_last ? cut - 1 : cut);
+    // A tilted cut is longer than the bone is wide.
+    const double tilt = glm::radians(is_last ? one.end_tilt_deg : one.start_tilt_deg);
+    return {{slab_about(is_last ? one.end : one.start, one.across, space.slab_mm)},
+            space.reach_mm / std::cos(tilt) + space.slab_mm};
+  }
+  Beam beam{{}, space.aside_mm};
+  for (const FlapSegment& one : segments) beam.pieces.push_back(piece(one));
+  return beam;
+}
+
+void check(const FlapSpace& space, const Place& place) {
+  check_flap(space, place);
+  const std::size_t segments = space.curve.size() - 1;
+  const std::size_t most = space.part == "osteotomy" ? segments + 1 : segments;
+  if (space.part != "resection" && static_cast<std::size_t>(space.number) > most)
+    place.at("number").refuse("is beyond the curve, which has " + std::to_string(most) + " of part '" +
+                              space.part + "'");
+  if (space.part != "resection") return;
+  FlapFields wide = space;
+  wide.reach_mm = space.aside_mm;
+  wide.donor[1].p_mm = wide.donor[0].p_mm + 1e4 * (wide.donor[1].p_mm - wide.donor[0].p_mm);
+  try {
+    segments_of(wide);
+  } catch (const std::invalid_argument&) {
+    place.at("aside_mm")
+        .refuse("is so wide that the sides of the resection cross: take less than " + plain(space.aside_mm) +
+                " mm");
+  }
+}
+
+std::string definition(const FlapSpace& space, const Objects&) {
+  if (space.part == "resection")
+    return "all that lies within " + plain(space.aside_mm) + " mm beside the flap's curve";
+  return (space.part == "segment" ? "between the cuts of segment " : "a slab about osteotomy ") +
+         std::to_string(space.number);
+}
+
+voxel::Expression voxels_of(const Piece& piece, double reach_mm) {
+  const auto below = [](const glm::dvec3& normal, double offset_mm) {
+    return voxel::Expression(voxel::HalfSpace{normal, offset_mm});
+  };
+  voxel::Expression made = below(-piece.start.normal, -glm::dot(piece.start.normal, piece.start.point_mm)) &
+                           below(piece.end.normal, glm::dot(piece.end.normal, piece.end.point_mm));
+  for (int side = 0; side < sides; ++side) {
+    const glm::dvec3 normal = glm::normalize(square_at(piece, glm::two_pi<double>() * side / sides));
+    made = made & below(normal, glm::dot(normal, piece.start.point_mm) + reach_mm);
+  }
+  return made;
+}
+
+void voxels(const FlapSpace& space, const VoxelBench& bench, VoxelSide& made) {
+  const Beam beam = beam_of(space);
+  for (const Piece& piece : beam.pieces) {
+    const voxel::Expression one = voxels_of(piece, beam.reach_mm);
+    made.symbol = made.symbol ? *made.symbol | one : one;
+  }
+  made.octree = bench.combined(*made.symbol);
+  made.lineage = "half-spaces at voxel centres";
+  if (made.octree.is_empty())
+    throw std::runtime_error("it holds no voxel of the universe, which spans " + plain(bench.box_mm()) +
+                             ": check the curve");
+}
+
+void triangles(const FlapSpace& space, const MeshBench&, MeshSide& made) {
+  const Beam beam = beam_of(space);
+  const double corner_mm = flap_corner_mm(beam.reach_mm);
+  brep::Triangles surface;
+  for (std::size_t cut = 0; cut <= beam.pieces.size(); ++cut) {
+    const Piece& piece = beam.pieces[std::min(cut, beam.pieces.size() - 1)];
+    const FlapPlane& plane = cut < beam.pieces.size() ? piece.start : piece.end;
+    for (int k = 0; k < sides; ++k) {
+      const glm::dvec3 off = corner_mm * square_at(piece, glm::two_pi<double>() * (k + 0.5) / sides);
+      const double back_mm = glm::dot(plane.normal, off) / glm::dot(plane.normal, piece.along);
+      surface.points_mm.push_back(plane.point_mm + off - piece.along * back_mm);
+    }
+  }
+  const auto at = [](std::size_t cut, int k) {
+    return static_cast<std::uint32_t>(cut * sides + static_cast<std::size_t>(k % sides));
+  };
+  const std::size_t last = beam.pieces.size();
+  for (std::size_t cut = 0; cut < last; ++cut)
+    for (int k = 0; k < sides; ++k) {
+      surface.faces.push_back({at(cut, k), at(cut, k + 1), at(cut + 1, k + 1)});
+      surface.faces.push_back({at(cut, k), at(cut + 1, k + 1), at(cut + 1, k)});
+    }
+  for (int k = 1; k + 1 < sides; ++k) {
+    surface.faces.push_back({at(0, 0), at(0, k + 1), at(0, k)});
+    surface.faces.push_back({at(last, 0), at(last, k), at(last, k + 1)});
+  }
+  made.whole = brep::solid_of(surface);
+  made.lineage = "beams between cut planes";
+}
+
+/// The points behind a plane as a box larger than any universe.
+verify::Witness behind(const glm::dvec3& normal, const glm::dvec3& point_mm) {
+  constexpr double far_mm = 2000.0;
+  const glm::dvec3 least = std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  const glm::dvec3 right = glm::normalize(glm::cross(normal, least));
+  glm::dmat4 placed(glm::dmat3(right, glm::cross(normal, right), normal));
+  placed[3] = glm::dvec4(point_mm, 1.0);
+  return verify::carried(verify::witness_of_box({glm::dvec3(-far_mm), {far_mm, far_mm, 0.0}}), placed);
+}
+
+verify::Witness witness_of(const Piece& piece, double reach_mm) {
+  verify::Witness made = verify::both(behind(-piece.start.normal, piece.start.point_mm),
+                                      behind(piece.end.normal, piece.end.point_mm));
+  for (int side = 0; side < sides; ++side) {
+    const glm::dvec3 normal = glm::normalize(square_at(piece, glm::two_pi<double>() * side / sides));
+    made = verify::both(made, behind(normal, piece.start.point_mm + reach_mm * normal));
+  }
+  return made;
+}
+
+void bound(const FlapSpace& space, const BoundBench&, Object& made) {
+  const Beam beam = beam_of(space);
+  std::string text;
+  for (std::size_t i = 0; i < beam.pieces.size(); ++i) text += (i == 0 ? "p" : " | p") + std::to_string(i);
+  made.witness = verify::witness_of_expression(text, [&](const std::string& name) {
+    return witness_of(beam.pieces[std::stoul(name.substr(1))], beam.reach_mm);
+  });
+  if (made.mesh.whole) made.walls = {{made.id, *made.mesh.whole}};
+}
+
+}  // namespace
+
+Operation flap_space_operation() {
+  Describe<FlapSpace> entry(
+      "flap_space",
+      "Makes the space of a free flap's segment, of an osteotomy, or of the resection that it fills.",
+      Makes::Object);
+  for (Field& each : flap_fields<FlapSpace>()) std::move(entry).takes(std::move(each));
+  return std::move(entry)
+      .takes(field("part", &FlapSpace::part,
+                   "segment: between its two cuts; osteotomy: a slab about a cut; resection: along the whole "
+                   "curve.")
+                 .one_of({"segment", "osteotomy", "resection"}))
+      .takes(field("number", &FlapSpace::number, "The number of the segment or osteotomy along the curve.")
+                 .from(1)
+                 .to(9))
+      .takes(field("slab_mm", &FlapSpace::slab_mm, "The thickness of an osteotomy's slab.")
+                 .greater_than(0)
+                 .to(10))
+      .takes(field("aside_mm", &FlapSpace::aside_mm, "How far the resection reaches beside the curve.")
+                 .greater_than(0)
+                 .to(80))
+      .example(R"({"id": "wedge_1", "do": "flap_space", "part": "segment", "number": 1,
+        "curve": [[-30, -60, -80], [0, -80, -85], [30, -60, -80]],
+        "donor": [[30, 12, 90], [33, 15, -90]], "face": [45, 12, 90]})")
+      .tool()
+      .check(check)
+      .object(definition, voxels, triangles, bound);
+}
+
+}  // namespace octotomy::planner

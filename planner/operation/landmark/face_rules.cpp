@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/landmark/face_rules.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+namespace octotomy::planner {
+namespace {
+
+/// Lengths of a face, in millimetres.
+constexpr double rim_step = 8.0;           ///< by which a rim stands before what is behind it
+constexpr double rim_reach = 3.0;          ///< along which a rim goes on
+constexpr double above_spine = 4.0;        ///< where the piriform rim is taken, over the nasal spine
+constexpr double below_rim = 8.0;          ///< where the buttress is taken, under the piriform rim
+constexpr double deepest_buttress = 42.0;  ///< behind the nasal spine; a ramus stands deeper
+constexpr double broken = 4.0;             ///< a surface falls back farther where it ends
+constexpr double most_hole = 9.0;          ///< of thin bone, across which it may go on
+constexpr double small_hole = 1.1;         ///< of a voxel
+constexpr double blurred_step = 3.0;       ///< over which the slope of a step extends
+constexpr double two_ends = 3.0;           ///< between answers for its end, beyond which none is known
+constexpr double orbit_above_nose = 6.0;   ///< a height within the orbits, over the nose's opening
+constexpr double least_orbit = 18.0, most_orbit = 42.0;  ///< from the mid-plane
+constexpr double orbit_height = 32.0;
+constexpr double two_rims = 8.0;  ///< between the answers of two rules for a rim, beyond which neither is one
+constexpr double crest = 6.0;     ///< below a rim's crest nothing stands before it for so long
+/// Within which places are as far out as the outermost, by noise, and as far down and back, by pitch.
+constexpr double as_far_out = 0.25, as_far_down = 1.0;
+constexpr double arch_begin = 15.0, arch_end = 78.0;  ///< behind the nasal spine
+constexpr double arch_beyond = 16.0;                  ///< where the arch of a large head may go on
+constexpr double arch_end_dip = 0.6;                  ///< by which the bone behind it lies further in
+constexpr double least_half_face = 45.0, most_half_face = 80.0;
+constexpr double least_angle = 34.0, most_angle = 75.0;  ///< the mandible's, from the mid-plane
+constexpr double angle_begin = 40.0, angle_end = 88.0;   ///< behind the chin
+constexpr double angle_share = 0.6;  ///< of the way from chin to nasal spine, below which an angle lies
+constexpr double nose_root = 12.0;   ///< over the nose's opening
+constexpr double nose_root_width = 2.0, nose_root_depth = 30.0;  ///< beside the mid-plane; behind the nose
+
+using Side = std::pair<const char*, double>;
+constexpr std::array<Side, 2> sides{{{"_left", 1.0}, {"_right", -1.0}}};
+
+class Face {
+ public:
+  Face(const HeadMaps& maps, const NasalOpening& nose, double higher_mm, const Side& side, FoundPlaces& found)
+      : maps_(maps), nose_(nose), higher_mm_(higher_mm), side_(side), found_(found) {}
+
+  void find() {
+    piriform_and_buttress();
+    orbit();
+    arch();
+    angle();
+  }
+
+ private:
+  void place(const std::string& name, const glm::dvec3& at) { found_.places[name + side_.first] = at; }
+  void doubt(const std::string& name, double mm) { found_.doubt_mm[name + side_.first] = mm; }
+  void miss(const std::string& name, const std::string& why) { found_.missing[name + side_.first] = why; }
+  /// How far back the bone begins, `out` to this side.
+  double front(double out_mm, int row) const {
+    return maps_.front.at(maps_.front.column(side_.second * out_mm), row);
+  }
+  const HeadMap& from_side() const { return side_.second > 0.0 ? maps_.left : maps_.right; }
+  double step() const { return maps_.front.step_mm(); }
+
+  /// From the mid-line outwards: the first bone as far in front as the rim; and where its surface ends.
+  void piriform_and_buttress() {
+    const glm::dvec3* ans = found_.find("ans");
+    if (ans == nullptr) {
+      miss("piriform", "the nasal spine was not found");
+      return miss("buttress", "the nasal spine was not found");
+    }
+    const auto rim_at = [&](int row) {
+      double foremost_mm = std::numeric_limits<double>::infinity();
+      for (double out = 8.0; out <= 30.0; out += step())
+        if (front(out, row) < foremost_mm) foremost_mm = front(out, row);
+      double run = 0.0;
+      for (double out = 4.0; out <= 30.0; out += step()) {
+        run = front(out, row) <= foremost_mm + rim_step ? run + step() : 0.0;
+        if (run >= rim_reach) return out - run + step();
+      }
+      return -1.0;
+    };
+    const int row = maps_.front.row(ans->z + above_spine + higher_mm_);
+    const double rim = rim_at(row);
+    if (rim < 0.0) {
+      miss("piriform", "no rim stands before the nose's inside");
+      return miss("buttress", "no rim stands before the nose's inside");
+    }
+    // Another rule: where the surface steps back most within a millimetre and a half.
+    double step_back = rim, most = 0.0;
+    for (double out = 4.0; out <= 24.0; out += step()) {
+      const double deep = front(out, row),
+                   rise = std::min(std::isnan(deep) ? 60.0 : deep - front(out + 1.5, row), 60.0);
+      const double next = front(out + 1.5, row);
+      if (std::isfinite(next) && rise > most) most = rise, step_back = out + 1.5;
+    }
+    if (std::abs(step_back - rim) > two_rims)
+      miss("piriform", "two rules for the rim of the nose's opening answer more than 8 mm apart");
+    else {
+      place("piriform", {side_.second * rim, front(rim, row), maps_.front.y_mm(row)});
+      doubt("piriform", 0.7 * std::abs(step_back - rim));
+    }
+    const int lower = maps_.front.row(ans->z + above_spine - below_rim + higher_mm_);
+    // From the rim outwards: until the surface breaks off or a hole follows.
+    const double begin = std::max(rim_at(lower), rim) + 1.0;
+    const auto end_at = [&](double hole_mm, double break_mm) {
+      double out = begin;
+      for (double next = out + step(); next < std::min(out + hole_mm, most_half_face); next += step())
+        if (std::abs(front(next, lower) - front(out, lower)) < break_mm) out = next;
+      return out;
+    };
+    const double out = end_at(most_hole, broken);
+    // What follows behind a hole or a smaller step may be another bone, and blur makes a slope of a step.
+    bool is_clear = out - end_at(small_hole, 0.6 * broken) <= two_ends;
+    for (double at = begin; at < out - two_ends && is_clear; at += step())
+      is_clear = !(front(at + blurred_step, lower) - front(at, lower) > 2.0 * broken);
+    if (!is_clear)
+      return miss("buttress", "the maxilla has no clear outer end: steps or holes lie before it");
+    if (out + step() >= most_half_face || !(out > rim + 10.0) ||
+        front(out, lower) > ans->y + deepest_buttress)
+      return miss("buttress", "the maxilla's outer end is not seen from the front");
+    place("buttress", {side_.second * out, front(out, lower), maps_.front.y_mm(lower)});
+  }
+
+  /// The orbit's rim in a column, the first crest on the way down from the orbit's depth; -1: none.
+  int rim_row(double out, int first) const {
+    const double inside = front(out, first);
+    const int rows = static_cast<int>(orbit_height / step()), below = static_cast<int>(crest / step());
+    if (!std::isfinite(inside)) return -1;
+    for (int j = first; j > first - rows; --j) {
+      const double here = front(out, j);
+      if (!(inside - here >= rim_step)) continue;
+      bool is_crest = true;
+      for (int i = j - 1; i >= j - below && is_crest; --i) is_crest = !(front(out, i) < here - 0.7);
+      if (is_crest) return j;
+    }
+    return -1;
+  }
+
+  /// From a crest, the row a little higher where the rim looks as much up as forward.
+  int edge_row(double out, int crest_row) const {
+    if (crest_row < 0) return crest_row;
+    int best = crest_row;
+    const auto reach = [&](int j) { return maps_.front.y_mm(j) - front(out, j); };
+    for (int j = crest_row; j <= crest_row + static_cast<int>(crest / step()); ++j)
+      if (reach(j) > reach(best)) best = j;
+    return best;
+  }
+
+  void orbit() {
+    const int first = maps_.front.row(nose_.top_mm + orbit_above_nose);
+    // The median of five columns leaves single ones, as with a foramen, out.
+    std::vector<std::pair<int, double>> rims;
+    std::vector<int> rows;
+    for (double out = least_orbit; out <= most_orbit; out += step()) {
+      rows.push_back(edge_row(out, rim_row(out, first)));
+      if (rows.size() < 5) continue;
+      std::array<int, 5> five{};
+      std::copy(rows.end() - 5, rows.end(), five.begin());
+      std::sort(five.begin(), five.end());
+      if (five[0] >= 0) rims.emplace_back(five[2], out - 2.0 * step());
+    }
+    if (rims.empty()) return miss("orbitale", "no rim of an orbit is seen from the front");
+    const int lowest = std::min_element(rims.begin(), rims.end())->first;
+    std::vector<double> across;
+    for (const auto& [row, out] : rims)
+      if (row <= lowest + 1) across.push_back(out);
+    const double out = across[across.size() / 2];
+    place("orbitale", {side_.second * out, front(out, lowest), maps_.front.y_mm(lowest)});
+    doubt("orbitale", 0.5 * (across.back() - across.front()));
+  }
+
+  using Reach = std::function<std::optional<double>(const glm::dvec3&)>;
+  struct Window {
+    glm::dvec2 low, high;    ///< back and up
+    double as_far = 0.0;     ///< within which places reach as far
+    double beyond_mm = 0.0;  ///< behind the window, unless the bone was passed there
+  };
+
+  /// Places of the map from this side in a column that reach at least as far as `least`.
+  std::vector<std::pair<double, glm::dvec3>> reaching(int column, const Window& window, const Reach& reach,
+                                                      double least) const {
+    const HeadMap& map = from_side();
+    std::vector<std::pair<double, glm::dvec3>> found;
+    for (int j = map.row(window.low.y); j <= map.row(window.high.y); ++j) {
+      const glm::dvec3 at(map.at(column, j), map.x_mm(column), map.y_mm(j));
+      if (!std::isfinite(at.x)) continue;
+      const std::optional<double> value = reach(at);
+      if (value && *value >= least) found.emplace_back(*value, at * glm::dvec3(side_.second, 1.0, 1.0));
+    }
+    return found;
+  }
+
+  /// The mean of the places of the map from this side that reach farthest by a measure. Any of these places
+  /// may be the farthest.
+  std::optional<glm::dvec3> farthest(const std::string& name, const Window& window, const Reach& reach) {
+    const HeadMap& map = from_side();
+    double most = -std::numeric_limits<double>::infinity(), end_mm = window.high.x;
+    bool is_passed = false;
+    std::vector<std::pair<double, glm::dvec3>> near;
+    for (int i = map.column(window.low.x); i <= map.column(window.high.x + window.beyond_mm); ++i) {
+      if (i > map.column(window.high.x) && is_passed) break;
+      end_mm = std::max(end_mm, map.x_mm(i));
+      double here = -std::numeric_limits<double>::infinity();
+      for (const auto& one : reaching(i, window, reach, most - window.as_far)) {
+        near.push_back(one);
+        here = std::max(here, one.first);
+      }
+      if (here > most) is_passed = false;
+      most = std::max(most, here);
+      if (reaching(i, window, reach, most - arch_end_dip).empty()) is_passed = true;
+    }
+    std::erase_if(near, [&](const auto& one) { return one.first < most - window.as_far; });
+    if (near.empty()) return std::nullopt;
+    glm::dvec3 mean(0.0);
+    for (const auto& [value, at] : near) mean += at / static_cast<double>(near.size());
+    // At the window's end it is no extremum of the bone.
+    if (mean.y > end_mm - 1.0 || mean.y < window.low.x + 1.0 || mean.z > window.high.y - 1.0)
+      return std::nullopt;
+    double far_mm = 0.0;
+    for (const auto& [value, at] : near) far_mm = std::max(far_mm, glm::distance(at, mean));
+    doubt(name, far_mm);
+    return mean;
+  }
+
+  void arch() {
+    const glm::dvec3* ans = found_.find("ans");
+    const glm::dvec3* orbitale = found_.find(std::string("orbitale") + side_.first);
+    if (ans == nullptr || orbitale == nullptr)
+      return miss("zygoma", "it is sought between the nasal spine and the orbit, which were not both found");
+    const auto outermost = farthest(
+        "zygoma",
+        {{ans->y + arch_begin, ans->z}, {ans->y + arch_end, orbitale->z + 5.0}, as_far_out, arch_beyond},
+        [](const glm::dvec3& at) { return std::optional(at.x); });
+    if (!outermost || std::abs(outermost->x) < least_half_face)
+      return miss("zygoma", "no arch is seen from the side");
+    place("zygoma", *outermost);
+  }
+
+  void angle() {
+    const glm::dvec3* menton = found_.find("menton");
+    const glm::dvec3* ans = found_.find("ans");
+    if (menton == nullptr || ans == nullptr)
+      return miss("gonion", "it is sought between chin and nasal spine, which were not both found");
+    const auto most = farthest("gonion",
+                               {{menton->y + angle_begin, menton->z - 5.0},
+                                {menton->y + angle_end, menton->z + angle_share * (ans->z - menton->z)},
+                                as_far_down},
+                               [](const glm::dvec3& at) -> std::optional<double> {
+                                 if (at.x < least_angle || at.x > most_angle) return std::nullopt;
+                                 return (at.y - at.z) / std::sqrt(2.0);
+                               });
+    if (!most) return miss("gonion", "no angle of a mandible is seen from the side");
+    place("gonion", *most);
+  }
+
+  const HeadMaps& maps_;
+  NasalOpening nose_;
+  double higher_mm_;
+  Side side_;
+  FoundPlaces& found_;
+};
+
+}  // namespace
+
+void find_face_places(const HeadMaps& maps, const NasalOpening& nose, double higher_mm, FoundPlaces& found) {
+  for (const Side& side : sides) Face(maps, nose, higher_mm, side, found).find();
+}
+
+void find_nose_root(const HeadMaps& maps, const NasalOpening& nose, FoundPlaces& found) {
+  const Profile profile = profile_of(maps.front, nose_root_width);
+  const auto back = [&](double up_mm) {
+    return profile.back_mm[static_cast<std::size_t>(profile.row(up_mm))];
+  };
+  const double root_mm = nose.top_mm + nose_root;
+  if (back(root_mm) < back(nose.top_mm) + nose_root_depth)
+    found.places["midline_front"] = {profile.middle_mm[static_cast<std::size_t>(profile.row(root_mm))],
+                                     back(root_mm), root_mm};
+  else
+    found.missing["midline_front"] = "no bone is seen over the nose's opening";
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Ranges are wide: means of adults (Farkas, Anthropometry of the head and face, 1994; Martin and Saller,
+// Lehrbuch der Anthropologie, 1957) with four deviations and more, children's faces within.
+#include "planner/operation/landmark/plausible.h"
+
+#include <array>
+#include <cmath>
+
+namespace octotomy::planner {
+namespace {
+
+/// What the second lies from the first, in millimetres of height or depth, or as a share of the nose's
+/// height.
+struct Relation {
+  const char *first, *second;
+  enum Of { Below, Behind } of;
+  bool is_share;
+  double low, high;
+};
+constexpr std::array<Relation, 14> relations{{
+    {"nasion", "ans", Relation::Below, false, 30.0, 66.0},
+    {"nasion", "ans", Relation::Behind, false, -16.0, 14.0},
+    {"ans", "a_point", Relation::Below, true, 0.03, 0.45},
+    {"ans", "incisor", Relation::Below, true, 0.34, 0.9},
+    {"ans", "incisor", Relation::Behind, false, -18.0, 14.0},
+    {"incisor", "lower_incisor", Relation::Below, false, 0.5, 45.0},
+    {"lower_incisor", "menton", Relation::Below, true, 0.55, 1.15},
+    {"ans", "menton", Relation::Below, true, 1.1, 2.2},
+    {"pogonion", "menton", Relation::Below, true, 0.02, 0.45},
+    {"nasion", "pogonion", Relation::Behind, false, -25.0, 30.0},
+    {"b_point", "pogonion", Relation::Below, true, 0.08, 0.6},
+    {"pogonion", "menton", Relation::Behind, false, 0.0, 20.0},
+    {"nasion", "orbitale", Relation::Below, true, 0.3, 0.85},
+    {"nasion", "midline_front", Relation::Behind, false, -14.0, 14.0},
+}};
+
+/// Both sides' distances from the middle, and how far they may differ across, and along and up.
+struct Pair {
+  const char* name;
+  double least_out, most_out, most_across, most_along;
+  bool is_known_by_both = false;  ///< missing where the other side is
+};
+constexpr std::array<Pair, 5> pairs{{{"piriform", 6.5, 19.0, 5.0, 8.0},
+                                     {"orbitale", 18.0, 48.0, 14.0, 9.0},
+                                     {"buttress", 20.0, 62.0, 14.0, 14.0, true},
+                                     {"zygoma", 48.0, 80.0, 9.0, 14.0},
+                                     {"gonion", 34.0, 72.0, 12.0, 14.0}}};
+
+void take_out(FoundPlaces& found, const std::string& name, const std::string& why) {
+  if (found.places.erase(name) > 0) found.missing[name] = why;
+}
+
+void keep_related(FoundPlaces& found) {
+  const glm::dvec3 *nasion = found.find("nasion"), *spine = found.find("ans");
+  const bool has_nose = nasion != nullptr && spine != nullptr;
+  const double nose_mm = has_nose ? nasion->z - spine->z : 1.0;
+  std::map<std::string, std::string> wrong;
+  for (const Relation& relation : relations) {
+    if (relation.is_share && !has_nose) continue;
+    for (const char* side : {"", "_left", "_right"}) {
+      const std::string second = std::string(relation.second) + side;
+      const glm::dvec3 *a = found.find(relation.first), *b = found.find(second);
+      if (a == nullptr || b == nullptr) continue;
+      const double apart = relation.of == Relation::Below ? a->z - b->z : b->y - a->y;
+      const double value = relation.is_share ? apart / nose_mm : apart;
+      if (value >= relation.low && value <= relation.high) continue;
+      const std::string where = relation.of == Relation::Below ? "below" : "behind";
+      wrong[second] = "it would lie farther or nearer " + where + " " + relation.first + " than in any face";
+      // Which of the two is wrong is not known.
+      wrong[relation.first] = "it and " + second + " would lie as in no face";
+    }
+  }
+  for (const auto& [name, why] : wrong) take_out(found, name, why);
+}
+
+void keep_alike(FoundPlaces& found) {
+  for (const Pair& pair : pairs) {
+    const std::string left = std::string(pair.name) + "_left", right = std::string(pair.name) + "_right";
+    for (const std::string& name : {left, right})
+      if (const glm::dvec3* at = found.find(name))
+        if (std::abs(at->x) < pair.least_out || std::abs(at->x) > pair.most_out)
+          take_out(found, name, "it would lie farther from or nearer to the middle than in any face");
+    const glm::dvec3 *a = found.find(left), *b = found.find(right);
+    if (a == nullptr || b == nullptr) {
+      // One side alone cannot be compared. The maxilla's outer end, which the rule takes for reached at the
+      // first wide hole, is not known without.
+      for (const std::string& name : {left, right}) {
+        if (found.find(name) != nullptr) found.doubt_mm[name] += 2.0;
+        if (pair.is_known_by_both)
+          take_out(found, name, "the other side's was not found, which it must match");
+      }
+      continue;
+    }
+    const double across = std::abs(a->x + b->x), along = std::hypot(a->y - b->y, a->z - b->z);
+    if (across > pair.most_across || along > pair.most_along) {
+      for (const std::string& name : {left, right})
+        take_out(found, name, "left and right would differ more than the sides of a face");
+      continue;
+    }
+    // Which of them is wrong is not known, so each may be by all of it.
+    for (const std::string& name : {left, right}) found.doubt_mm[name] += std::hypot(across, along);
+  }
+}
+
+}  // namespace
+
+void keep_plausible(FoundPlaces& found) {
+  keep_related(found);
+  keep_alike(found);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The size of an airway and where it is narrowest, between two ends.
+#include <cmath>
+
+#include "planner/operation/measure/digitised.h"
+#include "planner/operation/measure/passage.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Airway {
+  ObjectName object;
+  Mark begin, end;
+  double step_mm = 1.0;
+};
+
+Json section_json(const PassageSection& section, const Digitised& digitised) {
+  const HalfWidth width = section_half_width(section, digitised);
+  Json json{{"along_mm", section.along_mm},
+            {"at_mm", to_json(section.at_mm)},
+            {"direction", to_json(section.direction)},
+            {"area_mm2", section.area_mm2()},
+            {"half_width_mm2", width.value},
+            {"voxel_mm2", section.voxel_mm2},
+            {"mesh_mm2", nullptr}};
+  if (section.mesh_mm2) json["mesh_mm2"] = *section.mesh_mm2;
+  return json;
+}
+
+Json measure(const Airway& asked, const AnswerBench& bench) {
+  const Stopwatch watch(bench.timings, "airway");
+  const Object& object = bench.objects.at(asked.object.name);
+  const Passage found = passage(object.voxel.octree, object.mesh.within, mark_mm(asked.begin, bench.objects),
+                                mark_mm(asked.end, bench.objects), asked.step_mm);
+  const Digitised digitised = digitised_of(bench, object);
+  const HalfWidth of_volume = volume_half_width(object.voxel.measures, digitised, seen_size_of(object));
+  const PassageSection& least = found.sections[found.narrowest];
+  Json airway{{"volume_mm3", object.voxel.measures.volume_mm3},
+              {"volume_half_width_mm3", of_volume.value},
+              {"volume_mesh_mm3", nullptr},
+              {"length_mm", found.length_mm},
+              {"narrowest", section_json(least, digitised)},
+              {"sections", Json::array()}};
+  if (object.mesh.within) airway["volume_mesh_mm3"] = object.mesh.within->measures().volume_mm3;
+  airway["narrowest"]["half_width_terms"] = to_json(section_half_width(least, digitised));
+  for (const PassageSection& section : found.sections)
+    airway["sections"].push_back(section_json(section, digitised));
+  Json json{{"object", object.id}, {"airway", std::move(airway)}, {"findings", Json::array()}};
+  if (!object.mesh.within) json["findings"].push_back("there is no mesh: voxels alone answer");
+  if (const auto finding = too_coarse_finding(object, of_volume)) json["findings"].push_back(*finding);
+  const double differ = least.mesh_mm2 ? std::abs(*least.mesh_mm2 - least.voxel_mm2) : 0.0;
+  if (differ > section_half_width(least, digitised).value)
+    json["findings"].push_back(
+        "the kernels' areas of the narrowest section differ by more than the half-width");
+  return json;
+}
+
+}  // namespace
+
+Operation airway_operation() {
+  return Describe<Airway>("airway",
+                          "Measures an airway: its volume, its sections square to its centre line, and where "
+                          "it is narrowest.",
+                          Makes::Measurement)
+      .takes(field("object", &Airway::object,
+                   "The air: a window of air within its limits, and of that the part at a point.")
+                 .required())
+      .takes(field("begin", &Airway::begin, "Its beginning: a point or a landmark in it.").required())
+      .takes(field("end", &Airway::end, "Its end.").required())
+      .takes(field("step_mm", &Airway::step_mm, "From section to section.").from(0.1).to(20.0))
+      .example(
+          R"({"id": "narrow", "do": "airway", "object": "rest", "begin": [0, 0, 20], "end": [0, 0, -20]})")
+      .measure(measure);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/measure/compare_labels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "brep/measure/difference.h"
+#include "convert/surface/label_surfaces.h"
+#include "planner/operation/file/label_table.h"
+#include "planner/operation/table/json.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/same_patient.h"
+#include "voxel/filter/label_map.h"
+#include "voxel/solid/combine.h"
+#include "voxel/space/file_text.h"
+#include "voxel/volume/volume_header.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A label map with what is asked of it label by label.
+struct Side {
+  fs::path path;
+  voxel::Scene scene;
+  std::map<int, std::uint64_t> samples;
+  brep::PartedSurface surfaces = {};
+
+  double volume_mm3(int label) const {
+    const auto found = samples.find(label);
+    return found == samples.end() ? 0.0 : static_cast<double>(found->second) * scene.lattice.voxel_mm3();
+  }
+};
+
+/// Whether two lattices have the same field and differ in the order or direction of their axes.
+bool is_stored_otherwise(const voxel::Lattice& a, const voxel::Lattice& b) {
+  constexpr double nearly = 1e-3;
+  if (a == b || a.sample_count() != b.sample_count()) return false;
+  for (const glm::dvec3& corner : {glm::dvec3(0.0), glm::dvec3(b.dims - 1)}) {
+    const glm::dvec3 at = a.voxel(b.lps_mm(corner));
+    if (glm::any(glm::lessThan(at, glm::dvec3(-nearly))) ||
+        glm::any(glm::greaterThan(at, glm::dvec3(a.dims - 1) + nearly)))
+      return false;
+  }
+  return true;
+}
+
+/// `onto` has the order that samples are stored in: it changes no object, though triangles of an octree
+/// follow its axes.
+Side side_of(const fs::path& path, const FileBench& bench, std::vector<std::string>& findings,
+             const voxel::Lattice* onto = nullptr) {
+  Side side{path, bench.read_scan(path), {}};
+  if (onto != nullptr && is_stored_otherwise(*onto, side.scene.lattice))
+    if (std::optional<voxel::Scene> laid = voxel::laid_on(side.scene, *onto)) side.scene = std::move(*laid);
+  try {
+    const std::vector<voxel::Label> labels = voxel::labels(side.scene);
+    for (const voxel::Label& label : labels) side.samples[label.number] = label.samples;
+    for (const std::string& finding : findings_of_labels(labels))
+      findings.push_back(path.string() + ": " + finding);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(path.string() + ": is no label map: " + error.what());
+  }
+  if (side.samples.empty())
+    throw std::runtime_error(path.string() + ": every sample is 0, so there are no labels");
+  const Stopwatch watch(bench.timings, "surfaces");
+  side.surfaces = convert::label_surfaces(side.scene, {{}, 0, {bench.stop, {}}});
+  return side;
+}
+
+/// The first lattice, continued until it covers the second one's samples.
+voxel::Lattice covering(const voxel::Lattice& a, const voxel::Lattice& b) {
+  glm::dvec3 low(0.0), high = glm::dvec3(a.dims) - 1.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p_voxel =
+        glm::dvec3(corner & 1, (corner >> 1) & 1, corner >> 2) * glm::dvec3(b.dims - 1);
+    low = glm::min(low, a.voxel(b.lps_mm(p_voxel)));
+    high = glm::max(high, a.voxel(b.lps_mm(p_voxel)));
+  }
+  // Rounding of coordinates adds no row.
+  constexpr double rounding = 1e-6;
+  low = glm::floor(low + rounding);
+  high = glm::ceil(high - rounding);
+  voxel::Lattice whole{glm::ivec3(high - low) + 1, a.lps_from_voxel};
+  whole.lps_from_voxel[3] = glm::dvec4(a.lps_mm(low), 1.0);
+  return whole;
+}
+
+/// Sums over all labels that both maps have.
+struct Totals {
+  double common_mm3 = 0.0, both_mm3 = 0.0;  ///< both_mm3 of all labels of either map
+  double hausdorff_mm = 0.0, hausdorff95_mm = 0.0, mean_mm = 0.0;
+  std::size_t compared = 0;
+};
+
+/// A label of both maps, or of one; each has its own number.
+struct Pair {
+  std::optional<int> a, b;
+  std::string name;
+
+  int number() const { return a ? *a : *b; }
+};
+
+voxel::Octree object_of(const voxel::Universe& universe, const Side& side, const std::optional<int>& label) {
+  return label ? voxel::octree_of_label(universe, side.scene, *label) : voxel::Octree::empty(universe);
+}
+
+Json label_json(const Pair& pair, const Side& a, const Side& b, const voxel::Universe& universe,
+                Totals& totals) {
+  const voxel::Octree of_a = object_of(universe, a, pair.a), of_b = object_of(universe, b, pair.b);
+  const auto count_a = static_cast<double>(of_a.voxel_count()),
+             count_b = static_cast<double>(of_b.voxel_count());
+  const auto common = static_cast<double>(
+      voxel::combine(universe, voxel::Expression(of_a) & voxel::Expression(of_b)).voxel_count());
+  const double voxel_mm3 = universe.lattice().voxel_mm3();
+  totals.common_mm3 += common * voxel_mm3;
+  totals.both_mm3 += (count_a + count_b) * voxel_mm3;
+  Json json{{"label", pair.number()},
+            {"name", pair.name},
+            {"volume_a_mm3", pair.a ? a.volume_mm3(*pair.a) : 0.0},
+            {"volume_b_mm3", pair.b ? b.volume_mm3(*pair.b) : 0.0},
+            {"dice", count_a + count_b > 0.0 ? Json(2.0 * common / (count_a + count_b)) : Json(nullptr)}};
+  for (const char* key : {"hausdorff_mm", "hausdorff95_mm", "mean_mm"}) json[key] = nullptr;
+  if (!pair.a || !pair.b) return json;
+  const brep::Difference difference =
+      brep::difference(brep::linked(brep::surface_of_part(a.surfaces, *pair.a)),
+                       brep::linked(brep::surface_of_part(b.surfaces, *pair.b)));
+  json["hausdorff_mm"] = difference.hausdorff_mm;
+  json["hausdorff95_mm"] = difference.hausdorff95_mm;
+  json["mean_mm"] = difference.mean_mm;
+  totals.hausdorff_mm = std::max(totals.hausdorff_mm, difference.hausdorff_mm);
+  totals.hausdorff95_mm = std::max(totals.hausdorff95_mm, difference.hausdorff95_mm);
+  totals.mean_mm += difference.mean_mm;
+  ++totals.compared;
+  return json;
+}
+
+Json definitions() {
+  return {{"hausdorff_mm",
+           "of a label: largest distance of a point of either surface, half-way between samples, to the "
+           "other's nearest triangle; of all: the largest"},
+          {"hausdorff95_mm",
+           "of a label: larger of the two directed, area-weighted 95th percentiles, point to triangle; of "
+           "all: the largest"},
+          {"mean_mm",
+           "of a label: area-weighted mean of absolute distances, point to triangle, over both surfaces; of "
+           "all: the mean of the labels"},
+          {"dice", "twice the common samples by the sum of both, at A's samples; of all: of all labels"}};
+}
+
+using Names = std::map<int, std::string>;
+
+std::string name_of(const Names& names, int label) {
+  const auto name = names.find(label);
+  return name == names.end() ? "label " + std::to_string(label) : name->second;
+}
+
+/// The names of the labels that occur.
+Names names_of(const Side& side, std::vector<std::string>& findings) {
+  std::set<int> occurring;
+  for (const auto& [label, samples] : side.samples) occurring.insert(label);
+  LabelTable table = label_table_of(side.path, occurring);
+  findings.insert(findings.end(), table.passed_over.begin(), table.passed_over.end());
+  std::erase_if(table.names, [&](const auto& entry) { return !occurring.contains(entry.first); });
+  return std::move(table.names);
+}
+
+/// The numbers of a map's labels by name, or by "label 5" without one; refuses a name that two labels have.
+std::map<std::string, int> numbers_of(const Side& side, const Names& names) {
+  std::map<std::string, int> numbers;
+  for (const auto& [label, samples] : side.samples)
+    if (const auto [known, is_new] = numbers.try_emplace(name_of(names, label), label); !is_new)
+      throw std::runtime_error(side.path.string() + ": the labels " + std::to_string(known->second) +
+                               " and " + std::to_string(label) + " are both named '" + known->first +
+                               "', so that labels cannot be paired by name: give each a name of its own");
+  return numbers;
+}
+
+/// Pairs labels by name where both maps have names, else by number; reports where these contradict.
+std::vector<Pair> pairs_of(const Side& a, const Side& b, std::vector<std::string>& findings) {
+  const Names names_a = names_of(a, findings), names_b = names_of(b, findings);
+  const bool by_name = !names_a.empty() && !names_b.empty();
+  if (names_a.empty() != names_b.empty())
+    findings.push_back("labels are paired by number, as only " + (names_b.empty() ? a : b).path.string() +
+                       " has names");
+  for (const auto& [label, samples] : a.samples)
+    if (by_name && b.samples.contains(label) && name_of(names_a, label) != name_of(names_b, label))
+      findings.push_back("number " + std::to_string(label) + " is '" + name_of(names_a, label) + "' in " +
+                         a.path.string() + " and '" + name_of(names_b, label) + "' in " + b.path.string() +
+                         ": labels are paired by name");
+  const Names none;
+  std::map<std::string, Pair> by_key;
+  for (const auto& [key, label] : numbers_of(a, by_name ? names_a : none)) by_key[key].a = label;
+  for (const auto& [key, label] : numbers_of(b, by_name ? names_b : none)) by_key[key].b = label;
+  std::vector<Pair> pairs;
+  for (auto& [key, pair] : by_key) {
+    const Names& names = pair.a && names_a.contains(*pair.a) ? names_a : names_b;
+    pair.name = by_name ? key : name_of(names, pair.number());
+    pairs.push_back(std::move(pair));
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& left, const Pair& right) { return left.number() < right.number(); });
+  return pairs;
+}
+
+}  // namespace
+
+bool is_label_map(const fs::path& path) {
+  return voxel::volume_format(path).has_value() || voxel::extension_of(path) == ".dcm";
+}
+
+FileAnswer compare_label_maps(const fs::path& path_a, const fs::path& path_b, bool other_identity,
+                              const FileBench& bench) {
+  FileAnswer answer;
+  const Side a = side_of(path_a, bench, answer.findings);
+  const Side b = side_of(path_b, bench, answer.findings, &a.scene.lattice);
+  for (std::string& finding :
+       need_same_patient({path_a.string(), a.scene.identity}, {path_b.string(), b.scene.identity},
+                         other_identity, "--other-identity"))
+    answer.findings.push_back(std::move(finding));
+  const std::vector<Pair> pairs = pairs_of(a, b, answer.findings);
+  const voxel::Lattice lattice = covering(a.scene.lattice, b.scene.lattice);
+  const bool is_one_lattice =
+      lattice.dims == a.scene.lattice.dims && lattice.dims == b.scene.lattice.dims &&
+      glm::distance(lattice.lps_mm(lattice.dims - 1), b.scene.lattice.lps_mm(lattice.dims - 1)) < 1e-3;
+  if (!is_one_lattice)
+    answer.findings.emplace_back("the maps have different lattices: Dice is taken at the samples of " +
+                                 path_a.string());
+  const voxel::Universe universe = voxel::universe_on(lattice);
+  const Stopwatch watch(bench.timings, "compare");
+  Totals totals;
+  answer.json["labels"] = Json::array();
+  for (const Pair& pair : pairs) {
+    if (bench.stop.stop_requested()) throw voxel::Stopped("stopped while labels were compared");
+    const Json json = label_json(pair, a, b, universe, totals);
+    answer.rows.emplace_back(
+        pair.name, "Dice " + grouped(json["dice"].is_null() ? 0.0 : json["dice"].get<double>(), 5) +
+                       (json["mean_mm"].is_null()
+                            ? std::string()
+                            : ", mean " + grouped(json["mean_mm"].get<double>(), 3) + " mm, Hausdorff 95 " +
+                                  grouped(json["hausdorff95_mm"].get<double>(), 3) + " mm"));
+    if (json["mean_mm"].is_null())
+      answer.findings.push_back("'" + pair.name + "'" + " (" + std::to_string(pair.number()) +
+                                ") is only in " + (pair.a ? path_a : path_b).string() +
+                                ": it has no distances");
+    answer.json["labels"].push_back(json);
+  }
+  const bool has_any = totals.compared > 0;
+  answer.json["hausdorff_mm"] = has_any ? Json(totals.hausdorff_mm) : Json(nullptr);
+  answer.json["hausdorff95_mm"] = has_any ? Json(totals.hausdorff95_mm) : Json(nullptr);
+  answer.json["mean_mm"] =
+      has_any ? Json(totals.mean_mm / static_cast<double>(totals.compared)) : Json(nullptr);
+  answer.json["dice"] =
+      totals.both_mm3 > 0.0 ? Json(2.0 * totals.common_mm3 / totals.both_mm3) : Json(nullptr);
+  answer.json["definition"] = definitions();
+  answer.json["findings"] = answer.findings;
+  return answer;
+}
+
+}  // namespace octotomy::planner

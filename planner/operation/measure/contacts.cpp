@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Where two objects touch, as articulating paper marks teeth: places, areas, depths and distances.
+#include <cmath>
+
+#include "planner/operation/measure/digitised.h"
+#include "planner/operation/measure/near_surfaces.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/table/operation.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct ContactMap {
+  ObjectName object, against;
+  double within_mm = ContactOptions{}.within_mm, apart_mm = ContactOptions{}.apart_mm;
+};
+
+void check(const ContactMap& asked, const Place& place) {
+  if (asked.object.name == asked.against.name)
+    place.at("against").refuse("is the object itself: name what it is to touch");
+}
+
+Json contact_json(const Contact& contact, double half_width_mm) {
+  Json json{{"at_mm", to_json(contact.at_mm)},
+            {"normal", to_json(contact.normal)},
+            {"nearest_mm", contact.nearest_mm},
+            {"voxel_nearest_mm", nullptr},
+            {"depth_mm", std::max(0.0, -contact.nearest_mm)},
+            {"area_mm2", nullptr},
+            {"half_width_mm", half_width_mm}};
+  if (contact.voxel_nearest_mm) json["voxel_nearest_mm"] = *contact.voxel_nearest_mm;
+  if (contact.area_mm2) json["area_mm2"] = *contact.area_mm2;
+  return json;
+}
+
+Json measure(const ContactMap& asked, const AnswerBench& bench) {
+  const Object& object = bench.objects.at(asked.object.name);
+  const Object& other = bench.objects.at(asked.against.name);
+  Json json{{"object", object.id},       {"against", other.id},      {"within_mm", asked.within_mm},
+            {"contacts", Json::array()}, {"certain_count", nullptr}, {"area_mm2", nullptr},
+            {"nearest_mm", nullptr},     {"findings", Json::array()}};
+  for (const Object* each : {&object, &other})
+    if (each->voxel.octree.is_empty()) {
+      json["findings"].push_back(why_no_voxels(*each) + ": nothing touches");
+      return json;
+    }
+  const Stopwatch watch(bench.timings, "contacts");
+  const Contacts found = contacts_between(object.voxel.octree, other.voxel.octree, object.mesh.within,
+                                          other.mesh.within, {asked.within_mm, asked.apart_mm});
+  const Digitised digitised = digitised_of(bench, object), digitised_other = digitised_of(bench, other);
+  int certain = 0;
+  double area_mm2 = 0.0;
+  for (const Contact& contact : found.contacts) {
+    const double half_width_mm = gap_half_width(contact.normal, digitised, digitised_other).value;
+    json["contacts"].push_back(contact_json(contact, half_width_mm));
+    certain += contact.nearest_mm + half_width_mm <= asked.within_mm ? 1 : 0;
+    area_mm2 += contact.area_mm2.value_or(0.0);
+  }
+  json["certain_count"] = certain;
+  if (found.by_mesh) json["area_mm2"] = area_mm2;
+  json["nearest_mm"] = found.nearest_mm;
+  json["nearest_at_mm"] = to_json(found.nearest_at_mm);
+  json["voxel_nearest_mm"] = found.voxel_nearest_mm;
+  const double overlap_mm3 =
+      static_cast<double>(
+          voxel::combine(bench.universe, voxel::Expression(object.voxel.octree) & other.voxel.octree)
+              .voxel_count()) *
+      bench.universe.lattice().voxel_mm3();
+  json["overlap_mm3"] = overlap_mm3;
+  json["estimator"] = found.by_mesh ? "vertices of the first mesh to the second's nearest triangle"
+                                    : "voxels of the first's boundary to the second's nearest voxel";
+  if (!found.by_mesh) json["findings"].push_back("there is no mesh of both: areas are not told");
+  return json;
+}
+
+}  // namespace
+
+Operation contacts_operation() {
+  return Describe<ContactMap>("contacts", "Tells where two objects touch, as paper between teeth does.",
+                              Makes::Measurement)
+      .takes(field("object", &ContactMap::object, "The object whose surface is marked, as the lower teeth.")
+                 .required())
+      .takes(field("against", &ContactMap::against, "What it touches.").required())
+      .takes(field("within_mm", &ContactMap::within_mm, "What is nearer than this is a contact.")
+                 .greater_than(0.0)
+                 .to(20.0))
+      .takes(
+          field("apart_mm", &ContactMap::apart_mm, "Places nearer to each other than this are one contact.")
+              .greater_than(0.0)
+              .to(50.0))
+      .example(R"({"id": "bite", "do": "contacts", "object": "rest", "against": "advanced",
+        "within_mm": 0.5})")
+      .check(check)
+      .measure(measure);
+}
+
+}  // namespace octotomy::planner

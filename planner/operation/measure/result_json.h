@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "planner/operation/measure/half_width.h"
+#include "planner/operation/table/bench.h"
+#include "planner/operation/table/json.h"
+#include "voxel/measure/measure.h"
+#include "voxel/space/scene.h"
+
+// What the program answers as JSON. Keys end in their unit; a number that is missing is null.
+namespace octotomy::planner {
+
+/// {"octotomy": version, "timings_ms": {...}}: what every answer begins with.
+Json answer(const Timings& timings);
+
+Json to_json(const glm::dvec3& value);
+Json to_json(const std::optional<glm::dvec3>& value);
+/// Row by row.
+Json to_json(const glm::dmat3& matrix);
+Json to_json(const glm::dmat4& matrix);
+Json to_json(const std::vector<voxel::Finding>& audit);
+/// The parts of a scan that are interpolated between images, with the slices of the lattice inside each.
+Json to_json(const std::vector<voxel::Hole>& holes, const voxel::Lattice& lattice);
+Json to_json(const voxel::Measures& measures);
+Json to_json(const brep::Measures& measures);
+Json to_json(const brep::Health& health);
+Json to_json(const verify::Certificate& certificate);
+Json to_json(const HalfWidth& width);
+Json to_json(const ScanRecord& scan);
+Json to_json(const Object& object);
+
+/// A scan's geometry, range and audit, as `info` says it.
+Json scan_answer(const voxel::Scene& scene, const Timings& timings);
+
+/// "PASS", "WARN" or "FAIL" of an audit's line.
+using verify::to_string;
+
+inline constexpr const char* voxel_area_estimator = "Crofton formula, 13 directions";
+inline constexpr const char* mesh_area_estimator = "triangles of the isosurface of the scan's own samples";
+
+}  // namespace octotomy::planner

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How far errors reach into the numbers of a plan. The numbers are of all of the plan, so the plan's room
+// goes through the trials (planner/plan/trial.h); here is what they are asked for.
+#include "planner/operation/measure/trials.h"
+
+#include <nlohmann/json.hpp>
+
+#include "planner/operation/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+nlohmann::ordered_json measure(const Trials& asked, const AnswerBench&) {
+  return {{"trials", asked.trials},
+          {"seed", asked.seed},
+          {"errors",
+           {{"landmark_mm", asked.landmark_mm},
+            {"kerf_mm", asked.kerf_mm},
+            {"segmentation_mm", asked.segmentation_mm},
+            {"seating_mm", asked.seating_mm},
+            {"seating_deg", asked.seating_deg}}}};
+}
+
+}  // namespace
+
+Operation trials_operation() {
+  return Describe<Trials>("trials",
+                          "Tells how far errors of landmarks, saw, segmentation and seating reach into the "
+                          "plan's displacements, gaps, overlaps, distances and angles.",
+                          Makes::Measurement)
+      .takes(field("landmark_mm", &Trials::landmark_mm,
+                   "Standard deviation of a landmark's placement along each axis.")
+                 .from(0.0)
+                 .to(20.0))
+      .takes(field("kerf_mm", &Trials::kerf_mm, "Standard deviation of a saw's width.").from(0.0).to(5.0))
+      .takes(field("segmentation_mm", &Trials::segmentation_mm,
+                   "Standard deviation of where bone ends, outward everywhere alike.")
+                 .from(0.0)
+                 .to(5.0))
+      .takes(field("seating_mm", &Trials::seating_mm,
+                   "Standard deviation of a moved piece's place along each axis.")
+                 .from(0.0)
+                 .to(20.0))
+      .takes(field("seating_deg", &Trials::seating_deg,
+                   "Standard deviation of a moved piece's turn about each axis through its centroid.")
+                 .from(0.0)
+                 .to(30.0))
+      .takes(field("trials", &Trials::trials, "How many.").from(100).to(1000000))
+      .takes(field("seed", &Trials::seed, "Of chance: the same seed gives the same numbers.").from(0).to(1e9))
+      .example(R"({"id": "doubt", "do": "trials", "seating_mm": 0.5, "trials": 10000})")
+      .measure(measure);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How the head is held: the directions that views, and words as "forward", mean in all later steps.
+#include <cmath>
+
+#include "planner/operation/anatomy/head_directions.h"
+#include "planner/operation/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct HeadPosition {
+  std::vector<Mark> frankfort, midline;
+  double pitch_deg = 0.0, yaw_deg = 0.0, roll_deg = 0.0;
+};
+
+/// The shortest side of a triangle of landmarks that still fixes a plane: landmarks are placed to about a
+/// millimetre, which over ten turns the plane by six degrees.
+constexpr double shortest_mm = 10.0;
+
+glm::dvec3 direction(const glm::dvec3& vector, const Place& place, const char* of) {
+  if (glm::length(vector) < shortest_mm)
+    place.refuse(std::string("its points lie within 10 mm of ") + of + ": choose points farther apart");
+  return glm::normalize(vector);
+}
+
+/// Columns left, back and up, of the plane through both porions and the orbitales.
+glm::dmat3 of_frankfort(const std::vector<Mark>& marks, const Place& place) {
+  const glm::dvec3 right = marks[0].p_mm, left = marks[1].p_mm;
+  const glm::dvec3 front = marks.size() == 3 ? marks[2].p_mm : 0.5 * (marks[2].p_mm + marks[3].p_mm);
+  const glm::dvec3 to_left = direction(left - right, place, "each other");
+  const glm::dvec3 to_front = front - 0.5 * (left + right);
+  const glm::dvec3 forward = direction(to_front - glm::dot(to_front, to_left) * to_left, place,
+                                       "one line, so that the plane is open");
+  if (to_left.x <= 0.0)
+    place.refuse(
+        "the second point lies to the patient's right of the first: give the right porion, the left "
+        "porion, then one or both orbitales");
+  return {to_left, -forward, glm::cross(forward, to_left)};
+}
+
+/// The frame turned about its own up, so that its mid-plane lies along the points.
+glm::dmat3 along_midline(const glm::dmat3& frame, const std::vector<Mark>& marks, const Place& place) {
+  // The mean direction between points, without its part along up: longer differences count for more.
+  const glm::dvec3 up = frame[2];
+  glm::dvec3 back(0.0);
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    for (std::size_t j = i + 1; j < marks.size(); ++j) {
+      glm::dvec3 between = marks[j].p_mm - marks[i].p_mm;
+      between -= glm::dot(between, up) * up;
+      back += glm::dot(between, frame[1]) < 0.0 ? -between : between;
+    }
+  back = direction(back, place, "one line upwards, so that the mid-plane is open");
+  return {glm::cross(back, up), back, up};
+}
+
+void check(const HeadPosition& position, const Place& place) {
+  for (const std::vector<Mark>* marks : {&position.frankfort, &position.midline})
+    for (const Mark& mark : *marks)
+      if (!mark.object.empty())
+        place.refuse("'" + mark.landmark + "@" + mark.object +
+                     "' goes with an object: the head is held by landmarks of the scan");
+  glm::dmat3 frame(1.0);
+  if (!position.frankfort.empty()) frame = of_frankfort(position.frankfort, place.at("frankfort"));
+  if (!position.midline.empty()) frame = along_midline(frame, position.midline, place.at("midline"));
+  const Turns held{position.pitch_deg, position.yaw_deg, position.roll_deg};
+  // The head as it is held, seen from the room: what was along the frame is turned.
+  frame = frame * glm::transpose(rotation_of(held, glm::dmat3(1.0)));
+  if (place.scope != nullptr) place.scope->hold_head(place.where, frame);
+}
+
+}  // namespace
+
+Operation head_position_operation() {
+  return Describe<HeadPosition>("head_position",
+                                "Holds the head: later views, and words as forward, are as it is held.",
+                                Makes::Names)
+      .takes(field("frankfort", &HeadPosition::frankfort,
+                   "The Frankfort plane, held level: right porion, left porion, one or both orbitales. "
+                   "Default: as the scan holds the head.")
+                 .from(3)
+                 .to(4))
+      .takes(field("midline", &HeadPosition::midline,
+                   "Two or more points of the mid-plane, held upright from front to back: nasion, basion. "
+                   "Default: square to the line of the porions.")
+                 .from(2))
+      .takes(field("pitch_deg", &HeadPosition::pitch_deg, "The front is held higher by this, over the plane.")
+                 .from(-90)
+                 .to(90))
+      .takes(field("yaw_deg", &HeadPosition::yaw_deg, "The front is held to the patient's left by this.")
+                 .from(-180)
+                 .to(180))
+      .takes(field("roll_deg", &HeadPosition::roll_deg, "The patient's left side is held higher by this.")
+                 .from(-180)
+                 .to(180))
+      .example(R"({"id": "held", "do": "head_position",
+        "frankfort": [[-60, 0, 10], [60, 0, 10], [-32, -75, 8], [32, -75, 8]], "pitch_deg": 4.5})")
+      .check(check);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A rigid motion. A motion is said in one of four ways:
+//   a turn, then a translation: numbers in LPS, in words of the head, or from one mark to another;
+//   points and where each is wanted (Ong 1992, 8.3);
+//   a matrix, as register tells it;
+//   the motion of an earlier step.
+#include "planner/operation/motion/move.h"
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "brep/mesh/move.h"
+#include "planner/operation/anatomy/head_directions.h"
+#include "planner/operation/anatomy/motion_of_points.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/table/json.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "voxel/solid/expression.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Move {
+  struct Rotation {
+    double degrees = 0.0;
+    std::optional<glm::dvec3> axis;
+    Mark about_mm;
+    std::vector<Mark> through;
+  };
+  struct Turn : Turns {
+    Mark about_mm;
+  };
+  struct Point : Displacement {
+    Mark at;
+    std::optional<Mark> to;
+  };
+  ObjectName object;
+  std::optional<glm::dvec3> translate_mm;
+  std::optional<Rotation> rotate;
+  std::optional<Turn> turn;
+  std::optional<Displacement> by;
+  std::vector<Mark> along;
+  std::optional<Mark> from, to;
+  std::vector<Point> points;
+  std::optional<std::string> fit;
+  std::optional<glm::dmat4> matrix;
+  std::optional<ObjectName> with;
+};
+
+bool is_translated(const Move& move) {
+  return move.translate_mm || move.by || move.from;
+}
+bool is_turned(const Move& move) {
+  return move.rotate || move.turn;
+}
+
+std::string name_of(const Mark& mark) {
+  if (mark.landmark.empty())
+    return "(" + plain(mark.p_mm.x) + ", " + plain(mark.p_mm.y) + ", " + plain(mark.p_mm.z) + ")";
+  return mark.landmark + (mark.object.empty() ? "" : "@" + mark.object);
+}
+
+std::vector<WantedPoint> wanted_points(const Move& move, const MarkPlaces& places) {
+  std::vector<WantedPoint> wanted;
+  for (const Move::Point& point : move.points) {
+    const glm::dvec3 from_mm = places.mark_mm(point.at);
+    wanted.push_back({name_of(point.at), from_mm,
+                      point.to ? places.mark_mm(*point.to) : from_mm + lps_mm(point, places.lps_from_head)});
+  }
+  return wanted;
+}
+
+/// The directions of 'by': the head's, or of a plane through a front point and one at each side, right then
+/// left, as the occlusal plane. Throws std::invalid_argument where the three lie on one line.
+glm::dmat3 directions_of(const Move& move, const MarkPlaces& places) {
+  if (move.along.empty()) return places.lps_from_head;
+  const glm::dvec3 right = places.mark_mm(move.along[1]), left = places.mark_mm(move.along[2]);
+  const glm::dvec3 front = places.mark_mm(move.along[0]) - 0.5 * (right + left);
+  const glm::dvec3 up = glm::cross(front, left - right);
+  if (!(glm::length(up) > 1e-3 * glm::length(front) * glm::length(left - right)))
+    throw std::invalid_argument("'along' has its three points on one line, through which no plane is fixed");
+  const glm::dvec3 forward = glm::normalize(front);
+  return {glm::cross(glm::normalize(up), forward), -forward, glm::normalize(up)};
+}
+
+PointFit fit_of(const Move& move) {
+  return move.fit.value_or("best") == "first_point" ? PointFit::FirstPoint : PointFit::Best;
+}
+
+glm::dmat4 about_point(const glm::dmat3& turn, const glm::dvec3& p_mm) {
+  glm::dmat4 motion(turn);
+  motion[3] = glm::dvec4(p_mm - turn * p_mm, 1.0);
+  return motion;
+}
+
+/// The turn about its own axis or pivot.
+glm::dmat4 turn_of(const Move& move, const MarkPlaces& places) {
+  if (move.turn)
+    return about_point(rotation_of(*move.turn, places.lps_from_head), places.mark_mm(move.turn->about_mm));
+  if (!move.rotate) return glm::dmat4(1.0);
+  voxel::Motion motion;
+  motion.degrees = move.rotate->degrees;
+  if (move.rotate->through.empty()) {
+    motion.axis = *move.rotate->axis;
+    motion.about_mm = places.mark_mm(move.rotate->about_mm);
+  } else {
+    motion.about_mm = places.mark_mm(move.rotate->through[0]);
+    motion.axis = places.mark_mm(move.rotate->through[1]) - motion.about_mm;
+  }
+  return voxel::moved_from_still(motion);
+}
+
+/// Throws std::invalid_argument where points or an axis leave the motion open.
+glm::dmat4 motion_of(const Move& move, const MarkPlaces& places) {
+  if (move.matrix) return *move.matrix;
+  if (move.with) return places.motion_of(move.with->name);
+  if (!move.points.empty())
+    return motion_of_points(wanted_points(move, places), fit_of(move)).moved_from_still;
+  glm::dvec3 by_mm = move.translate_mm.value_or(glm::dvec3(0.0));
+  if (move.by) by_mm += lps_mm(*move.by, directions_of(move, places));
+  if (move.from) by_mm += places.mark_mm(*move.to) - places.mark_mm(*move.from);
+  if (!is_turned(move) || (move.rotate && move.rotate->through.empty())) {
+    // One call, so that a plan of numbers alone keeps its bits.
+    voxel::Motion motion;
+    motion.translate_mm = by_mm;
+    if (move.rotate) {
+      motion.degrees = move.rotate->degrees;
+      motion.axis = *move.rotate->axis;
+      motion.about_mm = places.mark_mm(move.rotate->about_mm);
+    }
+    return voxel::moved_from_still(motion);
+  }
+  return glm::translate(glm::dmat4(1.0), by_mm) * turn_of(move, places);
+}
+
+/// The largest part by which a matrix may miss a rigid motion: its numbers are copied with six decimals.
+constexpr double rigid_to = 1e-5;
+
+void check_matrix(const glm::dmat4& matrix, const Place& place) {
+  const glm::dmat3 turn(matrix);
+  const glm::dmat3 off = glm::transpose(turn) * turn - glm::dmat3(1.0);
+  double worst = 0.0;
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row) worst = std::max(worst, std::abs(off[column][row]));
+  const glm::dvec4 last = glm::transpose(matrix)[3];
+  if (!(worst <= rigid_to) || glm::determinant(turn) < 0.0 || last != glm::dvec4(0, 0, 0, 1))
+    place.refuse("is no rigid motion: its first three columns must be a rotation, its last row [0, 0, 0, 1]");
+}
+
+void check_ways(const Move& move, const Place& place) {
+  const bool by_parts = is_translated(move) || is_turned(move) || move.to;
+  const int ways =
+      int{by_parts} + int{!move.points.empty()} + int{move.matrix.has_value()} + int{move.with.has_value()};
+  if (ways == 0)
+    place.refuse(
+        "moves nothing: add 'translate_mm', 'rotate' or both, 'by' and 'turn', 'from' and 'to', "
+        "'points', 'matrix' or 'with'");
+  if (ways > 1)
+    place.refuse("says its motion twice: 'points', 'matrix' and 'with' stand alone, keep one of them");
+  if (move.from.has_value() != move.to.has_value())
+    place.refuse(std::string("'") + (move.from ? "to" : "from") +
+                 "' is missing: marks go from one to another");
+  if (!move.along.empty() && !move.by) place.at("along").refuse("says along which plane 'by' goes: add 'by'");
+  if (move.rotate && move.turn) place.refuse("says its turn twice, as 'rotate' and 'turn': keep one of them");
+}
+
+void check(const Move& move, const Place& place) {
+  check_ways(move, place);
+  if (move.rotate) {
+    const Place rotate = place.at("rotate");
+    if (move.rotate->axis.has_value() == !move.rotate->through.empty())
+      rotate.refuse(move.rotate->axis ? "says its axis twice, as 'axis' and 'through': keep one of them"
+                                      : "'axis' is missing: add it, or 'through', two points");
+  }
+  if (move.matrix) check_matrix(*move.matrix, place.at("matrix"));
+  for (std::size_t i = 0; i < move.points.size(); ++i) {
+    const Move::Point& point = move.points[i];
+    const bool is_typed = point.forward_mm != 0.0 || point.left_mm != 0.0 || point.up_mm != 0.0;
+    if (point.to && is_typed)
+      place.at("points[" + std::to_string(i) + "]")
+          .refuse("is wanted in two places: keep 'to', or the millimetres");
+  }
+  if (move.with && place.scope != nullptr) {
+    const Operation& maker = place.scope->maker_of(move.with->name);
+    if (!maker.is_motion)
+      place.at("with").refuse("'" + move.with->name + "' was made by '" + maker.name +
+                              "', which moves nothing: name the result of a step that moves an object");
+    return;
+  }
+  // What depends on earlier steps' motions is known once those are.
+  std::vector<Mark> marks{move.from.value_or(Mark{}), move.to.value_or(Mark{})};
+  if (move.turn) marks.push_back(move.turn->about_mm);
+  if (move.rotate) marks.push_back(move.rotate->about_mm);
+  if (move.rotate) marks.insert(marks.end(), move.rotate->through.begin(), move.rotate->through.end());
+  marks.insert(marks.end(), move.along.begin(), move.along.end());
+  for (const Move::Point& point : move.points) {
+    marks.push_back(point.at);
+    marks.push_back(point.to.value_or(Mark{}));
+  }
+  for (const Mark& mark : marks)
+    if (!mark.object.empty()) return;
+  const Objects none;
+  try {
+    motion_of(move, places_of(none));
+  } catch (const std::invalid_argument& error) {
+    (move.points.empty() ? place : place.at("points")).refuse(error.what());
+  }
+}
+
+std::string definition(const Move& move, const Objects&) {
+  const std::string& name = move.object.name;
+  if (move.with) return name + " moved with " + move.with->name;
+  if (move.matrix) return name + " moved by a matrix";
+  if (!move.points.empty()) {
+    std::string text;
+    for (const Move::Point& point : move.points) text += (text.empty() ? "" : ", ") + name_of(point.at);
+    return name + " moved by " + text + (fit_of(move) == PointFit::Best ? "" : ", the first trusted most");
+  }
+  const glm::dvec3 by_mm = move.translate_mm.value_or(glm::dvec3(0.0));
+  std::string text;
+  if (move.translate_mm || !(move.by || move.from || move.turn))
+    text = " moved by (" + plain(by_mm.x) + ", " + plain(by_mm.y) + ", " + plain(by_mm.z) + ") mm";
+  if (move.by) text += (text.empty() ? " moved " : ", ") + in_words(*move.by);
+  if (!move.along.empty()) text += " along the plane of " + name_of(move.along[0]);
+  if (move.from)
+    text += (text.empty() ? " moved from " : ", from ") + name_of(*move.from) + " to " + name_of(*move.to);
+  if (move.rotate) text += ", turned by " + plain(move.rotate->degrees) + "\u00b0";
+  if (move.turn)
+    text +=
+        (text.empty() ? " turned, " : ", ") + in_words(*move.turn) + " about " + name_of(move.turn->about_mm);
+  return name + text;
+}
+
+void voxels(const Move& move, const VoxelBench& bench, VoxelSide& made) {
+  move_voxels(move.object.name, motion_of(move, places_of(bench.objects)), bench, made);
+}
+
+void triangles(const Move& move, const MeshBench& bench, MeshSide& made) {
+  move_triangles(move.object.name, motion_of(move, places_of(bench.objects)), bench, made);
+}
+
+/// Where each point was wanted, where it comes, and what is left between.
+Json points_json(const Move& move, const Objects& objects) {
+  const std::vector<WantedPoint> wanted = wanted_points(move, places_of(objects));
+  const PointMotion found = motion_of_points(wanted, fit_of(move));
+  Json points = Json::array();
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const glm::dvec3 comes(found.moved_from_still * glm::dvec4(wanted[i].from_mm, 1.0));
+    const auto along = [&](const glm::dvec3& by_mm) { return displacement_of(by_mm, objects.lps_from_head); };
+    const Displacement got = along(comes - wanted[i].from_mm);
+    points.push_back({{"name", wanted[i].name},
+                      {"wanted", in_words(along(wanted[i].to_mm - wanted[i].from_mm))},
+                      {"achieved", in_words(got)},
+                      {"forward_mm", got.forward_mm},
+                      {"left_mm", got.left_mm},
+                      {"up_mm", got.up_mm},
+                      {"residual_mm", found.residuals_mm[i]}});
+  }
+  return {{"fit", move.fit.value_or("best")}, {"points", points}, {"rms_mm", found.rms_mm}};
+}
+
+void bound(const Move& move, const BoundBench& bench, Object& made) {
+  carry(move.object.name, motion_of(move, places_of(bench.objects)), bench, made);
+  if (!move.points.empty()) made.moved->details = points_json(move, bench.objects);
+}
+
+}  // namespace
+
+MarkPlaces places_of(const Objects& objects) {
+  return {[&objects](const Mark& mark) { return mark_mm(mark, objects); }, objects.lps_from_head,
+          [&objects](const std::string& name) { return objects.at(name).moved->motion; }};
+}
+
+std::optional<glm::dmat4> motion_of(const Action& action, const MarkPlaces& places) {
+  const Move* move = action.get_if<Move>();
+  if (move == nullptr) return std::nullopt;
+  return motion_of(*move, places);
+}
+
+void move_voxels(const std::string& object, const glm::dmat4& moved_from_still, const VoxelBench& bench,
+                 VoxelSide& made) {
+  const Object& still = bench.objects.at(object);
+  if (is_voxelised(still))
+    return voxelise(brep::moved(*still.mesh.whole, moved_from_still), bench.universe, made);
+  made.symbol = moved(*bench.object(object).symbol, moved_from_still);
+  made.octree = bench.combined(*made.symbol);
+  made.lineage = "the object's own definition under a rigid motion, windows on interpolated samples";
+}
+
+void move_triangles(const std::string& object, const glm::dmat4& moved_from_still, const MeshBench& bench,
+                    MeshSide& made) {
+  const Stopwatch watch(bench.timings, "boolean_mesh");
+  made.whole = brep::moved(bench.object(object), moved_from_still);
+  made.lineage = "vertices of a mesh under a rigid motion";
+}
+
+Operation move_operation() {
+  using Rotation = Move::Rotation;
+  using Turn = Move::Turn;
+  using Point = Move::Point;
+  const auto along = [](auto forward, auto left, auto up) {
+    return std::vector<Field>{field("forward_mm", forward, "Forward, as the head is held; negative: back."),
+                              field("left_mm", left, "To the patient's left; negative: right."),
+                              field("up_mm", up, "Upwards; negative: down.")};
+  };
+  std::vector<Field> point =
+      along(static_cast<double Point::*>(&Point::forward_mm), static_cast<double Point::*>(&Point::left_mm),
+            static_cast<double Point::*>(&Point::up_mm));
+  point.insert(point.begin(),
+               field("at", &Point::at, "The point before: [x, y, z] or a landmark.").required());
+  point.push_back(
+      field("to", &Point::to, "Where it is wanted: [x, y, z] or a landmark, in place of millimetres."));
+  return Describe<Move>("move", "Moves an object: rotates it, then translates it.", Makes::Object)
+      .takes(field("object", &Move::object, "The object.").required())
+      .takes(field("translate_mm", &Move::translate_mm, "The translation [x, y, z], LPS."))
+      .takes(
+          record("rotate", &Move::rotate, "The rotation, which is done first.",
+                 {field("degrees", &Rotation::degrees, "The angle, right-handed about the axis.").required(),
+                  field("axis", &Rotation::axis, "The direction of the axis, LPS.").direction(),
+                  field("about_mm", &Rotation::about_mm, "A point on the axis, LPS, or a landmark."),
+                  field("through", &Rotation::through,
+                        "The axis from one point to another, as both condyles, in place of 'axis'.")
+                      .from(2)
+                      .to(2)}))
+      .takes(record("by", &Move::by, "The translation in words of the head.",
+                    along(&Displacement::forward_mm, &Displacement::left_mm, &Displacement::up_mm)))
+      .takes(
+          field("along", &Move::along,
+                "A plane along which 'by' goes in place of the head's directions, as the occlusal plane: a "
+                "front point, then one to the right and one to the left.")
+              .from(3)
+              .to(3))
+      .takes(record("turn", &Move::turn,
+                    "The rotation in words of the head, which is done first: roll, then pitch, then yaw.",
+                    {field("pitch_deg", static_cast<double Turn::*>(&Turn::pitch_deg), "The front goes up."),
+                     field("yaw_deg", static_cast<double Turn::*>(&Turn::yaw_deg),
+                           "The front goes to the patient's left."),
+                     field("roll_deg", static_cast<double Turn::*>(&Turn::roll_deg),
+                           "The patient's left side goes up."),
+                     field("about_mm", &Turn::about_mm, "The pivot: [x, y, z] or a landmark.").required()}))
+      .takes(
+          field("from", &Move::from, "With 'to': the translation from this mark, [x, y, z] or a landmark."))
+      .takes(field("to", &Move::to, "The mark to which 'from' is brought."))
+      .takes(records("points", &Move::points,
+                     "Points and where each is wanted; the motion that does it best.", point))
+      .takes(field("fit", &Move::fit,
+                   "How points are weighed: best, the default, is the least squares; first_point brings the "
+                   "first one where "
+                   "it is wanted, then turns.")
+                 .one_of({"best", "first_point"}))
+      .takes(
+          field("matrix", &Move::matrix, "The motion as four rows of four numbers, LPS, as register tells."))
+      .takes(field("with", &Move::with, "The motion of this earlier move or register step."))
+      .example(R"({"id": "advanced", "do": "move", "object": "maxilla", "translate_mm": [0, -6, 2],
+        "rotate": {"degrees": 5, "axis": [1, 0, 0], "about_mm": [0, -40, -30]}})")
+      .motion()
+      .of_head()
+      .check(check)
+      .object(definition, voxels, triangles, bound);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// An object laid on another one by a rigid motion, which is found by surfaces, named landmarks or both. The
+// motion is settled first, so that both kernels move by the same one.
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+#include "brep/align/register_landmarks.h"
+#include "brep/align/register_surfaces.h"
+#include "planner/operation/file/landmarks_file.h"
+#include "planner/operation/file/mesh_file.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/motion/fit_rows.h"
+#include "planner/operation/motion/move.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Register {
+  ObjectName object, onto;
+  std::vector<std::string> landmarks;  ///< files of the object's and of the other's
+  bool landmarks_only = false;
+  std::string motion = "rigid";
+  double overlap = brep::SurfaceFitOptions{}.overlap;
+  int samples = static_cast<int>(brep::SurfaceFitOptions{}.samples);
+  int rounds = brep::SurfaceFitOptions{}.max_rounds;
+  std::optional<double> rest_mm;
+  std::filesystem::path out;         ///< of the verb
+  glm::dmat4 onto_from_object{1.0};  ///< settled
+};
+
+/// The motion that was found, and what is told of it.
+struct Laid {
+  glm::dmat4 onto_from_object{1.0};
+  double rms_mm = 0.0;
+  Json details = Json::object();
+  std::vector<std::string> findings = {};
+};
+
+/// The turn of a motion, its scale aside.
+struct Turn {
+  double degrees = 0.0;
+  glm::dvec3 axis{0, 0, 1};
+};
+Turn turn_of(const glm::dmat4& motion) {
+  glm::dmat3 m(motion);
+  for (int k = 0; k < 3; ++k) m[k] = glm::normalize(m[k]);
+  // Twice the sine along the axis; near a half turn the quaternion keeps digits that it has not.
+  const glm::dquat q = glm::normalize(glm::quat_cast(m));
+  const glm::dvec3 v = q.w < 0.0 ? -glm::dvec3(q.x, q.y, q.z) : glm::dvec3(q.x, q.y, q.z);
+  const double sine = glm::length(v);
+  Turn turn;
+  turn.degrees = glm::degrees(2.0 * std::atan2(sine, std::abs(q.w)));
+  if (sine > 0.0) turn.axis = v / sine;
+  return turn;
+}
+
+bool is_json(const std::filesystem::path& path) {
+  return is_landmarks_file(path);
+}
+
+/// Why the landmarks may be mirrored; none where they are not. Three points have no sides.
+std::optional<std::string> mirrored(std::vector<brep::Landmark> moving,
+                                    const std::vector<brep::Landmark>& fixed, const brep::LandmarkFit& fit) {
+  constexpr double most_mm = 3.0;  // hands place landmarks so on a head
+  if (fit.rms_mm <= most_mm) return std::nullopt;
+  for (brep::Landmark& mark : moving) mark.p_mm.x = -mark.p_mm.x;
+  const double rms_mm = brep::register_landmarks(moving, fixed, brep::Motion::similarity).rms_mm;
+  if (rms_mm > 0.3 * fit.rms_mm) return std::nullopt;
+  return "the landmarks lie " + grouped(fit.rms_mm, 1) + " mm apart, and " + grouped(rms_mm, 1) +
+         " mm if one set is mirrored: left and right are exchanged in one of them, by its names or its frame";
+}
+
+Laid by_landmarks(const std::filesystem::path& moving, const std::filesystem::path& fixed,
+                  const std::string& motion, Timings& timings) {
+  const Stopwatch watch(timings, "landmarks");
+  const std::vector<brep::Landmark> from = read_landmarks(moving), to = read_landmarks(fixed);
+  const brep::LandmarkFit fit = brep::register_landmarks(from, to,
+                                                         motion == "similarity" ? brep::Motion::similarity
+                                                         : motion == "rigid"    ? brep::Motion::rigid
+                                                                                : brep::Motion::three_points);
+  Json pairs = Json::array();
+  for (std::size_t k = 0; k < fit.paired.size(); ++k)
+    pairs.push_back({{"name", fit.paired[k]}, {"residual_mm", fit.residuals_mm[k]}});
+  Laid laid{fit.fixed_from_moving, fit.rms_mm};
+  laid.details["landmarks"] = {{"motion", motion},
+                               {"rms_mm", fit.rms_mm},
+                               {"scale", fit.scale},
+                               {"pairs", pairs},
+                               {"left_out", fit.left_out}};
+  for (const std::string& name : fit.left_out)
+    laid.findings.push_back("landmark '" + name + "' is in one file only");
+  if (auto sides = mirrored(from, to, fit)) laid.findings.push_back(std::move(*sides));
+  return laid;
+}
+
+/// Refines `laid`, or searches where nothing is laid yet.
+void by_surfaces(const brep::Mesh& moving, const brep::Mesh& fixed, const Register& asked, bool is_laid,
+                 const voxel::Progress& progress, Timings& timings, Laid& laid) {
+  if (asked.motion == "similarity")
+    throw std::runtime_error("surfaces are registered rigidly; a similarity takes --landmarks-only");
+  const Stopwatch watch(timings, "register");
+  brep::SurfaceFitOptions options;
+  if (is_laid) options.start = laid.onto_from_object;
+  options.overlap = asked.overlap;
+  options.samples = static_cast<std::size_t>(asked.samples);
+  options.max_rounds = asked.rounds;
+  options.rest_mm = asked.rest_mm;
+  options.stop = progress.stop;
+  options.progress = progress.report;
+  try {
+    const brep::SurfaceFit fit = brep::register_surfaces(moving, fixed, options);
+    laid.details["surfaces"] = {{"rms_mm", fit.rms_mm},
+                                {"kept_share", fit.kept_share},
+                                {"rounds", fit.rounds},
+                                {"converged", fit.converged},
+                                {"stiffness", fit.stiffness},
+                                {"start", is_laid ? "landmarks" : "search"},
+                                {"last_step_mm", fit.last_step_mm},
+                                {"rest_mm", fit.rest_mm}};
+    laid.onto_from_object = fit.fixed_from_moving;
+    laid.rms_mm = fit.rms_mm;
+    laid.findings.insert(laid.findings.end(), fit.findings.begin(), fit.findings.end());
+  } catch (const std::runtime_error& error) {
+    if (progress.stop.stop_requested()) throw voxel::Stopped(error.what());
+    throw;
+  }
+}
+
+void check(const Register& asked, const Place& place) {
+  if (asked.landmarks_only && asked.landmarks.empty())
+    place.at("landmarks_only").refuse("takes the motion of landmarks: add 'landmarks', two files");
+  if (place.scope != nullptr && asked.motion == "similarity")
+    place.at("motion").refuse("scales, and an object's voxels cannot: use rigid or three_points");
+}
+
+Register settle(const Register& asked, const SettleBench& bench) {
+  Laid laid;
+  if (!asked.landmarks.empty())
+    laid = by_landmarks(bench.folder / asked.landmarks[0], bench.folder / asked.landmarks[1], asked.motion,
+                        bench.timings);
+  if (!asked.landmarks_only)
+    by_surfaces(bench.object(asked.object.name), bench.object(asked.onto.name), asked,
+                !asked.landmarks.empty(), bench.progress, bench.timings, laid);
+  bench.details = {{"transform", to_json(laid.onto_from_object)}, {"rms_mm", laid.rms_mm}};
+  bench.details.update(laid.details);
+  bench.findings.insert(bench.findings.end(), laid.findings.begin(), laid.findings.end());
+  Register settled = asked;
+  settled.onto_from_object = laid.onto_from_object;
+  return settled;
+}
+
+std::string definition(const Register& asked, const Objects&) {
+  return asked.object.name + " laid on " + asked.onto.name;
+}
+
+void voxels(const Register& asked, const VoxelBench& bench, VoxelSide& made) {
+  move_voxels(asked.object.name, asked.onto_from_object, bench, made);
+}
+
+void triangles(const Register& asked, const MeshBench& bench, MeshSide& made) {
+  move_triangles(asked.object.name, asked.onto_from_object, bench, made);
+}
+
+void bound(const Register& asked, const BoundBench& bench, Object& made) {
+  carry(asked.object.name, asked.onto_from_object, bench, made);
+}
+
+/// The mesh at its new place; a similarity's scale too.
+void write_moved(const Register& asked, const glm::dmat4& moved_from_still, Timings& timings) {
+  brep::Mesh mesh = read_surface(asked.object.name, timings);
+  for (const auto v : mesh.vertices()) {
+    const brep::Mesh::Point& p = mesh.point(v);
+    const glm::dvec4 q = moved_from_still * glm::dvec4(p[0], p[1], p[2], 1.0);
+    mesh.set_point(v, brep::Mesh::Point(q.x, q.y, q.z));
+  }
+  write_surface(mesh, asked.out, timings);
+}
+
+FileAnswer on_files(const Register& asked, const FileBench& bench) {
+  const std::filesystem::path a = asked.object.name, b = asked.onto.name;
+  const bool points_only = is_json(a) || is_json(b);
+  if (points_only && !(is_json(a) && is_json(b)))
+    throw std::runtime_error(
+        "one of A and B is a file of landmarks and the other is not: give two of a kind, and landmarks "
+        "beside meshes by --landmarks A.json B.json");
+  if (points_only && (!asked.out.empty() || !asked.landmarks.empty()))
+    throw std::runtime_error("with two files of landmarks there is no mesh for -o or --landmarks");
+  if (!asked.out.empty()) {
+    need_mesh_extension(asked.out);
+    need_folder_of(asked.out);
+  }
+  Laid laid;
+  if (points_only)
+    laid = by_landmarks(a, b, asked.motion, bench.timings);
+  else if (!asked.landmarks.empty())
+    laid = by_landmarks(asked.landmarks[0], asked.landmarks[1], asked.motion, bench.timings);
+  if (!points_only && !asked.landmarks_only)
+    by_surfaces(read_surface(a, bench.timings, &laid.findings),
+                read_surface(b, bench.timings, &laid.findings), asked, !asked.landmarks.empty(),
+                bench.progress("register"), bench.timings, laid);
+  if (!asked.out.empty()) write_moved(asked, laid.onto_from_object, bench.timings);
+  FileAnswer answer;
+  answer.json = {{"transform", to_json(laid.onto_from_object)},
+                 {"rms_mm", laid.rms_mm},
+                 {"definition", "transform takes A's points, LPS mm, to B's place; row by row"}};
+  answer.json.update(laid.details);
+  answer.json["path"] = asked.out.empty() ? Json(nullptr) : Json(asked.out.string());
+  answer.json["findings"] = laid.findings;
+  answer.findings = laid.findings;
+  const glm::dvec3 shift(laid.onto_from_object[3]);
+  const Turn turn = turn_of(laid.onto_from_object);
+  answer.json["rotation"] = {{"degrees", turn.degrees}, {"axis", to_json(turn.axis)}};
+  answer.rows = {
+      {"rms", grouped(laid.rms_mm, 3) + " mm"},
+      {"rotation", grouped(turn.degrees, 3) + "\u00b0 about (" + grouped(turn.axis.x, 4) + ", " +
+                       grouped(turn.axis.y, 4) + ", " + grouped(turn.axis.z, 4) + ")"},
+      {"translation", grouped(shift.x, 2) + ", " + grouped(shift.y, 2) + ", " + grouped(shift.z, 2) + " mm"},
+      {"written", asked.out.empty() ? "nothing, see -o" : asked.out.string()}};
+  if (laid.details.contains("surfaces")) {
+    const Json& fit = laid.details["surfaces"];
+    answer.rows.insert(answer.rows.begin() + 1, {"rounds", rounds_text(fit["rounds"], fit["converged"],
+                                                                       fit["last_step_mm"], fit["rest_mm"])});
+  }
+  return answer;
+}
+
+}  // namespace
+
+Operation register_operation() {
+  return Describe<Register>("register", "Lays an object on another one, by surfaces or named landmarks.",
+                            Makes::Object)
+      .takes(field("object", &Register::object,
+                   "What moves: an object; of the verb a mesh or a .json of landmarks.")
+                 .required()
+                 .positional("a"))
+      .takes(field("onto", &Register::onto, "What stays.").required().positional("b"))
+      .takes(field("landmarks", &Register::landmarks,
+                   "Two files, the landmarks of what moves and of what stays, with which the search begins.")
+                 .from(2)
+                 .to(2)
+                 .a_file())
+      .takes(field("landmarks_only", &Register::landmarks_only, "Takes the landmarks' motion as it is."))
+      .takes(field("motion", &Register::motion,
+                   "Of landmarks: rigid, three_points, which trusts the first most, or similarity, of meshes "
+                   "only.")
+                 .one_of({"rigid", "similarity", "three_points"}))
+      .takes(field("overlap", &Register::overlap, "Share of the moving surface that the other has too.")
+                 .from(0.05)
+                 .to(1.0))
+      .takes(field("samples", &Register::samples, "Points of the moving surface that are compared.")
+                 .from(100)
+                 .to(1000000))
+      .takes(field("rounds", &Register::rounds, "Of each of the last two refinements at most.")
+                 .from(1)
+                 .to(100000))
+      .takes(
+          field("rest_mm", &Register::rest_mm,
+                "A round that moves the samples by no more ends a refinement. Default: a millionth of their "
+                "spread.")
+              .greater_than(0.0))
+      .verb_takes(field("out", &Register::out, "A moved to B: a .stl, .ply, .obj, .off, .vtp or .glb file."))
+      .example(R"({"id": "laid", "do": "register", "object": "maxilla", "onto": "skull", "overlap": 0.9})")
+      .on_files("octotomy register before.stl after.stl -o moved.stl --json", on_files)
+      .motion()
+      .check(check)
+      .settle(settle)
+      .object(definition, voxels, triangles, bound);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/object/certify.h"
+
+#include <algorithm>
+
+#include "planner/operation/object/trace.h"
+#include "verify/certificate/certify_alone.h"
+#include "verify/certificate/certify_bounded.h"
+#include "verify/witness/witness.h"
+
+namespace octotomy::planner {
+namespace {
+
+/// The witness ends with the universe, as the answers have been cut there. Booleans on the way may have moved
+/// surfaces.
+verify::Witness within_universe(const Object& made) {
+  const voxel::Box world = voxel::bounds(made.voxel.octree.universe().lattice());
+  const verify::Witness within = verify::both(made.witness, verify::witness_of_box(world));
+  return made.bound.shift_mm > 0.0 ? verify::loosened(within, made.bound.shift_mm) : within;
+}
+
+void lower_by_caveats(Object& made) {
+  for (const Caveat& caveat : made.caveats) verify::lower(*made.certificate, caveat.verdict, caveat.reason);
+}
+
+}  // namespace
+
+void certify(Object& made, const std::string& title, const voxel::Progress& progress) {
+  if (!made.mesh.within) {
+    made.certificate = verify::certify_alone(
+        made.voxel.octree, {title, made.voxel.lineage, made.voxel.makers, within_universe(made)}, progress);
+    made.certificate->shared_values = made.shared_values;
+    return lower_by_caveats(made);
+  }
+  verify::BoundInputs inputs;
+  inputs.operation = title;
+  inputs.voxel_lineage = made.voxel.lineage;
+  inputs.mesh_lineage = made.mesh.lineage;
+  // What verbs make of files has not been measured.
+  if (made.voxel.measures.voxel_count > 0 &&
+      made.voxel.measures.voxel_count == made.voxel.octree.voxel_count())
+    inputs.voxel_measures = made.voxel.measures;
+  inputs.scan_spacing_mm = made.bound.spacing_mm;
+  inputs.flat_cut_mm2 = area_on_planes(made.mesh.within->triangles(), made.bound.planes);
+  inputs.scan_box_mm = made.bound.scan_box_mm;
+  inputs.measured_apart_mm = made.bound.measured_apart_mm;
+  inputs.voxels_are_samples = made.bound.voxels_are_samples;
+  inputs.is_surely_empty = made.is_surely_empty;
+  inputs.witness = within_universe(made);
+  made.certificate = verify::certify_bounded(made.voxel.octree, *made.mesh.within, inputs, progress);
+  made.certificate->voxel.makers = made.voxel.makers;
+  made.certificate->mesh.makers = made.mesh.makers;
+  made.certificate->shared_values = made.shared_values;
+  verify::judge_independence(*made.certificate);
+  lower_by_caveats(made);
+}
+
+}  // namespace octotomy::planner

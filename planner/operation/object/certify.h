@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "planner/operation/table/object.h"
+#include "voxel/space/progress.h"
+
+namespace octotomy::planner {
+
+/// Told of an object that only the mesh kernel makes.
+inline constexpr const char* mesh_alone =
+    "no certificate: only the mesh kernel does this, and its voxels are its mesh's";
+
+/// Whether certify() can judge an object: it has a mesh within its universe, or a witness that judges its
+/// voxels.
+inline bool has_certificate(const Object& made) {
+  return made.mesh.within || made.witness;
+}
+
+/// Holds both kernels' answers to one another, within what the object's bound terms allow; of an object
+/// without a mesh the voxels to their witness (verify::certify_alone()). Preconditions: the operation's
+/// bound() has run, and has_certificate(). Throws Stopped.
+void certify(Object& made, const std::string& title, const voxel::Progress& progress = {});
+
+}  // namespace octotomy::planner

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Contours on a scan's slices as a file that masks read: followed, thinned, smoothed, moved out or in,
+// edited.
+#include "brep/contour/contour.h"
+#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/output_path.h"
+#include "planner/operation/file/outputs.h"
+#include "planner/operation/file/region_file.h"
+#include "planner/operation/file/slice_contours.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/table/json_file.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Contours {
+  ScanName scan;
+  std::filesystem::path path;
+  std::optional<SampleWindow> window;
+  double least_area_mm2 = 0.0, thin_mm = 0.0, by_mm = 0.0;
+  std::optional<int> harmonics;
+  // Of the verb.
+  std::filesystem::path out, edits, codes;
+  double code_spacing_mm = 1.0;
+};
+
+bool is_json(const std::filesystem::path& path) {
+  return path.extension() == ".json";
+}
+
+void check(const Contours& contours, const Place& place) {
+  if (place.scope == nullptr) return;
+  check_output_path(contours.path, {".json"}, place.at("path"));
+  if (!contours.window) place.refuse("'window' is missing: add it, for example \"bone\"");
+}
+
+voxel::SliceMask followed(const Contours& asked, const voxel::Scene& scene, Timings& timings) {
+  need_hounsfield(*asked.window, scene);
+  const Stopwatch watch(timings, "follow");
+  return slice_contours(scene, asked.window->low, asked.window->high_or_infinity());
+}
+
+voxel::SliceMask finished(const Contours& asked, const voxel::SliceMask& mask, Timings& timings,
+                          std::vector<std::string>& findings) {
+  const Stopwatch watch(timings, "refine");
+  Refinement refinement{asked.least_area_mm2, asked.thin_mm, std::nullopt, asked.by_mm};
+  if (asked.harmonics) refinement.harmonics = static_cast<std::size_t>(*asked.harmonics);
+  voxel::SliceMask done = refined(mask, refinement, findings);
+  if (!asked.edits.empty()) done = edited(done, asked.edits);
+  voxel::check(done);
+  return done;
+}
+
+/// Per slice, and sums for people; holes count against areas.
+struct Sizes {
+  Json slices = Json::array();
+  std::size_t contours = 0, points = 0;
+  double area_mm2 = 0.0, perimeter_mm = 0.0;
+};
+
+Sizes sizes_of(const voxel::SliceMask& mask) {
+  Sizes sizes;
+  for (const auto& slice : mask.slices) {
+    std::vector<brep::Contour> contours;
+    for (const auto& polygon : slice.polygons_mm) contours.push_back({polygon});
+    const std::vector<std::size_t> depth = brep::depths(brep::nest(contours));
+    double area_mm2 = 0.0, perimeter_mm = 0.0;
+    for (std::size_t i = 0; i < contours.size(); ++i) {
+      area_mm2 += (depth[i] % 2 == 1 ? -1.0 : 1.0) * std::abs(brep::signed_area_mm2(contours[i]));
+      perimeter_mm += brep::perimeter_mm(contours[i]);
+      sizes.points += contours[i].points_mm.size();
+    }
+    sizes.contours += contours.size();
+    sizes.area_mm2 += area_mm2;
+    sizes.perimeter_mm += perimeter_mm;
+    sizes.slices.push_back({{"position_mm", slice.position_mm},
+                            {"contours", contours.size()},
+                            {"area_mm2", area_mm2},
+                            {"perimeter_mm", perimeter_mm}});
+  }
+  return sizes;
+}
+
+void write(const Contours& asked, const AnswerBench& bench, Exported& made) {
+  made.path = output_path(asked.path).generic_string();
+  const voxel::SliceMask mask = finished(
+      asked, followed(asked, bench.samples(asked.scan.name), bench.timings), bench.timings, made.findings);
+  write_json(to_json(mask), output_file(bench.folder, made.path));
+  const Sizes sizes = sizes_of(mask);
+  made.written = true;
+  made.content = grouped(static_cast<double>(sizes.contours), 0) + " contours on " +
+                 std::to_string(mask.slices.size()) + " slices";
+  made.details = {{"contours", sizes.contours}, {"points", sizes.points}};
+}
+
+FileAnswer on_files(const Contours& asked, const FileBench& bench) {
+  const std::filesystem::path file = asked.scan.name;
+  need_extension(asked.out, {".json"}, "contours are");
+  if (!asked.codes.empty()) need_extension(asked.codes, {".json"}, "chain codes are");
+  need_outputs({asked.out, asked.codes}, {file, asked.edits});
+  if (is_json(file) && asked.window)
+    throw std::runtime_error(file.string() + ": holds contours already: leave --window out");
+  if (!is_json(file) && !asked.window)
+    throw std::runtime_error(
+        "--window: what are the contours of? for example --window 300: or --window skin");
+  std::vector<std::string> findings;
+  const voxel::SliceMask mask = finished(
+      asked,
+      is_json(file) ? read_slices(file, {}, findings) : followed(asked, bench.read_scan(file), bench.timings),
+      bench.timings, findings);
+  Outputs outputs;
+  const auto put = [&](const Json& json, const std::filesystem::path& out) {
+    outputs.write(out, [&](const std::filesystem::path& hidden) { write_json(json, hidden); });
+  };
+  put(to_json(mask), asked.out);
+  if (!asked.codes.empty()) put(chain_codes(mask, asked.code_spacing_mm), asked.codes);
+  outputs.commit();
+  const Sizes sizes = sizes_of(mask);
+  return {{{"path", asked.out.string()},
+           {"contours", sizes.contours},
+           {"points", sizes.points},
+           {"slices", sizes.slices},
+           {"findings", findings}},
+          {{"written", asked.out.string()},
+           {"slices", grouped(static_cast<double>(mask.slices.size()), 0)},
+           {"contours", grouped(static_cast<double>(sizes.contours), 0)},
+           {"points", grouped(static_cast<double>(sizes.points), 0)},
+           {"area of all", grouped(sizes.area_mm2, 1) + " mm\u00b2"},
+           {"length of all", grouped(sizes.perimeter_mm, 1) + " mm"}},
+          findings};
+}
+
+}  // namespace
+
+Operation contours_operation() {
+  return Describe<Contours>(
+             "contours", "Writes contours on a scan's slices: followed, thinned, smoothed, offset, edited.",
+             Makes::File)
+      .takes(field("scan", &Contours::scan, "The scan; of the verb also a .json of regions on slices.")
+                 .required()
+                 .positional("file"))
+      .takes(field("path", &Contours::path, "The .json file within the result's folder.").in_plans_only())
+      .takes(field("window", &Contours::window, "Of a scan: LOW:HIGH or LOW: in sample units, or a tissue."))
+      .takes(field("least_area_mm2", &Contours::least_area_mm2, "Leaves contours out that enclose less.")
+                 .from(0.0)
+                 .to(1e9))
+      .takes(field("thin_mm", &Contours::thin_mm, "Takes out points within this of a straight piece.")
+                 .from(0.0)
+                 .to(1e6))
+      .takes(field("harmonics", &Contours::harmonics, "Smooths each by so many Fourier harmonics.")
+                 .from(1)
+                 .to(10000))
+      .takes(field("by_mm", &Contours::by_mm, "Moves them out by this; in where it is below zero.")
+                 .from(-1e6)
+                 .to(1e6))
+      .verb_takes(
+          field("out", &Contours::out, "A .json of regions on slices, as mask --slices reads it.").required())
+      .verb_takes(
+          field("edits", &Contours::edits, "Edits by hand, made after all else, in order: a .json file.")
+              .a_file())
+      .verb_takes(field("codes", &Contours::codes, "Writes Freeman's chain codes too, to this .json."))
+      .verb_takes(
+          field("code_spacing_mm", &Contours::code_spacing_mm, "Of the samples that the codes step on.")
+              .greater_than(0.0))
+      .reads_scans()
+      .example(
+          R"({"id": "lines", "do": "contours", "scan": "ct", "path": "bone.json",
+        "window": "300:", "by_mm": 2})")
+      .on_files(
+          "octotomy contours head.nrrd --window 300: --least-area 20 --thin 0.2 -o bone.json\n"
+          "  octotomy contours bone.json --by 2 --edits mine.json -o margin.json\n"
+          "  octotomy mask --slices margin.json --like head.nrrd -o margin.octree\n"
+          "Edits: {\"edits\": [{\"slice\": 3, \"contour\": 0, \"do\": \"move\", \"point\": 7, \"to_mm\": "
+          "[-12.5, 40]}]}, and insert (piece, at_mm), delete (point), split (first, second), join (piece, "
+          "with, "
+          "its_piece), remove, add (points_mm)",
+          on_files)
+      .check(check)
+      .write(write);
+}
+
+}  // namespace octotomy::planner

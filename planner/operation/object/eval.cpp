@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A Boolean expression of octrees in files; in a plan it is combine's voxel kernel.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "planner/operation/file/file_kind.h"
+#include "planner/operation/measure/half_width.h"
+#include "planner/operation/measure/octree_summary.h"
+#include "planner/operation/table/json_file.h"
+#include "planner/operation/table/nearest_name.h"
+#include "planner/operation/table/operation.h"
+#include "voxel/measure/measure.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/combine_grey.h"
+#include "voxel/solid/combine_shares.h"
+#include "voxel/solid/expression.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Eval {
+  std::string expression;
+  fs::path out;
+  std::vector<std::string> lets, windows, motions;
+  bool grey = false;
+  std::string digitise = "centre", interpolate = "linear";
+};
+
+voxel::Resampling resampling_of(const Eval& asked) {
+  using voxel::Interpolation;
+  return {asked.digitise == "half" ? voxel::Resampling::Voxels::Half : voxel::Resampling::Voxels::Centre,
+          asked.interpolate == "nearest" ? Interpolation::Nearest
+          : asked.interpolate == "cubic" ? Interpolation::Cubic
+                                         : Interpolation::Linear};
+}
+
+/// NAME=VALUE texts by name; refuses others, and names said twice.
+std::map<std::string, std::string> bound(const std::vector<std::string>& texts, const std::string& option,
+                                         const std::string& value) {
+  std::map<std::string, std::string> values;
+  for (const std::string& text : texts) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+      throw std::runtime_error(option + ": '" + text + "' binds nothing: give NAME=" + value);
+    if (!values.emplace(text.substr(0, equals), text.substr(equals + 1)).second)
+      throw std::runtime_error(option + ": '" + text.substr(0, equals) + "' is bound twice");
+  }
+  return values;
+}
+
+std::vector<std::string> names_of(const std::map<std::string, std::string>& values) {
+  std::vector<std::string> names;
+  names.reserve(values.size());
+  for (const auto& [name, unused] : values) names.push_back(name);
+  return names;
+}
+
+glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
+  std::vector<double> numbers;
+  const char* at = text.c_str();
+  for (char* end = nullptr;; at = end + 1) {
+    numbers.push_back(std::strtod(at, &end));
+    const bool read = end != at;
+    if (read && *end == ',') continue;
+    if (read && *end == '\0' && (numbers.size() == 3 || numbers.size() == 7 || numbers.size() == 10)) break;
+    throw std::runtime_error("--motion: '" + name + "=" + text +
+                             "' is no motion: give X,Y,Z in mm, then perhaps DEGREES and the "
+                             "axis X,Y,Z, then perhaps the point X,Y,Z in mm it passes through");
+  }
+  voxel::Motion motion;
+  motion.translate_mm = {numbers[0], numbers[1], numbers[2]};
+  if (numbers.size() >= 7) {
+    motion.degrees = numbers[3];
+    motion.axis = {numbers[4], numbers[5], numbers[6]};
+  }
+  if (numbers.size() == 10) motion.about_mm = {numbers[7], numbers[8], numbers[9]};
+  return voxel::moved_from_still(motion);
+}
+
+/// A file as an operand, with its universe.
+struct Operand {
+  voxel::Expression expression;
+  voxel::Universe universe;
+  std::optional<voxel::ShareBracket> shares;  // of a file of filled shares
+};
+
+Operand operand_of(const std::string& name, const fs::path& path,
+                   const std::map<std::string, std::string>& windows) {
+  if (!is_octree(path))
+    throw std::runtime_error(name + "=" + path.string() +
+                             ": names stand for .octree files: make one with octotomy octree");
+  const voxel::OctreeFile file = voxel::read_octree(path);
+  const auto window = windows.find(name);
+  if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
+    if (window == windows.end())
+      throw std::runtime_error(path.string() + ": is grey, say which object '" + name + "' is: --window " +
+                               name + "=LOW:HIGH, for example --window " + name + "=300:");
+    return {window_on(*grey, parse_sample_window(window->second)), grey->universe(), std::nullopt};
+  }
+  if (window != windows.end())
+    throw std::runtime_error(path.string() + ": holds no samples to take a --window of: leave '" + name +
+                             "' out");
+  if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree))
+    return {partial->touching, partial->inside.universe(), voxel::bracket_of(*partial)};
+  const auto& octree = std::get<voxel::Octree>(file.tree);
+  return {octree, octree.universe(), std::nullopt};
+}
+
+/// A result of shares and what its bounds make of the volume.
+struct ShareResult {
+  voxel::PartialOctree tree;
+  Json said;
+};
+
+/// Operands that know the shares of their voxels; one of whole voxels among them counts as such.
+ShareResult combine_shares(const voxel::Expression& expression,
+                           const std::map<std::string, Operand>& operands) {
+  std::vector<voxel::ShareOperand> known;
+  for (const auto& [name, operand] : operands) {
+    const auto* octree = operand.expression.term().leaf
+                             ? std::get_if<voxel::Octree>(&*operand.expression.term().leaf)
+                             : nullptr;
+    if (!operand.shares && octree == nullptr)
+      throw std::runtime_error(name +
+                               ": samples have no shares to combine with those of the other operands: "
+                               "make it an octree of its window first");
+    known.push_back({operand.expression,
+                     operand.shares ? *operand.shares : voxel::ShareBracket{*octree, *octree, {}, {}}});
+  }
+  const voxel::ShareBracket bracket = voxel::combine_shares(expression, known);
+  ShareResult result{voxel::middle(bracket), Json::object()};
+  const voxel::VolumeBracket volume = voxel::volume_mm3(bracket);
+  const voxel::Measures counted = voxel::measure(voxel::at_least_half(result.tree));
+  // Three standard deviations of a count on curved or oblique boundary, 0.26 of a voxel's face by the square
+  // root of the boundary's faces (Kendall 1948).
+  const double voxel_mm3 = bracket.inside.universe().lattice().voxel_mm3();
+  HalfWidth count{3.0 * 0.26 * std::pow(voxel_mm3, 2.0 / 3.0) * std::sqrt(counted.area_crofton13_mm2), {}};
+  const bool is_off =
+      widen_to_seen(count, {"shares", "|V - the bracket's middle|",
+                            std::abs(counted.volume_mm3 - 0.5 * (volume.low_mm3 + volume.high_mm3))});
+  result.said = {{"volume_bracket_mm3", {volume.low_mm3, volume.high_mm3}},
+                 {"volume_half_width_mm3", volume.half_width_mm3()},
+                 {"volume_counted_mm3", counted.volume_mm3},
+                 {"volume_counted_half_width_mm3", count.value},
+                 {"volume_counted_half_width_of",
+                  is_off ? count.terms.back().formula
+                         : "3 * 0.26 h^2 sqrt(S); cuts along the lattice add up to h/2 of their area"},
+                 {"tighter", volume.half_width_mm3() <= count.value ? "shares" : "count"},
+                 {"tighter_by", nullptr}};
+  const auto [least, most] = std::minmax({volume.half_width_mm3(), count.value});
+  if (least > 0.0) result.said["tighter_by"] = most / least;
+  return result;
+}
+
+FileAnswer on_files(const Eval& asked, const FileBench& bench) {
+  need_octree_extension(asked.out);
+  need_folder_of(asked.out);
+  const auto lets = bound(asked.lets, "--let", "FILE");
+  const auto windows = bound(asked.windows, "--window", "LOW:HIGH");
+  const auto motions = bound(asked.motions, "--motion", "X,Y,Z");
+  const std::vector<std::string> known = names_of(lets);
+  for (const auto& [name, unused] : windows)
+    if (!lets.contains(name))
+      throw std::runtime_error("--window: '" + name + "' is not bound by --let" + suggestion(name, known));
+
+  // Read what the expression names, and no more.
+  const std::vector<std::string> used = voxel::names_in(asked.expression);
+  std::vector<std::string> findings;
+  for (const std::string& name : known)
+    if (std::find(used.begin(), used.end(), name) == used.end())
+      findings.push_back("--let " + name + ": the expression does not name it");
+  Timings& timings = bench.timings;
+  std::map<std::string, Operand> operands;
+  {
+    const Stopwatch watch(timings, "read");
+    for (const std::string& name : used)
+      if (const auto let = lets.find(name); let != lets.end())
+        operands.emplace(name, operand_of(name, let->second, windows));
+  }
+  const voxel::Names names{[&](std::string_view name) {
+                             const auto found = operands.find(std::string(name));
+                             if (found == operands.end())
+                               throw std::invalid_argument("nothing is called '" + std::string(name) + "'" +
+                                                           suggestion(name, known) + ": bind it with --let " +
+                                                           std::string(name) + "=FILE");
+                             return found->second.expression;
+                           },
+                           [&](std::string_view name) {
+                             const auto found = motions.find(std::string(name));
+                             if (found == motions.end())
+                               throw std::invalid_argument("no motion is called '" + std::string(name) + "'" +
+                                                           suggestion(name, names_of(motions)) +
+                                                           ": bind it with --motion " + std::string(name) +
+                                                           "=X,Y,Z");
+                             return parse_motion(found->first, found->second);
+                           }};
+  const voxel::Expression expression = voxel::parse_expression(asked.expression, names);
+  const voxel::Universe universe = operands.at(used.front()).universe;
+  for (const std::string& name : used)
+    if (!(operands.at(name).universe == universe))
+      findings.push_back(name + ": lives in another universe than " + used.front() +
+                         ", whose voxels the result has: it is resampled there");
+  voxel::OctreeFile result{voxel::Octree::empty(universe), asked.expression, ""};
+  Json more = Json::object();
+  const bool with_shares = std::any_of(operands.begin(), operands.end(),
+                                       [](const auto& operand) { return operand.second.shares.has_value(); });
+  {
+    const Stopwatch watch(timings, "combine");
+    const voxel::Resampling resampling = resampling_of(asked);
+    if (with_shares) {
+      if (asked.grey) throw std::runtime_error("--grey: filled shares are no samples: leave it out");
+      ShareResult combined = combine_shares(expression, operands);
+      result.tree = std::move(combined.tree);
+      more = std::move(combined.said);
+    } else if (asked.grey) {
+      voxel::GreyResult options;
+      options.resampling = resampling;
+      result.tree = voxel::combine_grey(universe, expression, options);
+    } else {
+      result.tree = voxel::combine(universe, expression, resampling);
+    }
+  }
+  Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"expression", asked.expression}};
+  for (const std::string& name : used) made["let"][name] = fs::path(lets.at(name)).filename().string();
+  for (const auto& [name, window] : windows) made["window"][name] = window;
+  for (const auto& [name, motion] : motions) made["motion"][name] = motion;
+  result.metadata = json_text(made);
+  return octree_written(result, asked.out, bench.stop, timings, findings, more);
+}
+
+}  // namespace
+
+Operation eval_operation() {
+  return Describe<Eval>("eval",
+                        "Evaluates a Boolean expression of octrees: & | - ^ ~, parentheses, move(a, m).",
+                        Makes::File)
+      .takes(field("expression", &Eval::expression, "For example \"(a | b) - c\".")
+                 .required()
+                 .positional("expression"))
+      .takes(field("out", &Eval::out, "An .octree file, in the universe of the first name.").required())
+      .takes(field("lets", &Eval::lets, "NAME=FILE: what a name stands for, an .octree file.")
+                 .repeated()
+                 .called("let"))
+      .takes(field("windows", &Eval::windows, "NAME=LOW:HIGH or NAME=TISSUE: which object of a grey octree.")
+                 .repeated()
+                 .called("window"))
+      .takes(field("motions", &Eval::motions,
+                   "NAME=X,Y,Z[,DEGREES,X,Y,Z[,X,Y,Z]]: a translation in mm after a rotation about an axis "
+                   "through "
+                   "a point.")
+                 .repeated()
+                 .called("motion"))
+      .takes(field("grey", &Eval::grey,
+                   "Keeps samples: each voxel those of the first operand that holds it, moved with it."))
+      .takes(field("digitise", &Eval::digitise,
+                   "Which voxels a moved octree becomes: those whose centre it holds, or fills to the half.")
+                 .one_of({"centre", "half"}))
+      .takes(field("interpolate", &Eval::interpolate,
+                   "How samples of a moved grey octree are read: nearest, linear or cubic.")
+                 .one_of({"nearest", "linear", "cubic"}))
+      .example(R"({"id": "rest", "do": "eval", "expression": "skull - cut", "out": "rest.octree"})")
+      .on_files(
+          "octotomy eval \"skull - cut\" -o rest.octree --let skull=skull.octree --let cut=cut.octree\n"
+          "  Files of filled shares (--digitise partial) give shares again, with bounds of the volume.",
+          on_files);
+}
+
+}  // namespace octotomy::planner

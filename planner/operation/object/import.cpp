@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A mesh of any program as an object. Its voxels are made of it, so that it has no certificate of its own;
+// the objects made with it have.
+#include "brep/io/read_mesh.h"
+#include "brep/mesh/error.h"
+#include "planner/operation/file/mesh_in.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Import {
+  std::filesystem::path path;
+  std::optional<std::string> frame, unit;
+};
+
+void check(const Import& import, const Place& place) {
+  if (import.frame && !brep::frame_named(*import.frame))
+    place.at("frame").refuse("'" + *import.frame +
+                             "' is no frame: give three letters for where x, y and z point, LPS or RAS");
+}
+
+std::string definition(const Import& import, const Objects&) {
+  return import.path.filename().string();
+}
+
+void triangles(const Import& import, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "read");
+  const std::filesystem::path path = import.path.is_absolute() ? import.path : bench.folder / import.path;
+  const brep::MeshFile read = brep::read_mesh(path, {import.frame, import.unit});
+  std::vector<brep::MeshFinding> audit = read.audit;
+  for (const brep::MeshFinding& finding :
+       brep::findings_beside(read.extent(), {bench.low_mm, bench.high_mm}, "the plan's universe"))
+    audit.push_back(finding);
+  made.details["audit"] = to_json(audit);
+  for (const std::string& line : warnings_of(audit))
+    made.findings.push_back(import.path.filename().string() + ": " + line);
+  try {
+    made.whole = brep::solid_of(read.triangles);
+  } catch (const brep::Error& error) {
+    throw brep::Error(error.code(),
+                      path.string() + ": " + error.what() + "; mend it first by octotomy repair");
+  }
+  made.lineage = "triangles of " + import.path.filename().string();
+}
+
+void bound(const Import&, const BoundBench&, Object&) {}
+
+}  // namespace
+
+Operation import_operation() {
+  return Describe<Import>("import", "Reads a closed mesh of any program as an object.", Makes::Object)
+      .takes(field("path", &Import::path,
+                   std::string("The file: ") + brep::mesh_formats_read + ", relative to the plan's folder.")
+                 .required())
+      .takes(
+          field("frame", &Import::frame,
+                "Where x, y and z of the file point, whatever it says: LPS, RAS, or three other letters of "
+                "L or R, A or P, S or I. Default: what the file says, else LPS."))
+      .takes(field("unit", &Import::unit,
+                   "The file's unit, whatever it says. Default: what the file says, else mm.")
+                 .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
+      .check(check)
+      .example(R"({"id": "plate", "do": "import", "path": "plate.stl"})")
+      .object(definition, nullptr, triangles, bound);
+}
+
+}  // namespace octotomy::planner

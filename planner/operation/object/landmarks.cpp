@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Names for points, which later steps use in the place of coordinates.
+#include <algorithm>
+
+#include "planner/operation/file/landmarks_file.h"
+#include "planner/operation/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Landmarks {
+  std::vector<NamedPoint> points;
+  std::filesystem::path file;
+};
+
+void check(const Landmarks& landmarks, const Place& place) {
+  if (landmarks.points.empty() && landmarks.file.empty())
+    place.refuse("names no point: add 'points', or 'file'");
+  if (place.scope == nullptr) return;
+  for (std::size_t i = 0; i < landmarks.points.size(); ++i)
+    place.scope->bind_landmark(place.at("points[" + std::to_string(i) + "]").where, landmarks.points[i]);
+  if (landmarks.file.empty()) return;
+  const Place file = place.at("file");
+  if (!std::filesystem::is_regular_file(place.scope->folder() / landmarks.file))
+    file.refuse(landmarks.file.string() + " is no file: paths are relative to the plan's folder");
+  std::vector<brep::Landmark> read;
+  try {
+    read = read_landmarks(place.scope->folder() / landmarks.file);
+  } catch (const std::runtime_error& error) {
+    file.refuse(error.what());
+  }
+  if (read.empty())
+    file.refuse(landmarks.file.string() + " holds no placed point: place one, or leave it out");
+  for (const brep::Landmark& landmark : read)
+    place.scope->bind_landmark(file.where, {landmark.name, landmark.p_mm});
+}
+
+}  // namespace
+
+Operation landmarks_operation() {
+  return Describe<Landmarks>("landmarks", "Names points, which later steps use in the place of coordinates.",
+                             Makes::Names)
+      .takes(records("points", &Landmarks::points, "The points.",
+                     {field("name", &NamedPoint::name, "The name, for example ans.").required(),
+                      field("point_mm", &NamedPoint::p_mm, "The point [x, y, z], LPS.").required()}))
+      .takes(field("file", &Landmarks::file,
+                   "A file of points beside the plan: {\"landmarks\": [{\"name\", \"point_mm\"}]}, or 3D "
+                   "Slicer's .mrk.json or .fcsv.")
+                 .a_file())
+      .example(R"({"id": "marks", "do": "landmarks", "points": [{"name": "ans", "point_mm": [0, -88, -28]},
+        {"name": "pns", "point_mm": [0, -45, -28]}]})")
+      .check(check);
+}
+
+}  // namespace octotomy::planner

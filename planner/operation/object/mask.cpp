@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/object/mask.h"
+
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/move.h"
+#include "brep/shape/prism.h"
+#include "planner/operation/file/contour_findings.h"
+#include "planner/operation/file/region_file.h"
+#include "planner/operation/object/mask_file.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "planner/operation/table/same_patient.h"
+#include "verify/witness/slice_witness.h"
+#include "verify/witness/witness.h"
+#include "voxel/solid/region_mask.h"
+#include "voxel/space/view.h"
+
+namespace octotomy::planner {
+namespace {
+
+voxel::RegionMask mask_of(const Mask& mask) {
+  voxel::RegionMask made;
+  for (const Mask::Region& region : mask.regions)
+    made.regions.push_back({voxel::parse_view(region.view), region.polygons_mm});
+  return made;
+}
+
+/// A region's prism reaches beyond both ends of the universe by more than its size, so that no end of it
+/// comes into the universe, not even after a motion.
+brep::Prism prism_of(const Mask::Region& region, const glm::dvec3& low_mm, const glm::dvec3& high_mm) {
+  const voxel::View view = voxel::parse_view(region.view);
+  const double size_mm = glm::length(high_mm - low_mm);
+  const double middle_mm = glm::dot(view.look, (low_mm + high_mm) * 0.5);
+  return {view.look,
+          view.up,
+          view.right,
+          region.polygons_mm,
+          middle_mm - 1.6 * size_mm,
+          middle_mm + 1.6 * size_mm};
+}
+
+/// The motion from views of the scan to those of the mask; none where they are the same.
+std::optional<glm::dmat4> held(const Mask& mask, const Objects& objects) {
+  if (mask.views_of == "scan" || objects.lps_from_head == glm::dmat3(1.0)) return std::nullopt;
+  return glm::dmat4(objects.lps_from_head);
+}
+
+void check(const Mask& mask, const Place& place) {
+  const char* const of_set = "is about a structure set: add the set as 'slices'";
+  if (mask.slices.empty() && !mask.structure.empty()) place.at("structure").refuse(of_set);
+  if (mask.slices.empty() && mask.bridge_mm) place.at("bridge_mm").refuse(of_set);
+  if (mask.slices.empty() && mask.other_identity) place.at("other_identity").refuse(of_set);
+  if (place.scope == nullptr) return;
+  if (mask.regions.empty() && mask.slices.empty()) place.refuse("'regions' is missing: add it, or 'slices'");
+  if (mask.regions.empty()) return;
+  std::size_t index = 0;
+  for (const Mask::Region& region : mask.regions) try {
+      voxel::parse_view(region.view);
+      ++index;
+    } catch (const std::invalid_argument& error) {
+      place.at("regions[" + std::to_string(index) + "]").at("view").refuse(error.what());
+    }
+  try {
+    voxel::check(mask_of(mask));
+    for (const Mask::Region& region : mask.regions)
+      brep::solid_of(prism_of(region, glm::dvec3(0.0), glm::dvec3(1.0)));
+  } catch (const std::invalid_argument& error) {
+    place.at("regions").refuse(error.what());
+  }
+}
+
+std::string definition(const Mask& mask, const Objects&) {
+  std::string views;
+  for (const Mask::Region& region : mask.regions)
+    views += (views.empty() ? "regions in " : ", ") + region.view;
+  if (mask.slices.empty()) return views;
+  return views + (views.empty() ? "" : ", ") +
+         (mask.structure.empty() ? "slices" : "'" + mask.structure + "'") + " of " +
+         mask.slices.filename().string();
+}
+
+/// The scan that slices were drawn on: of a structure set, which a plan may read beside several scans, the
+/// first that it agrees with, or the first at all; of other files the only one. Null where there is none.
+const ScanRecord* drawn_on(const std::optional<voxel::Identity>& of_set,
+                           const std::vector<ScanRecord>& scans) {
+  const ScanRecord* nearest = nullptr;
+  voxel::Verdict best = voxel::Verdict::Fail;
+  for (const ScanRecord& scan : scans) {
+    if (!scan.made_by.empty()) continue;
+    if (!of_set && nearest != nullptr) return nullptr;
+    const voxel::Verdict verdict =
+        of_set ? identity_finding({scan.name, scan.identity}, {"", *of_set}).verdict : voxel::Verdict::Fail;
+    if (nearest != nullptr && verdict >= best) continue;
+    nearest = &scan;
+    best = verdict;
+  }
+  return nearest;
+}
+
+/// What slices and the scan that they were drawn on say of each other; refuses those of another patient.
+std::vector<std::string> findings_of_slices(const Mask& mask, const DrawnSlices& drawn,
+                                            const std::vector<ScanRecord>& scans) {
+  std::vector<std::string> findings;
+  if (const ScanRecord* const scan = drawn_on(drawn.identity, scans)) {
+    const std::string file = mask.slices.generic_string();
+    if (drawn.identity)
+      findings = need_same_patient({"scan '" + scan->name + "'", scan->identity}, {file, *drawn.identity},
+                                   mask.other_identity, "\"other_identity\": true");
+    if (auto beyond = beyond_scan(drawn.mask, scan->lattice, file)) findings.push_back(std::move(*beyond));
+    if (drawn.identity)
+      if (auto lacking = slices_without_contours(drawn.mask, scan->lattice, file))
+        findings.push_back(std::move(*lacking));
+  }
+  findings.insert(findings.end(), drawn.findings.begin(), drawn.findings.end());
+  return findings;
+}
+
+void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
+  if (!mask.regions.empty()) made.symbol = voxel::Expression(mask_of(mask));
+  if (const auto turned = held(mask, bench.objects); turned && made.symbol)
+    made.symbol = moved(*made.symbol, *turned);
+  if (!mask.slices.empty()) {
+    DrawnSlices drawn =
+        read_slices(bench.folder / mask.slices, SlicesOptions{mask.structure, mask.bridge_mm});
+    const auto found = findings_of_slices(mask, drawn, bench.scans);
+    made.findings.insert(made.findings.end(), found.begin(), found.end());
+    if (auto cut = cut_at_cube(drawn.mask, bench.universe, mask.slices.generic_string()))
+      made.findings.push_back(*cut +
+                              ": the plan's cube holds its scans; check that the contours belong to them");
+    const voxel::Expression slices = std::move(drawn.mask);
+    made.symbol = made.symbol ? *made.symbol & slices : slices;
+  }
+  made.octree = bench.combined(*made.symbol);
+  made.lineage = "regions projected at voxel centres";
+  if (made.octree.is_empty())
+    throw std::runtime_error(
+        "the mask holds no voxel: its regions miss each other or the universe, which spans " +
+        plain(bench.box_mm()) + "; draw them within it");
+}
+
+void triangles(const Mask& mask, const MeshBench& bench, MeshSide& made) {
+  if (!mask.slices.empty())
+    throw std::runtime_error("what lies between slices is interpolated for voxels alone");
+  const Stopwatch watch(bench.timings, "boolean_mesh");
+  const auto prism = [&](const Mask::Region& region) {
+    return brep::solid_of(prism_of(region, bench.low_mm, bench.high_mm));
+  };
+  brep::Solid solid = prism(mask.regions.front());
+  for (std::size_t i = 1; i < mask.regions.size(); ++i) {
+    brep::BooleanResult met =
+        brep::boolean(solid, brep::Operation::Intersection, prism(mask.regions[i]), bench.progress.stop);
+    made.shift_mm += met.shift_mm;
+    solid = std::move(met.solid);
+  }
+  const auto turned = held(mask, bench.objects);
+  made.whole = turned ? brep::moved(solid, *turned) : solid;
+  made.lineage = "prisms of the regions";
+}
+
+/// Contours as the plan's reader returns them. What they enclose is read anew.
+verify::Witness witness_of(const voxel::SliceMask& mask) {
+  verify::DrawnStack stack{mask.view.look,
+                           mask.view.up,
+                           mask.view.right,
+                           {},
+                           mask.between == voxel::SliceMask::Between::ShapeBased};
+  for (const voxel::SliceMask::Slice& slice : mask.slices)
+    stack.slices.push_back({slice.position_mm, slice.polygons_mm});
+  return verify::witness_of_slices(stack);
+}
+
+void bound_regions(const Mask& mask, const BoundBench& bench, Object& made) {
+  const auto turned = held(mask, bench.objects);
+  if (!turned) made.bound.planes = planes_of(mask_of(mask));
+  std::vector<verify::DrawnRegion> drawn;
+  for (const Mask::Region& region : mask.regions) drawn.push_back({region.view, region.polygons_mm});
+  made.witness = verify::witness_of_regions(drawn);
+  if (turned) made.witness = verify::carried(made.witness, *turned);
+  if (made.mesh.whole) made.walls = {{made.id, *made.mesh.whole}};
+}
+
+void bound(const Mask& mask, const BoundBench& bench, Object& made) {
+  if (!mask.regions.empty()) bound_regions(mask, bench, made);
+  if (mask.slices.empty()) return;
+  verify::Witness slices =
+      witness_of(read_slices(bench.folder / mask.slices, SlicesOptions{mask.structure, mask.bridge_mm}).mask);
+  made.witness = mask.regions.empty() ? std::move(slices) : verify::both(made.witness, std::move(slices));
+}
+
+}  // namespace
+
+Operation mask_operation() {
+  return Describe<Mask>("mask", "Makes a volume of interest from regions drawn in views.", Makes::Object)
+      .takes(records("regions", &Mask::regions,
+                     "The regions; the mask is what all of their back-projections enclose.",
+                     {field("view", &Mask::Region::view, "The view in which the region is drawn.").required(),
+                      field("polygons_mm", &Mask::Region::polygons_mm,
+                            "Closed polygons of points [u, v] in the view's millimetres.")
+                          .required()})
+                 .from(1)
+                 .in_plans_only())
+      .takes(field("views_of", &Mask::views_of,
+                   "Whose views they are: of the head as it is held, or of the scan as it lies, which a head "
+                   "position does not turn.")
+                 .one_of({"head", "scan"})
+                 .in_plans_only())
+      .takes(field("slices", &Mask::slices,
+                   "A file of regions on parallel slices, {\"view\", \"slices\": [{\"position_mm\", "
+                   "\"polygons_mm\"}]}, or a DICOM structure set, which cut the mask too.")
+                 .a_file())
+      .takes(field(
+          "structure", &Mask::structure,
+          "The name or ROI number of the structure that is meant, where the slices are a structure set."))
+      .takes(
+          field("bridge_mm", &Mask::bridge_mm,
+                "Of a structure set: interpolates between planes of the structure up to this distance apart. "
+                "Default: as the file says.")
+              .greater_than(0.0))
+      .takes(field("other_identity", &Mask::other_identity,
+                   "Takes a structure set that states another patient, study or frame of reference than the "
+                   "scan, and reports a FAIL."))
+      .verb_takes(
+          field("region", &Mask::region_files,
+                "VIEW:FILE, repeated: the mask is what all of their back-projections enclose. The file "
+                "is JSON, an SVG drawing in mm, or closed curves of Slicer (.mrk.json); an SVG drawn "
+                "over a .png of render or slice takes no view.")
+              .repeated())
+      .verb_takes(
+          field("region_pixels", &Mask::region_pixels,
+                "PICTURE.png:X,Y X,Y X,Y, repeated: a region in pixels of a .png that render or slice "
+                "wrote, from its top left; a semicolon begins another polygon.")
+              .repeated()
+              .called("region-pixels"))
+      .verb_takes(field("edit", &Mask::edit, "A mask's .octree that the regions cut further.").a_file())
+      .verb_takes(field("like", &Mask::like, "A scan or .octree whose voxels the mask has."))
+      .verb_takes(field("voxel_mm", &Mask::voxel_mm,
+                        "Edge of a voxel, around a scan or the regions. Default: the scan's, or 1.")
+                      .greater_than(0.0))
+      .verb_takes(field("out", &Mask::out, "An .octree file.").required())
+      .on_files(
+          "octotomy mask -o cut.octree --region anterior:front.json --region left:side.json --like "
+          "head.nrrd\n"
+          "  octotomy mask -o mandible.octree --slices rtstruct.dcm --structure Mandible --like ct\n"
+          "  octotomy mask -o less.octree --edit cut.octree --region 35,15:oblique.json\n"
+          "  octotomy mask -o cut.octree --region-pixels \"front.png:120,80 300,80 300,200\" --region "
+          "left.svg\n"
+          "A region's file: {\"polygons_mm\": [[[-40,-60],[40,-60],[40,-25],[-40,-25]]]}",
+          mask_file)
+      .example(R"({"id": "cut", "do": "mask", "regions": [
+        {"view": "anterior", "polygons_mm": [[[-40, -60], [40, -60], [40, -25], [-40, -25]]]},
+        {"view": "left", "polygons_mm": [[[-90, -60], [-20, -60], [-20, -25], [-90, -25]]]}]})")
+      .tool()
+      .of_head()
+      .check(check)
+      .object(definition, voxels, triangles, bound);
+}
+
+}  // namespace octotomy::planner

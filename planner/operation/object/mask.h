@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/operation/table/field.h"
+
+namespace octotomy::planner {
+
+/// A volume of interest: the intersection of the back-projections of regions drawn in views, and of what
+/// regions on slices enclose.
+struct Mask {
+  struct Region {
+    std::string view;  ///< as the views of pictures are called: "anterior", "35,15"
+    Polygons polygons_mm;
+  };
+  std::vector<Region> regions;
+  std::string views_of = "head";    ///< as it is held; or "scan", whatever holds the head
+  std::filesystem::path slices;     ///< a file of regions on parallel slices, which cut the others
+  std::string structure;            ///< the region of a structure set in that file
+  std::optional<double> bridge_mm;  ///< gaps between the structure's planes that are filled
+  bool other_identity = false;  ///< the structure set may be of another patient, study or frame of reference
+  // Of the verb.
+  std::vector<std::string> region_files;   ///< VIEW:FILE
+  std::vector<std::string> region_pixels;  ///< PICTURE.png:X,Y X,Y X,Y
+  std::filesystem::path edit, like, out;
+  std::optional<double> voxel_mm;
+};
+
+}  // namespace octotomy::planner

@@ -1,0 +1,424 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The size of an object, the gap between two, the distance of two points or the angle of three; every number
+// with its half-width and the terms that make it.
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "planner/operation/measure/counted_window.h"
+#include "planner/operation/measure/digitised.h"
+#include "planner/operation/measure/gap.h"
+#include "planner/operation/measure/recommended.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/measure/surface_questions.h"
+#include "planner/operation/object/measure_file.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/table/operation.h"
+#include "voxel/filter/label_map.h"
+
+namespace octotomy::planner {
+namespace {
+
+void check(const Measure& measure, const Place& place) {
+  if (place.scope == nullptr) return;
+  const Place points = place.at("points_mm");
+  if (measure.asks_surface() && (measure.to || !measure.points_mm.empty()))
+    place.refuse("asks a surface and a gap or points: measure them in a step each");
+  if (measure.points_mm.empty()) {
+    if (!measure.object) place.refuse("'object' is missing: add it");
+    if (measure.to && measure.to->name == measure.object->name)
+      place.at("to").refuse("is the object itself: name another, to which the gap is measured");
+    return;
+  }
+  if (measure.object || measure.to)
+    points.refuse("stands alone: measure an object or points, in a step each");
+  if (measure.points_mm.size() != 2 && measure.points_mm.size() != 3)
+    points.refuse("must be two points [x, y, z] for a distance, or three for the angle at the second");
+  if (measure.points_mm.size() == 3 &&
+      (measure.points_mm[1] == measure.points_mm[0] || measure.points_mm[1] == measure.points_mm[2]))
+    points.refuse("has its second point twice: an angle needs two legs");
+}
+
+/// A recommended volume and area, and what is told of them.
+struct Recommended {
+  verify::SizeIntervals intervals;
+  bool is_of_phases = false, has_core = false;
+};
+
+/// What the samples of a window's scan show of two densities; kept, as several objects come from one window.
+const std::optional<verify::TwoPhase>& phases_of(const AnswerBench& bench, const Shown& window) {
+  std::shared_ptr<const void>& kept =
+      bench.kept["phases of " + window.scan + " from " + std::to_string(window.threshold)];
+  if (!kept) {
+    std::optional<verify::TwoPhase> found;
+    if (window.samples && std::isinf(window.high) && window.samples->meaning != voxel::Meaning::Label)
+      found = verify::two_phase(*window.samples, window.threshold, {bench.stop, {}});
+    kept = std::make_shared<const std::optional<verify::TwoPhase>>(std::move(found));
+  }
+  return *static_cast<const std::optional<verify::TwoPhase>*>(kept.get());
+}
+
+/// Whether the object is all that a window shows, moved or not.
+bool is_whole_window(const Objects& objects, const Object& object) {
+  return still_of(objects, object).kind == "window" && (!object.image || object.image->is_whole);
+}
+
+/// The window of a label map that an object is all of; none: it is of other samples or made of several.
+const Shown* label_window_of(const AnswerBench& bench, const Object& object) {
+  if (object.bound.windows.empty() || !is_whole_window(bench.objects, object)) return nullptr;
+  const Shown& window = object.bound.windows.front();
+  return window.samples && window.samples->meaning == voxel::Meaning::Label ? &window : nullptr;
+}
+
+/// What the sum of the samples says beyond the surface: of a whole window, its numbers; of a part, doubt by
+/// its share of the window's surface, as nothing says where thin walls are.
+void take_phases(const AnswerBench& bench, const Object& object, Recommended& found) {
+  std::vector<const Shown*> windows;
+  for (const Shown& window : object.bound.windows)
+    if (std::none_of(windows.begin(), windows.end(), [&](const Shown* known) {
+          return known->scan == window.scan && known->threshold == window.threshold;
+        }))
+      windows.push_back(&window);
+  for (const Shown* window : windows) {
+    const std::optional<verify::TwoPhase>& phases = phases_of(bench, *window);
+    if (!phases) continue;
+    if (is_whole_window(bench.objects, object)) {
+      found.intervals = intervals_of_phases(*phases, std::move(found.intervals));
+      found.is_of_phases = !phases->evidence.is_ambiguous;
+      found.has_core = phases->evidence.has_core;
+      return;
+    }
+    const double whole_mm2 = phases->evidence.level_mm2[0];
+    if (!(whole_mm2 > 0.0)) continue;
+    const double share = std::min(1.0, object.mesh.within->size().area_mm2 / whole_mm2);
+    const auto widen = [&](verify::Interval& interval, double lost) {
+      interval.half_width += share * lost;
+      interval.sources.push_back(
+          {"thin or sharp", "share of what the whole window's samples add", share * lost, true});
+    };
+    widen(found.intervals.volume_mm3,
+          std::abs(phases->volume_mm3.value - phases->evidence.counted_mm3) + phases->volume_mm3.half_width);
+    widen(found.intervals.area_mm2,
+          std::abs(phases->area_mm2.value - whole_mm2) + phases->area_mm2.half_width);
+  }
+}
+
+/// What thicker samples would change in a window; kept as phases_of() are.
+const std::optional<Thickness>& kept_thickness(const AnswerBench& bench, const Shown& window) {
+  std::shared_ptr<const void>& kept =
+      bench.kept["thickness of " + window.scan + " from " + std::to_string(window.threshold) + " to " +
+                 std::to_string(window.high)];
+  if (!kept) {
+    std::optional<Thickness> found;
+    if (window.samples && window.samples->meaning != voxel::Meaning::Label)
+      found = thickness_of(*window.samples, window.threshold, window.high);
+    kept = std::make_shared<const std::optional<Thickness>>(found);
+  }
+  return *static_cast<const std::optional<Thickness>*>(kept.get());
+}
+
+/// Of the windows that no sum of samples speaks for, by the object's share of their surface.
+void take_thickness(const AnswerBench& bench, const Object& object, Recommended& found) {
+  std::set<std::tuple<std::string, double, double>> known;
+  for (const Shown& window : object.bound.windows) {
+    if (!known.emplace(window.scan, window.threshold, window.high).second) continue;
+    if (const auto& phases = phases_of(bench, window); phases && !phases->evidence.is_ambiguous) continue;
+    const std::optional<Thickness>& thickness = kept_thickness(bench, window);
+    if (!thickness || !(thickness->faces_mm2 > 0.0)) continue;
+    const double share =
+        is_whole_window(bench.objects, object)
+            ? 1.0
+            : std::min(1.0, 1.5 * object.mesh.within->size().area_mm2 / thickness->faces_mm2);
+    add_thickness(*thickness, share, found.intervals);
+  }
+}
+
+/// What counting may be off of an object of voxels alone, by its scan's samples; a motion keeps it. None: it
+/// comes from no scan.
+std::optional<double> counting_doubt_of(const AnswerBench& bench, const Object& object) {
+  const Object& still = still_of(bench.objects, object);
+  for (const ScanRecord& scan : bench.scans)
+    if (scan.lattice.spacing_mm() == still.bound.spacing_mm) {
+      const voxel::LabelMap samples =
+          voxel::label_map(scan.lattice, {&still.voxel.octree, 1}, {bench.stop, {}});
+      return counting_doubt_mm3(samples.scene, 1.0, 1.0);
+    }
+  return std::nullopt;
+}
+
+Recommended of_voxels_alone(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
+  Recommended found{
+      intervals_of_count(object.voxel.measures, digitised, bench.universe.lattice(), seen_size_of(object))};
+  if (const std::optional<double> doubt_mm3 = counting_doubt_of(bench, object))
+    add_counting(*doubt_mm3, found.intervals);
+  return found;
+}
+
+/// A mesh that comes from no scan is what it is, but for the rounding of its points.
+Recommended of_mesh_alone(const brep::Solid& mesh) {
+  constexpr double rounding = 1e-6;  // points of single precision, as files have them
+  const brep::Size& size = mesh.size();
+  const auto exact = [](double value) {
+    return verify::Interval{
+        value, rounding * value, {{"points", "1e-6 of it, by rounding", rounding * value}}};
+  };
+  Recommended found;
+  found.intervals.volume_mm3 = exact(size.volume_mm3);
+  found.intervals.area_mm2 = exact(size.area_mm2);
+  found.intervals.triangles.area_mm2 = size.area_mm2;
+  return found;
+}
+
+/// As intervals_of(), of the object's own surface.
+Recommended own_intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
+  const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
+  if (object.is_surely_empty) return {};
+  const bool is_of_scan = object.bound.spacing_mm != glm::dvec3(0.0);
+  if (!object.mesh.within || (!is_of_scan && object.mesh.within->empty()))
+    return of_voxels_alone(bench, object, digitised);
+  if (!is_of_scan) return of_mesh_alone(*object.mesh.within);
+  if (object.mesh.within->empty())
+    return {verify::nothing_found(glm::max(object.bound.spacing_mm, voxel_mm))};
+  std::vector<SurfaceSamples> sources;
+  for (const Shown& window : object.bound.windows) {
+    SurfaceSamples samples;
+    samples.grey = window.grey;
+    samples.samples = window.samples;
+    samples.moved_from_still = window.moved_from_still;
+    samples.window_shift_mm = digitised.shift_mm;
+    samples.low = window.threshold;
+    samples.high = window.high;
+    for (const ScanRecord& scan : bench.scans) {
+      if (scan.name != window.scan) continue;
+      samples.lps_from_scan = scan.lattice.lps_from_voxel;
+      samples.voxels_are_samples = on_samples(scan.lattice, window.grey.universe().lattice());
+    }
+    if (std::none_of(sources.begin(), sources.end(), [&](const SurfaceSamples& known) {
+          return known.moved_from_still == samples.moved_from_still && known.low == samples.low &&
+                 known.high == samples.high && known.lps_from_scan == samples.lps_from_scan;
+        }))
+      sources.push_back(std::move(samples));
+  }
+  if (sources.empty()) {
+    SurfaceSamples samples;
+    for (int axis = 0; axis < 3; ++axis) samples.lps_from_scan[axis] *= object.bound.spacing_mm[axis];
+    samples.window_shift_mm = digitised.shift_mm;
+    sources.push_back(std::move(samples));
+  }
+  Recommended found{intervals_of_surface(*object.mesh.within, sources)};
+  if (const Shown* labels = label_window_of(bench, object))
+    found.intervals =
+        intervals_of_labels(*labels->samples, labels->threshold, labels->high, std::move(found.intervals));
+  take_phases(bench, object, found);
+  take_thickness(bench, object, found);
+  add_voxels(voxel_mm, object.mesh.within->size().area_mm2, found.intervals);
+  return found;
+}
+
+Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised);
+
+/// Those of an object where it was made; kept, as several images may be of one.
+const Recommended& kept_intervals_of(const AnswerBench& bench, const Object& still) {
+  std::shared_ptr<const void>& kept = bench.kept["recommended size of " + still.id];
+  if (!kept)
+    kept = std::make_shared<const Recommended>(intervals_of(bench, still, digitised_of(bench, still)));
+  return *static_cast<const Recommended*>(kept.get());
+}
+
+/// The recommended volume and area. The mesh's, where there is one: cuts are exact in it, and parts share the
+/// doubt of their whole's windows. A motion or mirror changes no size, so an image of a whole object has that
+/// object's, where the universe holds both; its own voxels and points were rounded once more. What was made
+/// of another's surface is in doubt by as much as that surface may be off.
+Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
+  if (object.image && object.image->is_whole)
+    return kept_intervals_of(bench, still_of(bench.objects, object));
+  Recommended found = own_intervals_of(bench, object, digitised);
+  const std::set<std::string> reshaped(object.bound.reshaped.begin(), object.bound.reshaped.end());
+  for (const std::string& name : reshaped) {
+    const Object& operand = bench.objects.at(name);
+    const verify::SizeIntervals of = intervals_of(bench, operand, digitised_of(bench, operand)).intervals;
+    if (!(of.area_mm2.value > 0.0)) continue;
+    const auto add = [&](verify::Interval& interval, const char* formula, double half_width) {
+      interval.half_width += half_width;
+      interval.sources.push_back({"operand", formula, half_width, true});
+    };
+    const double share = found.intervals.area_mm2.value / of.area_mm2.value;
+    add(found.intervals.volume_mm3, "half-width of the operand's volume, by the share of its area",
+        share * of.volume_mm3.half_width);
+    add(found.intervals.area_mm2, "half-width of the operand's area, by the share of it",
+        share * of.area_mm2.half_width);
+  }
+  return found;
+}
+
+Json points_json(const Measure& asked, const AnswerBench& bench) {
+  const Digitised digitised = digitised_of(bench);
+  std::vector<glm::dvec3> p;
+  for (const Mark& mark : asked.points_mm) p.push_back(mark_mm(mark, bench.objects));
+  Json json{{"points_mm", Json::array()}};
+  for (const glm::dvec3& point : p) json["points_mm"].push_back(to_json(point));
+  if (p.size() == 2) {
+    const HalfWidth width = distance_half_width({p[0], p[1]}, digitised);
+    json["distance_mm"] = glm::distance(p[0], p[1]);
+    json["distance_half_width_mm"] = width.value;
+    json["distance_half_width_terms"] = to_json(width);
+  } else {
+    const HalfWidth width = angle_half_width({p[0], p[1], p[2]}, digitised);
+    const glm::dvec3 first = p[0] - p[1], last = p[2] - p[1];
+    json["angle_deg"] = glm::degrees(std::atan2(glm::length(glm::cross(first, last)), glm::dot(first, last)));
+    json["angle_half_width_deg"] = width.value;
+    json["angle_half_width_terms"] = to_json(width);
+  }
+  return json;
+}
+
+Json gap_json(const Measure& asked, const AnswerBench& bench) {
+  const Object &object = bench.objects.at(asked.object->name), &other = bench.objects.at(asked.to->name);
+  Json json{
+      {"object", object.id},          {"to", other.id},        {"gap_mm", nullptr}, {"gap_mesh_mm", nullptr},
+      {"gap_half_width_mm", nullptr}, {"overlap_mm3", nullptr}};
+  if (object.voxel.octree.is_empty() || other.voxel.octree.is_empty()) {
+    json["finding"] = "there is no gap: " + why_no_voxels(object.voxel.octree.is_empty() ? object : other);
+    return json;
+  }
+  const Gap gap = gap_between(object.voxel.octree, other.voxel.octree, object.mesh.within, other.mesh.within);
+  const HalfWidth width =
+      gap_half_width(gap.to_mm - gap.from_mm, digitised_of(bench, object), digitised_of(bench, other));
+  json["gap_mm"] = gap.voxel_mm;
+  json["gap_estimator"] = "faces of the two voxels whose centres are nearest";
+  if (gap.mesh_mm) json["gap_mesh_mm"] = *gap.mesh_mm;
+  json["gap_half_width_mm"] = width.value;
+  json["gap_half_width_terms"] = to_json(width);
+  json["overlap_mm3"] = gap.overlap_mm3;
+  json["from_mm"] = to_json(gap.from_mm);
+  json["to_mm"] = to_json(gap.to_mm);
+  return json;
+}
+
+Json size_json(const Measure& asked, const AnswerBench& bench) {
+  const Object& object = bench.objects.at(asked.object->name);
+  const double voxels_mm3 = object.voxel.measures.volume_mm3;
+  Json json{{"object", object.id},
+            {"volume_mm3", voxels_mm3},
+            {"volume_estimator", "voxels counted"},
+            {"area_mm2", nullptr},
+            {"area_estimator", mesh_area_estimator},
+            {"centroid_mm", to_json(object.voxel.measures.centroid_mm)},
+            {"voxel", to_json(object.voxel.measures)},
+            {"mesh", nullptr},
+            {"difference_mm3", nullptr},
+            {"difference_percent", nullptr}};
+  const Digitised digitised = digitised_of(bench, object);
+  const Recommended with_reason = intervals_of(bench, object, digitised);
+  const verify::SizeIntervals& recommended = with_reason.intervals;
+  json["volume"] = to_json(recommended.volume_mm3, "mm3");
+  json["area"] = to_json(recommended.area_mm2, "mm2");
+  const HalfWidth width = volume_half_width(object.voxel.measures, digitised, seen_size_of(object));
+  json["volume_half_width_mm3"] = width.value;
+  json["volume_half_width_terms"] = to_json(width);
+  std::vector<std::string> findings = findings_of(
+      recommended, with_reason.is_of_phases, with_reason.has_core,
+      {voxels_mm3, object.mesh.within ? std::optional(object.mesh.within->size().volume_mm3) : std::nullopt},
+      {object.voxel.measures.area_crofton13_mm2,
+       object.mesh.within ? std::optional(object.mesh.within->size().area_mm2) : std::nullopt});
+  if (object.border_finding) findings.push_back(*object.border_finding);
+  if (const auto finding = too_coarse_finding(object, width)) findings.insert(findings.begin(), *finding);
+  if (!findings.empty()) {
+    std::string all;
+    for (const std::string& finding : findings) all += (all.empty() ? "" : "; ") + finding;
+    json["finding"] = all;
+  }
+  json["area_half_width_mm2"] = nullptr;
+  if (object.mesh.within) {
+    const brep::Measures& measures = object.mesh.within->measures();
+    const double mesh_mm3 = measures.volume_mm3;
+    json["area_mm2"] = measures.area_mm2;
+    // The triangles lose what the recommended area gains, and have its doubt; which is that already where
+    // voxels are too coarse.
+    const double off_mm2 = std::abs(recommended.area_mm2.value - measures.area_mm2);
+    const double doubt_mm2 = recommended.area_mm2.half_width;
+    json["area_half_width_mm2"] = doubt_mm2 == off_mm2 ? off_mm2 : doubt_mm2 + off_mm2;
+    json["mesh"] = to_json(measures);
+    json["difference_mm3"] = voxels_mm3 - mesh_mm3;
+    if (mesh_mm3 > 0.0) json["difference_percent"] = 100.0 * (voxels_mm3 - mesh_mm3) / mesh_mm3;
+  } else {
+    json["area_mm2"] = object.voxel.measures.area_crofton13_mm2;
+    json["area_estimator"] = voxel_area_estimator;
+  }
+  return json;
+}
+
+/// What is asked of the mesh kernel's answer beyond its size; null with a finding where it has none.
+Json surface_json(const Measure& asked, const AnswerBench& bench) {
+  const Object& object = bench.objects.at(asked.object->name);
+  Json json = size_json(asked, bench);
+  if (!object.mesh.within || object.mesh.within->empty()) {
+    for (const auto& [key, is_asked] :
+         {std::pair("section", !asked.section.empty()), std::pair("along", !asked.along.empty()),
+          std::pair("thickness", asked.thickness), std::pair("curvature", asked.curvature)})
+      if (is_asked) json[key] = nullptr;
+    json["finding"] = "'" + object.id + "' has no mesh, see its findings";
+    return json;
+  }
+  AtVertices shown;
+  json.update(surface_answers({.section = asked.section,
+                               .along = asked.along,
+                               .thickness = asked.thickness,
+                               .curvature = asked.curvature},
+                              *object.mesh.within, bench.progress("measuring " + object.id), bench.timings,
+                              shown));
+  return json;
+}
+
+Json measure(const Measure& asked, const AnswerBench& bench) {
+  if (asked.asks_surface()) return surface_json(asked, bench);
+  return !asked.points_mm.empty() ? points_json(asked, bench)
+         : asked.to               ? gap_json(asked, bench)
+                                  : size_json(asked, bench);
+}
+
+}  // namespace
+
+Operation measure_operation() {
+  return Describe<Measure>("measure", "Measures an object, the gap between two, or a distance or angle.",
+                           Makes::Measurement)
+      .takes(
+          field(
+              "object", &Measure::object,
+              "The object whose volume, area and extents are wanted; of the verb a scan or grey octree (with "
+              "a window), an octree or a mesh.")
+              .positional("file"))
+      .takes(field("to", &Measure::to, "A second object: the gap between the two is wanted instead."))
+      .takes(field("points_mm", &Measure::points_mm,
+                   "Two points [x, y, z] or landmarks, for their distance, or three, for the angle at the "
+                   "second.")
+                 .in_plans_only())
+      .takes(field("section", &Measure::section,
+                   "A point and a normal: area and perimeter of the surface where that plane cuts it.")
+                 .from(2)
+                 .to(2))
+      .takes(field("along", &Measure::along, "Two points: the shortest way along the surface.").from(2).to(2))
+      .takes(field("thickness", &Measure::thickness, "Walls of the surface, by rays and by balls."))
+      .takes(field("curvature", &Measure::curvature, "Mean and Gaussian curvature of the surface."))
+      .verb_takes(
+          field("distance", &Measure::distance, "Two points: the straight way between them.").from(2).to(2))
+      .verb_takes(field("angle", &Measure::angle, "Three points: the angle at the second.").from(3).to(3))
+      .verb_takes(field("window", &Measure::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
+      .verb_takes(field("voxel_mm", &Measure::voxel_mm,
+                        "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
+                      .greater_than(0.0))
+      .verb_takes(field("out", &Measure::out,
+                        "The mesh with thickness, or curvature, as scalars: a .vtp or .ply file."))
+      .reads_scans()
+      .example(R"({"id": "maxilla_size", "do": "measure", "object": "maxilla"})")
+      .on_files(
+          "octotomy measure head.nrrd --window 300: --json\n"
+          "  octotomy measure skull.octree\n"
+          "  octotomy measure skull.stl --section 0,0,20 0,0,1 --thickness --json",
+          measure_file)
+      .check(check)
+      .measure(measure);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/object/measure_file.h"
+
+#include <limits>
+#include <tbb/parallel_invoke.h>
+
+#include "brep/io/write_mesh.h"
+#include "brep/mesh/components.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "convert/surface/isosurface.h"
+#include "planner/operation/file/mesh_file.h"
+#include "planner/operation/file/mesh_in.h"
+#include "planner/operation/file/octree_in.h"
+#include "planner/operation/measure/recommended.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/measure/surface_questions.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/plan_universe.h"
+#include "voxel/filter/components.h"
+#include "voxel/filter/label_map.h"
+#include "voxel/measure/cell_counts.h"
+#include "voxel/measure/flat_parts.h"
+#include "voxel/measure/measure.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/partial_volume.h"
+#include "voxel/tree/grey_octree_build.h"
+#include "voxel/tree/octree_file.h"
+
+namespace octotomy::planner {
+namespace {
+
+FileAnswer said(Json json) {
+  const auto value = [&](const char* key, int decimals) {
+    return json[key].is_null() ? "none" : grouped(json[key].get<double>(), decimals);
+  };
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const char* key : {"volume", "area"}) {
+    if (!json.contains(key)) continue;
+    const Json& found = json[key];
+    rows.emplace_back(std::string("recommended ") + key,
+                      grouped(found["value"].get<double>(), 1) + " \u00b1 " +
+                          three_figures(found["half_width"].get<double>()) +
+                          (found["unit"] == "mm3" ? " mm\u00b3" : " mm\u00b2") + " in 99 of 100 cases");
+  }
+  // The doubt of one estimator is no interval that holds the truth: it says so.
+  const auto doubtful = [&](const char* key, const char* half_width, const char* unit,
+                            const char* estimator) {
+    return value(key, 1) + unit + json[estimator].get<std::string>() +
+           (json.contains(half_width)
+                ? ", by digitising alone \u00b1 " + three_figures(json[half_width].get<double>())
+                : std::string());
+  };
+  rows.insert(rows.end(),
+              {{"volume", doubtful("volume_mm3", "volume_half_width_mm3", " mm\u00b3, ", "volume_estimator")},
+               {"partial", value("volume_partial_mm3", 1) + " mm\u00b3"},
+               {"area", doubtful("area_mm2", "area_half_width_mm2", " mm\u00b2, ", "area_estimator")},
+               {"components", value("components", 0)},
+               {"euler", value("euler", 0)}});
+  const std::vector<std::pair<std::string, std::string>> asked = surface_rows(json);
+  rows.insert(rows.end(), asked.begin(), asked.end());
+  for (const Json& finding : json["findings"])
+    if (const auto text = finding.get<std::string>();
+        text.starts_with("volume_mm3: ") || text.starts_with("WARN "))
+      rows.emplace_back("finding", text);
+  return {std::move(json), std::move(rows)};
+}
+
+/// What cannot be written is refused before anything is read.
+void need_scalars_of(const Measure& asked) {
+  if (!asked.thickness && !asked.curvature)
+    throw std::runtime_error(asked.out.string() + ": say what to write, --thickness or --curvature");
+  need_extension(asked.out, {".vtp", ".ply"}, "scalars are");
+  need_folder_of(asked.out);
+}
+
+/// What is asked of a closed mesh beyond its size, and the file that it is written to.
+Json asked_of_surface(const Measure& asked, const brep::Solid& solid, const FileBench& bench) {
+  const std::filesystem::path& out = asked.out;
+  std::optional<brep::Mesh> other;
+  if (asked.to) other = read_surface(asked.to->name, bench.timings);
+  AtVertices shown;
+  Json json = surface_answers({asked.section, asked.distance, asked.angle, asked.along,
+                               other ? &*other : nullptr, asked.thickness, asked.curvature},
+                              solid, bench.progress("thickness"), bench.timings, shown);
+  if (out.empty()) return json;
+  brep::VertexData data;
+  data.scalar_name = shown.name;
+  data.scalars = std::move(shown.values);
+  write_surface(solid.triangles(), out, bench.timings, data);
+  json["path"] = out.string();
+  return json;
+}
+
+/// What triangles have that enclose nothing: an area and a place.
+FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& health) {
+  if (health.faces == 0) throw std::runtime_error("there are no triangles to measure");
+  const brep::Size size = brep::size_of(triangles);
+  Json json{{"kind", "mesh"}};
+  for (const char* key : {"volume_mm3", "volume_partial_mm3", "centroid_mm", "inertia_mm5"})
+    json[key] = nullptr;
+  const bool is_inside_out = health.first_defect == brep::Defect::InsideOut;
+  json["volume_estimator"] =
+      is_inside_out ? "none: the surface faces inward" : "none: the surface is not closed";
+  json["area_mm2"] = size.area_mm2;
+  json["area_estimator"] = "triangles";
+  json["extents_mm"] = Json::array({to_json(size.low_mm), to_json(size.high_mm)});
+  json["components"] = health.components;
+  json["euler"] = health.euler;
+  json["findings"] = {is_inside_out
+                          ? "volume_mm3: none: " + health.findings.front() +
+                                "; octotomy repair --solid turns it outward"
+                          : "volume_mm3: none, as the surface is not closed, oriented and manifold: " +
+                                health.findings.front() + "; octotomy repair --solid closes it"};
+  return said(std::move(json));
+}
+
+FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
+  Timings& timings = bench.timings;
+  brep::Triangles triangles;
+  {
+    const Stopwatch watch(timings, "read");
+    triangles = read_mesh_in(file);
+  }
+  auto watch = std::make_unique<Stopwatch>(timings, "measure");
+  const brep::Health health = brep::health(triangles);
+  if (!health.closed || !health.manifold || !health.oriented) {
+    if (asked.asks_surface() || !asked.out.empty())
+      throw std::runtime_error(
+          file.string() + ": is not a closed, oriented surface (" + health.findings.front() +
+          "), which sections, walls and curvature are asked of: mend it first, octotomy repair --solid");
+    return measure_open(triangles, health);
+  }
+  const brep::Solid solid = brep::trusted_solid(triangles, brep::Proof::Connection);
+  const brep::Measures& measures = solid.measures();
+  watch.reset();
+  const Json more = asked_of_surface(asked, solid, bench);
+  Json json{{"kind", "mesh"}};
+  json.update(to_json(measures));
+  json.update(more);
+  json["area_estimator"] = "triangles";
+  json["volume_partial_mm3"] = nullptr;
+  json["components"] = health.components;
+  json["euler"] = health.euler;
+  json["findings"] = {"volume_partial_mm3: a mesh has no voxels to fill partly"};
+  if (health.self_intersections > 0)
+    json["findings"].push_back("WARN volume_mm3: " + std::to_string(health.self_intersections) +
+                               " pairs of triangles cross each other, so that parts which overlap count "
+                               "twice: octotomy repair --solid makes one surface of them");
+  return said(std::move(json));
+}
+
+/// What voxels alone tell of an object; its measures beside.
+Json of_voxels(const voxel::Octree& octree, Timings& timings, voxel::Measures& measures) {
+  const Stopwatch watch(timings, "measure");
+  measures = voxel::measure(octree);
+  Json json = to_json(measures);
+  json["components"] = voxel::component_count(octree);
+  json["euler"] = voxel::euler_numbers(octree).by_faces;
+  json["euler_of"] = "voxels that touch by faces";
+  json["findings"] = Json::array();
+  return json;
+}
+
+/// Another estimator of what voxels counted, and how it is told.
+struct Seen {
+  SeenSize size;
+  std::string says, advice;
+};
+
+/// Of voxels whose flat parts are known.
+void add_half_width(const voxel::Measures& measures, const Digitised& digitised,
+                    const voxel::Lattice& lattice, const std::optional<Seen>& seen, Json& json) {
+  const std::optional<SeenSize> size = seen ? std::optional(seen->size) : std::nullopt;
+  const HalfWidth width = volume_half_width(measures, digitised, size);
+  json["volume_half_width_mm3"] = width.value;
+  json["volume_half_width_terms"] = to_json(width);
+  if (width.is_too_coarse)
+    json["findings"].push_back(
+        too_coarse_finding(digitised.voxel_mm, seen->says, size->volume_mm3, seen->advice));
+  const verify::SizeIntervals recommended = intervals_of_count(measures, digitised, lattice, size);
+  json["volume"] = to_json(recommended.volume_mm3, "mm3");
+  json["area"] = to_json(recommended.area_mm2, "mm2");
+}
+
+/// Of voxels alone; what more is known of them, beside.
+void add_half_width(const voxel::Octree& octree, const voxel::Measures& measures,
+                    const std::optional<double>& shift_mm, const std::optional<Seen>& seen, Json& json) {
+  const voxel::Lattice lattice = octree.universe().lattice();
+  add_half_width(measures, {lattice.spacing_mm(), {}, shift_mm, voxel::flat_parts_mm2(octree)}, lattice, seen,
+                 json);
+}
+
+void add_partial_volume(const voxel::Window& window, Timings& timings, Json& json) {
+  const Stopwatch watch(timings, "partial volume");
+  json["volume_partial_mm3"] = nullptr;
+  try {
+    json["volume_partial_mm3"] = voxel::partial_volume_mm3(window);
+    json["volume_partial_estimator"] = "trilinear interpolant of the samples";
+  } catch (const std::invalid_argument& error) {
+    json["findings"].push_back(std::string("volume_partial_mm3: ") + error.what());
+  }
+}
+
+voxel::Window window_of(const voxel::GreyOctree& grey, const std::filesystem::path& file,
+                        const Measure& asked) {
+  if (!asked.window)
+    throw std::runtime_error(
+        file.string() + ": holds samples, say which are meant: --window LOW:HIGH, for example --window 300:");
+  return window_on(grey, *asked.window);
+}
+
+/// What voxels that are too coarse for an object want.
+constexpr const char* remake = "make the octree with smaller ones, --voxel";
+
+FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure& asked,
+                          const FileBench& bench) {
+  Timings& timings = bench.timings;
+  const voxel::OctreeFile file = read_timed(file_path, timings);
+  Json json;
+  voxel::Measures measures;
+  if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
+    const voxel::Window window = window_of(*grey, file_path, asked);
+    const voxel::Octree inside = voxel::combine(grey->universe(), window);
+    json = of_voxels(inside, timings, measures);
+    add_partial_volume(window, timings, json);
+    const Stopwatch watch(timings, "half_width");
+    std::optional<Seen> seen;
+    if (const Json& partial_mm3 = json["volume_partial_mm3"]; partial_mm3.is_number())
+      seen = {{"interpolant", partial_mm3}, "the interpolant of its samples encloses", remake};
+    add_half_width(inside, measures, window_shift_mm(window), seen, json);
+  } else if (asked.window) {
+    throw std::runtime_error(file_path.string() + ": holds no samples to take a --window of: leave it out");
+  } else if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) {
+    const voxel::Octree half = voxel::at_least_half(*partial);
+    json = of_voxels(half, timings, measures);
+    const double shares_mm3 = voxel::volume_mm3(*partial);
+    add_half_width(half, measures, {}, Seen{{"shares", shares_mm3}, "the voxels' filled shares are", remake},
+                   json);
+    json["volume_estimator"] = "voxels at least half filled, counted";
+    json["volume_partial_mm3"] = shares_mm3;
+    json["volume_partial_estimator"] = "the voxels' filled shares";
+  } else {
+    const auto& octree = std::get<voxel::Octree>(file.tree);
+    json = of_voxels(octree, timings, measures);
+    add_half_width(octree, measures, {}, {}, json);
+    json["volume_partial_mm3"] = nullptr;
+    json["findings"].push_back(
+        "volume_partial_mm3: voxels that are in or out say nothing of their parts: keep samples (--grey) or "
+        "shares (--digitise partial)");
+  }
+  Json whole{{"kind", "octree"}};
+  whole["source"] = file_path.string();
+  whole.update(json);
+  return said(std::move(whole));
+}
+
+/// A scan, and its octree, which is built while the scan is read.
+struct ScanAndOctree {
+  voxel::Scene scene;
+  voxel::GreyOctree grey;
+};
+
+ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& asked,
+                             const FileBench& bench) {
+  std::optional<voxel::GreyOctreeBuild> build;
+  std::optional<voxel::GreyOctree> grey;
+  std::optional<double> padding;  // as far as it was known to the build
+  bool has_failed = false;
+  voxel::Scene scene = bench.read_scan(file, [&](const voxel::Scene& read, int count) {
+    if (count == 0) return build.reset();
+    if (has_failed || asked.voxel_mm) return;  // finer voxels take long, which is told below
+    if (!std::holds_alternative<voxel::Int16Samples>(read.samples)) return;  // their step is not known yet
+    try {
+      if (!build) {
+        build.emplace(universe_of(read.lattice, asked.voxel_mm), read);
+        padding = read.padding;
+      }
+      build->add(count);
+      if (count == read.lattice.dims.z) grey = build->finished();
+    } catch (...) {
+      // The reader has no part in it. It fails again below, after what the reader has to say.
+      has_failed = true;
+      build.reset();
+    }
+  });
+  if (asked.window) need_hounsfield(*asked.window, scene);
+  const Stopwatch watch(bench.timings, "octree");
+  const voxel::Universe universe = universe_of(scene, asked.voxel_mm);
+  if (!grey || !(grey->universe() == universe) || padding != scene.padding)
+    grey = voxel::grey_octree_of(universe, scene, voxel::beyond_scan, bench.progress("octree"));
+  return {std::move(scene), std::move(*grey)};
+}
+
+/// What a scan's window shows.
+struct WindowShown {
+  const voxel::Scene& scene;
+  double low = 0.0, high = 0.0;
+  const brep::Solid& isosurface;
+  const std::optional<verify::TwoPhase>& phases;
+  const Digitised& digitised;
+};
+
+verify::SizeIntervals recommended_of(const WindowShown& shown) {
+  const auto& [scene, low, high, isosurface, phases, digitised] = shown;
+  const bool is_labels = scene.meaning == voxel::Meaning::Label;
+  const SurfaceSamples source{.lps_from_scan = scene.lattice.lps_from_voxel,
+                              .samples = std::shared_ptr<const voxel::Scene>(std::shared_ptr<void>(), &scene),
+                              .window_shift_mm = digitised.shift_mm,
+                              .along_lps_mm = digitised.sample_mm,
+                              .low = low,
+                              .high = high};
+  verify::SizeIntervals found = isosurface.empty() ? verify::nothing_found(digitised.sample_mm)
+                                                   : intervals_of_surface(isosurface, {source});
+  if (phases) found = intervals_of_phases(*phases, std::move(found));
+  if (is_labels && !isosurface.empty()) found = intervals_of_labels(scene, low, high, std::move(found));
+  if (!is_labels && (!phases || phases->evidence.is_ambiguous))
+    if (const auto thickness = thickness_of(scene, low, high)) add_thickness(*thickness, 1.0, found);
+  add_voxels(digitised.voxel_mm, isosurface.size().area_mm2, found);
+  return found;
+}
+
+FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
+  Timings& timings = bench.timings;
+  const auto read = read_to_octree(file, asked, bench);
+  // References, which lambdas may capture.
+  const voxel::Scene& scene = read.scene;
+  const voxel::GreyOctree& grey = read.grey;
+  const voxel::Window window = window_of(grey, file, asked);
+  const double low = asked.window->low;
+  // Labels are names: a voxel has that of its nearest sample, and surfaces lie half-way between samples.
+  const bool is_labels = scene.meaning == voxel::Meaning::Label;
+  const double high = asked.window->high_or_infinity();
+  const std::optional<voxel::Scene> labelled =
+      is_labels ? std::optional(indicator_of(scene, low, high)) : std::nullopt;
+  const voxel::Octree inside = labelled ? voxel::octree_of_label(grey.universe(), *labelled, 1)
+                                        : voxel::combine(grey.universe(), window);
+  voxel::Measures measures;
+  Json json = of_voxels(inside, timings, measures);
+  if (labelled) {
+    json["volume_partial_mm3"] = nullptr;
+    json["findings"].push_back("volume_partial_mm3: labels are names, nothing lies between them");
+  } else {
+    add_partial_volume(window, timings, json);
+  }
+  Digitised digitised{grey.universe().lattice().spacing_mm(), scene.lattice.spacing_mm()};
+  brep::Solid isosurface;
+  std::optional<verify::TwoPhase> phases;
+  {
+    const Stopwatch watch(timings, "isosurface");
+    brep::Triangles triangles =
+        labelled ? convert::isosurface(*labelled, 0.5, std::numeric_limits<double>::infinity())
+                 : convert::isosurface(scene, low, high);
+    // Both have parts that take one thread alone.
+    tbb::parallel_invoke(
+        [&] { isosurface = brep::trusted_solid(std::move(triangles), brep::Proof::Construction); },
+        [&] {
+          if (!is_labels && !asked.window->high) phases = verify::two_phase(scene, low);
+          digitised.flat_mm2 = voxel::flat_parts_mm2(inside);
+        });
+  }
+  const Stopwatch watch(timings, "intervals");
+  const brep::Size& surface = isosurface.size();
+  if (!is_labels) digitised.shift_mm = window_shift_mm(scene, low, high);
+  add_half_width(measures, digitised, grey.universe().lattice(),
+                 Seen{{"isosurface", surface.volume_mm3, surface.area_mm2},
+                      "the isosurface of the samples encloses",
+                      "take smaller ones, --voxel"},
+                 json);
+  const bool is_of_phases = phases && !phases->evidence.is_ambiguous;
+  const verify::SizeIntervals recommended = recommended_of({scene, low, high, isosurface, phases, digitised});
+  for (const std::string& finding : findings_of(
+           recommended, is_of_phases, is_of_phases && phases->evidence.has_core,
+           {measures.volume_mm3, surface.volume_mm3}, {measures.area_crofton13_mm2, surface.area_mm2}))
+    json["findings"].push_back(finding);
+  if (const auto cut = cut_finding(cut_mm2(scene, low, high), surface.area_mm2))
+    json["findings"].push_back(*cut);
+  const HalfWidth width =
+      area_half_width({recommended.triangles.area_mm2, recommended.triangles.curvature_mm}, digitised);
+  json["area_half_width_mm2"] = width.value;
+  json["area_half_width_terms"] = to_json(width);
+  json["volume"] = to_json(recommended.volume_mm3, "mm3");
+  json["area"] = to_json(recommended.area_mm2, "mm2");
+  json["area_crofton13_mm2"] = json["area_mm2"];
+  json["area_mm2"] = surface.area_mm2;
+  json["area_estimator"] = mesh_area_estimator;
+  json["volume_isosurface_mm3"] = surface.volume_mm3;
+  json["euler"] = brep::euler_number(isosurface.triangles());
+  json["euler_of"] = "the isosurface: V - E + F";
+  Json whole{{"kind", "scan"}};
+  whole["window"] = {low, asked.window->high ? Json(high) : Json(nullptr)};
+  whole.update(json);
+  whole["audit"] = to_json(scene.audit);
+  return said(std::move(whole));
+}
+
+}  // namespace
+
+FileAnswer measure_file(const Measure& asked, const FileBench& bench) {
+  if (!asked.object) throw std::runtime_error("file is required: a scan, an octree or a mesh");
+  const std::filesystem::path file = asked.object->name;
+  if (!asked.out.empty()) need_scalars_of(asked);
+  if ((asked.asks_surface() || asked.to) && !is_mesh(file))
+    throw std::runtime_error(file.string() +
+                             ": sections, ways, angles, walls and curvature are asked of a mesh: octotomy "
+                             "mesh makes one");
+  if (is_mesh(file) && (asked.window || asked.voxel_mm))
+    throw std::runtime_error(file.string() + ": a mesh has no samples and no voxels: leave " +
+                             (asked.window ? "--window" : "--voxel") + " out");
+  if (is_octree(file)) return measure_octree(file, asked, bench);
+  return is_mesh(file) ? measure_mesh(file, asked, bench) : measure_scan(file, asked, bench);
+}
+
+}  // namespace octotomy::planner

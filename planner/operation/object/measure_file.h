@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "planner/operation/table/bench.h"
+#include "planner/operation/table/field.h"
+
+namespace octotomy::planner {
+
+/// The size of an object, the gap between two, the distance of two points or the angle of three.
+struct Measure {
+  std::optional<ObjectName> object, to;
+  std::vector<Mark> points_mm;
+  std::vector<glm::dvec3> section, along;
+  bool thickness = false, curvature = false;
+  // Of the verb.
+  std::vector<glm::dvec3> distance, angle;
+  std::optional<SampleWindow> window;
+  std::optional<double> voxel_mm;
+  std::filesystem::path out;
+
+  /// Whether anything is asked that only a surface has.
+  bool asks_surface() const {
+    return !section.empty() || !along.empty() || !distance.empty() || !angle.empty() || thickness ||
+           curvature || !out.empty();
+  }
+};
+
+/// What is measured of a scan's window, an octree or a mesh in a file.
+FileAnswer measure_file(const Measure& asked, const FileBench& bench);
+
+}  // namespace octotomy::planner

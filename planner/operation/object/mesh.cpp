@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The surface of a scan's window or of an octree, in files; in a plan it is the mesh kernel's side of window
+// and segment, and the step surface.
+#include <limits>
+#include <utility>
+
+#include "brep/io/write_mesh.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "brep/shape/decimate.h"
+#include "brep/shape/smooth.h"
+#include "convert/surface/cuberille.h"
+#include "convert/surface/expression_surface.h"
+#include "convert/surface/isosurface.h"
+#include "convert/surface/partial_surface.h"
+#include "convert/surface/trace_contours.h"
+#include "planner/operation/file/mesh_file.h"
+#include "planner/operation/file/octree_in.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "voxel/filter/tissue.h"
+#include "voxel/solid/combine.h"
+#include "voxel/space/disk_need.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Meshed {
+  ObjectName file;
+  std::optional<SampleWindow> window;
+  std::string surface = "isosurface", touching = "apart", tiling = "shortest-span";
+  bool smooth = false;
+  std::optional<int> faces;
+  std::filesystem::path out;
+};
+
+/// A surface as its maker leaves it.
+struct Made {
+  Made(brep::Triangles triangles) : surface(std::move(triangles)) {}  // NOLINT(google-explicit-constructor)
+  /// An isosurface of the samples of a lattice.
+  Made(brep::Triangles triangles, const voxel::Lattice& lattice)
+      : surface(std::move(triangles)), stays_apart(convert::stays_apart(lattice)) {}
+
+  brep::Triangles surface;
+  bool stays_apart = false;  ///< known to be free of self-intersection, which is dear to test
+};
+
+brep::Triangles cuberille_of(const voxel::Octree& octree, const Meshed& asked) {
+  return triangles_of(convert::cuberille(
+      octree, asked.touching == "apart" ? convert::Touching::Apart : convert::Touching::Together));
+}
+
+/// The object of a file that holds samples: bone where nothing else is asked for.
+SampleWindow window_of(const Meshed& asked, std::vector<std::string>& findings) {
+  if (asked.window) return *asked.window;
+  const voxel::Tissue bone = *voxel::tissue("bone");
+  findings.push_back("window: " + voxel::described(bone) + ", as no --window LOW:HIGH was given");
+  return {*bone.low, std::nullopt};
+}
+
+brep::Triangles tiled_contours(const voxel::Scene& scene, const SampleWindow& window, const Meshed& asked,
+                               std::vector<std::string>& findings) {
+  brep::TileSectionsOptions options;
+  options.cost = asked.tiling == "overlay"           ? std::optional<brep::TileCost>()
+                 : asked.tiling == "least-area"      ? brep::TileCost::least_area
+                 : asked.tiling == "greatest-volume" ? brep::TileCost::greatest_volume
+                 : asked.tiling == "least-angle"     ? brep::TileCost::least_angle
+                                                     : brep::TileCost::shortest_span;
+  brep::TiledSections tiled = convert::contour_surface(scene, window.low, window.high_or_infinity(), options);
+  findings.push_back("contours: " + std::to_string(tiled.strips) + " pairs joined by strips, " +
+                     std::to_string(tiled.crossed_strips) +
+                     " by overlay as their strips would cross something, " + std::to_string(tiled.overlaid) +
+                     " branchings, ends and lone contours by overlay");
+  return std::move(tiled.surface);
+}
+
+Made of_octree(const Meshed& asked, Timings& timings, std::vector<std::string>& findings) {
+  if (asked.surface == "contours")
+    throw std::runtime_error(asked.file.name +
+                             ": contours are followed on a scan's slices: give the scan the octree is of");
+  const voxel::OctreeFile file = read_timed(asked.file.name, timings);
+  const bool cubes = asked.surface == "cuberille";
+  const Stopwatch watch(timings, asked.surface);
+  if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
+    const SampleWindow window = window_of(asked, findings);
+    if (!cubes)
+      return {convert::isosurface(*grey, window.low, window.high_or_infinity()), grey->universe().lattice()};
+    return cuberille_of(voxel::combine(grey->universe(), voxel::Expression(window_on(*grey, window))), asked);
+  }
+  if (asked.window)
+    throw std::runtime_error(asked.file.name + ": holds no samples to take a --window of: leave it out");
+  if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) {
+    if (!cubes) return convert::isosurface(*partial);
+    findings.push_back("surface: the cuberille is of the voxels at least half filled");
+    return cuberille_of(at_least_half(*partial), asked);
+  }
+  const auto& octree = std::get<voxel::Octree>(file.tree);
+  if (cubes) return cuberille_of(octree, asked);
+  findings.push_back(
+      "surface: the octree knows voxels only as inside or outside, so that the isosurface runs half way "
+      "between "
+      "them in steps and its area is too large, on a ball by 9 %: a grey or partial octree has a smooth one");
+  return convert::isosurface(octree.universe(), octree);
+}
+
+Made of_scan(const FileBench& bench, const Meshed& asked, std::vector<std::string>& findings) {
+  const SampleWindow window = window_of(asked, findings);
+  const voxel::Scene scene = bench.read_scan(asked.file.name);
+  need_hounsfield(window, scene);
+  const Stopwatch watch(bench.timings, asked.surface);
+  if (asked.surface == "isosurface")
+    return {convert::isosurface(scene, window.low, window.high_or_infinity()), scene.lattice};
+  if (asked.surface == "contours") return tiled_contours(scene, window, asked, findings);
+  throw std::runtime_error(
+      asked.file.name +
+      ": a cuberille is of an octree's voxels: make one first with octotomy octree --window " +
+      to_string(window));
+}
+
+/// A surface that is to be written, and its size.
+struct Finished {
+  brep::Triangles surface;
+  brep::Measures measures;
+  bool stays_apart = false;
+};
+
+Finished finished(Made made, const Meshed& asked, Timings& timings) {
+  const bool fewer = asked.faces && static_cast<std::size_t>(*asked.faces) < made.surface.faces.size();
+  if (!asked.smooth && !fewer) {
+    brep::Linked linked = brep::linked(std::move(made.surface));
+    brep::Measures measures = measure(linked);
+    return {std::move(linked.triangles), std::move(measures), made.stays_apart};
+  }
+  brep::Mesh surface = mesh_of(made.surface);
+  made.surface = {};
+  if (asked.smooth) {
+    const Stopwatch watch(timings, "smooth");
+    surface = brep::smooth(surface);
+  }
+  if (fewer) {
+    const Stopwatch watch(timings, "decimate");
+    // The number is what was asked for: no bound on the error may end it before.
+    constexpr double no_bound_mm = 1e6;
+    surface = brep::decimate(surface,
+                             {.max_error_mm = no_bound_mm, .faces = static_cast<std::size_t>(*asked.faces)});
+  }
+  return {triangles_of(surface), measure(surface)};
+}
+
+FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
+  need_mesh_extension(asked.out);
+  need_folder_of(asked.out);
+  if (is_mesh(asked.file.name)) throw std::runtime_error(asked.file.name + ": is a mesh already");
+  std::vector<std::string> findings;
+  Made made = is_octree(asked.file.name) ? of_octree(asked, bench.timings, findings)
+                                         : of_scan(bench, asked, findings);
+  if (made.surface.faces.empty())
+    throw std::runtime_error(
+        asked.file.name + ": nothing is " +
+        (asked.window ? "in the window " + to_string(*asked.window) + ": choose another" : "in it"));
+  if (!asked.faces)
+    voxel::need_disk(asked.out, brep::least_mesh_bytes(made.surface.points_mm.size(),
+                                                       made.surface.faces.size(), asked.out));
+  const auto& [surface, measures, stays_apart] = finished(std::move(made), asked, bench.timings);
+  brep::Health health;
+  {
+    const Stopwatch watch(bench.timings, "health");
+    health = brep::health(surface, {.self_intersections = !stays_apart});
+  }
+  write_surface(surface, asked.out, bench.timings);
+  FileAnswer answer{{{"kind", "mesh"}, {"path", asked.out.string()}, {"surface", asked.surface}}};
+  answer.json.update(to_json(health));
+  answer.json.update(to_json(measures));
+  for (const std::string& finding : findings) answer.json["findings"].push_back(finding);
+  answer.findings = std::move(findings);
+  answer.rows = {{"written", asked.out.string()},
+                 {"faces", grouped(static_cast<double>(health.faces), 0)},
+                 {"volume", grouped(measures.volume_mm3, 1) + " mm\u00b3"},
+                 {"area", grouped(measures.area_mm2, 1) + " mm\u00b2"}};
+  return answer;
+}
+
+}  // namespace
+
+Operation mesh_operation() {
+  return Describe<Meshed>("mesh", "Makes the surface of a scan's window or of an octree.", Makes::File)
+      .takes(field("file", &Meshed::file, "A scan, or an .octree file.").required().positional("file"))
+      .takes(field("window", &Meshed::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
+      .takes(field("surface", &Meshed::surface,
+                   "isosurface: where samples or shares cross the bound; cuberille: the voxels' own faces; "
+                   "contours: followed on a scan's slices and tiled.")
+                 .one_of({"isosurface", "cuberille", "contours"}))
+      .takes(field("tiling", &Meshed::tiling,
+                   "Of contours, what strips between them are chosen by: shortest-span, least-area, "
+                   "greatest-volume, least-angle; overlay: no strips.")
+                 .one_of({"shortest-span", "least-area", "greatest-volume", "least-angle", "overlay"}))
+      .takes(field("touching", &Meshed::touching,
+                   "Of a cuberille, voxels that meet at an edge or corner only: apart or together.")
+                 .one_of({"apart", "together"}))
+      .takes(field("smooth", &Meshed::smooth, "Takes noise off the surface and keeps its volume."))
+      .takes(field("faces", &Meshed::faces, "Decimates to so many triangles.").from(4).to(100000000))
+      .takes(field("out", &Meshed::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.").required())
+      .reads_scans()
+      .example(R"({"id": "skull", "do": "mesh", "file": "skull", "out": "skull.stl"})")
+      .on_files(
+          "octotomy mesh head.nrrd -o skull.stl --window 300:\n"
+          "  octotomy mesh maxilla.octree -o maxilla.ply --surface cuberille\n"
+          "  octotomy mesh head.nrrd -o skin.stl --window=-200: --surface contours",
+          on_files);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// An octree of a scan's window or of all its samples in a file, or one in another form; in a plan it is
+// window.
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include "convert/deck/deck.h"
+#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/octree_in.h"
+#include "planner/operation/file/output_path.h"
+#include "planner/operation/file/representation.h"
+#include "planner/operation/measure/octree_summary.h"
+#include "planner/operation/table/json_file.h"
+#include "planner/operation/table/operation.h"
+#include "planner/operation/table/plan_universe.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/expression.h"
+#include "voxel/space/file_text.h"
+#include "voxel/space/regular_file.h"
+#include "voxel/volume/volume_header.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Build {
+  ObjectName file;
+  fs::path out;
+  std::optional<SampleWindow> window;
+  bool grey = false;
+  std::optional<double> voxel_mm;
+  std::string as, from;
+  std::optional<int> depth;
+
+  fs::path in() const { return file.name; }
+};
+
+voxel::Octree windowed(const voxel::GreyOctree& grey, const SampleWindow& window) {
+  return voxel::combine(grey.universe(), voxel::Expression(window_on(grey, window)));
+}
+
+std::string content_of(const fs::path& path) {
+  voxel::need_regular_file(path);
+  std::ifstream stream(path, std::ios::binary);
+  std::string content(std::istreambuf_iterator<char>(stream), {});
+  if (!stream && !stream.eof()) throw std::runtime_error(path.string() + ": cannot be read");
+  return content;
+}
+
+voxel::OctreeFile from_representation(const Build& asked, Timings& timings) {
+  if (!asked.depth)
+    throw std::runtime_error(
+        "--depth: a representation does not tell its universe: say --depth N, for 2^N voxels a side");
+  voxel::Universe universe;
+  universe.depth = *asked.depth;
+  const double edge_mm = asked.voxel_mm.value_or(1.0);
+  for (int axis = 0; axis < 3; ++axis) universe.lps_from_voxel[axis][axis] = edge_mm;
+  std::string content;
+  {
+    const Stopwatch watch(timings, "read");
+    content = content_of(asked.in());
+  }
+  const Stopwatch watch(timings, "octree");
+  try {
+    return {octree_of_representation(universe, asked.from, content), asked.in().stem().string(), ""};
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(asked.file.name + ": " + error.what());
+  }
+}
+
+voxel::OctreeFile from_octree(const Build& asked, Timings& timings) {
+  voxel::OctreeFile file = read_timed(asked.in(), timings);
+  if (!asked.window) return file;
+  const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree);
+  if (grey == nullptr)
+    throw std::runtime_error(asked.file.name + ": holds no samples to take a --window of: leave it out");
+  const Stopwatch watch(timings, "octree");
+  return {windowed(*grey, *asked.window), file.name, file.metadata};
+}
+
+voxel::OctreeFile from_scan(const FileBench& bench, const Build& asked) {
+  if (is_mesh(asked.in()))
+    throw std::runtime_error(asked.file.name + ": is a mesh: octotomy voxelise makes an octree of one");
+  if (!asked.window && !asked.grey)
+    throw std::runtime_error(asked.file.name +
+                             ": is a scan, say what of it: --window LOW:HIGH for an object, for example "
+                             "--window 300:, or --grey for all samples");
+  const std::optional<SampleWindow>& window = asked.window;
+  const voxel::Scene scene = bench.read_scan(asked.in());
+  if (window) need_hounsfield(*window, scene);
+  const Stopwatch watch(bench.timings, "octree");
+  const voxel::Universe universe = universe_of(scene, asked.voxel_mm);
+  const voxel::GreyOctree grey =
+      voxel::grey_octree_of(universe, scene, voxel::beyond_scan, bench.progress("octree"));
+  Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
+            {"scan", asked.in().filename().string()},
+            {"unit", voxel::unit(scene)},
+            {"modality", scene.modality},
+            {"scan_audit", doubts_of(scene.audit)}};
+  if (window) made["window"] = {window->low, window->high ? Json(*window->high) : Json(nullptr)};
+  const std::string name = asked.in().stem().string();
+  if (!window) return {grey, name, json_text(made)};
+  return {windowed(grey, *window), name, json_text(made)};
+}
+
+FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::OctreeFile& file) {
+  Timings& timings = bench.timings;
+  const auto* octree = std::get_if<voxel::Octree>(&file.tree);
+  if (octree == nullptr)
+    throw std::runtime_error(asked.file.name + ": only a binary octree has the form " + asked.as +
+                             (std::holds_alternative<voxel::GreyOctree>(file.tree)
+                                  ? ": choose an object of the samples with --window LOW:HIGH"
+                                  : ": this one holds fractions, digitise it as centre or half"));
+  std::string content;
+  {
+    const Stopwatch watch(timings, "represent");
+    content = represented(*octree, asked.as);
+  }
+  if (bench.stop.stop_requested())
+    throw voxel::Stopped("stopped before " + asked.out.string() + " was written");
+  {
+    const Stopwatch watch(timings, "write");
+    write_whole(asked.out, content);
+  }
+  Json json = octree_answer(file, std::nullopt, timings);
+  json["path"] = asked.out.string();
+  json["as"] = asked.as;
+  json["bytes_representation"] = content.size();
+  return {std::move(json),
+          {{"written", asked.out.string()},
+           {"form", asked.as},
+           {"depth", std::to_string(octree->universe().depth)},
+           {"bytes", std::to_string(content.size())}}};
+}
+
+/// Forms have no extension of their own. One of another kind is a slip of the hand, which must not replace a
+/// scan or a result.
+void need_form_name(const Build& asked) {
+  constexpr std::array others{".json", ".csv", ".dcm",  ".png", ".jpg", ".jpeg",
+                              ".webp", ".glb", ".html", ".svg", ".pdf"};
+  if (!is_mesh(asked.out) && !is_octree(asked.out) && !voxel::volume_format(asked.out) &&
+      !convert::is_deck(asked.out) &&
+      std::find(others.begin(), others.end(), voxel::extension_of(asked.out)) == others.end())
+    return;
+  throw std::runtime_error(asked.out.string() + ": is the name of another kind of file: the form " +
+                           asked.as + " is written as .txt or under a name of your own, as ." + asked.as);
+}
+
+FileAnswer on_files(const Build& asked, const FileBench& bench) {
+  asked.as.empty() ? need_octree_extension(asked.out) : need_form_name(asked);
+  if (asked.window && asked.grey)
+    throw std::runtime_error("--grey: a tree is --grey or an object by --window, not both");
+  need_folder_of(asked.out);
+  const voxel::OctreeFile file = !asked.from.empty()     ? from_representation(asked, bench.timings)
+                                 : is_octree(asked.in()) ? from_octree(asked, bench.timings)
+                                                         : from_scan(bench, asked);
+  return asked.as.empty() ? octree_written(file, asked.out, bench.stop, bench.timings)
+                          : export_as(bench, asked, file);
+}
+
+}  // namespace
+
+Operation octree_operation() {
+  return Describe<Build>(
+             "octree",
+             "Builds an octree of a scan's window or of all its samples, or puts one into another form.",
+             Makes::File)
+      .takes(field("file", &Build::file, "A scan, an .octree file, or with --from a representation.")
+                 .required()
+                 .positional("file"))
+      .takes(
+          field("out", &Build::out, "An .octree file, or with --as the representation's, for example .txt.")
+              .required())
+      .takes(
+          field("window", &Build::window, "LOW:HIGH or LOW: in sample units, or a tissue: a binary octree."))
+      .takes(field("grey", &Build::grey, "A min-max octree of all samples."))
+      .takes(field("voxel_mm", &Build::voxel_mm,
+                   "Edge of a voxel. Default: as fine as the scan, at most 512 a side; with --from 1.")
+                 .greater_than(0.0))
+      .takes(
+          field(
+              "as", &Build::as,
+              "Writes treecode, linear, explicit, runs, segments, marginal, faces or array (text), packed or "
+              "bits (bytes).")
+              .one_of(representation_names()))
+      .takes(field("from", &Build::from, "Reads the file as such a representation.")
+                 .one_of(representation_names()))
+      .takes(field("depth", &Build::depth, "With --from: the universe has 2^N voxels a side.")
+                 .from(2)
+                 .to(voxel::Universe::max_depth))
+      .reads_scans()
+      .example(R"({"id": "tree", "do": "octree", "file": "skull", "out": "skull.octree", "window": "300:"})")
+      .on_files(
+          "octotomy octree head.nrrd -o skull.octree --window 300:\n"
+          "  octotomy octree skull.octree -o skull.txt --as linear\n"
+          "  octotomy octree skull.txt -o skull.octree --from linear --depth 8",
+          on_files);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The solid within a distance of an object, or its points farther than that from its outside. Each kernel
+// measures distances to its own answer to the object: to points of the surface between its voxels, and to its
+// triangles.
+#include "brep/shape/offset.h"
+
+#include <algorithm>
+
+#include "brep/mesh/error.h"
+#include "brep/shape/decimate.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "verify/witness/offset_witness.h"
+#include "voxel/filter/offset.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Offset {
+  ObjectName object;
+  double by_mm = 0.0;
+  std::optional<double> cell_mm;
+};
+
+void check(const Offset& offset, const Place& place) {
+  if (offset.by_mm == 0.0)
+    place.at("by_mm").refuse(
+        "0 moves nothing: say how far outward, or inward as a number below 0, or use the object itself");
+}
+
+/// Fine enough for the offset's own roundness, and no finer than some 200 cells along the solid.
+double cell_for(const brep::Solid& solid, double by_mm) {
+  const glm::dvec3 extent = solid.size().high_mm - solid.size().low_mm;
+  return std::max(0.25 * std::abs(by_mm), std::max({extent.x, extent.y, extent.z}) / 200.0);
+}
+
+/// A lattice's surface without the triangles that flat parts do not need. Points stay where they are; the
+/// error is a fiftieth of a cell, above what the offset's own points are off by, and below what chords across
+/// cells are.
+brep::Solid fewer(const brep::Solid& surface, double cell_mm, std::vector<std::string>& findings) {
+  if (surface.empty()) return surface;
+  brep::DecimateOptions options;
+  options.max_error_mm = cell_mm / 50.0;
+  options.max_normal_deviation_deg = 15.0;
+  try {
+    return brep::trusted_solid(brep::decimate(surface, options), brep::Proof::Construction);
+  } catch (const brep::Error& error) {
+    if (error.code() != brep::ErrorCode::Geometry) throw;
+    findings.push_back(std::string("all triangles of the lattice stay: ") + error.what());
+    return surface;
+  }
+}
+
+/// Tells of walls, or of inward clefts, that the lattice missed. Throws where they are more than a few
+/// needles.
+void tell_missed(const brep::Solid& solid, const brep::Solid& moved, const brep::OffsetOptions& options,
+                 std::vector<std::string>& findings) {
+  constexpr double most_share = 0.01;
+  const brep::MissedWalls missed = brep::missed_walls(solid, moved, options);
+  if (missed.area_share == 0.0) return;
+  const std::string told = "walls or clefts thinner than a cell of " + plain(options.cell_mm) +
+                           " mm were missed, " + three_figures(100.0 * missed.area_share) +
+                           " % of the surface, the first at (" + plain(missed.at_mm.x) + ", " +
+                           plain(missed.at_mm.y) + ", " + plain(missed.at_mm.z) + ") mm: take smaller cells";
+  if (missed.area_share > most_share) throw brep::Error(brep::ErrorCode::Geometry, told);
+  findings.push_back(told);
+}
+
+std::string definition(const Offset& offset, const Objects&) {
+  return offset.object.name + " offset by " + plain(offset.by_mm) + " mm";
+}
+
+void voxels(const Offset& offset, const VoxelBench& bench, VoxelSide& made) {
+  const VoxelSide& object = bench.object(offset.object.name);
+  const voxel::Expression moved = [&] {
+    const Stopwatch watch(bench.timings, "offset_voxel");
+    return voxel::Expression(voxel::offset(object.octree, *object.symbol, offset.by_mm, bench.progress));
+  }();
+  made.octree = bench.combined(moved);
+  made.symbol = bench.within_universe(moved);
+  made.lineage = "distances to where the surface passes between voxels";
+}
+
+void triangles(const Offset& offset, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "offset");
+  const brep::Solid& solid = bench.object(offset.object.name);
+  brep::OffsetOptions options{.by_mm = offset.by_mm,
+                              .cell_mm = offset.cell_mm.value_or(cell_for(solid, offset.by_mm))};
+  options.progress = {bench.progress.stop, bench.progress.report};
+  const brep::Solid moved = fewer(brep::offset(solid, options), options.cell_mm, made.findings);
+  tell_missed(solid, moved, options, made.findings);
+  made.details = {{"by_mm", offset.by_mm},
+                  {"cell_mm", options.cell_mm},
+                  {"volume_change_mm3", brep::volume_mm3(moved) - brep::volume_mm3(solid)}};
+  made.whole = moved;
+  made.lineage = "level set of the distance to the mesh";
+}
+
+void bound(const Offset& offset, const BoundBench& bench, Object& made) {
+  const Object& object = bench.objects.at(offset.object.name);
+  made.bound.spacing_mm = object.bound.spacing_mm;
+  made.bound.shift_mm = object.bound.shift_mm;
+  if (made.mesh.whole && object.mesh.whole) {
+    const verify::OffsetOperand operand{object.witness, object.voxel.octree, *object.mesh.whole,
+                                        is_whole_voxels(object.voxel)};
+    const verify::OffsetAsked asked{offset.by_mm,
+                                    offset.cell_mm.value_or(cell_for(*object.mesh.whole, offset.by_mm))};
+    made.witness = verify::witness_of_offset(operand, asked);
+    made.bound.measured_apart_mm =
+        object.bound.measured_apart_mm +
+        verify::offset_allowance_mm(operand, asked, made.mesh.whole->measures().area_mm2);
+  }
+  made.bound.reshaped = {offset.object.name};
+  made.ends_with_universe = true;
+}
+
+}  // namespace
+
+Operation offset_operation() {
+  return Describe<Offset>("offset", "Moves an object's surface outward, or inward: margins and clearances.",
+                          Makes::Object)
+      .takes(field("object", &Offset::object, "The object.").required().positional("solid"))
+      .takes(
+          field("by_mm", &Offset::by_mm, "The distance outward; below 0 it goes inward. Not 0.").required())
+      .takes(
+          field("cell_mm", &Offset::cell_mm,
+                "About the edge of the mesh's triangles. Default: a quarter of the distance, or a 200th of "
+                "the object, whichever is larger.")
+              .greater_than(0.0))
+      .example(R"({"id": "margin", "do": "offset", "object": "tumour", "by_mm": 5})")
+      .on_files(
+          "octotomy offset tumour.stl --by 5 -o margin.stl\n"
+          "  octotomy offset skull.stl --by -1 --cell 0.4 -o core.ply --json")
+      .check(check)
+      .object(definition, voxels, triangles, bound);
+}
+
+}  // namespace octotomy::planner

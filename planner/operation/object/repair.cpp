@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A mesh of any program, mended in the ways that are asked for, as an object. Its voxels are made of it, so
+// that it has no certificate of its own.
+#include "brep/shape/repair.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brep/io/write_mesh.h"
+#include "brep/mesh/health.h"
+#include "planner/operation/file/mesh_file.h"
+#include "planner/operation/file/mesh_in.h"
+#include "planner/operation/file/outputs.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Repair {
+  std::filesystem::path path, out;
+  std::optional<std::string> frame, unit;
+  std::optional<double> weld_mm, longest_hole_mm, cell_mm;
+  bool duplicates = false, orient = false, flat = false, holes = false, intersections = false, solid = false,
+       hull = false;
+  double max_volume_share = brep::RepairOptions{}.max_volume_share;
+};
+
+void check(const Repair& repair, const Place& place) {
+  if (!repair.weld_mm && !repair.duplicates && !repair.orient && !repair.flat && !repair.holes &&
+      !repair.intersections && !repair.solid)
+    place.refuse(
+        "does only what it is asked for: say 'solid' for all, or 'weld_mm', 'duplicates', 'flat', 'orient', "
+        "'holes' or 'intersections'; octotomy info tells what a mesh lacks");
+  if ((repair.hull || repair.cell_mm) && !repair.solid)
+    place.at(repair.hull ? "hull" : "cell_mm").refuse("is of a surface that is made anew: add 'solid'");
+}
+
+Json changes_json(const std::vector<brep::Change>& changes) {
+  Json list = Json::array();
+  for (const brep::Change& change : changes)
+    list.push_back({{"step", change.step}, {"what", change.what}, {"at_mm", to_json(change.at_mm)}});
+  return list;
+}
+
+/// The surface before and after.
+struct Mended {
+  brep::Triangles read;
+  brep::Repair repaired;
+};
+
+Mended mended(const Repair& repair, const std::filesystem::path& path, const voxel::Progress& progress,
+              Timings& timings) {
+  Mended made;
+  {
+    const Stopwatch watch(timings, "read");
+    made.read = read_mesh_in(path, {repair.frame, repair.unit});
+  }
+  const Stopwatch watch(timings, "repair");
+  brep::RepairOptions options;
+  options.weld_mm = repair.weld_mm;
+  options.remove_duplicates = repair.duplicates;
+  options.orient = repair.orient;
+  options.remove_flat = repair.flat;
+  options.fill_holes = repair.holes;
+  options.longest_hole_mm = repair.longest_hole_mm;
+  options.remove_intersections = repair.intersections;
+  options.solid = repair.solid;
+  options.cell_mm = repair.cell_mm;
+  options.hull = repair.hull;
+  options.max_volume_share = repair.max_volume_share;
+  options.progress = {progress.stop, progress.report};
+  made.repaired = brep::repair(made.read, options);
+  return made;
+}
+
+/// What was done and what came of it.
+Json told(const Mended& made, const brep::RepairEffect& effect, const brep::KnownSolids& solids) {
+  const auto estimator = [](bool is_solid) {
+    return is_solid ? "divergence theorem over the mesh"
+                    : "lengths inside on parallel lines; lines through holes are left out";
+  };
+  return {{"changes", changes_json(made.repaired.changes)},
+          {"left", changes_json(made.repaired.left)},
+          {"method", made.repaired.enclosed_cell_mm ? "enclosed" : "mended"},
+          {"cell_mm", made.repaired.enclosed_cell_mm ? Json(*made.repaired.enclosed_cell_mm) : Json(nullptr)},
+          {"volume_before_mm3", effect.volume_before_mm3},
+          {"volume_after_mm3", effect.volume_after_mm3},
+          {"volume_before_estimator", estimator(solids.before)},
+          {"volume_after_estimator", estimator(solids.after)},
+          {"open_line_share", effect.open_line_share},
+          {"area_before_mm2", effect.area_before_mm2},
+          {"area_after_mm2", effect.area_after_mm2},
+          {"largest_distance_mm", effect.largest_distance_mm},
+          {"largest_distance_at_mm", to_json(effect.largest_at_mm)}};
+}
+
+std::string definition(const Repair& repair, const Objects&) {
+  return repair.path.filename().string() + ", mended";
+}
+
+void triangles(const Repair& repair, const MeshBench& bench, MeshSide& made) {
+  const Mended mended_mesh = mended(repair, bench.folder / repair.path, bench.progress, bench.timings);
+  const brep::Health health = brep::health(mended_mesh.repaired.surface);
+  if (!health.solid())
+    throw std::runtime_error(repair.path.string() + ": is still not a solid: " + health.findings.front() +
+                             "; ask for more to be mended");
+  constexpr brep::KnownSolids solids{.before = false, .after = true};
+  made.details =
+      told(mended_mesh, brep::repair_effect(mended_mesh.read, mended_mesh.repaired.surface, solids), solids);
+  made.whole = brep::trusted_solid(mended_mesh.repaired.surface, brep::Proof::Construction);
+  made.lineage = "triangles of " + repair.path.filename().string() + ", mended";
+}
+
+void bound(const Repair&, const BoundBench&, Object&) {}
+
+/// The triangles whose points are finite, which is all that health can be asked of.
+brep::Triangles without_wild_points(brep::Triangles triangles) {
+  std::erase_if(triangles.faces, [&](const auto& face) {
+    return std::any_of(face.begin(), face.end(), [&](std::uint32_t v) {
+      const glm::dvec3& p = triangles.points_mm[v];
+      return !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z);
+    });
+  });
+  return triangles;
+}
+
+/// glTF is written for viewers and not read.
+bool readable(const std::filesystem::path& path) {
+  return path.extension() != ".glb";
+}
+
+FileAnswer on_files(const Repair& repair, const FileBench& bench) {
+  need_mesh_extension(repair.out);
+  need_folder_of(repair.out);
+  const Mended made = mended(repair, repair.path, bench.progress("repair"), bench.timings);
+  const brep::Triangles& read = made.read;
+  const brep::Repair& repaired = made.repaired;
+  if (repaired.surface.faces.empty())
+    throw std::runtime_error(repair.path.string() + ": no triangle is left of it, so nothing is written");
+  const auto timed = [&](const char* stage, const auto& run) {
+    const Stopwatch watch(bench.timings, stage);
+    return run();
+  };
+  const brep::Health before = timed("health", [&] { return brep::health(without_wild_points(read)); });
+  Outputs outputs;
+  brep::Health after;
+  outputs.write(repair.out, [&](const std::filesystem::path& file) {
+    write_surface(brep::mesh_of(repaired.surface), file, bench.timings);
+    // Of the file: formats round points, and some say nothing of which triangles share one.
+    after = timed("health", [&] {
+      return readable(file) ? brep::health(brep::read_triangles(file)) : brep::health(repaired.surface);
+    });
+  });
+  outputs.commit();
+  const brep::KnownSolids solids{.before = before.solid(),
+                                 .after = after.solid() || brep::health(repaired.surface).solid()};
+  const brep::RepairEffect effect =
+      timed("effect", [&] { return brep::repair_effect(read, repaired.surface, solids); });
+  FileAnswer answer;
+  for (const brep::Change& left : repaired.left) answer.findings.push_back(left.step + ": " + left.what);
+  if (!after.solid() && solids.after)
+    answer.findings.push_back("the surface is a solid, but as " + repair.out.extension().string() +
+                              " has it, rounded, it is none: write .ply, .off or .vtp");
+  answer.json = {{"path", repair.out.string()}};
+  answer.json.update(told(made, effect, solids));
+  answer.json["before"] = to_json(before);
+  answer.json["health"] = to_json(after);
+  answer.json["findings"] = answer.findings;
+  const auto from_to = [](double was, double is, const char* unit) {
+    return grouped(was, 1) + " to " + grouped(is, 1) + unit;
+  };
+  answer.rows = {{"written", repair.out.string()},
+                 {"method", repaired.enclosed_cell_mm ? "enclosed anew, cells of " +
+                                                            three_figures(*repaired.enclosed_cell_mm) + " mm"
+                                                      : "mended"},
+                 {"changes", grouped(static_cast<double>(repaired.changes.size()), 0)},
+                 {"volume", from_to(effect.volume_before_mm3, effect.volume_after_mm3, " mm\u00b3")},
+                 {"area", from_to(effect.area_before_mm2, effect.area_after_mm2, " mm\u00b2")},
+                 {"moved", "up to " + three_figures(effect.largest_distance_mm) + " mm"},
+                 {"solid", after.solid() ? "yes" : "no: " + after.findings.front()}};
+  constexpr std::size_t shown = 20;
+  for (std::size_t i = 0; i < std::min(shown, repaired.changes.size()); ++i)
+    answer.rows.emplace_back(repaired.changes[i].step, repaired.changes[i].what);
+  if (repaired.changes.size() > shown) answer.rows.emplace_back("...", "the rest with --json");
+  return answer;
+}
+
+}  // namespace
+
+Operation repair_operation() {
+  return Describe<Repair>("repair", "Mends a mesh in the ways asked for and lists each change.",
+                          Makes::Object)
+      .takes(field("path", &Repair::path,
+                   std::string("A mesh: ") + brep::mesh_formats_read + ", relative to the plan's folder.")
+                 .required()
+                 .positional("mesh")
+                 .a_file())
+      .takes(field("frame", &Repair::frame,
+                   "Where x, y and z of the file point, whatever it says: LPS, RAS, or three other letters. "
+                   "Default: what the file says, else LPS."))
+      .takes(field("unit", &Repair::unit,
+                   "The file's unit, whatever it says. Default: what the file says, else mm.")
+                 .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
+      .takes(field("weld_mm", &Repair::weld_mm,
+                   "Points no further apart than this become one; 0 joins equal points.")
+                 .from(0.0)
+                 .to(1e6))
+      .takes(field("duplicates", &Repair::duplicates, "Of triangles with the same points keeps the first."))
+      .takes(field("orient", &Repair::orient, "Makes neighbours alike, shells outward, cavities inward."))
+      .takes(field("flat", &Repair::flat, "Takes out triangles without area."))
+      .takes(field("holes", &Repair::holes, "Closes holes."))
+      .takes(field("longest_hole_mm", &Repair::longest_hole_mm, "Leaves holes open whose border is longer.")
+                 .greater_than(0.0))
+      .takes(field("intersections", &Repair::intersections,
+                   "Takes out triangles that intersect and closes what they leave: moves the surface there."))
+      .takes(
+          field("solid", &Repair::solid,
+                "A closed solid of any surface: all of the above, and where that leaves none, the surface is "
+                "made anew about what its triangles wind round."))
+      .takes(field("cell_mm", &Repair::cell_mm,
+                   "Of a surface made anew, the cells' edge. Default: the triangles' mean side.")
+                 .greater_than(0.0))
+      .takes(field("hull", &Repair::hull,
+                   "Of a surface made anew, only the outermost shells: cavities are filled."))
+      .takes(
+          field("max_volume_share", &Repair::max_volume_share,
+                "The share of the volume that may be gained or lost where triangles intersect; beyond it the "
+                "repair is refused.")
+              .greater_than(0.0))
+      .verb_takes(field("out", &Repair::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.").required())
+      .example(R"({"id": "plate", "do": "repair", "path": "plate.stl", "weld_mm": 0.001, "holes": true})")
+      .on_files(
+          "octotomy repair scan.stl --solid -o solid.ply\n"
+          "  octotomy repair scan.stl --weld 0.001 --duplicates --flat --orient --holes -o mended.ply",
+          on_files)
+      .check(check)
+      .object(definition, nullptr, triangles, bound);
+}
+
+}  // namespace octotomy::planner

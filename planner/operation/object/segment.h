@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/operation/table/field.h"
+#include "voxel/space/progress.h"
+#include "voxel/tree/grey_octree.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::planner {
+
+/// An object of a scan: by window, suggestion, seeds or label; then choices among what that holds, in the
+/// order of the fields.
+struct Segment {
+  ScanName scan;
+  std::optional<SampleWindow> window;
+  std::optional<int> otsu, otsu_class, label;
+  std::optional<std::string> named;  ///< of a label; `names` is its table
+  std::filesystem::path names;
+  std::optional<double> tolerance;
+  std::filesystem::path regions;  ///< drawn on slices; `structure` is the one meant of a structure set
+  std::string structure;
+  bool other_identity = false;  ///< the structure set may be of another patient, study or frame of reference
+  std::optional<double> open_mm;
+  std::vector<glm::dvec3> seeds_mm;
+  bool largest = false;
+  std::optional<int> components;
+  std::optional<double> at_least_mm3, close_mm;
+  bool fill = false;
+  int neighbours = 6;
+  std::vector<glm::dvec3> keep_bridges_mm, cut_bridges_mm;  ///< as BridgeDecisions
+  double bridge_mm = 5.0;
+  std::vector<glm::dvec3> agreed_mm = {};  ///< as BridgeDecisions
+};
+
+/// What an object is segmented from.
+struct SegmentSource {
+  std::string name;  ///< of the scan, for refusals
+  const voxel::Scene& scene;
+  const voxel::Universe& universe;
+  std::function<const voxel::GreyOctree&()> grey;  ///< the samples in the universe; not asked for a label
+  std::filesystem::path folder = {};               ///< paths of files are relative to it
+  std::stop_token stop = {};
+};
+
+/// The voxels, and each choice with what it left. `base` is what the choices began with: the window or label,
+/// within regions; growing has none.
+struct Segmented {
+  voxel::Octree octree;
+  nlohmann::ordered_json steps = nlohmann::ordered_json::array();
+  std::optional<voxel::Octree> base = std::nullopt;
+  std::vector<std::string> findings = {};
+};
+
+/// The voxel kernel's answer. Precondition: `window` in place of `otsu`, see otsu_window(). Throws
+/// std::runtime_error where nothing is left or a seed lies outside; Stopped between choices.
+Segmented segmented(const Segment& segment, const SegmentSource& source);
+
+/// The same object at the scan's own samples, in a universe whose first voxels are they: voxels of `made`, of
+/// segmented() in any universe, say which parts are the object's, and the samples where it ends.
+/// Precondition: `source` is on voxel::universe_on() of the scan. Throws Stopped. See
+/// voxel::chosen_samples().
+voxel::Octree on_own_samples(const Segment& segment, const SegmentSource& source, const Segmented& made);
+
+/// The label of the name that is asked for, of the given table or that of the label map, whose scene is
+/// given. Adds to `findings` the files that were passed over. Throws std::runtime_error with the names that
+/// there are.
+int label_of_name(const Segment& segment, const std::filesystem::path& label_map, const voxel::Scene& scene,
+                  const std::filesystem::path& folder, std::vector<std::string>& findings);
+
+/// The window of one of the classes of least variance (Otsu 1979), from the darkest, 1, and the thresholds
+/// with the histogram that they part.
+struct OtsuWindow {
+  SampleWindow window;
+  nlohmann::ordered_json suggestion;
+};
+OtsuWindow otsu_window(const voxel::Scene& scene, int classes, int number);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The pieces of a surface, each as a file or an object of its own. Nothing moves and nothing is mended, so
+// that any triangles can be separated; an object is a solid, so a step takes a solid apart.
+#include <algorithm>
+#include <map>
+
+#include "brep/mesh/components.h"
+#include "brep/mesh/disjoint_sets.h"
+#include "planner/operation/file/mesh_file.h"
+#include "planner/operation/file/outputs.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/table/json.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Separate {
+  ObjectName object;
+  std::optional<int> piece;
+  double least_mm2 = 0.0;
+  std::filesystem::path out;
+};
+
+void check(const Separate& separate, const Place& place) {
+  if (place.scope != nullptr && !separate.piece)
+    place.at("piece").refuse("is missing: say which, 1 the largest; a step for each piece");
+}
+
+std::string definition(const Separate& separate, const Objects&) {
+  return "piece " + std::to_string(separate.piece.value_or(1)) + " of " + separate.object.name;
+}
+
+void triangles(const Separate& separate, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "components");
+  const brep::Solid& solid = bench.object(separate.object.name);
+  const std::vector<brep::Component> pieces = brep::components(solid);
+  const auto wanted = static_cast<std::size_t>(separate.piece.value_or(1));
+  if (wanted > pieces.size())
+    throw std::runtime_error("'" + separate.object.name + "' has " + std::to_string(pieces.size()) +
+                             " pieces, so there is no piece " + std::to_string(wanted));
+  made.details = {{"piece", wanted}, {"of", pieces.size()}, {"cavities", pieces[wanted - 1].cavities}};
+  made.whole =
+      brep::trusted_solid(brep::part_of(solid, pieces[wanted - 1].faces), brep::proof_of_part(solid.proof()));
+  made.lineage = "triangles that share edges";
+}
+
+void bound(const Separate& separate, const BoundBench& bench, Object& made) {
+  inherit(bench.objects.at(separate.object.name), made);
+}
+
+/// A piece of a surface of any triangles.
+struct Piece {
+  std::vector<std::uint32_t> faces;
+  double area_mm2 = 0.0;
+  std::optional<double> volume_mm3;  ///< of a closed surface; cavities taken off
+  std::size_t cavities = 0;
+};
+
+/// Of a closed surface its bodies with their cavities, by volume; otherwise what triangles join by edges, by
+/// area.
+std::vector<Piece> pieces_of(const brep::Mesh& surface) {
+  std::vector<Piece> pieces;
+  const auto edges = surface.edges();
+  if (std::none_of(edges.begin(), edges.end(), [](const auto& edge) { return edge.is_boundary(); })) {
+    for (brep::Component& part : brep::components(surface))
+      pieces.push_back({std::move(part.faces), part.area_mm2, part.volume_mm3, part.cavities});
+    return pieces;
+  }
+  brep::DisjointSets sets(surface.n_faces());
+  for (const auto edge : surface.edges())
+    if (!edge.is_boundary())
+      sets.join(static_cast<std::uint32_t>(edge.h0().face().idx()),
+                static_cast<std::uint32_t>(edge.h1().face().idx()));
+  std::map<std::uint32_t, std::size_t> number;
+  for (const auto face : surface.faces()) {
+    const auto f = static_cast<std::uint32_t>(face.idx());
+    const auto [known, is_new] = number.emplace(sets.set_of(f), pieces.size());
+    if (is_new) pieces.emplace_back();
+    Piece& piece = pieces[known->second];
+    piece.faces.push_back(f);
+    piece.area_mm2 += surface.calc_face_area(face);
+  }
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [](const Piece& a, const Piece& b) { return a.area_mm2 > b.area_mm2; });
+  return pieces;
+}
+
+/// "parts.ply" as "parts-3.ply".
+std::filesystem::path numbered(const std::filesystem::path& out, std::size_t number) {
+  return out.parent_path() / (out.stem().string() + "-" + std::to_string(number) + out.extension().string());
+}
+
+void need_piece(const Separate& asked, std::size_t number) {
+  need_untyped_surface(numbered(asked.out, number), {asked.object.name});
+}
+
+FileAnswer on_files(const Separate& asked, const FileBench& bench) {
+  need_mesh_extension(asked.out);
+  asked.piece ? need_folder_of(asked.out) : need_piece(asked, 1);
+  FileAnswer answer;
+  const brep::Mesh surface = read_surface(asked.object.name, bench.timings, &answer.findings);
+  std::vector<Piece> pieces;
+  {
+    const Stopwatch watch(bench.timings, "components");
+    pieces = pieces_of(surface);
+  }
+  if (asked.piece && static_cast<std::size_t>(*asked.piece) > pieces.size())
+    throw std::runtime_error(asked.object.name + ": has " + std::to_string(pieces.size()) +
+                             " pieces, so there is no piece " + std::to_string(*asked.piece));
+  for (std::size_t i = 0; i < pieces.size() && !asked.piece; ++i)
+    if (pieces[i].area_mm2 >= asked.least_mm2) need_piece(asked, i + 1);
+  Outputs outputs;
+  Json written = Json::array();
+  std::size_t small = 0;
+  double small_mm2 = 0.0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Piece& piece = pieces[i];
+    if (asked.piece && i + 1 != static_cast<std::size_t>(*asked.piece)) continue;
+    if (piece.area_mm2 < asked.least_mm2) {
+      ++small;
+      small_mm2 += piece.area_mm2;
+      continue;
+    }
+    if (bench.stop.stop_requested()) throw voxel::Stopped("stopped before the pieces were written");
+    const std::filesystem::path path = asked.piece ? asked.out : numbered(asked.out, i + 1);
+    outputs.write(path, [&](const std::filesystem::path& file) {
+      write_surface(brep::part_of(surface, piece.faces), file, bench.timings);
+    });
+    written.push_back({{"piece", i + 1},
+                       {"path", path.string()},
+                       {"triangles", piece.faces.size()},
+                       {"area_mm2", piece.area_mm2},
+                       {"volume_mm3", piece.volume_mm3 ? Json(*piece.volume_mm3) : Json(nullptr)},
+                       {"cavities", piece.cavities}});
+    answer.rows.emplace_back(
+        path.filename().string(),
+        grouped(static_cast<double>(piece.faces.size()), 0) + " triangles, " + grouped(piece.area_mm2, 1) +
+            " mm\u00b2" + (piece.volume_mm3 ? ", " + grouped(*piece.volume_mm3, 1) + " mm\u00b3" : ", open"));
+  }
+  if (small > 0)
+    answer.findings.push_back(std::to_string(small) + " pieces under " + plain(asked.least_mm2) +
+                              " mm\u00b2, " + three_figures(small_mm2) + " mm\u00b2 together, are left out");
+  if (written.empty())
+    throw std::runtime_error(asked.object.name + ": no piece has " + plain(asked.least_mm2) +
+                             " mm\u00b2, so nothing is written");
+  outputs.commit();
+  answer.json = {{"pieces", pieces.size()}, {"written", written}, {"findings", answer.findings}};
+  return answer;
+}
+
+}  // namespace
+
+Operation separate_operation() {
+  return Describe<Separate>("separate", "Takes a surface apart into its pieces.", Makes::Object)
+      .takes(field("object", &Separate::object, "The object, or the mesh file, open or closed.")
+                 .required()
+                 .positional("mesh"))
+      .takes(field("piece", &Separate::piece,
+                   "Which piece: 1 the largest, by volume, or by area where the surface is open.")
+                 .from(1)
+                 .to(1000000))
+      .verb_takes(
+          field("least_mm2", &Separate::least_mm2, "Leaves out pieces of a smaller area.").from(0.0).to(1e9))
+      .verb_takes(field("out", &Separate::out,
+                        "A .stl, .ply, .obj, .off, .vtp or .glb file; without --piece each piece's is "
+                        "numbered, parts-1.ply, and replaces only a file that Octotomy wrote.")
+                      .required())
+      .example(R"({"id": "condyle", "do": "separate", "object": "rest", "piece": 2})")
+      .on_files("octotomy separate scan.vtp --least 10 -o parts.ply", on_files)
+      .check(check)
+      .object(definition, nullptr, triangles, bound);
+}
+
+}  // namespace octotomy::planner

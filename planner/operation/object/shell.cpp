@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The outer layer of an object: its points within a distance of its outside. Each kernel takes its own offset
+// inward from its own answer.
+#include "brep/boolean/boolean.h"
+#include "brep/shape/offset.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "verify/witness/offset_witness.h"
+#include "verify/witness/witness.h"
+#include "voxel/filter/offset.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Shell {
+  ObjectName object;
+  double thickness_mm = 2.0;
+};
+
+std::string definition(const Shell& shell, const Objects&) {
+  return "outer " + plain(shell.thickness_mm) + " mm of " + shell.object.name;
+}
+
+double cell_of(const Shell& shell) {
+  return 0.25 * shell.thickness_mm;
+}
+
+void voxels(const Shell& shell, const VoxelBench& bench, VoxelSide& made) {
+  const VoxelSide& object = bench.object(shell.object.name);
+  const voxel::Expression core = [&] {
+    const Stopwatch watch(bench.timings, "offset_voxel");
+    return voxel::Expression(
+        voxel::offset(object.octree, *object.symbol, -shell.thickness_mm, bench.progress));
+  }();
+  made.octree = bench.combined(voxel::Expression(object.octree) - core);
+  made.symbol = bench.within_universe(*object.symbol - core);
+  made.lineage = "the octree less what is deeper than a distance below its surface between voxels";
+}
+
+void triangles(const Shell& shell, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "offset");
+  const brep::Solid& solid = bench.object(shell.object.name);
+  const brep::Solid core = brep::offset(solid, {.by_mm = -shell.thickness_mm,
+                                                .cell_mm = cell_of(shell),
+                                                .progress = {bench.progress.stop, bench.progress.report}});
+  brep::BooleanResult rest = brep::boolean(solid, brep::Operation::Difference, core, bench.progress.stop);
+  made.shift_mm = rest.shift_mm;
+  made.findings = rest.findings;
+  made.whole = rest.solid;
+  made.lineage = "the mesh less a level set of the distance to it";
+}
+
+void bound(const Shell& shell, const BoundBench& bench, Object& made) {
+  const Object& object = bench.objects.at(shell.object.name);
+  inherit(object, made);
+  if (made.mesh.whole && object.mesh.whole) {
+    const verify::OffsetOperand operand{object.witness, object.voxel.octree, *object.mesh.whole,
+                                        is_whole_voxels(object.voxel)};
+    const verify::OffsetAsked asked{-shell.thickness_mm, cell_of(shell)};
+    made.witness = verify::without(object.witness, verify::witness_of_offset(operand, asked));
+    // The outer surface is the operand's own, and only the inner one was found by distances.
+    const double area_mm2 = made.mesh.whole->measures().area_mm2,
+                 inner_mm2 = area_mm2 - object.mesh.whole->measures().area_mm2;
+    if (inner_mm2 > 0.0)
+      made.bound.measured_apart_mm +=
+          inner_mm2 / area_mm2 * verify::offset_allowance_mm(operand, asked, inner_mm2);
+  }
+  made.ends_with_universe = true;
+}
+
+}  // namespace
+
+Operation shell_operation() {
+  return Describe<Shell>("shell", "Keeps the outer layer of an object.", Makes::Object)
+      .takes(field("object", &Shell::object, "The object.").required().positional("solid"))
+      .takes(field("thickness_mm", &Shell::thickness_mm, "The thickness of the layer.").greater_than(0.0))
+      .example(R"({"id": "crust", "do": "shell", "object": "skull", "thickness_mm": 2})")
+      .on_files("octotomy shell skull.stl --thickness 2 -o crust.stl")
+      .object(definition, voxels, triangles, bound);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// An object's surface without its noise. Only the mesh kernel smooths: its answer is voxelised, so that later
+// steps find it in both kernels, and has no certificate of its own.
+#include "brep/shape/smooth.h"
+
+#include <algorithm>
+
+#include "planner/operation/object/trace.h"
+#include "planner/operation/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Smooth {
+  ObjectName object;
+  int rounds = brep::SmoothOptions{}.rounds;
+  double pass_band = brep::SmoothOptions{}.pass_band;
+  double max_volume_share = brep::SmoothOptions{}.max_volume_share;
+};
+
+/// The surfaces are no farther apart than this, either way: smoothing moves points and keeps triangles, so
+/// that each place of one triangle has one of the other within the largest move of its corners.
+double largest_move_mm(const brep::Solid& solid, const brep::Solid& smoothed) {
+  const std::vector<glm::dvec3>&before = solid.triangles().points_mm, &after = smoothed.triangles().points_mm;
+  double largest_mm = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    largest_mm = std::max(largest_mm, glm::distance(before[i], after[i]));
+  return largest_mm;
+}
+
+std::string definition(const Smooth& smooth, const Objects&) {
+  return smooth.object.name + " smoothed in " + std::to_string(smooth.rounds) + " rounds";
+}
+
+void triangles(const Smooth& smooth, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "smooth");
+  const brep::Solid& solid = bench.object(smooth.object.name);
+  const brep::Solid smoothed =
+      brep::trusted_solid(brep::smooth(solid, {smooth.rounds, smooth.pass_band, smooth.max_volume_share}),
+                          brep::Proof::Connection);
+  made.details = {{"volume_change_mm3", brep::volume_mm3(smoothed) - brep::volume_mm3(solid)},
+                  {"largest_move_mm", largest_move_mm(solid, smoothed)}};
+  made.whole = smoothed;
+  made.lineage = "steps in and out along the mesh (Taubin 1995)";
+}
+
+void bound(const Smooth& smooth, const BoundBench&, Object& made) {
+  made.bound.reshaped = {smooth.object.name};
+  made.ends_with_universe = true;
+}
+
+}  // namespace
+
+Operation smooth_operation() {
+  return Describe<Smooth>("smooth", "Takes noise off an object's surface and keeps its volume.",
+                          Makes::Object)
+      .takes(field("object", &Smooth::object, "The object.").required().positional("mesh"))
+      .takes(field("rounds", &Smooth::rounds, "Steps in and out again.").from(1).to(1000))
+      .takes(field("pass_band", &Smooth::pass_band,
+                   "Waves below this frequency stay: 0.1 keeps those longer than about 10 edges.")
+                 .from(0.001)
+                 .to(0.999))
+      .takes(field("max_volume_share", &Smooth::max_volume_share,
+                   "The share of the volume that may be gained or lost; beyond it the step is refused.")
+                 .greater_than(0.0))
+      .example(R"({"id": "even", "do": "smooth", "object": "skull", "rounds": 10})")
+      .on_files("octotomy smooth skull.stl -o smooth.stl --rounds 10 --json")
+      .object(definition, nullptr, triangles, bound);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/operation/picture/render.h"
+#include "planner/operation/table/object.h"
+#include "voxel/view/drawn_object.h"
+
+namespace octotomy::planner {
+
+/// What the files hold, all in the first one's universe, named as the files are, without folder and ending.
+/// Throws std::runtime_error for files that cannot be drawn, with the path, and for what is no colour.
+std::vector<voxel::DrawnObject> drawn_of_files(const Render& render, const std::vector<ObjectName>& files,
+                                               const FileBench& bench);
+
+/// A plan's object, with the samples that show its surface.
+voxel::DrawnObject drawn(const Object& object, const glm::vec3& colour);
+
+/// The colours and opacities that are asked for, or those of objects that were given none.
+void paint(const Render& render, std::vector<voxel::DrawnObject>& objects);
+
+}  // namespace octotomy::planner

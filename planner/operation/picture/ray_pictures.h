@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "planner/operation/picture/render.h"
+
+namespace octotomy::planner {
+
+/// Shadings that show what lies along rays instead of the first surface: mip, radiograph, composite.
+std::vector<std::string> ray_picture_names();
+bool is_ray_picture(const Render& render);
+
+/// Throws std::runtime_error for what such pictures do not have.
+void check_rays(const Render& render);
+
+/// The samples from which a composite picture shows anything: the window of what is drawn.
+SampleWindow ray_window(const Render& render);
+
+/// Draws such a picture of one object's samples. Throws std::runtime_error where there is not one with
+/// samples.
+RenderedPicture render_rays(const Render& render, const std::vector<voxel::DrawnObject>& objects,
+                            Timings& timings, const std::stop_token& stop);
+
+}  // namespace octotomy::planner

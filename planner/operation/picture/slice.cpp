@@ -1,0 +1,528 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A plane or a curved sheet of samples in true scale, with the outlines of objects.
+#include "planner/operation/picture/slice.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/octree_in.h"
+#include "planner/operation/file/output_path.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/picture/colour.h"
+#include "planner/operation/picture/mesh_voxels.h"
+#include "planner/operation/picture/render.h"
+#include "planner/operation/table/field_json.h"
+#include "planner/operation/table/json_file.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "voxel/scan/image_file.h"
+#include "voxel/view/grid.h"
+#include "voxel/view/reformat.h"
+
+namespace octotomy::planner {
+namespace {
+
+/// Columns of a curved picture of which no pixel size is said: a dental arch fills a screen's width.
+constexpr int least_curve_px = 800;
+
+namespace fs = std::filesystem;
+
+/// What is cut: a scan, or a tree of any kind.
+struct Subject {
+  std::variant<const voxel::Scene*, voxel::GreyOctree, voxel::Octree> samples;
+  voxel::Lattice lattice;
+  std::string unit = "1";
+};
+
+Subject subject_of(const voxel::Scene& scene, const Slice& slice) {
+  if (slice.window) need_hounsfield(*slice.window, scene);
+  return {&scene, scene.lattice, voxel::unit(scene)};
+}
+
+Subject subject_of(const fs::path& path, Timings& timings) {
+  const voxel::OctreeFile file = read_timed(path, timings);
+  Subject subject{voxel::Octree::empty({}), voxel::universe(file).lattice(), "1"};
+  if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
+    subject.samples = *grey;
+    const Json made = Json::parse(file.metadata, nullptr, false);
+    if (made.is_object() && made.value("unit", "") == "HU") subject.unit = "HU";
+  } else if (const auto* octree = std::get_if<voxel::Octree>(&file.tree)) {
+    subject.samples = *octree;
+  } else {
+    subject.samples = voxel::at_least_half(std::get<voxel::PartialOctree>(file.tree));
+  }
+  return subject;
+}
+
+double finest_mm(const voxel::Lattice& lattice) {
+  const glm::dvec3 spacing_mm = lattice.spacing_mm();
+  return std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+}
+
+/// A mesh's inside, in voxels of a pixel's width where that is given.
+Subject subject_of_mesh(const fs::path& path, const Slice& slice, const FileBench& bench) {
+  Subject subject{voxels_of_mesh(path, std::nullopt, slice.pixel_mm, bench), {}, "1"};
+  subject.lattice = std::get<voxel::Octree>(subject.samples).universe().lattice();
+  return subject;
+}
+
+/// Which sheet is drawn, in words and in millimetres.
+struct CutSheet {
+  std::string plane;
+  std::optional<double> position_mm;  ///< none for a curve
+  voxel::Sheet sheet;
+};
+
+/// A position along an axis, or the scan's middle there.
+double position_of(const std::string& plane, const std::string& text, const voxel::Lattice& lattice,
+                   int axis) {
+  if (text == "middle") return lattice.lps_mm(0.5 * glm::dvec3(lattice.dims - 1))[axis];
+  char* end = nullptr;
+  const double position_mm = std::strtod(text.c_str(), &end);
+  if (end == text.c_str() || *end != '\0' || !std::isfinite(position_mm))
+    throw std::runtime_error(plane + ": '" + text + "' is no position: give millimetres, or middle");
+  return position_mm;
+}
+
+/// The view that looks along a direction with `up` as near upwards as it can be.
+voxel::View view_along(const glm::dvec3& direction, const std::optional<glm::dvec3>& wanted_up) {
+  if (!(glm::length(direction) > 0.0))
+    throw std::runtime_error("oblique: the direction has no length: give X,Y,Z, for example 0,1,1");
+  voxel::View view;
+  view.look = glm::normalize(direction);
+  const auto across = [&](const glm::dvec3& up) { return up - view.look * glm::dot(up, view.look); };
+  glm::dvec3 up = across(wanted_up.value_or(glm::dvec3(0, 0, 1)));
+  // The head's direction shows how a plane stands unless the plane lies: then the face is up, as in axial
+  // slices. A plane lies where it leans by less than a degree.
+  if (!wanted_up && glm::length(up) < std::sin(glm::radians(1.0))) up = across(glm::dvec3(0, -1, 0));
+  if (!(glm::length(up) > 0.0))
+    throw std::runtime_error("up: points along the direction that is looked in: choose another");
+  view.up = glm::normalize(up);
+  view.right = glm::cross(view.look, view.up);
+  return view;
+}
+
+/// Points from the words of the command line, or from the file that the only word names.
+std::vector<glm::dvec3> curve_points(const std::vector<std::string>& words) {
+  std::vector<glm::dvec3> points;
+  if (words.size() != 1) {
+    Field field{"curve_mm", "", [&points](void*) -> Slot { return &points; }};
+    for (const nlohmann::json& p : json_of_words(field, nullptr, words))
+      points.emplace_back(p[0], p[1], p[2]);
+    return points;
+  }
+  if (!fs::exists(words.front()))
+    throw std::runtime_error("--curve: '" + words.front() +
+                             "' is no file; give one, or two and more points X,Y,Z in mm");
+  const nlohmann::json json = read_json(words.front());
+  const nlohmann::json list = json.is_object() ? json.value("points_mm", nlohmann::json()) : json;
+  const bool fits =
+      list.is_array() && std::all_of(list.begin(), list.end(), [](const auto& point) {
+        return point.is_array() && point.size() == 3 &&
+               std::all_of(point.begin(), point.end(), [](const auto& x) { return x.is_number(); });
+      });
+  if (!fits)
+    throw std::runtime_error(words.front() + ": is no curve: {\"points_mm\": [[x, y, z], ...]} is expected");
+  for (const nlohmann::json& point : list) points.emplace_back(point[0], point[1], point[2]);
+  return points;
+}
+
+/// A rectangle of a plane about a point's projection onto it; by default the middle of what is cut.
+voxel::Sheet rectangle_of(const Slice& slice, const voxel::Lattice& lattice, const voxel::View& view,
+                          double position_mm, double pixel_mm) {
+  Render said;
+  said.size = slice.size;
+  const glm::ivec2 size_px = size_of(said);
+  const glm::dvec3 asked_mm = slice.centre_mm.value_or(lattice.lps_mm(0.5 * glm::dvec3(lattice.dims - 1)));
+  const glm::dvec3 centre_mm = asked_mm + view.look * (position_mm - glm::dot(asked_mm, view.look));
+  voxel::Sheet sheet;
+  sheet.down = -view.up;
+  sheet.pixel_mm = pixel_mm;
+  sheet.height_px = size_px.y;
+  const glm::dvec3 top_mm = centre_mm + view.up * (0.5 * (size_px.y - 1) * pixel_mm);
+  for (int column = 0; column < size_px.x; ++column)
+    sheet.columns_mm.push_back(top_mm + view.right * ((column - 0.5 * (size_px.x - 1)) * pixel_mm));
+  return sheet;
+}
+
+voxel::Sheet sheet_of(const Slice& slice, const voxel::Lattice& lattice, const voxel::View& view,
+                      double position_mm, double pixel_mm) {
+  return slice.size.empty() ? voxel::plane_sheet(lattice, view, position_mm, pixel_mm)
+                            : rectangle_of(slice, lattice, view, position_mm, pixel_mm);
+}
+
+CutSheet cut_of(const Slice& slice, const voxel::Lattice& lattice) {
+  const double pixel_mm = slice.pixel_mm.value_or(finest_mm(lattice));
+  struct Named {
+    const char* plane;
+    const char* view;
+    const std::string& position;
+    int axis;
+  };
+  const std::array<Named, 3> named{{{"axial", "inferior", slice.axial, 2},
+                                    {"coronal", "anterior", slice.coronal, 1},
+                                    {"sagittal", "left", slice.sagittal, 0}}};
+  const auto asked =
+      std::count_if(named.begin(), named.end(), [](const Named& each) { return !each.position.empty(); }) +
+      (slice.oblique.empty() ? 0 : 1) + (slice.curve_mm.empty() ? 0 : 1);
+  if (asked > 1) throw std::runtime_error("give one of axial, coronal, sagittal, oblique and curve");
+  if (!slice.curve_mm.empty()) {
+    voxel::CurveOptions options;
+    options.points_mm = slice.curve_mm;
+    if (slice.up) options.up = *slice.up;
+    options.height_mm = slice.height_mm;
+    options.pixel_mm = pixel_mm;
+    voxel::Sheet sheet = voxel::curved_sheet(options);
+    if (!slice.pixel_mm && sheet.size_px().x < least_curve_px) {
+      options.pixel_mm *= static_cast<double>(sheet.size_px().x) / least_curve_px;
+      sheet = voxel::curved_sheet(options);
+    }
+    return {"curved", std::nullopt, std::move(sheet)};
+  }
+  if (!slice.oblique.empty()) {
+    const voxel::View view = view_along(slice.oblique[1], slice.up);
+    const double position_mm = glm::dot(slice.oblique[0], view.look);
+    return {"oblique", position_mm, sheet_of(slice, lattice, view, position_mm, pixel_mm)};
+  }
+  const auto* chosen =
+      std::find_if(named.begin(), named.end(), [](const Named& each) { return !each.position.empty(); });
+  if (chosen == named.end()) chosen = named.begin();
+  const double position_mm = position_of(
+      chosen->plane, chosen->position.empty() ? "middle" : chosen->position, lattice, chosen->axis);
+  const voxel::View view = voxel::parse_view(chosen->view);
+  return {chosen->plane, position_mm,
+          sheet_of(slice, lattice, view, position_mm * view.look[chosen->axis], pixel_mm)};
+}
+
+voxel::Interpolation interpolation_of(const std::string& name) {
+  if (name == "nearest") return voxel::Interpolation::Nearest;
+  return name == "cubic" ? voxel::Interpolation::Cubic : voxel::Interpolation::Linear;
+}
+
+voxel::SheetSamples samples_of(const Slice& slice, const Subject& subject, const voxel::Sheet& sheet,
+                               const std::stop_token& stop) {
+  const voxel::Interpolation interpolation = interpolation_of(slice.interpolate);
+  if (const auto* octree = std::get_if<voxel::Octree>(&subject.samples)) {
+    const std::vector<std::uint8_t> inside = voxel::cut(*octree, sheet);
+    voxel::SheetSamples samples;
+    samples.image = {sheet.size_px(), {inside.begin(), inside.end()}};
+    samples.inside.assign(inside.size(), 1);
+    return samples;
+  }
+  if (const auto* grey = std::get_if<voxel::GreyOctree>(&subject.samples))
+    return voxel::sample(*grey, sheet, interpolation, {stop, {}});
+  return voxel::sample(*std::get<const voxel::Scene*>(subject.samples), sheet, interpolation, {stop, {}});
+}
+
+/// Black and white, in sample units.
+voxel::Range shown_range(const Slice& slice, const Subject& subject, const voxel::SheetSamples& samples) {
+  if (!slice.level.empty()) {
+    const double centre = slice.level[0], width = slice.level[1];
+    return {centre - 0.5 * width, centre + 0.5 * width};
+  }
+  if (std::holds_alternative<voxel::Octree>(subject.samples)) return {0.0, 1.0};
+  std::vector<float> values;
+  for (std::size_t i = 0; i < samples.inside.size(); ++i)
+    if (samples.inside[i] != 0) values.push_back(samples.image.values[i]);
+  std::sort(values.begin(), values.end());
+  const auto percentile = [&](double part) {
+    return values.empty()
+               ? 0.0
+               : static_cast<double>(
+                     values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))]);
+  };
+  voxel::Range shown;
+  if (slice.window) {
+    shown = {slice.window->low, slice.window->high.value_or(percentile(1.0))};
+  } else if (subject.unit == "HU") {
+    shown = {-500.0, 1500.0};  // bone and, darker, soft tissue: level 500, width 2000
+  } else {
+    shown = {percentile(0.01), percentile(0.99)};
+  }
+  if (!(shown.low < shown.high)) shown.high = shown.low + 1.0;
+  return shown;
+}
+
+glm::vec3 outline_colour(const Slice& slice, std::size_t i) {
+  // Bone's own colour is that of the picture's greys: outlines begin with the next.
+  return i < slice.colours.size() ? need_colour(slice.colours[i]) : colour_of(i + 1);
+}
+
+/// Draws the objects' outlines; what was drawn.
+Json draw_outlines(const Slice& slice, const std::vector<Outlined>& objects, const voxel::Sheet& sheet,
+                   std::vector<std::uint8_t>& rgb, Timings& timings) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const glm::vec3 colour = outline_colour(slice, i);
+    const Stopwatch watch(timings, "outlines");
+    const std::vector<std::uint8_t> inside = voxel::cut(objects[i].octree, sheet);
+    const std::vector<std::uint8_t> edge = voxel::outline(inside, sheet.size_px());
+    for (std::size_t at = 0; at < edge.size(); ++at)
+      if (edge[at] != 0)
+        for (int channel = 0; channel < 3; ++channel)
+          rgb[3 * at + static_cast<std::size_t>(channel)] =
+              static_cast<std::uint8_t>(std::lround(255.0f * colour[channel]));
+    const auto pixels = std::count(inside.begin(), inside.end(), 1);
+    list.push_back({{"path", objects[i].name},
+                    {"pixels", pixels},
+                    {"outline_pixels", std::count(edge.begin(), edge.end(), 1)},
+                    {"area_mm2", static_cast<double>(pixels) * sheet.pixel_mm * sheet.pixel_mm}});
+  }
+  return list;
+}
+
+/// From (column, row, 0, 1) to LPS; none for a curve.
+std::optional<glm::dmat4> lps_from_pixel(const CutSheet& cut) {
+  if (!cut.position_mm) return std::nullopt;
+  const voxel::Sheet& sheet = cut.sheet;
+  const glm::dvec3 right = sheet.columns_mm.size() > 1
+                               ? (sheet.columns_mm.back() - sheet.columns_mm.front()) /
+                                     static_cast<double>(sheet.columns_mm.size() - 1)
+                               : glm::dvec3(0.0);
+  const glm::dvec3 down = sheet.down * sheet.pixel_mm;
+  const glm::dvec3 across =
+      sheet.columns_mm.size() > 1 ? glm::normalize(glm::cross(right, down)) : glm::dvec3(0.0);
+  glm::dmat4 matrix(glm::dvec4(right, 0), glm::dvec4(down, 0), glm::dvec4(across, 0),
+                    glm::dvec4(sheet.columns_mm.front(), 1));
+  for (int column = 0; column < 4; ++column) matrix[column] += 0.0;  // takes the sign from -0
+  return matrix;
+}
+
+Json said_of(const Slice& slice, const Subject& subject, const CutSheet& cut,
+             const voxel::SheetSamples& samples, const voxel::Range& shown) {
+  Json json{{"plane", cut.plane}};
+  json["position_mm"] = cut.position_mm ? Json(*cut.position_mm) : Json(nullptr);
+  json["pixel_mm"] = cut.sheet.pixel_mm;
+  json["size_px"] = {samples.image.size_px.x, samples.image.size_px.y};
+  const std::optional<glm::dmat4> matrix = lps_from_pixel(cut);
+  json["lps_from_pixel"] = matrix ? to_json(*matrix) : Json(nullptr);
+  const voxel::EdgeLetters letters = voxel::edge_letters(cut.sheet);
+  json["letters"] = {
+      {"left", letters.left}, {"right", letters.right}, {"top", letters.top}, {"bottom", letters.bottom}};
+  json["window"] = {shown.low, shown.high};
+  json["unit"] = subject.unit;
+  json["interpolation"] = slice.interpolate;
+  json["inside_pixels"] = std::count(samples.inside.begin(), samples.inside.end(), 1);
+  std::optional<voxel::Range> values;
+  for (std::size_t i = 0; i < samples.inside.size(); ++i)
+    if (const double value = samples.image.values[i]; samples.inside[i] != 0) {
+      if (!values) values = voxel::Range{value, value};
+      values = voxel::Range{std::min(values->low, value), std::max(values->high, value)};
+    }
+  json["values"] = values ? Json::array({values->low, values->high}) : Json(nullptr);
+  if (!values) json["findings"] = {"no pixel lies in the scan: the curve passes beside it"};
+  return json;
+}
+
+/// The grid of a plane, in the millimetres of the view in which it is looked at.
+voxel::Grid grid_of(const CutSheet& cut, double spacing_mm) {
+  const std::optional<glm::dmat4> matrix = lps_from_pixel(cut);
+  if (!matrix || cut.sheet.columns_mm.size() < 2)
+    throw std::runtime_error("--grid: a grid is of planes; a curved picture has none");
+  const glm::dmat3 mm_from_pixel = PictureFrame{cut.sheet.size_px(), *matrix}.view_mm_from_pixel();
+  return {spacing_mm, glm::dvec2(mm_from_pixel * glm::dvec3(-0.5, -0.5, 1.0)), cut.sheet.pixel_mm};
+}
+
+/// Letters, a scale and a legend.
+void annotate(SlicePicture& picture, const Slice& slice, const CutSheet& cut,
+              const std::vector<Outlined>& objects) {
+  voxel::ImagePlane plane;
+  plane.size_px = picture.sheet.size_px();
+  plane.pixel_mm = cut.sheet.pixel_mm;
+  voxel::Annotation annotation;
+  annotation.letters = voxel::edge_letters(cut.sheet);
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    annotation.legend.push_back({fs::path(objects[i].name).stem().string(), outline_colour(slice, i)});
+  voxel::annotate(picture.rgb, plane, annotation);
+  picture.said["scale_bar_mm"] = voxel::round_length(0.25 * plane.size_px.x * cut.sheet.pixel_mm);
+}
+
+SlicePicture drawn(const Slice& slice, const Subject& subject, const std::vector<Outlined>& objects,
+                   Timings& timings, const std::stop_token& stop) {
+  const CutSheet cut = cut_of(slice, subject.lattice);
+  SlicePicture picture{cut.sheet, {}, cut.sheet.size_px(), {}, {}, {}};
+  voxel::SheetSamples& samples = picture.samples;
+  {
+    const Stopwatch watch(timings, "slice");
+    samples = samples_of(slice, subject, cut.sheet, stop);
+  }
+  const voxel::Range shown = shown_range(slice, subject, samples);
+  picture.rgb = voxel::grey_tones(samples.image, shown.low, shown.high);
+  picture.said = said_of(slice, subject, cut, samples, shown);
+  // What lies beside the scan is black, not the border's grey.
+  for (std::size_t i = 0; i < samples.inside.size(); ++i)
+    if (samples.inside[i] == 0) std::fill_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, 0);
+  picture.said["outlines"] = draw_outlines(slice, objects, cut.sheet, picture.rgb, timings);
+  picture.said["scale_bar_mm"] = nullptr;
+  std::optional<voxel::Grid> grid;
+  if (slice.grid_mm) grid = grid_of(cut, *slice.grid_mm);
+  if (grid) voxel::draw_grid({picture.size_px, &picture.rgb}, *grid);
+  if (!slice.plain) annotate(picture, slice, cut, objects);
+  if (grid) picture.size_px = voxel::add_grid_margin(picture.rgb, picture.size_px, *grid);
+  picture.said["size_px"] = {picture.size_px.x, picture.size_px.y};
+  if (const auto matrix = lps_from_pixel(cut); matrix && cut.sheet.columns_mm.size() > 1)
+    picture.frame = PictureFrame{picture.size_px, *matrix};
+  return picture;
+}
+
+void check(const Slice& slice, const Place& place) {
+  if (slice.window && !slice.level.empty())
+    place.at("level").refuse("says the same as 'window': leave one out");
+  if (!slice.size.empty() && !slice.curve_mm.empty())
+    place.at("size").refuse("is of planes; a curve's picture is as long as the curve");
+  if (slice.grid_mm && !slice.curve_mm.empty())
+    place.at("grid_mm").refuse("is of planes; a curved picture has none");
+  if (slice.centre_mm && slice.size.empty())
+    place.at("centre_mm").refuse("is of pictures of a 'size': add it");
+  if (slice.colours.size() > slice.objects.size()) place.at("colours").refuse("give at most one an object");
+  if (!slice.level.empty() && !(slice.level[1] > 0.0))
+    place.at("level").refuse("is CENTRE and WIDTH, which is above zero");
+  for (const std::string& colour : slice.colours) need_colour(colour);
+  if (place.scope != nullptr) check_output_path(slice.path, {".png", ".jpg", ".webp"}, place.at("path"));
+}
+
+void write(const fs::path& path, const SlicePicture& picture) {
+  voxel::write_image(path, picture.size_px, picture.rgb, image_text(picture.frame));
+}
+
+void write(const Slice& slice, const AnswerBench& bench, Exported& made) {
+  made.path = output_path(slice.path).generic_string();
+  std::vector<Outlined> objects;
+  for (const ObjectName& name : slice.objects)
+    objects.push_back({name.name, bench.objects.at(name.name).voxel.octree});
+  SlicePicture picture =
+      drawn(slice, subject_of(bench.samples(slice.scan.name), slice), objects, bench.timings, bench.stop);
+  write(output_file(bench.folder, made.path), picture);
+  made.written = true;
+  made.content = "a " + picture.said["plane"].get<std::string>() + " picture, " +
+                 std::to_string(picture.size_px.x) + " x " + std::to_string(picture.size_px.y) + " pixels";
+  made.details = std::move(picture.said);
+}
+
+FileAnswer on_files(const Slice& asked, const FileBench& bench) {
+  need_picture_extension(asked.out);
+  need_folder_of(asked.out);
+  Slice slice = asked;
+  if (!asked.curve.empty()) slice.curve_mm = curve_points(asked.curve);
+  const fs::path file = asked.scan.name;
+  std::optional<voxel::Scene> scene;
+  if (!is_octree(file) && !is_mesh(file)) scene = bench.read_scan(file);
+  const Subject subject = scene           ? subject_of(*scene, slice)
+                          : is_mesh(file) ? subject_of_mesh(file, slice, bench)
+                                          : subject_of(file, bench.timings);
+  std::vector<Outlined> objects;
+  for (const ObjectName& name : asked.objects) {
+    if (is_mesh(name.name)) {
+      objects.push_back(
+          {name.name, voxels_of_mesh(name.name, std::nullopt, finest_mm(subject.lattice), bench)});
+      continue;
+    }
+    const voxel::OctreeFile outlined = read_timed(name.name, bench.timings);
+    const auto* octree = std::get_if<voxel::Octree>(&outlined.tree);
+    if (octree == nullptr)
+      throw std::runtime_error(name.name +
+                               ": only a binary octree has an outline: choose an object with octotomy octree "
+                               "--window LOW:HIGH");
+    objects.push_back({name.name, *octree});
+  }
+  const SlicePicture picture = drawn(slice, subject, objects, bench.timings, bench.stop);
+  {
+    const Stopwatch watch(bench.timings, "write");
+    write(asked.out, picture);
+  }
+  FileAnswer answer{{{"path", asked.out.string()}, {"source", file.string()}}};
+  answer.json.update(picture.said);
+  const Json& position = picture.said["position_mm"];
+  answer.rows = {
+      {"written", asked.out.string()},
+      {"plane", picture.said["plane"].get<std::string>() +
+                    (position.is_null() ? "" : " at " + grouped(position.get<double>(), 2) + " mm")},
+      {"pixel", grouped(picture.said["pixel_mm"].get<double>(), 4) + " mm"},
+      {"window", grouped(picture.said["window"][0].get<double>(), 0) + " to " +
+                     grouped(picture.said["window"][1].get<double>(), 0)}};
+  return answer;
+}
+
+}  // namespace
+
+SlicePicture slice_of(const Slice& slice, const voxel::Scene& scene, const std::vector<Outlined>& objects,
+                      Timings& timings, const std::stop_token& stop) {
+  return drawn(slice, subject_of(scene, slice), objects, timings, stop);
+}
+
+Operation slice_operation() {
+  return Describe<Slice>("slice",
+                         "Draws a plane or a curved sheet of a scan in true scale, with octrees' outlines.",
+                         Makes::File)
+      .takes(field("scan", &Slice::scan, "The scan; of the verb also an .octree file or a mesh.")
+                 .required()
+                 .positional("file"))
+      .takes(field("path", &Slice::path, "The .png, .jpg or .webp file within the result's folder.")
+                 .in_plans_only())
+      .takes(field(
+          "axial", &Slice::axial,
+          "z in mm, or middle, which is drawn where no plane is said; from below, the patient's left is "
+          "on the right."))
+      .takes(field("coronal", &Slice::coronal, "y in mm, or middle; from the front."))
+      .takes(field("sagittal", &Slice::sagittal, "x in mm, or middle; from the patient's left."))
+      .takes(field("oblique", &Slice::oblique, "A point, LPS mm, and the direction that is looked in.")
+                 .from(2)
+                 .to(2))
+      .takes(field("curve_mm", &Slice::curve_mm, "Two or more points of a curved sheet, left to right.")
+                 .from(2)
+                 .in_plans_only())
+      .takes(field("height_mm", &Slice::height_mm, "Height of a curved sheet.").greater_than(0.0))
+      .takes(
+          field("up", &Slice::up, "Upwards in an oblique or curved picture. Default: the head.").direction())
+      .takes(field("window", &Slice::window, "Black and white as LOW:HIGH, or a tissue."))
+      .takes(field("level", &Slice::level,
+                   "The same as a centre and a width. Default: 500 and 2000 for Hounsfield units.")
+                 .from(2)
+                 .to(2)
+                 .comma_separated()
+                 .for_example("CENTRE,WIDTH as 500,2000"))
+      .takes(field("objects", &Slice::objects,
+                   "Objects whose outlines are drawn; of the verb binary octrees and meshes.")
+                 .repeated()
+                 .called("octree"))
+      .takes(field("colours", &Slice::colours, "Colours of the outlines, #RRGGBB, in their order.")
+                 .repeated()
+                 .called("colour"))
+      .takes(
+          field("pixel_mm", &Slice::pixel_mm,
+                "Edge of a pixel. Default: the scan's smallest spacing; finer in a curved picture of fewer "
+                "than 800 columns.")
+              .greater_than(0.0))
+      .takes(field("size", &Slice::size, "WxH in pixels. Default: all of the scan."))
+      .takes(field("centre_mm", &Slice::centre_mm,
+                   "X,Y,Z in LPS of a point whose place on the plane is the picture's middle. Default: the "
+                   "scan's middle.")
+                 .called("centre"))
+      .takes(field("interpolate", &Slice::interpolate, "Between samples.")
+                 .one_of({"nearest", "linear", "cubic"}))
+      .takes(field("plain", &Slice::plain, "No letters and no scale bar."))
+      .takes(field("grid_mm", &Slice::grid_mm,
+                   "Draws lines at multiples of so many millimetres; a margin that is added at the right and "
+                   "below tells their places in the view that looks at the plane.")
+                 .from(0.1)
+                 .to(1000.0)
+                 .called("grid"))
+      .verb_takes(field("out", &Slice::out, "A .png, .jpg or .webp file.").required())
+      .verb_takes(
+          field("curve", &Slice::curve,
+                "X,Y,Z in mm of two or more points, left to right, or a JSON file with them as points_mm."))
+      .reads_scans()
+      .example(R"({"id": "axial", "do": "slice", "scan": "ct", "path": "axial.png", "axial": "40",
+        "objects": ["maxilla"]})")
+      .on_files(
+          "octotomy slice head.nrrd -o axial.png --axial 40 --level 500,2000 --octree maxilla.octree\n"
+          "  octotomy slice head.nrrd -o oblique.png --oblique 0,0,30 0,1,0.5\n"
+          "  octotomy slice head.nrrd -o arch.png --curve -30,10,5 -15,-25,5 15,-25,5 30,10,5 --height 70",
+          on_files)
+      .check(check)
+      .write(write);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "planner/operation/table/scope.h"
+
+namespace octotomy::planner {
+
+/// One number for all axes, or one for each. Precondition: check_axes() passes.
+inline glm::ivec3 of_axes(const std::vector<int>& numbers) {
+  return numbers.size() == 1 ? glm::ivec3(numbers[0]) : glm::ivec3(numbers[0], numbers[1], numbers[2]);
+}
+
+/// Refuses what is neither.
+inline void check_axes(const std::vector<int>& numbers, const Place& place) {
+  if (numbers.size() != 1 && numbers.size() != 3) place.refuse("must be one number, or one for each axis");
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "planner/operation/table/sample_window.h"
+
+// The fields of operations: the name, type and meaning of each. Reading and printing JSON, refusals, the
+// schema, the command line's options and their help all derive from this one description.
+namespace octotomy::planner {
+
+/// The name of an object that an earlier step makes.
+struct ObjectName {
+  std::string name;
+};
+/// The name of a scan of the plan.
+struct ScanName {
+  std::string name;
+};
+/// A place: a point in LPS millimetres, or a named object's surface.
+struct Site {
+  glm::dvec3 point_mm{0.0};
+  std::string object;  ///< empty: the point
+};
+/// A point: typed in LPS millimetres, or a landmark of the plan. The landmark is at its position in the scan,
+/// or, as "ans@advanced", where that object's motions put it.
+struct Mark {
+  glm::dvec3 p_mm{0.0};  ///< of a landmark: in the scan
+  std::string landmark;  ///< empty: typed
+  std::string object;    ///< empty: as in the scan
+
+  bool operator==(const Mark&) const = default;
+};
+/// Closed polygons in the millimetres (u, v) of a view.
+using Polygons = std::vector<std::vector<glm::dvec2>>;
+/// Pairs of names of objects.
+using NamePairs = std::vector<std::pair<std::string, std::string>>;
+
+/// Records within an operation: one that may be absent, a list of them, or some by the names of objects.
+struct Records {
+  enum class Form { Optional, List, ByName };
+  Form form = Form::Optional;
+  std::size_t count = 0;
+  std::function<void*(std::size_t index)> at;
+  std::function<std::string(std::size_t index)> name_of;  ///< ByName only
+  std::function<void*(const std::string& name)> add;      ///< the name matters to ByName only
+};
+
+/// Where a field's value lies in an operation. The alternative is the field's type.
+using Slot = std::variant<
+    bool*, int*, double*, std::string*, std::filesystem::path*, glm::dvec3*, ObjectName*, ScanName*, Site*,
+    std::optional<double>*, std::optional<int>*, std::optional<std::string>*, std::optional<glm::dvec3>*,
+    std::optional<ObjectName>*, SampleWindow*, std::optional<SampleWindow>*, std::vector<double>*,
+    std::vector<int>*, std::vector<std::string>*, std::vector<glm::dvec3>*, std::vector<ObjectName>*, Mark*,
+    std::optional<Mark>*, std::vector<Mark>*, std::optional<glm::dmat4>*, Polygons*, NamePairs*, Records>;
+
+/// The unit at the end of a name, for people: "mm", "mm³", "°"; empty if there is none.
+std::string unit_of_name(const std::string& name);
+
+/// One field of an operation or of a record within it.
+struct Field {
+  std::string name;  ///< as in a plan; a measured value's name ends in its unit: "kerf_mm"
+  std::string says;  ///< one plain sentence
+  std::function<Slot(void* owner)> slot;
+  std::vector<Field> fields = {};  ///< of the records that it holds
+
+  bool is_required = false;
+  bool is_direction = false;            ///< a vector that must have a length
+  std::optional<double> above = {};     ///< numbers are greater
+  std::optional<double> least = {};     ///< numbers are at least this, lists have at least so many entries
+  std::optional<double> most = {};      ///< numbers are at most this, lists have at most so many entries
+  std::optional<double> below = {};     ///< numbers are less
+  std::vector<std::string> words = {};  ///< the texts that are allowed; empty: any that is not empty
+  std::string sample = {};              ///< an example for refusals, as JSON
+
+  std::optional<std::string> argument = {};  ///< on the command line a positional argument of this name
+  std::string option = {};                   ///< on the command line "--" and this; default: from `name`
+  bool has_commas = false;                   ///< a list that is one word with commas
+  bool is_repeated = false;                  ///< a list whose option is repeated for each entry
+  bool is_of_plans = false;                  ///< only in plans: the command line has another form for it
+  bool is_input = false;                     ///< a path that is read: on the command line it must exist
+
+  Field required() && { return is_required = true, std::move(*this); }
+  Field direction() && { return is_direction = true, std::move(*this); }
+  Field greater_than(double bound) && { return above = bound, std::move(*this); }
+  Field less_than(double bound) && { return below = bound, std::move(*this); }
+  Field from(double bound) && { return least = bound, std::move(*this); }
+  Field to(double bound) && { return most = bound, std::move(*this); }
+  Field one_of(std::vector<std::string> allowed) && { return words = std::move(allowed), std::move(*this); }
+  Field for_example(std::string json) && { return sample = std::move(json), std::move(*this); }
+  Field positional(std::string as) && { return argument = std::move(as), std::move(*this); }
+  Field comma_separated() && { return has_commas = true, std::move(*this); }
+  Field repeated() && { return is_repeated = true, std::move(*this); }
+  Field in_plans_only() && { return is_of_plans = true, std::move(*this); }
+  Field a_file() && { return is_input = true, std::move(*this); }
+  Field called(std::string as) && { return option = std::move(as), std::move(*this); }
+
+  std::string unit() const;  ///< unit_of_name() of its name
+};
+
+/// A field that holds a value of a type of Slot.
+template <typename Owner, typename Value>
+Field field(std::string name, Value Owner::*member, std::string says) {
+  return {std::move(name), std::move(says),
+          [member](void* owner) -> Slot { return &(static_cast<Owner*>(owner)->*member); }};
+}
+
+/// A record that may be absent.
+template <typename Owner, typename Record>
+Field record(std::string name, std::optional<Record> Owner::*member, std::string says,
+             std::vector<Field> fields) {
+  const auto slot = [member](void* owner) -> Slot {
+    auto& held = static_cast<Owner*>(owner)->*member;
+    return Records{Records::Form::Optional,
+                   held ? 1u : 0u,
+                   [&held](std::size_t) -> void* { return &*held; },
+                   {},
+                   [&held](const std::string&) -> void* { return &held.emplace(Record{}); }};
+  };
+  return {std::move(name), std::move(says), slot, std::move(fields)};
+}
+
+/// A list of records.
+template <typename Owner, typename Record>
+Field records(std::string name, std::vector<Record> Owner::*member, std::string says,
+              std::vector<Field> fields) {
+  const auto slot = [member](void* owner) -> Slot {
+    auto& held = static_cast<Owner*>(owner)->*member;
+    return Records{Records::Form::List,
+                   held.size(),
+                   [&held](std::size_t index) -> void* { return &held[index]; },
+                   {},
+                   [&held](const std::string&) -> void* { return &held.emplace_back(); }};
+  };
+  return {std::move(name), std::move(says), slot, std::move(fields)};
+}
+
+/// Records by the names of objects, in the order in which they are given.
+template <typename Owner, typename Record>
+Field records_by_name(std::string name, std::vector<std::pair<std::string, Record>> Owner::*member,
+                      std::string says, std::vector<Field> fields) {
+  const auto slot = [member](void* owner) -> Slot {
+    auto& held = static_cast<Owner*>(owner)->*member;
+    return Records{
+        Records::Form::ByName, held.size(),
+        [&held](std::size_t index) -> void* { return &held[index].second; },
+        [&held](std::size_t index) { return held[index].first; },
+        [&held](const std::string& key) -> void* { return &held.emplace_back(key, Record{}).second; }};
+  };
+  return {std::move(name), std::move(says), slot, std::move(fields)};
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "planner/operation/table/field.h"
+#include "planner/operation/table/scope.h"
+
+// Fields and JSON: one reader, one printer and one schema for every operation.
+namespace octotomy::planner {
+
+/// Reads an object's keys into the fields of `owner`. `also` lists further keys that are allowed but not read
+/// here. Throws std::runtime_error with the place, what is wrong and what to try: an unknown key with the
+/// nearest known one, a missing one, a wrong type, a number out of its range, a name that is not bound.
+void read_fields(const std::vector<Field>& fields, const nlohmann::json& object, void* owner,
+                 const Place& place, const std::vector<std::string>& also = {});
+
+/// The fields as JSON that read_fields() reads back to the same value. Optional fields that are absent, and
+/// empty lists, are left out.
+nlohmann::ordered_json print_fields(const std::vector<Field>& fields, void* owner);
+
+/// The fields as a JSON schema's object (draft 2020-12). `fresh` is an owner with all defaults; a field that
+/// is not required states its default.
+nlohmann::ordered_json fields_schema(const std::vector<Field>& fields, void* fresh);
+
+/// A field's value as JSON from the words of the command line: "X,Y,Z" is a point, several are a list. Throws
+/// std::runtime_error if a word is not of the field's type.
+nlohmann::json json_of_words(const Field& field, void* fresh, const std::vector<std::string>& words);
+
+/// The same for several fields in their order: a point takes three values, a list takes all that are left,
+/// any other field one. Scans are skipped. Throws std::runtime_error if there are too many values or too few.
+nlohmann::json json_of_values(const std::vector<Field>& fields, void* fresh,
+                              const std::vector<std::string>& values);
+
+/// Whether the field holds several words on the command line.
+bool takes_several(const Field& field, void* fresh);
+/// Whether it names objects, which are files on the command line.
+bool names_objects(const Field& field, void* fresh);
+/// Whether it names a scan.
+bool names_scan(const Field& field, void* fresh);
+/// Whether it is a flag, which has no word.
+bool is_flag(const Field& field, void* fresh);
+/// The form of one word in help: "MM", "X,Y,Z", "NAME".
+std::string word_form(const Field& field, void* fresh);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/table/plan_universe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "planner/operation/table/number_format.h"
+#include "voxel/space/memory_need.h"
+
+namespace octotomy::planner {
+namespace {
+
+voxel::Universe universe_about(const voxel::Lattice& scan, std::optional<double> voxel_mm, bool by_cells) {
+  const voxel::Box box = voxel::bounds(scan);
+  const glm::dvec3 spacing_mm = scan.spacing_mm();
+  const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
+  constexpr double most_a_side = 512.0;
+  const double finest_mm = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+  const double longest_mm = std::max({extent_mm.x, extent_mm.y, extent_mm.z});
+  const double edge_mm = voxel_mm.value_or(std::max(finest_mm, longest_mm / most_a_side));
+  voxel::Universe universe = voxel::universe_around(box, edge_mm);
+  if (edge_mm < 0.5 * finest_mm) {
+    const glm::dvec3 voxels = glm::ceil(extent_mm / edge_mm);
+    constexpr double most = 1e18;
+    voxel::need_memory("voxels of " + plain(edge_mm) + " mm",
+                       static_cast<std::uint64_t>(std::min(most, voxels.x * voxels.y * voxels.z)),
+                       sizeof(std::int16_t), "in the scan's box they");
+  }
+  // A universe around an odd number of samples lies half a voxel off them, and resampling would blur what
+  // need not be touched: put a voxel's centre on the first sample, where the box stays inside.
+  glm::dvec3 first = universe.lattice().voxel(scan.lps_mm(glm::dvec3(0.0)));
+  // A cell's border, as far from a voxel's as the voxel's centre is from this.
+  if (by_cells) first += 0.5 - 0.5 * spacing_mm / edge_mm;
+  const double spare_voxels = 0.5 * universe.side();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double shift = first[axis] - std::floor(first[axis] + 0.5);
+    if (0.5 * extent_mm[axis] / edge_mm + std::abs(shift) <= spare_voxels)
+      universe.lps_from_voxel[3][axis] += shift * edge_mm;
+  }
+  return universe;
+}
+
+}  // namespace
+
+voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm) {
+  return universe_about(scan, voxel_mm, false);
+}
+
+voxel::Universe universe_of(const voxel::Scene& scan, std::optional<double> voxel_mm, bool are_labels) {
+  return universe_about(scan.lattice, voxel_mm, are_labels || scan.meaning == voxel::Meaning::Label);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "planner/operation/anatomy/movement.h"
+#include "planner/procedure/cephalometry/definition.h"
+#include "voxel/space/progress.h"
+#include "voxel/tree/grey_octree.h"
+
+namespace octotomy::planner {
+
+struct Cephalogram {
+  glm::ivec2 size_px{0};
+  std::vector<std::uint8_t> rgb;
+  double pixel_mm = 0.0;
+};
+
+/// The patient's radiograph from the right, face to the right, in true scale and as the head is held, with
+/// the landmarks and the lines of the lateral measures: pale as the patient is, orange as planned where that
+/// differs. The square frames the landmarks with a margin of 25 mm. Throws Stopped. Cost: a ray a pixel, at
+/// most two a voxel.
+Cephalogram draw_cephalogram(const voxel::GreyOctree& grey, const Cephalometry& definitions,
+                             const std::vector<MovedLandmark>& landmarks, const glm::dmat3& lps_from_head,
+                             int size_px, const voxel::Progress& progress = {});
+
+}  // namespace octotomy::planner

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/procedure/template/procedure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "planner/operation/table/json.h"
+#include "planner/operation/table/json_file.h"
+#include "planner/operation/table/nearest_name.h"
+#include "planner/plan/plan.h"
+#include "planner/procedure/template/formula.h"
+#include "voxel/space/file_text.h"
+
+namespace octotomy::planner {
+
+/// Names and texts of the procedures in this folder; made when the program is configured.
+const std::vector<std::pair<std::string, std::string>>& procedure_files();
+
+namespace {
+
+using Values = std::map<std::string, double>;
+
+/// Coordinates are kept to a tenth of a micrometre, so that a plan is read easily.
+double rounded(double value) {
+  return std::round(value * 1e4) / 1e4 + 0.0;
+}
+
+/// The value with each formula in it answered: "=" makes a number, "=?" whether it is other than 0.
+Json answered(const Json& value, const Values& names) {
+  if (value.is_string() && value.get_ref<const std::string&>().starts_with('=')) {
+    const std::string_view formula = std::string_view(value.get_ref<const std::string&>()).substr(1);
+    if (formula.starts_with('?')) return value_of(formula.substr(1), names) != 0.0;
+    return rounded(value_of(formula, names));
+  }
+  if (!value.is_structured()) return value;
+  Json made = value;
+  for (Json& part : made) part = answered(part, names);
+  return made;
+}
+
+const brep::Landmark* find(const std::vector<brep::Landmark>& landmarks, const std::string& name) {
+  for (const brep::Landmark& landmark : landmarks)
+    if (landmark.name == name) return &landmark;
+  return nullptr;
+}
+
+void need_landmarks(const Procedure& procedure, const std::vector<brep::Landmark>& given) {
+  std::set<std::string> names;
+  for (const brep::Landmark& landmark : given) names.insert(landmark.name);
+  std::string missing;
+  for (const ProcedureLandmark& landmark : procedure.landmarks)
+    if (!names.contains(landmark.name))
+      missing += (missing.empty() ? "" : "; ") + ("'" + landmark.name + "', " + landmark.says);
+  if (!missing.empty())
+    throw std::runtime_error("procedure " + procedure.name + " lacks landmarks: " + missing + ": place them");
+}
+
+/// The plan's scans.
+Json scans_of(const Procedure& procedure, const ProcedureInput& input) {
+  Json scans{{"ct", input.scan}};
+  std::vector<std::string> known;
+  for (const ProcedureScan& scan : procedure.scans) {
+    known.push_back(scan.name);
+    const auto given = input.further_scans.find(scan.name);
+    if (given == input.further_scans.end())
+      throw std::runtime_error("procedure " + procedure.name + " lacks a scan: '" + scan.name + "', " +
+                               scan.says + ": give it by --" + scan.name);
+    scans[scan.name] = given->second;
+  }
+  for (const auto& [name, unused] : input.further_scans)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw std::runtime_error("procedure " + procedure.name + " takes no scan '" + name + "': leave it out");
+  return scans;
+}
+
+Values values_of(const Procedure& procedure, const ProcedureInput& input) {
+  Values values;
+  std::vector<std::string> known;
+  for (const ProcedureValue& value : procedure.values) {
+    known.push_back(value.name);
+    const auto typed = input.values.find(value.name);
+    const double number = typed == input.values.end() ? value.preset : typed->second;
+    if (!(number >= value.least && number <= value.most))
+      throw std::runtime_error("value " + value.name + " must be from " + SortedJson(value.least).dump() +
+                               " to " + SortedJson(value.most).dump());
+    values[value.name] = number;
+  }
+  for (const auto& [name, unused] : input.values)
+    if (!values.contains(name))
+      throw std::runtime_error("procedure " + procedure.name + " has no value '" + name + "'" +
+                               suggestion(name, known));
+  return values;
+}
+
+/// The steps that name the landmarks and hold the head.
+Json first_steps(const std::vector<brep::Landmark>& landmarks) {
+  Json points = Json::array();
+  for (const brep::Landmark& landmark : landmarks)
+    points.push_back(
+        {{"name", landmark.name}, {"point_mm", {landmark.p_mm.x, landmark.p_mm.y, landmark.p_mm.z}}});
+  Json steps = Json::array({{{"id", "landmarks"}, {"do", "landmarks"}, {"points", points}}});
+  Json frankfort = {"porion_right", "porion_left"}, midline = {"nasion", "basion"};
+  for (const char* name : {"orbitale_right", "orbitale_left"})
+    if (find(landmarks, name) != nullptr) frankfort.push_back(name);
+  const auto all_there = [&](const Json& names) {
+    return std::all_of(names.begin(), names.end(),
+                       [&](const Json& name) { return find(landmarks, name.get<std::string>()) != nullptr; });
+  };
+  if (frankfort.size() < 3 || !all_there(frankfort)) return steps;
+  Json held{{"id", "held"}, {"do", "head_position"}, {"frankfort", frankfort}};
+  if (all_there(midline)) held["midline"] = midline;
+  steps.push_back(held);
+  return steps;
+}
+
+/// Another procedure of the program, whose landmarks or steps one takes.
+Procedure borrowed(const std::string& name, const Procedure& borrower) {
+  if (name == borrower.name || name.ends_with(".json"))
+    throw std::runtime_error("of '" + name + "': must be another procedure of the program");
+  return read_procedure(name);
+}
+
+void add_landmarks_of(const std::string& name, Procedure& procedure) {
+  for (const ProcedureLandmark& landmark : borrowed(name, procedure).landmarks)
+    if (std::none_of(procedure.landmarks.begin(), procedure.landmarks.end(),
+                     [&](const ProcedureLandmark& known) { return known.name == landmark.name; }))
+      procedure.landmarks.push_back(landmark);
+}
+
+/// {"of": another procedure, "steps": [ids]}: these steps of it, with its formulas.
+void add_steps_of(const Json& entry, const std::string& where, Procedure& procedure) {
+  const SortedJson plain = entry;
+  check_keys(plain, where, {"of", "steps"});
+  const Procedure other = borrowed(word_of(plain["of"], where), procedure);
+  for (const SortedJson& id : need(plain, "steps", where)) {
+    const std::string wanted = word_of(id, where);
+    const auto step = std::find_if(other.steps.begin(), other.steps.end(),
+                                   [&](const Json& each) { return each.value("id", "") == wanted; });
+    if (step == other.steps.end())
+      throw std::runtime_error(where + ": " + other.name + " has no step '" + wanted + "'");
+    procedure.steps.push_back(*step);
+  }
+}
+
+double number_at(const SortedJson& entry, const char* key, const std::string& where) {
+  return number_of(need(entry, key, where), where + ", " + key);
+}
+
+}  // namespace
+
+Procedure parse_procedure(const std::string& text) {
+  const Json root = parse_json<Json>(text);
+  const SortedJson plain = root;
+  check_keys(plain, "procedure", {"procedure", "says", "landmarks", "scans", "values", "steps"});
+  Procedure procedure;
+  procedure.name = word_of(need(plain, "procedure", "procedure"), "procedure");
+  procedure.says = word_of(need(plain, "says", "procedure"), "says");
+  std::size_t number = 0;
+  for (const SortedJson& entry : need(plain, "landmarks", "procedure")) {
+    const std::string where = "landmarks[" + std::to_string(number++) + "]";
+    if (entry.contains("of")) {
+      check_keys(entry, where, {"of"});
+      add_landmarks_of(word_of(entry["of"], where), procedure);
+      continue;
+    }
+    check_keys(entry, where, {"name", "says", "scan"});
+    procedure.landmarks.push_back({word_of(need(entry, "name", where), where),
+                                   word_of(need(entry, "says", where), where),
+                                   entry.contains("scan") ? word_of(entry["scan"], where) : ""});
+  }
+  if (plain.contains("scans"))
+    for (const SortedJson& entry : plain.at("scans")) {
+      const std::string where = "scans[" + std::to_string(procedure.scans.size()) + "]";
+      check_keys(entry, where, {"name", "says"});
+      procedure.scans.push_back(
+          {word_of(need(entry, "name", where), where), word_of(need(entry, "says", where), where)});
+    }
+  for (const SortedJson& entry : need(plain, "values", "procedure")) {
+    const std::string where = "values[" + std::to_string(procedure.values.size()) + "]";
+    check_keys(entry, where, {"name", "says", "preset", "least", "most"});
+    procedure.values.push_back({word_of(need(entry, "name", where), where),
+                                word_of(need(entry, "says", where), where), number_at(entry, "preset", where),
+                                number_at(entry, "least", where), number_at(entry, "most", where)});
+  }
+  if (procedure.values.size() > most_values)
+    throw std::runtime_error("values: has more than " + std::to_string(most_values) +
+                             ", which nobody types without a mistake: derive some by formulas");
+  if (!root.contains("steps") || !root["steps"].is_array() || root["steps"].empty())
+    throw std::runtime_error("steps: must be a list of at least one step");
+  for (std::size_t i = 0; i < root["steps"].size(); ++i) {
+    const Json& step = root["steps"][i];
+    if (step.contains("of"))
+      add_steps_of(step, "steps[" + std::to_string(i) + "]", procedure);
+    else
+      procedure.steps.push_back(step);
+  }
+  return procedure;
+}
+
+Procedure read_procedure(const std::string& name_or_path) {
+  if (name_or_path.ends_with(".json")) {
+    std::ifstream file = voxel::opened(name_or_path);
+    if (!file) throw std::runtime_error(name_or_path + ": cannot be read");
+    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    try {
+      return parse_procedure(text);
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(name_or_path + ": " + error.what());
+    }
+  }
+  for (const auto& [name, text] : procedure_files())
+    if (name == name_or_path) return parse_procedure(text);
+  throw std::runtime_error("there is no procedure '" + name_or_path + "'" +
+                           suggestion(name_or_path, procedures()));
+}
+
+std::vector<std::string> procedures() {
+  std::vector<std::string> names;
+  for (const auto& [name, unused] : procedure_files()) names.push_back(name);
+  return names;
+}
+
+Json plan_of(const Procedure& procedure, const ProcedureInput& input) {
+  need_landmarks(procedure, input.landmarks);
+  Values names = values_of(procedure, input);
+  Json plan{{"octotomy_plan", 1},
+            {"name", procedure.says.substr(0, procedure.says.find('.'))},
+            {"scans", scans_of(procedure, input)},
+            {"universe", {{"voxel_mm", input.voxel_mm}}},
+            {"steps", first_steps(input.landmarks)}};
+  // Read once for the head's directions, and to refuse landmarks that cannot be.
+  const Plan placed = parse_plan(plan.dump(), input.folder);
+  const glm::dmat3 head_from_lps = glm::transpose(placed.lps_from_head.value_or(glm::dmat3(1.0)));
+  for (const NamedPoint& landmark : placed.landmarks) {
+    const glm::dvec3 p = head_from_lps * landmark.p_mm;
+    names[landmark.name + ".x"] = p.x;
+    names[landmark.name + ".y"] = p.y;
+    names[landmark.name + ".z"] = p.z;
+  }
+  for (const Json& step : procedure.steps) try {
+      plan["steps"].push_back(answered(step, names));
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error("procedure " + procedure.name + ", step '" + step.value("id", "") +
+                               "': " + error.what());
+    }
+  parse_plan(plan.dump(), input.folder);
+  return plan;
+}
+
+}  // namespace octotomy::planner

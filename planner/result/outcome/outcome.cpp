@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// 1 Surface of the later scan. 2 The bone that stayed, laid on it: after_from_before. 3 Each piece, from
+// where that and the plan put it, laid on it: its achieved motion is the inverse of 2 times 3. 4 Intervals:
+// both fits' covariances with the deviation of their own residuals, in which both scans' noise is; a sample
+// stands for two samples of the scan a side, since noise of neighbours is one. A lattice places an isosurface
+// to some hundredths of its spacing, the same way wherever bone is flat, which is added.
+#include "planner/result/outcome/outcome.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "brep/align/register_surfaces.h"
+#include "brep/mesh/error.h"
+#include "brep/mesh/triangles.h"
+#include "convert/surface/isosurface.h"
+#include "planner/operation/anatomy/movement.h"
+#include "planner/operation/measure/result_json.h"
+#include "verify/interval/size_interval.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::planner {
+namespace {
+
+constexpr double deviations = 2.5758;  ///< half-width of 99 of 100 normal cases
+constexpr double lattice_share = 0.03;
+constexpr std::size_t samples = 5000;
+
+/// The last place of each thing that moves.
+struct Piece {
+  const Object* moved;
+  const Object* still;
+  glm::dmat4 motion;
+};
+
+std::vector<Piece> pieces_of(const Objects& objects) {
+  std::vector<Piece> pieces;
+  for (const Object& object : objects) {
+    if (!object.moved) continue;
+    const Object* still = &objects.at(object.moved->object);
+    while (still->moved) still = &objects.at(still->moved->object);
+    const Piece piece{&object, still, moved_since_made(objects, object.id)};
+    const auto same =
+        std::find_if(pieces.begin(), pieces.end(), [&](const Piece& other) { return other.still == still; });
+    if (same == pieces.end())
+      pieces.push_back(piece);
+    else
+      *same = piece;
+  }
+  if (pieces.empty())
+    throw std::runtime_error("the plan moves nothing, so that there is no outcome to judge");
+  return pieces;
+}
+
+bool shares_bone(const Object& object, const Object& piece) {
+  return !voxel::combine(object.voxel.octree.universe(),
+                         voxel::Expression(object.voxel.octree) & voxel::Expression(piece.voxel.octree))
+              .is_empty();
+}
+
+/// The largest of what comes of the scan and is no part of what moves; where there is none, of all.
+const Object& unmoved_of(const Objects& objects, const std::vector<Piece>& pieces, const std::string& asked) {
+  if (!asked.empty()) return objects.at(asked);
+  const Object* best = nullptr;
+  for (const bool apart : {true, false}) {
+    for (const Object& object : objects) {
+      if (object.is_tool || object.moved || !object.shown || !object.mesh.whole) continue;
+      if (apart && std::any_of(pieces.begin(), pieces.end(),
+                               [&](const Piece& piece) { return shares_bone(object, *piece.still); }))
+        continue;
+      if (best == nullptr || object.voxel.measures.volume_mm3 > best->voxel.measures.volume_mm3)
+        best = &object;
+    }
+    if (best != nullptr) return *best;
+  }
+  throw std::runtime_error("the plan has no bone that stays: name it by --unmoved");
+}
+
+const brep::Solid& solid_of(const Object& object) {
+  if (!object.mesh.whole || object.mesh.whole->empty())
+    throw std::runtime_error("'" + object.id + "' has no mesh to be laid on the later scan");
+  return *object.mesh.whole;
+}
+
+/// A fit and the deviation of a sample's distance.
+struct Laid {
+  brep::SurfaceFit fit;
+  double deviation_mm = 0.0;
+  double lattice_mm = 0.0;
+
+  double half_width_mm(const glm::dvec3& p_mm, const glm::dvec3& along) const {
+    return std::hypot(deviations * deviation_mm * fit.doubt.deviation(p_mm, along), lattice_mm);
+  }
+  double turn_half_width_deg(const glm::dvec3& axis) const {
+    return glm::degrees(std::hypot(deviations * deviation_mm * fit.doubt.turn_deviation(axis),
+                                   lattice_mm / fit.doubt.spread_mm));
+  }
+};
+
+Laid laid(const brep::Solid& moving, const brep::Mesh& fixed, const std::optional<glm::dmat4>& start,
+          double sample_mm, const OutcomeOptions& options) {
+  brep::SurfaceFitOptions fit;
+  fit.start = start;
+  fit.samples = samples;
+  fit.stop = options.progress.stop;
+  try {
+    Laid made{brep::register_surfaces(moving.mesh(), fixed, fit), 0.0, lattice_share * sample_mm};
+    const double each_mm2 = moving.measures().area_mm2 / static_cast<double>(samples);
+    const double independent = std::min(1.0, each_mm2 / (4.0 * sample_mm * sample_mm));
+    made.deviation_mm = made.fit.rms_mm / std::sqrt(independent);
+    return made;
+  } catch (const brep::Error&) {
+    if (options.progress.stop.stop_requested())
+      throw voxel::Stopped("stopped while surfaces were registered");
+    throw;
+  }
+}
+
+PointOutcome point_outcome(const std::string& name, const glm::dvec3& p_mm, const PieceOutcome& piece,
+                           const glm::dmat3& head, const Laid& whole, const Laid& part) {
+  const glm::dvec3 planned = carried(piece.planned, p_mm), achieved = carried(piece.achieved, p_mm);
+  const glm::dmat3 turned(whole.fit.fixed_from_moving);
+  const glm::dvec3 at = carried(whole.fit.fixed_from_moving, achieved);
+  const auto half_width = [&](const glm::dvec3& direction) {
+    const glm::dvec3 along = turned * direction;
+    return std::hypot(whole.half_width_mm(at, along), part.half_width_mm(at, along));
+  };
+  return {name,
+          displacement_of(planned - p_mm, head),
+          displacement_of(achieved - p_mm, head),
+          {half_width(head[1]), half_width(head[0]), half_width(head[2])},
+          glm::distance(planned, achieved)};
+}
+
+Turns turn_half_width(const glm::dmat3& head, const Laid& whole, const Laid& part) {
+  const glm::dmat3 turned(whole.fit.fixed_from_moving);
+  const auto about = [&](int axis) {
+    const glm::dvec3 along = turned * head[axis];
+    return std::hypot(whole.turn_half_width_deg(along), part.turn_half_width_deg(along));
+  };
+  return {about(0), about(2), about(1)};
+}
+
+Json to_json(const Displacement& by) {
+  return {{"forward_mm", by.forward_mm}, {"left_mm", by.left_mm}, {"up_mm", by.up_mm}};
+}
+Json to_json(const Turns& turns) {
+  return {{"pitch_deg", turns.pitch_deg}, {"yaw_deg", turns.yaw_deg}, {"roll_deg", turns.roll_deg}};
+}
+template <typename Told>
+Json told(const Told& value) {
+  Json json = to_json(value);
+  json["words"] = in_words(value);
+  return json;
+}
+
+}  // namespace
+
+Outcome outcome_of(const Plan& plan, const Evaluation& evaluation, const voxel::Scene& after,
+                   const OutcomeOptions& options) {
+  const Objects& objects = evaluation.objects;
+  const std::vector<Piece> pieces = pieces_of(objects);
+  const Object& unmoved = unmoved_of(objects, pieces, options.unmoved);
+  if (!options.low && !unmoved.shown)
+    throw std::runtime_error("'" + unmoved.id + "' is of no window of a scan: say by --low what is bone");
+  const double low = options.low.value_or(unmoved.shown ? unmoved.shown->threshold : 0.0);
+  const brep::Mesh surface = brep::mesh_of(
+      convert::isosurface(after, low, std::numeric_limits<double>::infinity(), {options.progress.stop, {}}));
+  if (surface.n_faces() == 0)
+    throw std::runtime_error("the later scan has no sample of " + std::to_string(low) +
+                             " or more: say by --low what is bone in it");
+  const glm::dvec3 spacing_mm = after.lattice.spacing_mm();
+  const double sample_mm = std::cbrt(spacing_mm.x * spacing_mm.y * spacing_mm.z);
+  const Laid whole = laid(solid_of(unmoved), surface, {}, sample_mm, options);
+  Outcome outcome{unmoved.id,           whole.fit.fixed_from_moving, whole.fit.rms_mm,
+                  whole.fit.kept_share, whole.fit.findings,          {}};
+  const std::vector<MovedLandmark> landmarks = moved_landmarks(objects, plan.landmarks);
+  const glm::dmat3& head = objects.lps_from_head;
+  for (const Piece& piece : pieces) {
+    const Laid part =
+        laid(solid_of(*piece.still), surface, outcome.after_from_before * piece.motion, sample_mm, options);
+    PieceOutcome made;
+    made.object = piece.moved->id;
+    made.still = piece.still->id;
+    made.planned = piece.motion;
+    made.achieved = glm::inverse(outcome.after_from_before) * part.fit.fixed_from_moving;
+    made.planned_turns = turns_of(glm::dmat3(made.planned), head);
+    made.achieved_turns = turns_of(glm::dmat3(made.achieved), head);
+    made.turn_half_width = turn_half_width(head, whole, part);
+    made.rms_mm = part.fit.rms_mm;
+    made.kept_share = part.fit.kept_share;
+    made.findings = part.fit.findings;
+    if (const std::optional<glm::dvec3>& centre = piece.still->voxel.measures.centroid_mm)
+      made.points.push_back(point_outcome(made.object, *centre, made, head, whole, part));
+    for (const MovedLandmark& landmark : landmarks)
+      if (landmark.moved_from_still == piece.motion && piece.motion != glm::dmat4(1.0))
+        made.points.push_back(
+            point_outcome(landmark.landmark.name, landmark.landmark.p_mm, made, head, whole, part));
+    outcome.pieces.push_back(std::move(made));
+    if (options.progress.report)
+      options.progress.report(static_cast<double>(outcome.pieces.size()) /
+                              static_cast<double>(pieces.size()));
+  }
+  return outcome;
+}
+
+Json to_json(const Outcome& outcome) {
+  Json json{{"unmoved",
+             {{"object", outcome.unmoved},
+              {"after_from_before", to_json(outcome.after_from_before)},
+              {"rms_mm", outcome.rms_mm},
+              {"kept_share", outcome.kept_share},
+              {"findings", outcome.findings}}},
+            {"coverage", verify::claimed_coverage},
+            {"pieces", Json::array()}};
+  for (const PieceOutcome& piece : outcome.pieces) {
+    Json points = Json::array();
+    for (const PointOutcome& point : piece.points)
+      points.push_back({{"name", point.name},
+                        {"planned", told(point.planned)},
+                        {"achieved", told(point.achieved)},
+                        {"half_width", to_json(point.half_width)},
+                        {"off_mm", point.off_mm}});
+    json["pieces"].push_back({{"object", piece.object},
+                              {"still", piece.still},
+                              {"planned", told(piece.planned_turns)},
+                              {"achieved", told(piece.achieved_turns)},
+                              {"half_width", to_json(piece.turn_half_width)},
+                              {"planned_matrix", to_json(piece.planned)},
+                              {"achieved_matrix", to_json(piece.achieved)},
+                              {"points", points},
+                              {"rms_mm", piece.rms_mm},
+                              {"kept_share", piece.kept_share},
+                              {"findings", piece.findings}});
+  }
+  return json;
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/result/report/contact_report.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "planner/operation/table/json.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/result/report/html.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::planner {
+namespace {
+
+constexpr int contact_picture_px = 480;
+/// Bone about the contacts that shows where they are, and what may stand above them.
+constexpr double about_mm = 20.0, above_mm = 3.0;
+
+glm::dvec3 point_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+/// The view along the axes that looks most against a direction.
+std::string view_onto(const glm::dvec3& normal, const glm::dmat3& lps_from_head) {
+  std::string best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const char* name : {"anterior", "posterior", "left", "right", "superior", "inferior"})
+    if (const double along = glm::dot(lps_from_head * voxel::parse_view(name).look, normal); along < least)
+      best = name, least = along;
+  return best;
+}
+
+/// The part of the object about the places, without what would hide them.
+voxel::Octree part_about(const voxel::Octree& octree, const std::vector<glm::dvec3>& places_mm,
+                         const glm::dvec3& towards_reader) {
+  voxel::Box box{places_mm.front(), places_mm.front()};
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const glm::dvec3& p : places_mm) {
+    box = {glm::min(box.low_mm, p), glm::max(box.high_mm, p)};
+    highest = std::max(highest, glm::dot(p, towards_reader));
+  }
+  return voxel::combine(octree.universe(), voxel::Expression(octree) &
+                                               voxel::Box{box.low_mm - about_mm, box.high_mm + about_mm} &
+                                               voxel::HalfSpace{towards_reader, highest + above_mm});
+}
+
+}  // namespace
+
+void add_contact_pictures(Result& result) {
+  const Objects& objects = result.evaluation.objects;
+  for (const Json& map : result.measurements) {
+    if (!map.contains("contacts") || map.at("nearest_mm").is_null()) continue;
+    const std::string name = "contacts_" + map.at("id").get<std::string>();
+    if (std::any_of(result.pictures.begin(), result.pictures.end(),
+                    [&](const PictureGroup& group) { return group.name == name; }))
+      continue;
+    const Object& object = objects.at(map.at("object").get<std::string>());
+    const Object& against = objects.at(map.at("against").get<std::string>());
+    PictureGroup group{name, object.id + " where it touches " + against.id,         {}, {},
+                       {},   std::max(2.0, 4.0 * map.at("within_mm").get<double>())};
+    glm::dvec3 normal(0.0);
+    for (const Json& contact : map.at("contacts")) {
+      group.marks_mm.push_back(point_of(contact.at("at_mm")));
+      const Json& area = contact.at("area_mm2");
+      normal += (area.is_number() ? area.get<double>() : 1.0) * point_of(contact.at("normal"));
+    }
+    const std::vector<glm::dvec3> places_mm =
+        group.marks_mm.empty() ? std::vector{point_of(map.at("nearest_at_mm"))} : group.marks_mm;
+    if (group.marks_mm.empty()) {
+      const auto middle = [](const Object& of) {
+        return of.voxel.measures.centroid_mm.value_or(glm::dvec3(0.0));
+      };
+      normal = middle(against) - middle(object);
+    }
+    const std::string view = view_onto(normal, objects.lps_from_head);
+    const glm::dvec3 towards_reader = -(objects.lps_from_head * voxel::parse_view(view).look);
+    voxel::DrawnObject drawn{object.id, part_about(object.voxel.octree, places_mm, towards_reader)};
+    if (drawn.octree.is_empty()) continue;
+    drawn.scalar = std::make_shared<const voxel::SurfaceScalar>(
+        voxel::distance_to(against.voxel.octree, drawn.octree, group.most_mm));
+    group.objects.push_back(std::move(drawn));
+    draw(group, {view, view == "superior" || view == "inferior" ? "anterior" : "superior"}, group.objects,
+         contact_picture_px, objects.lps_from_head);
+    result.pictures.push_back(std::move(group));
+  }
+}
+
+std::string contact_tables(const Json& measurements) {
+  std::string made;
+  const auto number = [](const Json& json, int decimals) {
+    return json.is_number() ? grouped(json.get<double>(), decimals) : std::string("\u2013");
+  };
+  for (const Json& map : measurements) {
+    if (!map.contains("contacts")) continue;
+    const std::string object = escaped(map.at("object").get<std::string>()),
+                      against = escaped(map.at("against").get<std::string>());
+    std::string rows =
+        "<tr><th>Contact</th><th class=\"n\">x, y, z, mm</th><th class=\"n\">nearest, mesh kernel, "
+        "mm</th><th "
+        "class=\"n\">nearest, voxel kernel, mm</th><th class=\"n\">depth, mm</th><th class=\"n\">area, "
+        "mm\u00b2</th></tr>";
+    int count = 0;
+    for (const Json& contact : map.at("contacts")) {
+      const Json& at = contact.at("at_mm");
+      rows += "<tr>" + cell(std::to_string(++count)) +
+              figure_cell(number(at.at(0), 1) + ", " + number(at.at(1), 1) + ", " + number(at.at(2), 1)) +
+              figure_cell(number(contact.at("nearest_mm"), 2) + " \u00b1 " +
+                          three_figures(contact.at("half_width_mm").get<double>())) +
+              figure_cell(number(contact.at("voxel_nearest_mm"), 2)) +
+              figure_cell(number(contact.at("depth_mm"), 2)) +
+              figure_cell(number(contact.at("area_mm2"), 1)) + "</tr>";
+    }
+    std::string says = plural(count, "place") + " of " + object + " within " +
+                       number(map.at("within_mm"), 2) + " mm of " + against;
+    if (map.at("certain_count").is_number())
+      says += ", " + map.at("certain_count").dump() + " of them beyond doubt";
+    if (count == 0 && map.at("nearest_mm").is_number())
+      says += "; the nearest is " + number(map.at("nearest_mm"), 2) + " mm away";
+    made += element("h3", "Contacts " + escaped(map.at("id").get<std::string>())) +
+            element("p", says + ". Distances are signed, negative where they overlap.") +
+            (count > 0 ? element("table", rows) : "") +
+            list(map.at("findings").get<std::vector<std::string>>());
+  }
+  return made;
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "planner/result/report/report.h"
+
+// What a report says of objects that touch.
+namespace octotomy::planner {
+
+/// Adds a group of pictures for each contact map of `result.measurements` that has none yet: the surface
+/// coloured by its distance to the other one, seen towards the contacts, which are numbered.
+void add_contact_pictures(Result& result);
+
+/// A table a contact map; nothing where there are none.
+std::string contact_tables(const nlohmann::ordered_json& measurements);
+
+}  // namespace octotomy::planner

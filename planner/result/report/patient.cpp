@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/result/report/patient.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace octotomy::planner {
+namespace {
+
+using PatientJson = nlohmann::ordered_json;
+
+std::vector<std::string> parts_of_text(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char symbol : text)
+    if (symbol == separator)
+      parts.emplace_back();
+    else
+      parts.back() += symbol;
+  return parts;
+}
+
+/// A DICOM name for people. Of its alphabetic, ideographic and phonetic groups the first that is filled in;
+/// of its components family name, given name, middle name (PS3.5, 6.2.1).
+std::string readable_name(const std::string& name) {
+  for (const std::string& group : parts_of_text(name, '=')) {
+    std::vector<std::string> components = parts_of_text(group, '^');
+    components.resize(3);
+    std::string given = components[1];
+    if (!components[2].empty()) given += (given.empty() ? "" : " ") + components[2];
+    const std::string& family = components[0];
+    const std::string whole = family + (family.empty() || given.empty() ? "" : ", ") + given;
+    if (!whole.empty()) return whole;
+  }
+  return "";
+}
+
+/// "1970-01-31" of "19700131"; empty for any other text.
+std::string readable_date(const std::string& date) {
+  const bool is_date = date.size() == 8 && std::all_of(date.begin(), date.end(), [](char symbol) {
+                         return symbol >= '0' && symbol <= '9';
+                       });
+  return is_date ? date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6) : "";
+}
+
+std::string readable_sex(const std::string& sex) {
+  return sex == "F" ? "female" : sex == "M" ? "male" : sex == "O" ? "other sex" : "";
+}
+
+/// What a text quotes of a patient, without it.
+void hide_quoted(const std::vector<std::string>& values, std::string& text) {
+  for (const std::string& value : values) {
+    const std::string quoted = "'" + value + "'", hidden = "(left out)";
+    for (std::size_t at = text.find(quoted); at != std::string::npos; at = text.find(quoted, at))
+      text.replace(at, quoted.size(), hidden);
+  }
+}
+
+}  // namespace
+
+PatientJson patient_json(const voxel::Identity& identity) {
+  const auto stated = [](const std::string& text) {
+    return text.empty() ? PatientJson(nullptr) : PatientJson(text);
+  };
+  PatientJson json{{"name", stated(readable_name(identity.patient_name))},
+                   {"number", stated(identity.patient_id)},
+                   {"issuer", stated(identity.id_issuer)},
+                   {"birth_date", stated(readable_date(identity.birth_date))},
+                   {"sex", stated(readable_sex(identity.sex))},
+                   {"study_date", stated(readable_date(identity.study_date))}};
+  const bool is_stated =
+      !json["name"].is_null() || !json["number"].is_null() || !json["birth_date"].is_null();
+  return is_stated ? json : PatientJson(nullptr);
+}
+
+std::string patient_text(const voxel::Identity& identity) {
+  const PatientJson json = patient_json(identity);
+  if (json.is_null()) return "";
+  std::string text;
+  for (const auto& [key, before] :
+       {std::pair{"name", ""}, std::pair{"number", "number "}, std::pair{"issuer", "issued by "},
+        std::pair{"birth_date", "born "}, std::pair{"sex", ""}, std::pair{"study_date", "study of "}})
+    if (json[key].is_string())
+      text += (text.empty() ? "" : ", ") + std::string(before) + json[key].get<std::string>();
+  return text;
+}
+
+std::vector<std::string> patient_lines(const Evaluation& evaluation) {
+  std::vector<std::pair<std::string, std::string>> found;  // the patient, and the scans' names
+  for (const ScanRecord& scan : evaluation.scans) {
+    if (!scan.made_by.empty()) continue;
+    std::string patient = patient_text(scan.identity);
+    if (patient.empty()) patient = "not stated by the scan";
+    const auto known =
+        std::find_if(found.begin(), found.end(), [&](const auto& each) { return each.first == patient; });
+    if (known == found.end())
+      found.emplace_back(std::move(patient), scan.name);
+    else
+      known->second += ", " + scan.name;
+  }
+  if (found.empty()) return {"not stated: no scan was read"};
+  std::vector<std::string> lines;
+  for (const auto& [patient, scans] : found)
+    lines.push_back(found.size() == 1 ? patient : patient + " (" + scans + ")");
+  return lines;
+}
+
+void leave_out_patients(Result& result) {
+  std::vector<std::string> values;
+  for (ScanRecord& scan : result.evaluation.scans) {
+    for (const std::string& value :
+         {scan.identity.patient_name, scan.identity.patient_id, scan.identity.birth_date})
+      if (!value.empty()) values.push_back(value);
+    scan.identity = {};
+  }
+  for (ScanRecord& scan : result.evaluation.scans)
+    for (voxel::Finding& finding : scan.audit) hide_quoted(values, finding.detail);
+  for (voxel::Finding& finding : result.findings) hide_quoted(values, finding.detail);
+  Objects& objects = result.evaluation.objects;
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    for (std::string& finding : objects.change(i).findings) hide_quoted(values, finding);
+}
+
+}  // namespace octotomy::planner

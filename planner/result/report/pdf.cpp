@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/result/report/pdf.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fcntl.h>
+#include <optional>
+#include <spawn.h>
+#include <sstream>
+#include <string>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+#include "voxel/space/error.h"
+#include "voxel/space/progress.h"
+#include "voxel/space/unfinished_folder.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<fs::path> on_path(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path program = fs::path(folder) / name;
+    std::error_code ignored;
+    if (program.is_absolute() && fs::is_regular_file(program, ignored) &&
+        ::access(program.c_str(), X_OK) == 0)
+      return program;
+  }
+  return std::nullopt;
+}
+
+using Words = std::vector<std::string>;
+
+/// The command line that prints; empty where no printer is there. `profile`: a folder that Chromium may fill.
+Words printing(const fs::path& page, const fs::path& pdf, const fs::path& profile) {
+  if (const auto weasyprint = on_path("weasyprint"))
+    return {weasyprint->string(), "--quiet", page.string(), pdf.string()};
+  for (const char* name : {"chromium", "chromium-browser", "google-chrome"})
+    if (const auto chromium = on_path(name)) {
+      Words words{chromium->string(),
+                  "--headless",
+                  "--disable-gpu",
+                  "--no-pdf-header-footer",
+                  "--user-data-dir=" + profile.string(),
+                  "--print-to-pdf=" + pdf.string()};
+      // Chromium's own sandbox does not work for the super-user.
+      if (::geteuid() == 0) words.emplace_back("--no-sandbox");
+      words.push_back("file://" + page.string());
+      return words;
+    }
+  return {};
+}
+
+/// The program's exit status; its words go nowhere.
+int run(Words words, const std::stop_token& stop) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&files, stream, "/dev/null", O_RDWR, 0);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  pid_t child = -1;
+  const int error = posix_spawn(&child, arguments[0], &files, &attributes, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  posix_spawnattr_destroy(&attributes);
+  if (error != 0) return -1;
+  int status = 0;
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    if (stop.stop_requested()) {
+      ::kill(-child, SIGKILL);
+      ::waitpid(child, &status, 0);
+      throw voxel::Stopped("stopped while the report was printed");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace
+
+void need_pdf_printer() {
+  if (printing({}, {}, {}).empty())
+    throw std::runtime_error(
+        "--pdf: no program that prints pages is installed: apt-get install weasyprint, or chromium");
+}
+
+void print_pdf(const fs::path& page, const fs::path& pdf, const std::stop_token& stop) {
+  need_pdf_printer();
+  const voxel::UnfinishedFolder profile(fs::absolute(pdf).parent_path(), ".printing-");
+  const int status = run(printing(fs::absolute(page), fs::absolute(pdf), profile.path()), stop);
+  if (status != 0 || !fs::exists(pdf))
+    throw voxel::Error(voxel::ErrorCode::Resource,
+                       pdf.string() + ": " + printing(page, pdf, {}).front() +
+                           " could not print the report: leave out --pdf, and print report.html by hand");
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/result/report/report.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "convert/deck/deck.h"
+#include "planner/operation/anatomy/head_directions.h"
+#include "planner/operation/anatomy/movement.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/table/json_file.h"
+#include "planner/procedure/cephalometry/cephalogram.h"
+#include "planner/procedure/cephalometry/measured.h"
+#include "planner/result/report/contact_report.h"
+#include "planner/result/report/credibility.h"
+#include "planner/result/report/patient.h"
+#include "planner/result/report/pdf.h"
+#include "planner/result/report/report_page.h"
+#include "planner/result/report/result_folder.h"
+#include "planner/result/report/result_tables.h"
+#include "voxel/filter/components.h"
+#include "voxel/scan/image_file.h"
+
+namespace octotomy::planner {
+namespace {
+
+constexpr int picture_px = 480, cephalogram_px = 700;
+
+Json certificates_json(const Evaluation& evaluation) {
+  Json certificates = Json::array();
+  for (const Object& object : evaluation.objects) {
+    if (!object.certificate) continue;
+    Json json{{"object", object.id}};
+    json.update(to_json(*object.certificate));
+    json["findings"] = object.findings;
+    certificates.push_back(std::move(json));
+  }
+  return certificates;
+}
+
+Json exported_json(const Exported& exported) {
+  Json json{{"id", exported.id},
+            {"object", exported.object},
+            {"path", exported.path},
+            {"written", exported.written}};
+  json.update(exported.details);
+  json["findings"] = exported.findings;
+  return json;
+}
+
+void write_pictures(const Result& result, const std::filesystem::path& folder) {
+  for (const PictureGroup& group : result.pictures)
+    for (const ScenePicture& picture : group.pictures) {
+      std::string view = picture.view;
+      std::replace(view.begin(), view.end(), ',', '_');
+      write_text(folder / (group.name + "_" + view + ".png"), {picture.png.begin(), picture.png.end()});
+    }
+}
+
+void check_signatures(Result& result) {
+  std::map<std::string, std::string> sums;
+  for (const ScanRecord& scan : result.evaluation.scans)
+    if (scan.made_by.empty()) sums[scan.name] = scan.sha256;
+  if (result.plan.text.empty()) return;
+  for (const Signature& signature : signatures_of(result.plan.text)) {
+    result.signatures.push_back({signature, changed_since(signature, result.plan.text, sums)});
+    std::string what;
+    for (const std::string& part : result.signatures.back().changed)
+      what += (what.empty() ? "" : ", ") + part;
+    if (!what.empty())
+      result.findings.push_back({"signature", voxel::Verdict::Warn,
+                                 what + " changed after " + signature.by + " (" + signature.as +
+                                     ") signed at " + signature.at + ": let it be read and signed again"});
+  }
+}
+
+void add_cephalometry(Result& result) {
+  if (result.plan.landmarks.empty()) return;
+  const Objects& objects = result.evaluation.objects;
+  const Cephalometry definitions = read_cephalometry("lateral");
+  const std::vector<MovedLandmark> landmarks = moved_landmarks(objects, result.plan.landmarks);
+  const CephalometricResults found = measured(definitions, landmarks, objects.lps_from_head);
+  if (found.measured.empty()) return;
+  result.cephalometry = to_json(found, {});
+  for (const Object& object : objects) {
+    if (!object.shown || object.moved) continue;
+    const Cephalogram drawn =
+        draw_cephalogram(object.shown->grey, definitions, landmarks, objects.lps_from_head, cephalogram_px);
+    result.cephalogram = voxel::encode_image("png", drawn.size_px, drawn.rgb);
+    return;
+  }
+}
+
+}  // namespace
+
+VerdictCounts& VerdictCounts::operator+=(const VerdictCounts& other) {
+  pass += other.pass;
+  warn += other.warn;
+  fail += other.fail;
+  not_resolved += other.not_resolved;
+  pass_not_resolved += other.pass_not_resolved;
+  without_evidence += other.without_evidence;
+  without_certificate += other.without_certificate;
+  return *this;
+}
+
+void add(VerdictCounts& counts, const verify::Certificate& certificate) {
+  const bool passes = certificate.verdict == verify::Verdict::Pass;
+  (passes ? counts.pass : certificate.verdict == verify::Verdict::Warn ? counts.warn : counts.fail)++;
+  if (certificate.resolved()) return;
+  ++counts.not_resolved;
+  if (passes) ++counts.pass_not_resolved;
+  if (passes && !verify::is_evident(certificate)) ++counts.without_evidence;
+}
+
+VerdictCounts verdict_counts(const Evaluation& evaluation) {
+  VerdictCounts counts;
+  for (const Object& object : evaluation.objects)
+    if (object.certificate)
+      add(counts, *object.certificate);
+    else if (!object.is_tool)
+      ++counts.without_certificate;
+  return counts;
+}
+
+Json to_json(const VerdictCounts& counts) {
+  return {{"PASS", counts.pass},
+          {"WARN", counts.warn},
+          {"FAIL", counts.fail},
+          {"not_resolved", counts.not_resolved},
+          {"without_evidence", counts.without_evidence + counts.without_certificate},
+          {"without_certificate", counts.without_certificate}};
+}
+
+std::string text_of(const VerdictCounts& counts) {
+  return std::to_string(counts.pass) + " PASS" +
+         (counts.pass_not_resolved > 0 ? " (" + std::to_string(counts.pass_not_resolved) + " not resolved)"
+                                       : "") +
+         ", " + std::to_string(counts.warn) + " WARN, " + std::to_string(counts.fail) + " FAIL" +
+         (counts.without_certificate > 0
+              ? ", " + std::to_string(counts.without_certificate) + " without a certificate"
+              : "");
+}
+
+Parts parts_of(const Object& object) {
+  const double voxel_mm3 = object.voxel.octree.universe().lattice().voxel_mm3();
+  Parts parts{object.id, {}};
+  for (const std::uint64_t count : voxel::components(object.voxel.octree).voxel_counts)
+    parts.volumes_mm3.push_back(static_cast<double>(count) * voxel_mm3);
+  return parts;
+}
+
+std::vector<PictureGroup> plan_pictures(const Plan& plan, Evaluation& evaluation) {
+  const Stopwatch watch(evaluation.timings, "render");
+  const FinalScene scene = final_scene(plan, evaluation);
+  std::vector<voxel::DrawnObject> framed = scene.before;
+  framed.insert(framed.end(), scene.after.begin(), scene.after.end());
+  std::vector<PictureGroup> groups;
+  if (scene.moves) {
+    groups.push_back({"before", "Before", scene.before, {}});
+    draw(groups.back(), {"left", "35,15"}, framed, picture_px, evaluation.objects.lps_from_head);
+  }
+  groups.push_back({"after", scene.moves ? "Views after" : "Views", scene.after, {}});
+  draw(groups.back(), all_views(), framed, picture_px, evaluation.objects.lps_from_head);
+  return groups;
+}
+
+Json result_json(const Result& result) {
+  const Evaluation& evaluation = result.evaluation;
+  Json json = answer(evaluation.timings);
+  json["plan"] = {{"name", result.plan.name}, {"steps", result.plan.steps.size()}};
+  if (!result.plan.text.empty()) json["plan"] = Json::parse(result.plan.text);
+  json["universe"] = {{"side", evaluation.universe.side()},
+                      {"voxel_mm", to_json(evaluation.universe.lattice().spacing_mm())},
+                      {"lps_from_voxel", to_json(evaluation.universe.lps_from_voxel)}};
+  for (const char* key : {"scans", "objects", "components", "exports"}) json[key] = Json::array();
+  for (const ScanRecord& scan : evaluation.scans) json["scans"].push_back(to_json(scan));
+  for (const Object& object : evaluation.objects) json["objects"].push_back(to_json(object));
+  json["landmarks"] = Json::array();
+  for (const NamedPoint& landmark : result.plan.landmarks)
+    json["landmarks"].push_back({{"name", landmark.name}, {"point_mm", to_json(landmark.p_mm)}});
+  json["lps_from_head"] = to_json(evaluation.objects.lps_from_head);
+  json["movements"] = result.movements;
+  json["movement_words"] = movement_words;
+  json["signatures"] = Json::array();
+  for (const SignatureCheck& check : result.signatures) {
+    json["signatures"].push_back(to_json(check.signature));
+    json["signatures"].back()["changed_since"] = check.changed;
+  }
+  json["cephalometry"] = result.cephalometry;
+  json["measurements"] = result.measurements;
+  json["certificates"] = certificates_json(evaluation);
+  json["counts"] = to_json(verdict_counts(evaluation));
+  for (const Parts& parts : result.parts)
+    json["components"].push_back(
+        {{"object", parts.object}, {"count", parts.volumes_mm3.size()}, {"volumes_mm3", parts.volumes_mm3}});
+  for (const Exported& exported : result.exported) json["exports"].push_back(exported_json(exported));
+  json["findings"] = to_json(result.findings);
+  return json;
+}
+
+std::vector<std::filesystem::path> result_names(const Plan& plan) {
+  std::vector<std::filesystem::path> names{"report.html", "report.pdf", "result.json", "credibility.html",
+                                           "credibility.json"};
+  for (const Step& step : plan.steps)
+    if (const std::filesystem::path path = path_written(step.action); convert::is_deck(path))
+      for (std::filesystem::path& file : convert::deck_files(path)) names.push_back(std::move(file));
+    else if (!path.empty())
+      names.push_back(path);
+  return names;
+}
+
+Json write_result_files(Result& result, const std::filesystem::path& folder, const ExportOptions& options) {
+  if (result.anonymous) leave_out_patients(result);
+  {
+    const Stopwatch watch(result.evaluation.timings, "measure");
+    result.measurements = measurements_json(result.plan, result.evaluation);
+    result.movements = movements_json(result.evaluation.objects, result.plan.landmarks);
+    add_cephalometry(result);
+    check_signatures(result);
+    add_contact_pictures(result);
+  }
+  if (result.exported.empty())
+    result.exported = write_files(result.plan, result.evaluation, folder, result.evaluation.timings, options);
+  {
+    const Stopwatch watch(result.evaluation.timings, "write");
+    voxel::create_folders_in(folder, "views");
+    write_pictures(result, folder / "views");
+    if (!result.cephalogram.empty())
+      write_text(folder / "views/cephalogram.png", {result.cephalogram.begin(), result.cephalogram.end()});
+    write_text(folder / "report.html", report_html(result));
+    if (result.as_pdf) print_pdf(folder / "report.html", folder / "report.pdf", options.stop);
+  }
+  Json json = result_json(result);
+  for (const auto& [name, text] : result_tables(json)) {
+    voxel::create_folders_in(folder, std::filesystem::path(name).parent_path());
+    write_text(folder / name, text);
+  }
+  const Json credibility = credibility_json(json);
+  write_text(folder / "credibility.json", json_text(credibility, 2) + "\n");
+  write_text(folder / "credibility.html", credibility_html(credibility));
+  write_text(folder / "result.json", json_text(json, 2) + "\n");
+  return json;
+}
+
+Json write_result(Result& result, const std::filesystem::path& folder, const ExportOptions& options) {
+  ResultFolder output(folder);
+  const bool again = !result.exported.empty();
+  Json json = write_result_files(result, output.path(), options);
+  if (again) output.copy_rest();
+  output.publish();
+  return json;
+}
+
+}  // namespace octotomy::planner

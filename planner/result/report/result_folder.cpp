@@ -1,0 +1,464 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Publishing, in steps that a kill may separate:
+// 1. the list of the new files is written among them;
+// 2. files of somebody else in the old folder are hard-linked into the new one;
+// 3. the two folders exchange their names (renameat2);
+// 4. the old folder, now hidden, is emptied: listed files and second links go; a file that is neither,
+// because
+//    it appeared after step 2 or could not be linked, moves into the new folder.
+// A hidden folder without a list was therefore never near anybody's files; one with a list is emptied as in
+// step 4 by the next run. A lock on the hidden folder says that its owner lives.
+#include "planner/result/report/result_folder.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <climits>
+#include <cstdio>
+#include <fcntl.h>
+#include <fstream>
+#include <set>
+#include <string_view>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <system_error>
+#include <unistd.h>
+
+#include "planner/operation/table/control_character.h"
+#include "planner/plan/sha256.h"
+#include "voxel/space/disk_need.h"
+#include "voxel/space/error.h"
+#include "voxel/space/staged_files.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+using voxel::ErrorCode;
+using voxel::place_of;
+
+constexpr const char* steps_suffix = "-earlier";
+constexpr const char* list_name = ".octotomy-result";
+
+[[noreturn]] void refuse(const std::string& message) {
+  throw voxel::Error(ErrorCode::Input, message);
+}
+
+/// Refuses a name that a terminal or a list would obey or break at.
+fs::path plain_place_of(const fs::path& folder) {
+  if (has_control(folder.native()))
+    refuse(folder.string() + ": a folder's name has no control characters: choose another -o");
+  return place_of(folder);
+}
+
+bool is_there(const fs::path& path) {
+  return fs::symlink_status(path).type() != fs::file_type::not_found;
+}
+
+bool same_file(const fs::path& a, const fs::path& b) {
+  struct stat of_a {
+  }, of_b{};
+  return ::lstat(a.c_str(), &of_a) == 0 && ::lstat(b.c_str(), &of_b) == 0 && of_a.st_dev == of_b.st_dev &&
+         of_a.st_ino == of_b.st_ino;
+}
+
+/// Renames and replaces nothing; false if it cannot.
+bool rename_to_new(const fs::path& from, const fs::path& to) {
+  return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0 ||
+         (errno == EINVAL && !is_there(to) && ::rename(from.c_str(), to.c_str()) == 0);
+}
+
+void write_list(const fs::path& folder) {
+  ResultList list;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file())
+      list.emplace(entry.path().lexically_relative(folder).generic_string(), sha256_of_path(entry.path()));
+  std::string text =
+      "# Octotomy " OCTOTOMY_VERSION
+      " wrote these files and may replace them while they are unchanged. It keeps all others.\n";
+  for (const auto& [name, sum] : list) {
+    text += sum;
+    text += "  ";
+    text += name;
+    text += '\n';
+  }
+  // Whole or not at all: half a list would make somebody else's of what it does not name.
+  const fs::path part = folder / (std::string(list_name) + "-part");
+  write_text(part, text);
+  fs::rename(part, folder / list_name);
+}
+
+bool unchanged(const fs::path& path, const std::string& sum) {
+  return fs::is_regular_file(fs::symlink_status(path)) && sha256_of_path(path) == sum;
+}
+
+/// Whether `inner` is `outer` or lies in it.
+bool lies_in(const fs::path& inner, const fs::path& outer) {
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+fs::path hidden_prefix(const fs::path& place) {
+  return "." + place.filename().string() + ".octotomy-";
+}
+
+void need_writable(const fs::path& folder, const fs::path& named) {
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    refuse(named.string() + ": " + folder.string() + " cannot be written to: choose another -o");
+}
+
+/// Tries it, as a system may grant what it then refuses. Not under a result's hidden name: what such a folder
+/// holds may be somebody else's.
+void try_to_write(fs::path folder, const fs::path& named) {
+  constexpr const char* prefix = ".octotomy-";
+  while (!is_there(folder)) folder = folder.parent_path();
+  try {
+    voxel::remove_abandoned(folder, prefix);
+    const voxel::UnfinishedFolder trial(folder, prefix);
+  } catch (const voxel::Error& error) {
+    throw voxel::Error(error.code(), named.string() + ": " + error.what());
+  }
+}
+
+dev_t device_of(const fs::path& path) {
+  struct stat of_path {};
+  return ::lstat(path.c_str(), &of_path) == 0 ? of_path.st_dev : 0;
+}
+
+/// The list of the earlier result in `folder`; empty for an empty folder. `named` is the user's name for it.
+ResultList need_earlier_result(const fs::path& folder, const fs::path& named) {
+  if (fs::is_empty(folder)) return {};
+  ResultList list = result_list(folder);
+  if (list.empty())
+    refuse(named.string() + ": holds files but no list of an earlier result (" + list_name +
+           "), so they may be yours: choose another -o, or move them");
+  for (const auto& [name, sum] : list)
+    if (is_there(folder / name) && !unchanged(folder / name, sum))
+      refuse((named / name).string() +
+             ": was changed after Octotomy wrote it: move or delete it, or choose another -o");
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (device_of(entry.path()) != device_of(folder))
+      refuse((named / entry.path().lexically_relative(folder)).string() +
+             ": is mounted there, and a result replaces its folder: choose another -o");
+  return list;
+}
+
+/// Refuses if a file that the list does not name stands at `name`, or where a folder of it must be.
+void need_free(const fs::path& folder, const ResultList& list, const fs::path& name, const fs::path& named) {
+  fs::path part;
+  for (const fs::path& step : name) {
+    part /= step;
+    const bool last = part == name;
+    if (!is_there(folder / part)) return;
+    if (last ? !list.contains(part.generic_string()) : !fs::is_directory(fs::symlink_status(folder / part)))
+      refuse((named / part).string() +
+             ": is not Octotomy's, and the result needs that name: move it, or choose another -o");
+  }
+}
+
+/// As need_result_folder(), of a path without links; the list of the earlier result there.
+ResultList need_place(const fs::path& place, const fs::path& named, const std::vector<fs::path>& names) {
+  if (lies_in(fs::current_path(), fs::weakly_canonical(place)))
+    refuse(
+        named.string() +
+        ": is the working folder or holds it, and a result replaces its folder: choose a folder in it, as -o "
+        "report");
+  constexpr std::size_t longest_beside = 20;  // "." before it, ".octotomy-" with six letters and "~" after
+  if (place.filename().native().size() + longest_beside > NAME_MAX)
+    refuse(named.string() + ": is too long a name: choose a shorter -o");
+  if (!is_there(place)) {
+    fs::path above = place.parent_path();
+    while (!is_there(above)) above = above.parent_path();
+    if (!fs::is_directory(above))
+      refuse(named.string() + ": " + above.string() + " is a file: choose another -o");
+    need_writable(above, named);
+    return {};
+  }
+  if (!fs::is_directory(place))
+    refuse(named.string() + ": is a file, a result needs a folder: choose another -o");
+  if (device_of(place) != device_of(place.parent_path()))
+    refuse(named.string() +
+           ": is mounted there, and a result replaces its folder: choose a folder in it, as " +
+           (named / "report").string());
+  need_writable(place.parent_path(), named);
+  need_writable(place, named);
+  ResultList list = need_earlier_result(place, named);
+  for (const fs::path& name : names) need_free(place, list, name.lexically_normal(), named);
+  return list;
+}
+
+/// Holds other runs off while folders change their names; where locks are not known, nobody is.
+class PlaceLock {
+ public:
+  explicit PlaceLock(const fs::path& parent) : file_(::open(parent.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (file_ >= 0) ::flock(file_, LOCK_EX);
+  }
+  PlaceLock(const PlaceLock&) = delete;
+  PlaceLock& operator=(const PlaceLock&) = delete;
+  ~PlaceLock() {
+    if (file_ >= 0) ::close(file_);
+  }
+
+ private:
+  int file_;
+};
+
+/// Gives what is new the permissions of what stood in its place.
+void keep_mode(const fs::path& old, const fs::path& made) {
+  struct stat of_old {};
+  if (fs::exists(fs::symlink_status(made)) && ::lstat(old.c_str(), &of_old) == 0 && !S_ISLNK(of_old.st_mode))
+    ::chmod(made.c_str(), of_old.st_mode & 07777);
+}
+
+/// Links into `made` the files of `old` that its list does not name, and keeps permissions. Throws Error if a
+/// name is taken.
+void take_over(const fs::path& old, const ResultList& list, const fs::path& made, const fs::path& named) {
+  std::vector<fs::path> kept{""};
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(old)) {
+    const fs::path name = entry.path().lexically_relative(old);
+    kept.push_back(name);
+    if (name == list_name || list.contains(name.generic_string())) continue;
+    if (fs::is_directory(entry.symlink_status())) {
+      // A folder of listed files goes with them.
+      const std::string prefix = name.generic_string() + "/";
+      const auto first = list.lower_bound(prefix);
+      if (first != list.end() && first->first.starts_with(prefix)) continue;
+      if (!fs::is_directory(made / name)) need_free(made, {}, name, named);
+      voxel::create_folders_in(made, name);
+    } else {
+      need_free(made, {}, name, named);
+      voxel::create_folders_in(made, name.parent_path());
+      // If a file system has no links, or a file is another user's, step 4 moves it.
+      [[maybe_unused]] const int linked =
+          ::linkat(AT_FDCWD, entry.path().c_str(), AT_FDCWD, (made / name).c_str(), 0);
+    }
+  }
+  // Inner ones first: a folder may become closed.
+  for (auto name = kept.rbegin(); name != kept.rend(); ++name) keep_mode(old / *name, made / *name);
+}
+
+/// Removes the files of a list that are unchanged, the list, and the folders that this empties; `place`
+/// itself unless it `was_there` before.
+void take_back(const fs::path& place, const ResultList& list, bool was_there) {
+  std::set<fs::path> folders;
+  for (const auto& [name, sum] : list) {
+    for (fs::path above = fs::path(name).parent_path(); !above.empty(); above = above.parent_path())
+      folders.insert(above);
+    if (unchanged(place / name, sum)) fs::remove(place / name);
+  }
+  fs::remove(place / list_name);
+  // Inner ones first; one that holds a user's file stays.
+  for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) ::rmdir((place / *folder).c_str());
+  if (!was_there) ::rmdir(place.c_str());
+}
+
+/// Step 4: empties a hidden folder and removes it. What is neither listed nor in `place` moves there. `sure`
+/// if the listed files are known to be unchanged.
+void discard(const fs::path& hidden, const fs::path& place, bool sure) {
+  std::error_code ignored;
+  if (!is_there(hidden / list_name)) {
+    fs::remove_all(hidden, ignored);
+    return;
+  }
+  const ResultList list = result_list(hidden);
+  std::vector<fs::path> folders;
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(hidden))
+    (fs::is_directory(entry.symlink_status()) ? folders : files).push_back(entry.path());
+  for (const fs::path& file : files) {
+    const fs::path name = file.lexically_relative(hidden);
+    const auto listed = list.find(name.generic_string());
+    if (name == list_name) continue;
+    if (same_file(file, place / name) ||
+        (listed != list.end() && (sure || unchanged(file, listed->second)))) {
+      fs::remove(file, ignored);
+    } else {
+      fs::create_directories((place / name).parent_path(), ignored);
+      rename_to_new(file, place / name);
+    }
+  }
+  std::sort(folders.rbegin(), folders.rend());
+  bool empty = true;
+  for (const fs::path& folder : folders) empty = ::rmdir(folder.c_str()) == 0 && empty;
+  for (const fs::directory_entry& entry : fs::directory_iterator(hidden))
+    empty = empty && entry.path().filename() == list_name;
+  if (empty) fs::remove_all(hidden, ignored);
+}
+
+/// For a file system without the exchange: between the first two steps the old result lies beside its place.
+void exchange_in_steps(const fs::path& staged, const fs::path& place) {
+  const fs::path old = staged.string() + steps_suffix;
+  fs::rename(place, old);
+  try {
+    fs::rename(staged, place);
+  } catch (const fs::filesystem_error&) {
+    fs::rename(old, place);
+    throw;
+  }
+  fs::rename(old, staged);
+}
+
+/// Removes what runs that were killed left beside the place; an earlier result that stands there only goes
+/// back.
+void discard_leftovers(const fs::path& place) {
+  const std::string prefix = hidden_prefix(place).string();
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(place.parent_path())) {
+    std::string name = entry.path().filename().string();
+    if (!name.starts_with(prefix) || !fs::is_directory(entry.symlink_status())) continue;
+    const bool earlier = name.ends_with(steps_suffix);
+    if (earlier) name.resize(name.size() - std::string_view(steps_suffix).size());
+    if (!earlier && name.ends_with('~')) name.pop_back();
+    const std::string letters = name.substr(prefix.size());
+    if (letters.size() != 6 || !std::all_of(letters.begin(), letters.end(),
+                                            [](unsigned char letter) { return std::isalnum(letter) != 0; }))
+      continue;
+    if (!earlier || !rename_to_new(entry.path(), place)) found.push_back(entry.path());
+  }
+  for (const fs::path& hidden : found)
+    voxel::if_abandoned(
+        hidden,
+        [](const fs::path& folder, void* place_of_it) {
+          discard(folder, *static_cast<const fs::path*>(place_of_it), false);
+        },
+        const_cast<fs::path*>(&place));
+}
+
+/// The permissions of a folder that is made in `folder` as any other.
+void take_usual_mode(const fs::path& folder) {
+  const fs::path probe = folder / "probe";
+  fs::create_directory(probe);
+  keep_mode(probe, folder);
+  fs::remove(probe);
+}
+
+}  // namespace
+
+ResultList result_list(const fs::path& folder) {
+  ResultList list;
+  if (!fs::is_regular_file(folder / list_name)) return list;
+  std::ifstream file(folder / list_name);
+  std::string line;
+  while (std::getline(file, line))
+    if (line.size() > 66 && line[0] != '#') list.emplace(line.substr(66), line.substr(0, 64));
+  return list;
+}
+
+void need_result_folder(const fs::path& folder, const std::vector<fs::path>& names) {
+  const fs::path place = plain_place_of(folder);
+  need_place(place, folder, names);
+  try_to_write(place.parent_path(), folder);
+  // A page without pictures, its tables and the list of files.
+  constexpr std::uint64_t least_bytes = 24000;
+  voxel::need_disk(folder, least_bytes);
+}
+
+bool may_hold_result(const fs::path& folder) {
+  const fs::path place = place_of(folder);
+  if (!is_there(place)) return true;
+  return fs::is_directory(place) && (fs::is_empty(place) || !result_list(place).empty());
+}
+
+bool is_of_result(const fs::path& file) {
+  const fs::path place = place_of(file);
+  for (fs::path above = place.parent_path();; above = above.parent_path()) {
+    if (result_list(above).contains(place.lexically_relative(above).generic_string())) return true;
+    if (!above.has_relative_path()) return false;
+  }
+}
+
+ResultFolder::ResultFolder(const fs::path& folder) : final_(plain_place_of(folder)) {
+  fs::create_directories(final_.parent_path());
+  const PlaceLock held(final_.parent_path());
+  discard_leftovers(final_);
+  staged_ = std::make_unique<voxel::UnfinishedFolder>(final_.parent_path(), hidden_prefix(final_).string());
+  take_usual_mode(path());
+}
+
+void ResultFolder::keep_beside(const std::string& reason, const fs::path& hidden) {
+  for (int number = 1;; ++number) {
+    const fs::path kept = final_.string() + ".new" + (number == 1 ? "" : std::to_string(number));
+    if (is_there(kept)) continue;
+    const fs::path from = staged_->is_kept() ? hidden : path();
+    if (!rename_to_new(from, kept))
+      throw fs::filesystem_error("cannot keep", from, kept, {errno, std::generic_category()});
+    if (!staged_->is_kept()) staged_->keep();
+    refuse(reason + ". The new result is complete in " + kept.string());
+  }
+}
+
+void ResultFolder::copy_rest() {
+  for (const auto& [name, sum] : result_list(final_)) {
+    if (is_there(path() / name) || !fs::is_regular_file(fs::symlink_status(final_ / name))) continue;
+    voxel::create_folders_in(path(), fs::path(name).parent_path());
+    fs::copy_file(final_ / name, path() / name);
+  }
+}
+
+void ResultFolder::publish() {
+  put_in_place([] {});
+}
+
+std::unique_ptr<voxel::Undo> ResultFolder::publish_early() {
+  std::unique_ptr<voxel::Undo> undo;
+  if (replaces()) return undo;
+  const bool was_there = is_there(final_);
+  put_in_place([&] {
+    undo = std::make_unique<voxel::Undo>([place = final_, list = result_list(final_), was_there] {
+      if (result_list(place) == list) take_back(place, list, was_there);
+    });
+  });
+  return undo;
+}
+
+bool ResultFolder::replaces() const {
+  return is_there(final_) && !(fs::is_directory(final_) && fs::is_empty(final_));
+}
+
+void ResultFolder::put_in_place(const std::function<void()>& then) {
+  write_list(path());
+  const PlaceLock held(final_.parent_path());
+  const bool exchanges = replaces();
+  try {
+    const ResultList earlier = need_place(final_, final_, {});
+    if (exchanges) take_over(final_, earlier, path(), final_);
+  } catch (const std::exception& error) {
+    keep_beside(error.what());
+  }
+  if (!exchanges) keep_mode(final_, path());
+  fs::path old;
+  {
+    const voxel::NamesChange change;
+    // From the exchange on, the hidden folder holds other people's files: no ending may remove it.
+    old = staged_->keep();
+    // An empty folder is replaced, never a file or a folder with something in it.
+    const bool done = exchanges
+                          ? ::renameat2(AT_FDCWD, old.c_str(), AT_FDCWD, final_.c_str(), RENAME_EXCHANGE) == 0
+                          : ::rename(old.c_str(), final_.c_str()) == 0;
+    if (!done && exchanges && (errno == EINVAL || errno == ENOSYS))
+      exchange_in_steps(old, final_);
+    else if (!done)
+      keep_beside(final_.string() + ": " + std::generic_category().message(errno), old);
+    then();
+  }
+  if (!exchanges) return;
+  try {
+    discard(old, final_, true);
+  } catch (const std::exception&) {
+    // The result is published; the next run removes the rest.
+  }
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  const auto fail = [&] {
+    throw fs::filesystem_error("cannot write", path, std::error_code(errno, std::generic_category()));
+  };
+  errno = 0;
+  std::FILE* opened = std::fopen(path.c_str(), "wb");
+  if (opened == nullptr) fail();
+  const bool written = std::fwrite(text.data(), 1, text.size(), opened) == text.size();
+  const bool closed = std::fclose(opened) == 0;
+  if (!written || !closed) fail();
+}
+
+}  // namespace octotomy::planner

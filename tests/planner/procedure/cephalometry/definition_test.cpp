@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/procedure/cephalometry/definition.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/file_bytes.h"
+#include "tests/voxel/scratch_folder.h"
+
+namespace octotomy::planner {
+namespace {
+
+std::string refusal(const std::string& measure) {
+  try {
+    parse_cephalometry(R"({"cephalometry": "own", "says": "s", "landmarks": [{"name": "a", "says": "s"},
+      {"name": "b", "says": "s"}], "measures": [)" +
+                       measure + "]}");
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CephalometricDefinition, TheProgramsOwnReadAndNameWhereTheirNormsComeFrom) {
+  for (const std::string& name : cephalometries()) {
+    const Cephalometry read = read_cephalometry(name);
+    EXPECT_EQ(read.name, name);
+    EXPECT_GT(read.measures.size(), 20u);
+    for (const CephalometricMeasure& measure : read.measures)
+      EXPECT_EQ(measure.norm.has_value(), measure.deviation.has_value()) << measure.name;
+  }
+}
+
+TEST(CephalometricDefinition, RefusalsNameThePlaceAndTheNearestName) {
+  EXPECT_EQ(refusal(R"({"name": "d", "says": "s", "kind": "distance", "points": ["a", "b"]})"), "");
+  EXPECT_NE(refusal(R"({"name": "d", "says": "s", "kind": "distanc", "points": ["a", "b"]})")
+                .find("measures[0], kind: there is no 'distanc', did you mean 'distance'?"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"name": "d", "says": "s", "kind": "angle", "points": ["a", "b"]})")
+                .find("points: must be 3 landmarks"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"name": "d", "says": "s", "kind": "distance", "points": ["a", "bb"]})")
+                .find("'bb' is not defined before, did you mean 'b'?"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"name": "d", "says": "s", "kind": "difference", "of": ["d", "d"]})")
+                .find("measures[0], of: 'd' is not defined before"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"name": "d", "says": "s", "kind": "tilt", "plane": "space", "points": ["a", "b"]})")
+                .find("choose lateral or frontal"),
+            std::string::npos);
+  EXPECT_NE(refusal("7").find("measures[0]"), std::string::npos);
+  EXPECT_THROW(parse_cephalometry("{"), std::runtime_error);
+}
+
+TEST(CephalometricDefinition, NestedTooDeepIsRefusedAsTextAndAsFile) {
+  const tests::ScratchFolder folder;
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  const std::filesystem::path path = folder / "deep.json";
+  tests::write_bytes(path, deep);
+  EXPECT_THROW(parse_cephalometry(deep), std::runtime_error);
+  try {
+    read_cephalometry(path.string());
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), path.string() + ": is nested more than 512 deep");
+  }
+}
+
+}  // namespace
+}  // namespace octotomy::planner
