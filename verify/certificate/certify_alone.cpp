@@ -98,13 +98,11 @@ Certificate certify_alone(const voxel::Octree& octree, const AloneInputs& inputs
   }
   // Where either side is allowed, any answer passes.
   certificate.limit = DetectionLimit{voxel_mm3 + mm3(count.on_surface + count.unknown), std::nullopt};
-  constexpr const char* alone = "Not independent: the voxel kernel alone made this object";
-  if (count.unknown > 0)
-    lower(certificate, Verdict::Warn,
-          std::string(alone) + ", and its witness does not know the side of " +
-              voxel::rounded(mm3(count.unknown)) + " mm3 of voxels.");
-  else
-    certificate.reasons.push_back(std::string(alone) + "; its witness judged the centre of every voxel.");
+  const std::string alone = "Not independent: the voxel kernel alone made this object";
+  lower(certificate, Verdict::Warn,
+        count.unknown > 0 ? alone + ", and its witness does not know the side of " +
+                                voxel::rounded(mm3(count.unknown)) + " mm3 of voxels."
+                          : alone + "; its witness judged the centre of every voxel.");
   judge_evidence(certificate);
   judge_emptiness(certificate, certificate.unseen_mm3());
   progress.at(1.0);

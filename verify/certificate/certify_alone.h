@@ -21,8 +21,7 @@ struct AloneInputs {
 /// Judges an object that the voxel kernel alone made (tier Bounded): at the centre of every voxel of the
 /// universe, inside and outside of the object, its witness must allow the side. The witness's own reading
 /// stands in the place of the mesh kernel's answer, with the voxels' makers: the certificate is not
-/// independent and says so. It passes only where the witness is sure of the side, or has a surface within
-/// rounding, at every centre. Otherwise the verdict is WARN at best, with the volume that nobody judged.
+/// independent, says so, and is a WARN at best. It names the volume whose side the witness does not know.
 /// Throws voxel::Stopped. Cost: a reading of the witness for each voxel of the universe.
 Certificate certify_alone(const voxel::Octree& octree, const AloneInputs& inputs,
                           const voxel::Progress& progress = {});

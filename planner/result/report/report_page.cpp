@@ -461,7 +461,8 @@ std::string certificates(const Result& result) {
   if (!any) return "";
   return element("h2", "Certificates") +
          element("p class=\"soft\"",
-                 "Each object was made twice: by Booleans of octrees, and by corefinement of meshes from the "
+                 "Each object with a mesh was made twice: by Booleans of octrees, and by corefinement of "
+                 "meshes from the "
                  "scan's own samples. "
                  "The difference must stay within what voxel size and boundary allow, computed beforehand.") +
          element("table", rows) +
