@@ -25,6 +25,7 @@ struct ProcedureText {
   std::vector<fs::path> landmarks;
   std::vector<std::string> values;
   double voxel_mm = 1.0;
+  bool anonymous = false;
 };
 
 /// What a procedure takes, or the names of all.
@@ -106,6 +107,7 @@ int procedure(Program& program, const ProcedureText& text) {
     RunText replay;
     replay.out = text.report;
     replay.certify = text.certify;
+    replay.anonymous = text.anonymous;
     Plan read = parse_plan(written, fs::absolute(text.out).parent_path());
     read.file = text.out;
     return run(program, replay, std::move(read), write);
@@ -150,6 +152,7 @@ void add_procedure(Program& program) {
   verb.add_option("--report", text->report, "Replays the plan into this folder at once, as run does");
   add_certify(verb, text->certify);
   add_anonymous(verb, text->anonymous);
+  verb.get_option("--anonymous")->needs("--report");
 }
 
 }  // namespace octotomy::planner::cli
