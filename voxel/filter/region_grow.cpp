@@ -26,7 +26,8 @@ Octree grow_region(const GreyOctree& grey, const GrowOptions& options) {
                                   std::to_string(side) + " voxels a side");
     if (!grey.scan().contains(seed))
       throw std::invalid_argument("the seed " + std::to_string(seed.x) + " " + std::to_string(seed.y) + " " +
-                                  std::to_string(seed.z) + " is beyond the scan, whose samples alone grow");
+                                  std::to_string(seed.z) +
+                                  " lies beyond the scan or on padding, where nothing was measured");
     low = std::min(low, static_cast<double>(grey.sample(seed)));
     high = std::max(high, static_cast<double>(grey.sample(seed)));
   }
