@@ -241,9 +241,11 @@ inline std::vector<BadMesh> bad_meshes() {
 
   // Shells in shells.
   add("cavity", together(ball, inside_out(small)), v_ball - v_small);
-  add("cavity_turned_outward", together(ball, small), v_ball - v_small);
+  // Where the outermost shells face outward, one within that faces outward too is a body: the winding says so.
+  add("outward_within_outward", together(ball, small), v_ball);
   add("cavity_inside_out_whole", together(inside_out(ball), small), v_ball - v_small);
-  add("three_nested", together(together(sphere({1, 2, 3}, 8, 3), ball), small),
+  add("three_outward", together(together(sphere({1, 2, 3}, 8, 3), ball), small), v_ball / 125 * 512);
+  add("three_by_turns", together(together(sphere({1, 2, 3}, 8, 3), inside_out(ball)), small),
       v_ball / 125 * 512 - v_ball + v_small);
   add("cavity_that_touches", together(ball, inside_out(sphere({1, 2, 5.4}, 2.5, 2))), v_ball - v_small);
   add("same_shell_twice", together(ball, ball), v_ball);
