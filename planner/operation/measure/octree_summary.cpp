@@ -6,6 +6,7 @@
 
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
+#include "planner/operation/table/same_patient.h"
 #include "voxel/measure/grey_level_counts.h"
 
 namespace octotomy::planner {
@@ -90,7 +91,9 @@ Json doubts_of(const std::vector<voxel::Finding>& audit) {
   std::vector<voxel::Finding> doubts;
   for (const voxel::Finding& finding : audit)
     if (finding.verdict != voxel::Verdict::Pass && doubts.size() < most)
-      doubts.push_back({finding.check, finding.verdict, finding.detail});
+      doubts.push_back(
+          {finding.check, finding.verdict,
+           quotes_identity(finding.check) ? "what its files state of the patient differs" : finding.detail});
   return to_json(doubts);
 }
 

@@ -56,6 +56,11 @@ voxel::Finding identity_finding(const IdentityOf& scan, const IdentityOf& laid) 
       "whether " + both + " are of one " + joined(found.unstated, " and ") + " could not be checked: " + who};
 }
 
+bool quotes_identity(const std::string& check) {
+  return check == "identity" || check == "patient" ||
+         (check.starts_with("patient_") && check != "patient_position" && check != "patient_orientation");
+}
+
 std::vector<std::string> need_same_patient(const IdentityOf& scan, const IdentityOf& laid, bool is_allowed,
                                            const std::string& option) {
   const voxel::Finding finding = identity_finding(scan, laid);

@@ -18,6 +18,10 @@ struct IdentityOf {
 /// value that differs; Warn says what could not be compared because a file does not state it.
 voxel::Finding identity_finding(const IdentityOf& scan, const IdentityOf& laid);
 
+/// Whether details of an audit's check quote what files state of patients, studies and series where these
+/// differ.
+bool quotes_identity(const std::string& check);
+
 /// Throws std::runtime_error where identity_finding() fails, with `option` as the way to go on; where
 /// `is_allowed` returns the failure instead. A WARN follows where `laid` is a structure set that was drawn on
 /// other series than the scan's alone. Returns no line where the files agree in all.

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "planner/operation/table/same_patient.h"
+
 namespace octotomy::planner {
 namespace {
 
@@ -107,6 +109,8 @@ std::vector<std::string> patient_lines(const Evaluation& evaluation) {
 }
 
 void leave_out_patients(Result& result) {
+  // Findings that compare identities quote files that the result does not keep, so their text goes as a whole.
+  constexpr const char* left_out = "what the files state differs; left out as asked";
   std::vector<std::string> values;
   for (ScanRecord& scan : result.evaluation.scans) {
     for (const std::string& value :
@@ -115,11 +119,20 @@ void leave_out_patients(Result& result) {
     scan.identity = {};
   }
   for (ScanRecord& scan : result.evaluation.scans)
-    for (voxel::Finding& finding : scan.audit) hide_quoted(values, finding.detail);
+    for (voxel::Finding& finding : scan.audit)
+      if (quotes_identity(finding.check) && finding.verdict != voxel::Verdict::Pass)
+        finding.detail = left_out;
+      else
+        hide_quoted(values, finding.detail);
   for (voxel::Finding& finding : result.findings) hide_quoted(values, finding.detail);
   Objects& objects = result.evaluation.objects;
   for (std::size_t i = 0; i < objects.size(); ++i)
-    for (std::string& finding : objects.change(i).findings) hide_quoted(values, finding);
+    for (std::string& finding : objects.change(i).findings) {
+      for (const std::string check : {"identity: ", "series: "})
+        if (const std::size_t at = finding.find(check); at <= std::string("FAIL, ").size())
+          finding = finding.substr(0, at + check.size()) + left_out;
+      hide_quoted(values, finding);
+    }
 }
 
 }  // namespace octotomy::planner

@@ -79,6 +79,8 @@ class PatientReport : public testing::Test {
     ScanRecord& scan = result_.evaluation.scans.at(0);
     scan.identity = jane();
     scan.audit.push_back({"patient", voxel::Verdict::Warn, "patient 'A17' and 'B23'"});
+    result_.evaluation.objects.change(0).findings.push_back(
+        "FAIL: identity: ct and rs.dcm are not of one patient: patient 'A17' and 'C99'");
     write_result(result_, folder_ / "open");
     result_.anonymous = true;
     write_result(result_, folder_ / "hidden");
@@ -101,7 +103,8 @@ TEST_F(PatientReport, AnAnonymousResultNamesNobodyAnywhere) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "hidden")) {
     if (!entry.is_regular_file()) continue;
     const std::string text = tests::bytes_of(entry.path());
-    for (const char* personal : {"DOE, Jane", "DOE^Jane", "'A17'", "1970-01-31", "19700131", "2020-02-01"})
+    for (const char* personal :
+         {"DOE, Jane", "DOE^Jane", "'A17'", "B23", "C99", "1970-01-31", "19700131", "2020-02-01"})
       EXPECT_EQ(text.find(personal), std::string::npos) << entry.path() << " holds " << personal;
   }
 }
