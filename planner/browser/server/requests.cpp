@@ -173,7 +173,12 @@ Json joined(const Json& steps, const Json& of_procedure, const std::string& scan
 }
 
 Json procedure(Desk& desk, const Json& said, const Watched&) {
-  const Procedure procedure = read_procedure(said.at("name").get<std::string>());
+  // A name that is a path would read any file.
+  const auto name = said.at("name").get<std::string>();
+  const std::vector<std::string> known = procedures();
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    throw std::runtime_error("there is no procedure '" + name + "'" + suggestion(name, known));
+  const Procedure procedure = read_procedure(name);
   Json ids = Json::array();
   desk.with_document([&](Document& document) {
     Json whole = document.json();

@@ -405,6 +405,10 @@ class Desk(Served):
         self.assertIn("forward 5.0 mm", words)
         with self.assertRaisesRegex(RuntimeError, "input: .*buttress_left"):
             self.window.ask("procedure", name="le_fort_i", landmarks={"incisor": [0, 0, 0]})
+        file = self.folder / "mine.procedure.json"
+        file.write_text('{"secret": 1}')
+        with self.assertRaisesRegex(RuntimeError, "there is no procedure"):
+            self.window.ask("procedure", name=str(file), landmarks=marks)
 
     def test_a_broken_step_is_told_and_the_others_are_there(self):
         lost = {"id": "lost", "do": "window", "scan": "ct", "low": 30000}
