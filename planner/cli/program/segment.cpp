@@ -43,6 +43,7 @@ struct Named {
   std::string name;
   Segmented made;
   std::optional<voxel::Octree> on_samples = std::nullopt;
+  bool is_named = true;  ///< the name is one for people, and not two numbers of a window
 };
 
 bool is_dicom_seg(const fs::path& path) {
@@ -76,9 +77,9 @@ std::vector<Named> segments_of(const Program& program, const SegmentText& text, 
   const std::stop_token stop = program.stop.get_token();
   const SegmentSource source{text.scan.string(), scene, universe, grey_in(universe, grey), {}, stop};
   std::vector<Named> segments;
-  const auto add = [&](const std::string& name) {
+  const auto add = [&](const std::string& name, bool is_named) {
     const Stopwatch watch(timings, "segment");
-    segments.push_back({name, segmented(asked, source)});
+    segments.push_back({name, segmented(asked, source), {}, is_named});
     // Voxels that are samples already stand where the label map has its own.
     if (is_octree(text.out)) return;
     if (!is_dicom_seg(text.out) && on_samples(scene.lattice, universe.lattice())) return;
@@ -86,12 +87,13 @@ std::vector<Named> segments_of(const Program& program, const SegmentText& text, 
     segments.back().on_samples = on_own_samples(
         asked, {text.scan.string(), scene, own, grey_in(own, own_grey), {}, stop}, segments.back().made);
   };
-  if (asked.otsu) add("class " + std::to_string(asked.otsu_class.value_or(*asked.otsu)));
-  if (asked.label) add(asked.named ? *asked.named : "label " + std::to_string(*asked.label));
-  if (asked.tolerance) add("grown");
+  if (asked.otsu) add("class " + std::to_string(asked.otsu_class.value_or(*asked.otsu)), false);
+  if (asked.label)
+    add(asked.named ? *asked.named : "label " + std::to_string(*asked.label), asked.named.has_value());
+  if (asked.tolerance) add("grown", false);
   for (const std::string& window : text.windows) {
     asked.window = window_of(window);
-    add(window);
+    add(window, window.find(':') == std::string::npos);  // a tissue's word, not two numbers
   }
   for (const fs::path& path : text.objects) {
     const voxel::OctreeFile file = read_timed(path, timings);
@@ -202,9 +204,9 @@ std::map<int, std::string> write_segments(const Program& program, const SegmentT
     for (const voxel::Label& label : voxel::labels(map.scene)) {
       const std::string& name = segments[static_cast<std::size_t>(label.number) - 1].name;
       json["labels"].push_back({{"label", label.number}, {"name", name}, {"samples", label.samples}});
-      names.emplace(label.number, name);
+      if (segments[static_cast<std::size_t>(label.number) - 1].is_named) names.emplace(label.number, name);
     }
-    need_label_table(text.out, names);
+    if (!names.empty()) need_label_table(text.out, names);
     outputs.write(text.out, [&](const fs::path& file) { voxel::write_scene(map.scene, file); });
     json["overlaps"] = map.overlaps;
     if (map.overlaps > 0)

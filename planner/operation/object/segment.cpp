@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <set>
 
 #include "brep/mesh/triangles.h"
@@ -373,6 +374,17 @@ void settle_parts(const Segment& segment, const LoadedScan& scan, const voxel::U
                 universe, segment.largest || segment.components ? std::nullopt : segment.at_least_mm3, made);
 }
 
+/// By how much a grey octree of these steps may have rounded a sample: 0 where all are whole numbers of steps.
+double rounding_of(const voxel::Scene& scene, double step) {
+  const auto* const samples = std::get_if<voxel::FloatSamples>(&scene.samples);
+  if (samples == nullptr) return 0.0;
+  const bool is_rounded = std::any_of(samples->begin(), samples->end(), [&](float sample) {
+    const double steps = static_cast<double>(sample) / step;
+    return std::isfinite(steps) && steps != std::floor(steps);
+  });
+  return is_rounded ? step : 0.0;
+}
+
 /// The samples that seeds choose, in a window or grown. Empty where other choices of voxels come between, and
 /// where voxels are no samples: what joins parts depends on the resampling then.
 verify::Witness witness_of_seeds(const Segment& segment, const LoadedScan& scan, bool voxels_are_samples) {
@@ -385,9 +397,20 @@ verify::Witness witness_of_seeds(const Segment& segment, const LoadedScan& scan,
     from.high = segment.window->high_or_infinity();
   }
   from.neighbours = segment.neighbours;
-  // A grey octree keeps whole numbers of steps.
-  if (std::holds_alternative<voxel::FloatSamples>(scan.scene().samples)) from.rounding = scan.grey.step();
-  verify::Witness grown = verify::witness_of_grown(scan.scene(), from);
+  // The samples are flooded when the witness is first read: an evaluation without certificates needs none.
+  struct Flood {
+    std::once_flag once;
+    verify::Witness witness;
+  };
+  verify::Witness grown = [samples = scan.shared, step = scan.grey.step(), from,
+                           flood = std::make_shared<Flood>()](const glm::dvec3& p_mm, double slack_mm) {
+    std::call_once(flood->once, [&] {
+      verify::GrownFrom exact = from;
+      exact.rounding = rounding_of(*samples, step);
+      flood->witness = verify::witness_of_grown(*samples, exact);
+    });
+    return flood->witness(p_mm, slack_mm);
+  };
   return segment.fill ? verify::witness_of_filled(std::move(grown)) : std::move(grown);
 }
 

@@ -316,8 +316,7 @@ TEST_F(Segments, SeveralBecomeADicomSegmentationAndComeBackUnshiftedUnderTheirNa
 
 TEST_F(Segments, NamesOfLabelsStayBesideALabelMapThatIsConverted) {
   EXPECT_EQ(run(segment("map.nrrd") + "--window 600: --window 200:600").status, 0);
-  EXPECT_EQ(tests::bytes_of(folder_ / "map.tsv"), "index\tname\n1\t600:\n2\t200:600\n");
-  std::filesystem::remove(folder_ / "map.tsv");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "map.tsv")) << "a window's two numbers are no name";
   write("map.json", R"({"Balls": 1, "Cube": 2})");
   EXPECT_EQ(run("convert " + at("map.nrrd") + " -o " + at("named.dcm")).status, 0);
   // prepare keeps them, too.
