@@ -40,11 +40,6 @@ std::map<int, std::string> spelled(const std::map<int, std::string>& names) {
   return made;
 }
 
-bool holds(const fs::path& table, const std::map<int, std::string>& names) {
-  const std::map<int, std::string> there = names_in(table);
-  return there == names || there == spelled(names);
-}
-
 /// Whether a file is byte for byte what label_table_text() makes of its names.
 bool is_written_here(const fs::path& table) {
   const std::map<int, std::string> names = names_in(table);
@@ -54,6 +49,11 @@ bool is_written_here(const fs::path& table) {
 }
 
 }  // namespace
+
+bool holds_names(const fs::path& table, const std::map<int, std::string>& names) {
+  const std::map<int, std::string> there = names_in(table);
+  return there == names || there == spelled(names);
+}
 
 fs::path label_table_path(const fs::path& label_map) {
   std::string name = label_map.filename().string();
@@ -71,7 +71,7 @@ std::string label_table_text(const std::map<int, std::string>& names) {
 
 void need_label_table(const fs::path& label_map, const std::map<int, std::string>& names) {
   const fs::path table = label_table_path(label_map);
-  if (!fs::exists(fs::symlink_status(table)) || holds(table, names)) return;
+  if (!fs::exists(fs::symlink_status(table)) || holds_names(table, names)) return;
   if (fs::exists(label_map) && is_written_here(table)) return;
   throw std::runtime_error(table.string() +
                            ": is there already and does not hold the names of the label map's labels, which "
@@ -83,7 +83,7 @@ std::vector<std::string> write_label_table(const fs::path& label_map,
   if (label_table_of(label_map).names == names) return {};
   need_label_table(label_map, names);
   const fs::path table = label_table_path(label_map);
-  if (!holds(table, names)) write_whole(table, label_table_text(names));
+  if (!holds_names(table, names)) write_whole(table, label_table_text(names));
   std::vector<std::string> findings{"the names of the labels stand in " + table.string() +
                                     ", as the label map's own file has no place for them"};
   if (spelled(names) != names)

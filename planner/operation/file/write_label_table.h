@@ -12,6 +12,10 @@ namespace octotomy::planner {
 /// The label map's path with .tsv in place of its extension.
 std::filesystem::path label_table_path(const std::filesystem::path& label_map);
 
+/// Whether a table has exactly these names, as they are or as label_table_text() spells them. False for a file
+/// that is no label table.
+bool holds_names(const std::filesystem::path& table, const std::map<int, std::string>& names);
+
 /// A table as BIDS has it, with the columns index and name. Tabs and line breaks of names become blanks; a
 /// name of several labels gets the number of each, as "Bone (label 7)".
 std::string label_table_text(const std::map<int, std::string>& names);

@@ -38,9 +38,9 @@ void write(const LabelMap& wanted, const AnswerBench& bench, Exported& made) {
   const std::filesystem::path table = label_table_path(file);
   if (!std::filesystem::exists(table))
     write_whole(table, label_table_text(names));
-  else if (read_label_table(table).names != names)
+  else if (!holds_names(table, names))
     made.findings.push_back("the name of its label is not written, as " + table.filename().string() +
-                            " has the names of another label map: choose another name for one of them");
+                            " is there and does not have it: choose another name for one of them");
   made.written = true;
   made.content = grouped(static_cast<double>(octree.voxel_count()), 0) + " voxels labelled 1";
   made.details = {{"voxels", octree.voxel_count()}, {"volume_mm3", object.voxel.measures.volume_mm3}};

@@ -7,6 +7,7 @@
 #include "convert/deck/deck.h"
 #include "planner/operation/anatomy/head_directions.h"
 #include "planner/operation/anatomy/movement.h"
+#include "planner/operation/file/write_label_table.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/procedure/cephalometry/cephalogram.h"
@@ -205,8 +206,10 @@ std::vector<std::filesystem::path> result_names(const Plan& plan) {
   for (const Step& step : plan.steps)
     if (const std::filesystem::path path = path_written(step.action); convert::is_deck(path))
       for (std::filesystem::path& file : convert::deck_files(path)) names.push_back(std::move(file));
-    else if (!path.empty())
+    else if (!path.empty()) {
+      if (step.action.operation().name == std::string("label_map")) names.push_back(label_table_path(path));
       names.push_back(path);
+    }
   return names;
 }
 
