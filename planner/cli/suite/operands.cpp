@@ -60,7 +60,10 @@ voxel::Octree labelled(const Program& program, const fs::path& path, Timings& ti
     const voxel::OctreeFile file = read_timed(path, timings);
     const auto* const octree = std::get_if<voxel::Octree>(&file.tree);
     if (octree == nullptr)
-      throw std::runtime_error(path.string() + ": holds grey values: make a binary octree of it first");
+      throw std::runtime_error(
+          path.string() +
+          ": holds grey values: make a binary octree of its scan first (octotomy octree SCAN --window "
+          "LOW:)");
     lattice = octree->universe().lattice();
     if (octree->is_empty() && !may_be_empty) throw std::runtime_error(path.string() + ": holds no voxel");
     return *octree;
@@ -94,13 +97,17 @@ struct Answered {
 };
 
 Answered of_label_maps(Program& program, const Question& asked, Timings& timings) {
+  // A label map is laid on an octree's lattice, or on the other map's.
   voxel::Lattice lattice_a, lattice_b;
-  const voxel::Octree left = labelled(program, asked.a, timings, lattice_a),
-                      right = labelled(program, asked.b, timings, lattice_b, &lattice_a);
-  if (!(lattice_a == lattice_b))
+  const bool is_b_first = is_octree(asked.b) && !is_octree(asked.a);
+  const voxel::Octree first = labelled(program, is_b_first ? asked.b : asked.a, timings, lattice_a),
+                      second =
+                          labelled(program, is_b_first ? asked.a : asked.b, timings, lattice_b, &lattice_a);
+  const voxel::Octree &left = is_b_first ? second : first, &right = is_b_first ? first : second;
+  if (!(left.universe() == right.universe()))
     throw std::runtime_error(
         asked.a.string() + " and " + asked.b.string() +
-        " have different lattices: resample one onto the other first (octotomy convert)");
+        " have different lattices: resample a label map onto the other's lattice first (octotomy convert)");
   const Stopwatch watch(timings, "verify");
   const voxel::Progress progress{program.stop.get_token(), {}};
   const brep::Operation operation = operation_of(asked.operation);
@@ -167,7 +174,9 @@ Answered of_mesh_and_set(Program& program, const Question& asked, const VerifyTe
   if (asked.answer && !is_mesh(*asked.answer) && !holds(set.universe, mesh))
     throw std::runtime_error(mesh_file.string() + ": reaches beyond the voxels of " + set_file.string() +
                              ", so that voxels cannot hold the answer: give the answer as a mesh");
-  if (!text.operand_voxel_mm || (asked.answer && !is_mesh(*asked.answer))) {
+  if (text.operand_voxel_mm && asked.answer && !is_mesh(*asked.answer))
+    throw CLI::ValidationError("--voxel", "the answer's voxels are those of " + set_file.string());
+  if (!text.operand_voxel_mm) {
     const glm::dvec3 spacing_mm = set.universe.lattice().spacing_mm();
     options.voxel_mm = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
     if (holds(set.universe, mesh)) options.universe = set.universe;
@@ -188,7 +197,9 @@ Answered of_meshes(Program& program, const Question& asked, const VerifyText& te
   const brep::Solid left = read_solid(asked.a, timings), right = read_solid(asked.b, timings);
   verify::MeshOperationOptions options{text.operand_voxel_mm, {}, {program.stop.get_token(), {}}};
   // Voxels are judged in their own universe.
-  if (asked.answer && !is_mesh(*asked.answer))
+  if (asked.answer && is_octree(*asked.answer))
+    options.universe = voxel::universe(voxel::read_octree(*asked.answer));
+  else if (asked.answer && !is_mesh(*asked.answer))
     options.universe = voxel::universe_on(voxel::read_scene(*asked.answer).lattice);
   const Stopwatch watch(timings, "verify");
   verify::OperationAnswers answers =
@@ -406,10 +417,13 @@ SuiteAnswer verify_operands(Program& program, const VerifyText& text) {
 }
 
 void add_operand_options(CLI::App& verb, VerifyText& text) {
-  verb.add_option("--voxel", text.operand_voxel_mm, "Edge of the voxels that two meshes are compared in, mm")
+  verb.add_option(
+          "--voxel", text.operand_voxel_mm,
+          "Edge of the voxels that two meshes, or a mesh and a label map or octree, are compared in, mm")
       ->check(above_zero());
-  verb.add_option("--answer", text.answer,
-                  "Of A OP B: somebody's result, a mesh or a label map, to be judged against both kernels")
+  verb.add_option(
+          "--answer", text.answer,
+          "Of A OP B: somebody's result, a mesh, label map or octree, to be judged against both kernels")
       ->check(CLI::ExistingFile);
 }
 

@@ -61,7 +61,7 @@ SuiteAnswer chosen(Program& program, VerifyText& text, const std::vector<CLI::Op
   if (operands) return verify_operands(program, text);
   if (text.answer) throw CLI::ValidationError("--answer", "for A OP B only");
   if (holds_questions(text.subject.front())) return verify_questions(program, text);
-  if (text.operand_voxel_mm) throw CLI::ValidationError("--voxel", "for A OP B of two meshes only");
+  if (text.operand_voxel_mm) throw CLI::ValidationError("--voxel", "for A OP B with a mesh only");
   text.plan = text.subject.front();
   return verify_plan(program, text);
 }

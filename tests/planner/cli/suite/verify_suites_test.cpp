@@ -13,8 +13,10 @@
 #include "verify/question/random_expression.h"
 #include "voxel/filter/crop.h"
 #include "voxel/filter/label_map.h"
+#include "voxel/scan/read_scene.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/solid/combine.h"
+#include "voxel/tree/octree_file.h"
 
 namespace octotomy::planner {
 namespace {
@@ -159,6 +161,24 @@ TEST_F(VerifyTouchingBoxes, AreTestedAsTheyAreWithTheirSharedFaces) {
   const tests::SortedJson json = tests::SortedJson::parse(answer.out);
   EXPECT_EQ(json["volume_mm3"], 696.0);
   EXPECT_EQ(json["certificates"][0]["mesh"]["volume_mm3"], 696.0);
+}
+
+TEST_F(VerifyTouchingBoxes, OctreesAndLabelMapsOnOneLatticeAreOperandsInAnyOrder) {
+  voxel::write_octree({voxel::combine(universe_, a_), "a", "{}"}, folder_ / "a.octree");
+  voxel::write_octree({voxel::combine(universe_, b_), "b", "{}"}, folder_ / "b.octree");
+  voxel::write_octree({voxel::combine(universe_, a_ | b_), "c", "{}"}, folder_ / "union.octree");
+  voxel::write_scene(voxel::crop(voxel::read_scene(folder_ / "b.nrrd"), {{5, 1, 3}, {14, 10, 12}}),
+                     folder_ / "b_part.nrrd");
+  for (const auto& [first, second] : {std::pair{"a.octree", "b.octree"},
+                                      {"a.nrrd", "b.octree"},
+                                      {"a.octree", "b.nrrd"},
+                                      {"a.octree", "b_part.nrrd"},
+                                      {"b_part.nrrd", "a.octree"}}) {
+    const auto answer =
+        run("verify " + at(first) + " union " + at(second) + " --answer " + at("union.octree") + " --json");
+    ASSERT_EQ(answer.status, 0) << first << " " << second << answer.errors << answer.out;
+    EXPECT_EQ(tests::SortedJson::parse(answer.out)["volume_mm3"], 696.0) << first << " " << second;
+  }
 }
 
 TEST_F(VerifyTouchingBoxes, AnAnswerOfAnybodyIsJudgedAgainstBothKernels) {
