@@ -65,10 +65,10 @@ std::string verdict_text(const Evaluation& evaluation) {
     std::string line = "no certificate";
     if (object.certificate) {
       const verify::Certificate& c = *object.certificate;
-      line = verify::verdict_text(c) + "  voxel " + grouped(c.voxel.volume_mm3, 1) + ", mesh " +
-             grouped(c.mesh.volume_mm3, 1) + " mm\u00b3, difference " + grouped(c.difference_mm3, 1) +
-             " of " + grouped(c.tolerance_mm3, 1) + " allowed in total" +
-             (c.limit ? ", each place judged by itself" : "");
+      line = verify::verdict_text(c) + "  voxel " + grouped(c.voxel.volume_mm3, 1) +
+             (object.mesh.within ? ", mesh " : ", witness ") + grouped(c.mesh.volume_mm3, 1) +
+             " mm\u00b3, difference " + grouped(c.difference_mm3, 1) + " of " + grouped(c.tolerance_mm3, 1) +
+             " allowed in total" + (c.limit ? ", each place judged by itself" : "");
       for (const std::string& reason : c.reasons) line += "; " + reason;
     }
     if (!object.is_tool || object.certificate) rows.emplace_back(object.id, line);

@@ -449,7 +449,7 @@ std::string certificates(const Result& result) {
     notes.insert(notes.end(), object.findings.begin(), object.findings.end());
     rows += "<tr class=\"lead\">" + cell(element("b", escaped(object.id))) +
             cell(pill(c.verdict, c.resolved())) + figure_cell(grouped(c.voxel.volume_mm3, 1)) +
-            figure_cell(grouped(c.mesh.volume_mm3, 1)) +
+            figure_cell(object.mesh.within ? grouped(c.mesh.volume_mm3, 1) : "\u2013") +
             figure_cell(grouped(c.difference_mm3, 1) + " / " + grouped(c.tolerance_mm3, 1) +
                         gauge(c.difference_mm3, c.tolerance_mm3, c.verdict)) +
             figure_cell(grouped(c.symmetric_difference_mm3, 0) + " / " +
