@@ -618,10 +618,13 @@ void connect(Mender& mender, const RepairOptions& options) {
 /// Triangles above which a solid is enclosed at once, without trying to keep the rest of the surface.
 constexpr std::size_t most_untangled = 100'000;
 
+/// Beyond this number of shells their union by Booleans would take longer than enclosing them.
+constexpr std::size_t most_united = 1000;
+
 void make_solid(Mender& mender, double before_mm3, const RepairOptions& options) {
   Health now = health(mender.surface());
   if (now.solid() && !options.hull) return;
-  if (now.closed && now.shells > 1 && !options.hull && !options.cell_mm &&
+  if (now.closed && now.shells > 1 && now.shells <= most_united && !options.hull && !options.cell_mm &&
       mender.unite(options.progress.stop))
     return;
   const std::size_t triangles = mender.surface().faces.size();
