@@ -12,7 +12,7 @@
 namespace octotomy::convert {
 
 /// The displacements of the last step in CalculiX's .frd result, by node of the deck that write_deck() wrote
-/// (element 0 is its node 1); none for nodes that the result lacks. Millimetres, LPS. Throws voxel::Error
+/// (entry 0 belongs to its node 1); none for nodes that the result lacks. Millimetres, LPS. Throws voxel::Error
 /// (Input) with path and line if the file cannot be read, holds no displacements, a node number beyond
 /// `node_count`, or a line of another format; voxel::Stopped. Memory: 32 bytes a node.
 std::vector<std::optional<glm::dvec3>> read_displacements(const std::filesystem::path& frd,

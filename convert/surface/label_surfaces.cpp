@@ -20,12 +20,13 @@
 // Source: Bloomenthal and Ferguson, "Polygonization of non-manifold implicit surfaces", SIGGRAPH 1995, for
 // tetrahedra of several materials. Departures: a cell is cut into Kuhn's six tetrahedra, and points lie where
 // the labels' shares are equal. The passes:
-// 1 The labels are copied with a border of no label, so that surfaces close there. 2 Every cell whose corners
-// differ is cut into six tetrahedra along its diagonal from the lowest to the highest corner. All cells are
-// cut in the same way, so neighbours share whole triangles. A tetrahedron's triangles follow from which of
-// its corners have equal labels. They name their points by keys: a point lies on an edge between two labels,
-// on a face between three, or in a tetrahedron between four. 3 The keys of each plane of samples are sorted;
-// the rank of a key is its point's number. 4 The points are placed, and keys replaced by numbers.
+// 1 The labels are copied with a border of no label, so that surfaces close there.
+// 2 Every cell whose corners differ is cut into six tetrahedra along its diagonal from the lowest to the
+//   highest corner. All cells are cut in the same way, so neighbours share whole triangles. A tetrahedron's
+//   triangles follow from which of its corners have equal labels. They name their points by keys: a point
+//   lies on an edge between two labels, on a face between three, or in a tetrahedron between four.
+// 3 The keys of each plane of samples are sorted; the rank of a key is its point's number.
+// 4 The points are placed, and keys replaced by numbers.
 //
 // Why the surfaces are sound. Up to where its points lie, a label's region is the union of the dual cells of
 // its samples, which is a regular neighbourhood of the complex that they span, so its boundary is a closed

@@ -11,13 +11,15 @@
 #include "voxel/space/rounded.h"
 
 // 1 Mesh_3 refines a Delaunay triangulation until facets and cells have the sizes asked for, and exudes
-// slivers. 2 The nodes of its surface lie on the given one, so its facets are chords: they lose volume on a
-// convex surface and gain some on a hollow one. Every node of the surface moves along its normal by the same
-// share of the distance that a facet's middle may have there. The share is at most 1: a larger one would mean
-// that something else was lost. 3 Nodes move to mend flat elements (improve_tetrahedra.h). 4 The answer
-// counts only if the volumes are positive, their sum is the surface's, each point of the given surface is
-// near the new one, and little of the volume lies outside: otherwise the loss of a thin spike or wall that no
-// cell met would go unnoticed.
+//   slivers.
+// 2 The nodes of its surface lie on the given one, so its facets are chords: they lose volume on a convex
+//   surface and gain some on a hollow one. Every node of the surface moves along its normal by the same share
+//   of the distance that a facet's middle may have there. The share is at most 1: a larger one would mean
+//   that something else was lost.
+// 3 Nodes move to mend flat elements (improve_tetrahedra.h).
+// 4 The answer counts only if the volumes are positive, their sum is the surface's, each point of the given
+//   surface is near the new one, and little of the volume lies outside: otherwise the loss of a thin spike or
+//   wall that no cell met would go unnoticed.
 
 namespace octotomy::convert {
 namespace {

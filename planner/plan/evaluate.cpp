@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Steps are evaluated in order, each in both kernels before the next:
-//   1 Read every scan once; sample it into a grey octree, keep its samples until the last step that uses
-//   them. 2 Voxel kernel: the operation's answer from other voxel answers. 3 Mesh kernel: the operation's
-//   answer from other mesh answers and the scan's own samples. 4 Certify, beside the steps that follow where
-//   no cache waits for the certificate: only here do the two answers meet.
+// 1 Read every scan once; sample it into a grey octree, keep its samples until the last step that uses them.
+// 2 Voxel kernel: the operation's answer from other voxel answers.
+// 3 Mesh kernel: the operation's answer from other mesh answers and the scan's own samples.
+// 4 Certify, beside the steps that follow where no cache waits for the certificate: only here do the two
+//   answers meet.
 // Invariant: the benches of steps 2 and 3 show one kernel each.
 #include "planner/plan/evaluate.h"
 

@@ -1,9 +1,10 @@
-// Steps: 1 estimate the table's inclination to the lattice: the slope at which edges of a coarse copy line up
-// best. 2 Compute the median of each column along the table, over all slices and then over shorter windows. 3
-// A column is extruded where its samples are material and stay near the medians of its neighbourhood. 4 Join
-// extruded columns to parts; a part that is compact, narrow, enclosed, or thick without air around it belongs
-// to the body. 5 Follow each part beyond its window, slice by slice, while most of its samples still agree,
-// and mark them.
+// Steps:
+// 1 estimate the table's inclination to the lattice: the slope at which edges of a coarse copy line up best.
+// 2 Compute the median of each column along the table, over all slices and then over shorter windows.
+// 3 A column is extruded where its samples are material and stay near the medians of its neighbourhood.
+// 4 Join extruded columns to parts; a part that is compact, narrow, enclosed, or thick without air around it
+//   belongs to the body.
+// 5 Follow each part beyond its window, slice by slice, while most of its samples still agree, and mark them.
 #include "voxel/filter/extrusion.h"
 
 #include <algorithm>

@@ -2,8 +2,9 @@
 // 2 Average the rest over cells of about two millimetres, and find the patient's core: the largest part into
 //   which a ball of detach_mm fits.
 // 3 Judge every other part: parts near the patient belong to it; parts that hang behind the core are
-// supports. 4 Close the patient, and fill everything that it encloses in each slice and in space. 5 Class
-// each sample by its cell, its mark and its position before or behind the coronal middle.
+//   supports.
+// 4 Close the patient, and fill everything that it encloses in each slice and in space.
+// 5 Class each sample by its cell, its mark and its position before or behind the coronal middle.
 #include "voxel/filter/patient.h"
 
 #include <algorithm>

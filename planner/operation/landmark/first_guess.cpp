@@ -3,8 +3,9 @@
 // 1 The patient's bone is parted from what lies beside it.
 // 2 Its mid-plane gives left and right. Up follows from nose and orbits, found at several pitches.
 // 3 All rules are applied once to fine maps, then with everything that they depend on changed, to coarse
-// ones. 4 How far the answers scatter, with each rule's own doubt, is the interval; what scatters widely is
-// missing.
+//   ones.
+// 4 How far the answers scatter, with each rule's own doubt, is the interval; what scatters widely is
+//   missing.
 #include "planner/operation/landmark/first_guess.h"
 
 #include <algorithm>

@@ -254,7 +254,8 @@ Operation eval_operation() {
                  .repeated()
                  .called("motion"))
       .takes(field("grey", &Eval::grey,
-                   "Keeps samples: each voxel those of the first operand that holds it, moved with it."))
+                   "Keeps samples: each voxel has that of the first operand with samples that holds it, "
+                   "moved with it."))
       .takes(field("digitise", &Eval::digitise,
                    "Which voxels a moved octree becomes: those whose centre it holds, or fills to the half.")
                  .one_of({"centre", "half"}))

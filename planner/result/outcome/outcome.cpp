@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 Surface of the later scan. 2 The bone that stayed, laid on it: after_from_before. 3 Each piece, from
-// where that and the plan put it, laid on it: its achieved motion is the inverse of 2 times 3. 4 Intervals:
-// both fits' covariances with the deviation of their own residuals, in which both scans' noise is; a sample
-// stands for two samples of the scan a side, since noise of neighbours is one. A lattice places an isosurface
-// to some hundredths of its spacing, the same way wherever bone is flat, which is added.
+// 1 Surface of the later scan.
+// 2 The bone that stayed, laid on it: after_from_before.
+// 3 Each piece, from where that and the plan put it, laid on it: its achieved motion is the inverse of 2
+//   times 3.
+// 4 Intervals: both fits' covariances with the deviation of their own residuals, in which both scans' noise
+//   is; a sample stands for two samples of the scan a side, since noise of neighbours is one. A lattice
+//   places an isosurface to some hundredths of its spacing, the same way wherever bone is flat, which is
+//   added.
 #include "planner/result/outcome/outcome.h"
 
 #include <algorithm>

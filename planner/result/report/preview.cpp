@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 Choose what is seen: the step's objects, and one that is cut, as context. 2 Evaluate what those need.
-// 3 Take the step's part out of the context, so that each voxel is drawn once. 4 Draw all views in one frame.
+// 1 Choose what is seen: the step's objects, and one that is cut, as context.
+// 2 Evaluate what those need.
+// 3 Take the step's part out of the context, so that each voxel is drawn once.
+// 4 Draw all views in one frame.
 #include "planner/result/report/preview.h"
 
 #include <algorithm>
