@@ -17,6 +17,14 @@ const marks = {
   FAIL: "✕"
 } as const;
 
+/// Lines that compare identities quote what files state of patients: hidden with the patient.
+function sentence_of(row: AuditRow): string {
+  const quotes = /^(identity|patient(?!_position|_orientation).*)$/.test(row.check ?? "");
+  return state.hides_patient && quotes && row.verdict !== "PASS" ?
+      "what the files state of the patient differs; hidden here" :
+      row.sentence;
+}
+
 /// The lines of an audit, worst first.
 export function audit_rows(audit: readonly AuditRow[]): Child {
   const order = {FAIL: 0, WARN: 1, PASS: 2};
@@ -30,7 +38,7 @@ export function audit_rows(audit: readonly AuditRow[]): Child {
                  {class: `badge ${row.verdict.toLowerCase()}`, role: "img", "aria-label": words[row.verdict]},
                  marks[row.verdict]),
               el("span", {}, row.check ? el("b", {}, `${row.check.replace(/_/g, " ")}: `) : null,
-                 row.sentence))));
+                 sentence_of(row)))));
 }
 
 /// Audits by what was read; null while the answer is on its way, and where the file cannot be read.
