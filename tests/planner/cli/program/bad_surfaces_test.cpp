@@ -70,11 +70,15 @@ TEST_F(BadSurfaces, AreToldUnweldedAndWhatWeldingCloses) {
 
 TEST_F(BadSurfaces, BecomeASolidThatTheBooleanTakesAndTheChangeIsTold) {
   using namespace brep::shapes;
-  const std::string heap = off("heap.off", together(sphere({0, 0, 0}, 5, 3), sphere({6, 0.3, 0.2}, 5, 3)));
+  const brep::Triangles ball = sphere({0, 0, 0}, 5, 3), beside = sphere({6, 0.3, 0.2}, 5, 3);
+  const std::string heap = off("heap.off", together(ball, beside));
   expect_refused(run("boolean " + heap + " difference " + heap + " -o " + at("b.ply")),
                  "repair heap.off --solid");
   const SortedJson made = json_of("repair " + heap + " --solid -o " + at("solid.ply"));
-  EXPECT_EQ(made["method"], "enclosed");
+  EXPECT_EQ(made["method"], "mended");
+  const SortedJson united = json_of("boolean " + off("ball.off", ball) + " union " +
+                                    off("beside.off", beside) + " -o " + at("united.ply"));
+  EXPECT_NEAR(made["volume_after_mm3"].get<double>(), united["volume_mm3"].get<double>(), 1e-6);
   EXPECT_TRUE(made["health"]["closed"]);
   EXPECT_EQ(made["health"]["self_intersections"], 0);
   EXPECT_NEAR(made["volume_after_mm3"].get<double>(), made["volume_before_mm3"].get<double>(), 10.0);
