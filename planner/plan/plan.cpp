@@ -7,7 +7,6 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -22,25 +21,6 @@
 
 namespace octotomy::planner {
 namespace {
-
-/// Reads JSON, refusing keys that an object says twice, which would otherwise silently take the last.
-SortedJson strict_json(const std::string& text) {
-  std::vector<std::set<std::string>> open;
-  const auto watch = [&open](int, SortedJson::parse_event_t event, SortedJson& parsed) {
-    if (event == SortedJson::parse_event_t::object_start) open.emplace_back();
-    if (event == SortedJson::parse_event_t::object_end) open.pop_back();
-    if (event == SortedJson::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second)
-      throw std::runtime_error("the key '" + parsed.get<std::string>() +
-                               "' is said twice in one object: keep one");
-    return true;
-  };
-  need_shallow_json(text);
-  try {
-    return SortedJson::parse(text, watch);
-  } catch (const SortedJson::exception& error) {
-    throw std::runtime_error("not JSON: " + std::string(error.what()));
-  }
-}
 
 int whole_number(const SortedJson& value, const std::string& where) {
   const double number = number_of(value, where);
@@ -207,7 +187,7 @@ Json step_schema(const Operation& operation) {
 }  // namespace
 
 Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
-  SortedJson root = strict_json(json);
+  SortedJson root = parse_json(json);
   if (root.is_object()) migrate(root, migrations());
   const Keys top(root, "", {"octotomy_plan", "name", "scans", "universe", "steps", "signatures"});
   top.need("octotomy_plan");

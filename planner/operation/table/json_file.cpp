@@ -51,6 +51,11 @@ void need_shallow_json(std::string_view text) {
     refuse("", "is nested more than " + std::to_string(most_json_levels) + " deep");
 }
 
+void OneOfEachKey::add(const std::string& key) {
+  if (!open_.back().insert(key).second)
+    refuse("", "the key '" + key + "' is said twice in one object: keep one");
+}
+
 SortedJson read_json(const std::filesystem::path& path) {
   voxel::need_regular_file(path);
   std::ifstream stream(path, std::ios::binary);

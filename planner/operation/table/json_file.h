@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,12 +31,33 @@ void need_shallow_json(std::string_view text);
 /// Line and column stay.
 std::string without_last_read(std::string message);
 
-/// Throws std::runtime_error if a text is not JSON or too deep. The message quotes nothing of the text.
+/// Refuses a key that stands twice in one object: a parser alone would take the last one. To be called for
+/// each event of a parser, in order.
+class OneOfEachKey {
+ public:
+  void begin() { open_.emplace_back(); }
+  void end() { open_.pop_back(); }
+  /// Throws std::runtime_error.
+  void add(const std::string& key);
+
+ private:
+  std::vector<std::set<std::string>> open_;
+};
+
+/// Throws std::runtime_error if a text is not JSON, too deep, or has a key twice in one object. The message
+/// quotes nothing of the text but that key.
 template <typename AnyJson = nlohmann::json>
 AnyJson parse_json(std::string_view text) {
   need_shallow_json(text);
+  OneOfEachKey keys;
+  const auto watch = [&keys](int, typename AnyJson::parse_event_t event, AnyJson& parsed) {
+    if (event == AnyJson::parse_event_t::object_start) keys.begin();
+    if (event == AnyJson::parse_event_t::object_end) keys.end();
+    if (event == AnyJson::parse_event_t::key) keys.add(parsed.template get<std::string>());
+    return true;
+  };
   try {
-    return AnyJson::parse(text);
+    return AnyJson::parse(text, watch);
   } catch (const typename AnyJson::exception& error) {
     refuse("", std::string("is no JSON: ") + without_last_read(error.what()));
   }

@@ -271,7 +271,7 @@ TEST(Plan, AFileThatIsNotAPlanIsNamed) {
     read_plan(path);
     FAIL() << "half a plan was read";
   } catch (const std::runtime_error& error) {
-    expect_says(error.what(), {path.string(), "not JSON"});
+    expect_says(error.what(), {path.string(), "no JSON"});
   }
   EXPECT_THROW(read_plan("/no/such.plan.json"), std::runtime_error);
 }

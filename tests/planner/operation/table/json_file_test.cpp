@@ -49,6 +49,12 @@ TYPED_TEST(JsonText, CountsNoBracketsInTextsAndNoneThatAreClosed) {
   EXPECT_NE(refusal<TypeParam>("[1,").find("is no JSON"), std::string::npos);
 }
 
+TYPED_TEST(JsonText, HasAKeyOnceInAnObject) {
+  EXPECT_EQ(refusal<TypeParam>(R"({"a": {"b": 1}, "c": [{"b": 2}, {"b": 3, "a": 4}]})"), "taken");
+  for (const char* doubled : {R"({"b": 1, "a": 2, "b": 3})", R"([{"a": {"b": 1, "b": 1}}])"})
+    EXPECT_EQ(refusal<TypeParam>(doubled), "the key 'b' is said twice in one object: keep one");
+}
+
 TYPED_TEST(JsonText, IsNotQuotedWhereItIsNone) {
   for (const char* secret : {"root:x:0:0", "[1, secret]", R"({"a": "secret)", R"({"a" "secret"})"}) {
     const std::string said = refusal<TypeParam>(secret);
