@@ -249,7 +249,11 @@ void take_meaning(const VolumeHeader& header, const SmallNumbers& small, Scene& 
   const std::optional<Meaning> stated = meaning_of(header.meaning);
   AirLevel air{stated.value_or(Meaning::Raw),
                {"unit", Verdict::Pass, "the file names its values' unit: " + header.meaning}};
-  if (!stated) air = header.modality == "CT" ? air_level_of_ct(scene) : air_level_of_unnamed(scene);
+  if (!stated && header.modality.empty()) air = air_level_of_unnamed(scene);
+  if (!stated && header.modality == "CT") air = air_level_of_ct(scene);
+  if (!stated && !header.modality.empty() && header.modality != "CT")
+    air.finding = {"unit", Verdict::Pass,
+                   "the file states the modality " + header.modality + ", whose values have no unit"};
   if (is_mask(small) && (air.meaning == Meaning::Hounsfield || (!stated && header.modality == "CT"))) {
     const bool is_rescaled = header.samples.stored.is_rescaled();
     air = {

@@ -175,7 +175,11 @@ class MetaReader {
                        : is_packed ? SampleFiles::Encoding::Deflated
                                    : SampleFiles::Encoding::Raw;
     std::optional<bool> msb = flag("binarydatabyteordermsb");
-    if (!msb) msb = flag("elementbyteordermsb");
+    const std::optional<bool> element_msb = flag("elementbyteordermsb");
+    if (msb && element_msb && *msb != *element_msb)
+      refuse(path_,
+             "BinaryDataByteOrderMSB and ElementByteOrderMSB contradict each other: remove the wrong line");
+    if (!msb) msb = element_msb;
     samples.stored.big_endian = msb.value_or(false);
     if (!msb && !is_text && bytes_of(samples.stored.type) > 1)
       header_.audit.push_back(
@@ -223,6 +227,11 @@ class MetaReader {
   void take_meaning() {
     header_.meaning = text_.field(meaning_key).value_or("");
     header_.modality = text_.field(modality_key).value_or("");
+    // MetaIO's word for it: MET_MOD_CT, _MR, _NM, _US, _OTHER or _UNKNOWN.
+    const std::string met = text_.field("modality").value_or("");
+    if (header_.modality.empty() &&
+        (met == "MET_MOD_CT" || met == "MET_MOD_MR" || met == "MET_MOD_NM" || met == "MET_MOD_US"))
+      header_.modality = met.substr(8);
     take_padding(text_.field(padding_key), header_);
     const std::string modality = text_.field("modality").value_or("");
     if (header_.modality.empty() && (modality == "MET_MOD_CT" || modality == "MET_MOD_MR" ||

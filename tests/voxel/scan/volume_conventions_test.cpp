@@ -463,6 +463,8 @@ std::vector<Row> meta_rows() {
        {0, 513},
        "byte_order",
        Verdict::Warn},
+      {"Modality MR", name, meta(meta_place + "Modality = MET_MOD_MR\n"), lps_first, lps_last, as_stored,
+       "unit", Verdict::Pass},
       {"MET_LONG has 32 bits",
        name,
        meta(meta_place + "ElementType = MET_LONG\nBinaryDataByteOrderMSB = False\n",
