@@ -80,17 +80,22 @@ class Drawing {
   void walk(const Each& each) {
     const XmlTags& elements = elements_;
     std::vector<glm::dmat3> open;
+    std::vector<int> alternatives;  // shapes of each open <switch>, of which one is drawn; -1 of others
     std::size_t hidden_from = none;
     cuts_.clear();
     for (const XmlTag& element : elements) {
       if (!element.begins) {
         open.pop_back();
+        alternatives.pop_back();
         cuts_.pop_back();
         if (hidden_from != none && open.size() <= hidden_from) hidden_from = none;
         continue;
       }
       if (open.empty() && element.name != "svg")
         elements.refuse_at(element.line, "is no SVG file: its root is <" + element.name + ">");
+      if (!alternatives.empty() && alternatives.back() >= 0 && !is_hidden(element) &&
+          element.name != "foreignObject" && ++alternatives.back() > 1)
+        elements.refuse_at(element.line, "<switch> has alternatives: keep the one that is meant");
       if (const auto style = element.attributes.find("style");
           style != element.attributes.end() && style->second.find("transform") != std::string::npos)
         elements.refuse_at(element.line,
@@ -105,6 +110,7 @@ class Drawing {
         each(elements, element, map);
       if (hidden_from == none && !open.empty() && is_hidden(element)) hidden_from = open.size();
       open.push_back(map);
+      alternatives.push_back(element.name == "switch" ? 0 : -1);
     }
   }
 

@@ -253,6 +253,10 @@ TEST_F(SvgOutlinesFile, RefusalsSayLineAndPlace) {
   EXPECT_NE(refusal("<rect width=\"5em\" height=\"1\"/>").find("no length"), std::string::npos);
   EXPECT_NE(refusal("<rect transform=\"turn(3)\"/>").find("'turn' with 1 numbers"), std::string::npos);
   EXPECT_NE(refusal("<use/>").find("unlink clones"), std::string::npos);
+  const std::string shape = "<rect width=\"5\" height=\"5\"/>";
+  EXPECT_NE(refusal("<switch>" + shape + shape + "</switch>").find("keep the one that is meant"),
+            std::string::npos);
+  EXPECT_EQ(refusal("<switch><foreignObject/><g>" + shape + shape + "</g></switch>"), "");
   EXPECT_NE(refusal("<g>").find("</svg> closes what is not open"), std::string::npos);
   EXPECT_NE(refusal("<rect width=5/>").find("is not NAME=\"VALUE\""), std::string::npos);
   EXPECT_NE(refusal("<!-- ").find("is not closed by -->"), std::string::npos);
