@@ -222,6 +222,8 @@ std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path) {
         throw std::runtime_error(std::string("states '") + statement +
                                  "' beside \"landmarks\", whose \"point_mm\" are LPS millimetres: write them "
                                  "so and leave it out");
+    if (is_list("landmarks") && is_list("markups"))
+      throw std::runtime_error("has both \"landmarks\" and \"markups\": keep the list that is meant");
     if (is_list("landmarks"))
       landmarks = own_landmarks(root["landmarks"]);
     else if (is_list("markups"))

@@ -120,6 +120,7 @@ TEST_F(LandmarksFile, EveryRefusalNamesWhatIsWrong) {
   EXPECT_NE(refusal("{").find("marks.json"), std::string::npos);
   EXPECT_NE(refusal(std::string(100'000, '[')).find("nested more than 512 deep"), std::string::npos);
   EXPECT_NE(refusal("{}").find("\"landmarks\""), std::string::npos);
+  EXPECT_NE(refusal(R"({"landmarks":[],"markups":[]})").find("has both"), std::string::npos);
   EXPECT_NE(refusal(R"({"landmarks":[{"point_mm":[0,0,0]}]})").find("landmark 0 has no name"),
             std::string::npos);
   EXPECT_NE(refusal(R"({"landmarks":[{"name":"A","point_mm":[0,0]}]})").find("'A'"), std::string::npos);
