@@ -138,6 +138,10 @@ TEST_F(VolumeHeaderTest, AFieldThatContradictsItselfIsRefused) {
       std::string::npos);
   EXPECT_NE(refusal("twice.mha", "NDims = 2\n" + meta(0, "LOCAL") + samples).find("twice"),
             std::string::npos);
+  const std::string orders = "ElementByteOrderMSB = False\nBinaryDataByteOrderMSB = ";
+  EXPECT_EQ(refusal("order.mha", orders + "False\n" + meta(0, "LOCAL") + samples), "taken");
+  EXPECT_NE(refusal("order.mha", orders + "True\n" + meta(0, "LOCAL") + samples).find("contradict"),
+            std::string::npos);
 }
 
 }  // namespace
