@@ -601,6 +601,24 @@ class SeriesAssembler {
     }
     stack.slices = std::move(kept);
     audit_repeated(copies, renamed, rivals);
+    audit_identifiers(stack);
+  }
+
+  /// Images of different files under one identifier. The frames of one file share theirs.
+  void audit_identifiers(const DicomStack& stack) {
+    std::map<std::string, std::filesystem::path> file_of;
+    std::vector<std::string> shared;
+    for (const DicomSlice& slice : stack.slices)
+      if (!slice.instance_uid.empty() &&
+          file_of.emplace(slice.instance_uid, slice.path).first->second != slice.path)
+        shared.push_back(slice.name);
+    if (shared.empty()) return;
+    find("instance_uids", Verdict::Warn,
+         slices(shared.size()) +
+             " with the SOP Instance UID of another image, which must be unique: what "
+             "refers to it, as a segmentation does, is ambiguous: " +
+             listed(shared),
+         shared);
   }
 
   void audit_repeated(const std::vector<std::string>& copies, const std::vector<std::string>& renamed,

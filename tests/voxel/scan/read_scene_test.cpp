@@ -217,6 +217,27 @@ TEST(ReadDicom, TellsACopyFromAnotherImageAtTheSamePlace) {
   EXPECT_EQ(verdict(read_scene(folder / "series"), "duplicates"), Verdict::Fail);
 }
 
+TEST(ReadDicom, WarnsOfImagesUnderOneIdentifier) {
+  const ScratchFolder folder;
+  const Scene written = linear_scene(leaning_lattice(0.0));
+  write_dicom_series(written, folder / "series");
+  EXPECT_EQ(finding(read_scene(folder / "series"), "instance_uids"), nullptr);
+  const auto uid_of = [&](int i) {
+    const std::string bytes = bytes_of(folder / "series" / slice(i));
+    const std::size_t from = bytes.find("2.25.", bytes.find("1.2.840.10008.5.1.4.1.1.2", 200));
+    return bytes.substr(from, bytes.find_first_not_of("0123456789.", from) - from);
+  };
+  int twin = 4;
+  while (uid_of(twin).size() != uid_of(3).size()) ++twin;
+  const std::string own = uid_of(twin);
+  // In the file's meta information, then in the data set.
+  for (int i = 0; i < 2; ++i) exchange(folder / "series" / slice(twin), own, uid_of(3));
+  const Scene read = read_scene(folder / "series");
+  ASSERT_EQ(verdict(read, "instance_uids"), Verdict::Warn);
+  EXPECT_EQ(finding(read, "instance_uids")->files.size(), 1U);
+  EXPECT_EQ(read.samples, written.samples);
+}
+
 TEST(ReadDicom, TakesTheLongestSeriesAndNamesTheOthers) {
   const ScratchFolder folder;
   const Scene longer = linear_scene(leaning_lattice(0.0));
