@@ -234,6 +234,8 @@ class Reader3mf {
     made_.says.add_writer(root.application);
     unit_ = root.unit;
     std::vector<Placed> items = root.items.empty() ? unplaced(path) : root.items;
+    if (root.items.empty())
+      made_.says.warn("file", "its build places no object: each is read as it was drawn");
     for (const Placed& item : items) add(item, 0);
     if (left_out_ > 0)
       made_.says.tell("file", std::to_string(left_out_) + " support structures are left out");
