@@ -18,11 +18,11 @@ struct ExactBoolean {
 /// As boolean(), with every new point an exact number, and proof: |A| + |B| = |A u B| + |A n B| and, of a
 /// difference, |A| = |A - B| + |A n B| hold as rational numbers, else Error (Geometry) states by how much
 /// they miss. Where the union would not be manifold and is not wanted, |B| = |B - A| + |A n B| stands in for
-/// the first. The lines that check boolean() check this result, too. Nothing is ever shifted: operands that
-/// touch so that a wanted result, or too many of these, would not be manifold are refused by Error
-/// (Geometry). Throws Stopped too, and std::invalid_argument if an operand is inside out. Cost: four times
-/// boolean()'s whole corefinement, and the volumes some 100 us a triangle. Source: CGAL's corefinement over
-/// its kernel of exact constructions.
+/// the first. The lines that check boolean() check this result, too. Nothing is ever shifted: throws Error
+/// (Geometry) if the wanted result, or another one that the proof needs, would not be manifold. Throws Stopped
+/// too, and std::invalid_argument if an operand is inside out. Cost: four times boolean()'s whole
+/// corefinement, twice that where the union is not manifold, and the volumes some 100 us a triangle. Source:
+/// CGAL's corefinement over its kernel of exact constructions.
 ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b,
                            const Progress& progress = {});
 

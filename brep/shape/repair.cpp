@@ -146,9 +146,9 @@ class Mender {
     });
   }
 
-  /// What becomes of closed shells within others. Alternating: inward within an odd number of them, outward
-  /// else. AsGiven: that came in with all triangles alike stay as they came, outward as bodies to unite,
-  /// inward as cavities, where the shells around them make a body there.
+  /// How closed shells within others are turned. Alternating: inward within an odd number of them, otherwise
+  /// outward. AsGiven: a shell whose triangles all came in wound alike stays as it is. Outward it is a body to
+  /// unite; inward it is a cavity, if the shells around it make a body there.
   enum class Nested { Alternating, AsGiven };
 
   /// Whether it turned any.

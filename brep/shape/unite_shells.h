@@ -18,7 +18,7 @@ struct UnitedShells {
 };
 
 /// The union of a surface's shells, triangles connected across edges: each shell turned outward is a body,
-/// and each turned inward is a cavity of the smallest body that holds it or, where none does, that it meets.
+/// and each turned inward is a cavity of the body that holds most of its points, of equal ones the smallest.
 /// Bodies whose boxes are apart are not cut. Precondition: mesh_of() takes the triangles. Returns nothing
 /// where the shells have no union by Booleans: a shell is open, meets itself or holds no volume, a cavity has
 /// no body, or boolean() finds no answer. Throws Stopped. Deterministic. Cost: health() of each shell, and

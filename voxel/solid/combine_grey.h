@@ -25,8 +25,9 @@ struct GreyResult {
 /// those that contain the voxel give samples: in `move(h & c, m) | (h - c)` a voxel of `h - c` alone keeps
 /// the sample of `h` at rest. Samples of moved windows are interpolated once and rounded, halves upward. The
 /// voxels are those of combine(). Throws std::invalid_argument if the windows' samples have different steps.
-/// Parallel; same bits on any thread count. Memory: the samples of the blocks that contain a voxel. Source:
-/// thesis 7.2 for grey operands.
+/// Parallel; same bits on any thread count. Cost: combine(), and once more for each operand of a union that
+/// holds windows and is neither a window nor a union itself. Memory: these operands' octrees, and the samples
+/// of the blocks that contain a voxel. Source: thesis 7.2 for grey operands.
 GreyOctree combine_grey(const Universe& universe, const Expression& expression,
                         const GreyResult& options = {});
 

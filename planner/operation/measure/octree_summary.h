@@ -20,10 +20,10 @@ Json octree_answer(const voxel::OctreeFile& file, std::optional<std::uint64_t> b
                    const Timings& timings);
 
 /// The lines of a scan's audit that are no PASS, at most 32, for the `scan_audit` of the metadata of an
-/// octree that is made of the scan.
+/// octree that is made of the scan. Details that quote what files state of the patient are left out.
 Json doubts_of(const std::vector<voxel::Finding>& audit);
 
-/// What an octree_answer()'s metadata holds of them, for people: "FAIL, slices: ..." after the scan's name.
+/// The lines of `scan_audit` in an octree_answer()'s metadata, for people.
 std::vector<std::string> told_doubts(const Json& answer);
 
 /// The same for people.

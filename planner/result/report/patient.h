@@ -22,7 +22,8 @@ std::string patient_text(const voxel::Identity& identity);
 std::vector<std::string> patient_lines(const Evaluation& evaluation);
 
 /// Takes the patients out of a result: their identities, and their names, numbers and birth dates where an
-/// audit or a finding quotes them ('17'). File names stay as they are.
+/// audit or a finding quotes them ('17'). A line that compares the identities of files loses its whole detail,
+/// because it quotes files that the result does not keep. File names stay as they are.
 void leave_out_patients(Result& result);
 
 }  // namespace octotomy::planner
