@@ -164,10 +164,14 @@ void Desk::open(const fs::path& path, const Watched& watched) {
   // The scans, so that the page has their audit and slices before any object.
   Plan without_steps = with_document([](const Document& opened) { return *opened.plan(); });
   without_steps.steps.clear();
-  auto evaluation = std::make_shared<const Evaluation>(evaluate(without_steps, {}, false, watched));
+  Snapshot scans;
+  scans.evaluation = std::make_shared<const Evaluation>(evaluate(without_steps, {}, false, watched));
+  scans.bone_lows = bone_lows_of(*scans.evaluation);
   const std::lock_guard lock(mutex_);
-  if (document_ && !snapshot_.evaluation)
-    snapshot_ = {document_->plan(), std::move(evaluation), {}, Json::array()};
+  if (document_ && !snapshot_.evaluation) {
+    scans.plan = document_->plan();
+    snapshot_ = std::move(scans);
+  }
 }
 
 void Desk::close_within(std::chrono::milliseconds most) {
@@ -248,11 +252,27 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
   }
   if (certify) keep_certified(*made.plan, *made.evaluation);
   made.measurements = measurements_of(*made.plan, *made.evaluation, made.errors);
+  made.bone_lows = bone_lows_of(*made.evaluation);
   const std::lock_guard lock(mutex_);
   // What was certified of an earlier state of the plan is no picture of the present one.
   const bool is_present = document_ && opened == opened_ && (!certify || document_->plan() == made.plan);
   if (is_present && (!certify || steps.empty())) snapshot_ = made;
   return made;
+}
+
+std::map<std::string, double> Desk::bone_lows_of(const Evaluation& evaluation) {
+  std::map<std::string, double> lows;
+  const std::lock_guard lock(bone_mutex_);
+  for (const auto& [name, loaded] : evaluation.loaded) {
+    if (!loaded) continue;
+    auto& [of, low] = bone_lows_[name];
+    if (of.lock() != loaded->shared) {
+      of = loaded->shared;
+      low = planner::serve::bone_low(*loaded->shared);
+    }
+    lows[name] = low;
+  }
+  return lows;
 }
 
 void Desk::keep_certified(const Plan& plan, const Evaluation& evaluation) {
@@ -362,18 +382,6 @@ Json Desk::objects_json(const Plan& plan) const {
   return list;
 }
 
-double Desk::bone_low(const std::string& scan) const {
-  const auto loaded = snapshot_.evaluation->loaded.find(scan);
-  if (loaded == snapshot_.evaluation->loaded.end() || !loaded->second) return *voxel::tissue("bone")->low;
-  const std::shared_ptr<const voxel::Scene>& scene = loaded->second->shared;
-  auto& [of, low] = bone_lows_[scan];
-  if (of.lock() != scene) {
-    of = scene;
-    low = planner::serve::bone_low(*scene);
-  }
-  return low;
-}
-
 Json Desk::state() const {
   const std::lock_guard lock(mutex_);
   if (document_ == nullptr) return nullptr;
@@ -388,7 +396,10 @@ Json Desk::state() const {
   json["landmarks"] = Json::array();
   for (const NamedPoint& landmark : plan.landmarks)
     json["landmarks"].push_back({{"name", landmark.name}, {"point", planner::to_json(landmark.p_mm)}});
-  for (Json& scan : json["scans"]) scan["bone_low"] = bone_low(scan["name"]);
+  for (Json& scan : json["scans"]) {
+    const auto low = snapshot_.bone_lows.find(scan["name"]);
+    scan["bone_low"] = low != snapshot_.bone_lows.end() ? low->second : *voxel::tissue("bone")->low;
+  }
   json["measurements"] = snapshot_.measurements;
   json["universe"] = nullptr;
   if (snapshot_.evaluation) {

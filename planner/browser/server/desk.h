@@ -33,6 +33,7 @@ struct Snapshot {
   std::shared_ptr<const Plan> plan;
   std::shared_ptr<const Evaluation> evaluation;
   std::map<std::string, std::string> errors;  ///< of the steps that could not be evaluated
+  std::map<std::string, double> bone_lows;    ///< bone_low() of each scan
   Json measurements = Json::array();          ///< of the plan's steps that measure
 };
 
@@ -95,8 +96,8 @@ class Desk {
  private:
   Document& need_document() const;
   Json objects_json(const Plan& plan) const;
-  /// bone_low() of a scan of the snapshot, which is looked for once.
-  double bone_low(const std::string& scan) const;
+  /// bone_low() of each scan that was read. A scan's is computed once; no other request waits for it.
+  std::map<std::string, double> bone_lows_of(const Evaluation& evaluation);
   /// The certificates and sizes of what was evaluated in both kernels, by the keys of the steps.
   void keep_certified(const Plan& plan, const Evaluation& evaluation);
 
@@ -105,13 +106,15 @@ class Desk {
   std::unique_ptr<Document> document_;
   std::uint64_t opened_ = 0;  ///< documents so far: what is evaluated of an earlier one is not kept
   Snapshot snapshot_;
-  mutable std::map<std::string, std::pair<std::weak_ptr<const voxel::Scene>, double>> bone_lows_;
   /// Of a step: what decides its answer, and what was certified of it.
   struct Certified {
     std::string key;
     Json said;  ///< "certificate", "volume", "area"
   };
   std::map<std::string, Certified> certified_;
+
+  std::mutex bone_mutex_;
+  std::map<std::string, std::pair<std::weak_ptr<const voxel::Scene>, double>> bone_lows_;
 
   std::mutex alone_mutex_;
   std::optional<std::pair<std::shared_ptr<const voxel::Scene>, voxel::GreyOctree>> alone_;
