@@ -175,6 +175,7 @@ export interface DrawnObject {
   window?: {scan: string; low: number; high?: number; alone?: boolean};
   colour: string;
   opacity: number;
+  hatched?: boolean;  // in slices: its inside is drawn, too
 }
 export interface PaneRequest {
   pane: number;

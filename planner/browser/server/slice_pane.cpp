@@ -111,9 +111,12 @@ Message draw_slice(Desk& desk, const Request& request, const std::stop_token& st
   std::string replaced;
   if (const Json asked = said.value("preview", Json()); asked.is_object()) {
     replaced = asked.at("object");
-    preview = desk.preview(asked.value("of", replaced), asked.at("move"), {}, stop);
+    const auto against = asked.value("against", std::vector<std::string>{});
+    preview = desk.preview(asked.value("of", replaced), asked.at("move"),
+                           said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
   }
-  std::vector<Outlined> outlined;
+  std::vector<Outlined> outlined, hatched;
+  std::vector<std::string> hatch_colours;
   Json drawn = Json::array();
   for (const Json& entry : said.value("objects", Json::array())) {
     if (!entry.contains("id")) continue;
@@ -122,12 +125,26 @@ Message draw_slice(Desk& desk, const Request& request, const std::stop_token& st
     const std::string sought = is_dragged ? Desk::Preview::moved : id;
     for (const Object& object : (is_dragged ? *preview.evaluation : *snapshot.evaluation).objects) {
       if (object.id != sought || object.voxel.octree.is_empty()) continue;
+      drawn.push_back(id);
+      if (entry.value("hatched", false)) {
+        hatch_colours.push_back(entry.value("colour", text_of_colour(interference_colour())));
+        slice.hatched.push_back({id});
+        hatched.push_back({id, object.voxel.octree, true});
+        continue;
+      }
       slice.colours.push_back(entry.value("colour", text_of_colour(colour_of(outlined.size() + 1))));
       slice.objects.push_back({id});
       outlined.push_back({id, object.voxel.octree});
-      drawn.push_back(id);
     }
   }
+  if (preview.evaluation)
+    for (const Object& object : preview.evaluation->objects)
+      if (object.id == Desk::Preview::overlap && !object.voxel.octree.is_empty()) {
+        hatch_colours.push_back(text_of_colour(interference_colour()));
+        hatched.push_back({object.id, object.voxel.octree, true});
+      }
+  outlined.insert(outlined.end(), hatched.begin(), hatched.end());
+  slice.colours.insert(slice.colours.end(), hatch_colours.begin(), hatch_colours.end());
   Timings timings;
   SlicePicture picture = slice_of(slice, scene, outlined, timings, stop);
   const glm::ivec2 size_px = picture.sheet.size_px();

@@ -31,8 +31,6 @@ constexpr std::size_t most_scalars = 8;
 /// Stops of the legend's ramp.
 constexpr int legend_colours = 9;
 
-constexpr const char* overlap_colour = "#e5484d";
-
 double ms_since(const Clock::time_point& start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
@@ -263,7 +261,7 @@ void ViewPane::add_objects(Desk& desk, const Json& said, Drawing& drawing, const
   if (moved != nullptr) drawing.add(planner::drawn(*moved, glm::vec3(1.0f)), dragged, Json::object());
   if (const Object* both = find(*preview.evaluation, Desk::Preview::overlap)) {
     drawing.header["overlap_mm3"] = both->voxel.measures.volume_mm3;
-    drawing.add({"overlap", both->voxel.octree}, "", {{"colour", overlap_colour}});
+    drawing.add({"overlap", both->voxel.octree}, "", {{"colour", text_of_colour(interference_colour())}});
   }
   drawing.held = preview.evaluation;
 }

@@ -40,4 +40,8 @@ glm::vec3 colour_of(std::size_t number) {
   return colours[number % colours.size()];
 }
 
+glm::vec3 interference_colour() {
+  return glm::vec3(0xe5, 0x48, 0x4d) / 255.0f;
+}
+
 }  // namespace octotomy::planner

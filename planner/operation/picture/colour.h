@@ -16,4 +16,7 @@ std::string text_of_colour(const glm::vec3& colour);
 /// Colours of objects that were given none: bone, then colours told apart by readers with any colour vision.
 glm::vec3 colour_of(std::size_t number);
 
+/// The red of interference, #e5484d.
+glm::vec3 interference_colour();
+
 }  // namespace octotomy::planner

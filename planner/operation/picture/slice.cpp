@@ -245,25 +245,34 @@ voxel::Range shown_range(const Slice& slice, const Subject& subject, const voxel
   return shown;
 }
 
-glm::vec3 outline_colour(const Slice& slice, std::size_t i) {
+glm::vec3 outline_colour(const Slice& slice, const std::vector<Outlined>& objects, std::size_t i) {
+  if (i < slice.colours.size()) return need_colour(slice.colours[i]);
   // Bone's own colour is that of the picture's greys: outlines begin with the next.
-  return i < slice.colours.size() ? need_colour(slice.colours[i]) : colour_of(i + 1);
+  return objects[i].is_hatched ? interference_colour() : colour_of(i + 1);
 }
 
-/// Draws the objects' outlines; what was drawn.
+/// Whether a pixel lies on a line of the hatching: diagonals 2 pixels wide, 8 apart along a row.
+bool is_hatch(std::size_t pixel, const glm::ivec2& size_px) {
+  const std::size_t width = static_cast<std::size_t>(size_px.x);
+  return (pixel % width + pixel / width) % 8 < 2;
+}
+
+/// Draws the objects' outlines and hatching; returns what was drawn.
 Json draw_outlines(const Slice& slice, const std::vector<Outlined>& objects, const voxel::Sheet& sheet,
                    std::vector<std::uint8_t>& rgb, Timings& timings) {
   Json list = Json::array();
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    const glm::vec3 colour = outline_colour(slice, i);
+    const glm::vec3 colour = outline_colour(slice, objects, i);
     const Stopwatch watch(timings, "outlines");
     const std::vector<std::uint8_t> inside = voxel::cut(objects[i].octree, sheet);
     const std::vector<std::uint8_t> edge = voxel::outline(inside, sheet.size_px());
-    for (std::size_t at = 0; at < edge.size(); ++at)
-      if (edge[at] != 0)
-        for (int channel = 0; channel < 3; ++channel)
-          rgb[3 * at + static_cast<std::size_t>(channel)] =
-              static_cast<std::uint8_t>(std::lround(255.0f * colour[channel]));
+    for (std::size_t at = 0; at < edge.size(); ++at) {
+      const bool is_drawn =
+          edge[at] != 0 || (objects[i].is_hatched && inside[at] != 0 && is_hatch(at, sheet.size_px()));
+      for (int channel = 0; is_drawn && channel < 3; ++channel)
+        rgb[3 * at + static_cast<std::size_t>(channel)] =
+            static_cast<std::uint8_t>(std::lround(255.0f * colour[channel]));
+    }
     const auto pixels = std::count(inside.begin(), inside.end(), 1);
     list.push_back({{"path", objects[i].name},
                     {"pixels", pixels},
@@ -334,7 +343,8 @@ void annotate(SlicePicture& picture, const Slice& slice, const CutSheet& cut,
   voxel::Annotation annotation;
   annotation.letters = voxel::edge_letters(cut.sheet);
   for (std::size_t i = 0; i < objects.size(); ++i)
-    annotation.legend.push_back({fs::path(objects[i].name).stem().string(), outline_colour(slice, i)});
+    annotation.legend.push_back(
+        {fs::path(objects[i].name).stem().string(), outline_colour(slice, objects, i)});
   voxel::annotate(picture.rgb, plane, annotation);
   picture.said["scale_bar_mm"] = voxel::round_length(0.25 * plane.size_px.x * cut.sheet.pixel_mm);
 }
@@ -376,7 +386,8 @@ void check(const Slice& slice, const Place& place) {
     place.at("grid_mm").refuse("is of planes; a curved picture has none");
   if (slice.centre_mm && slice.size.empty())
     place.at("centre_mm").refuse("is of pictures of a 'size': add it");
-  if (slice.colours.size() > slice.objects.size()) place.at("colours").refuse("give at most one an object");
+  if (slice.colours.size() > slice.objects.size() + slice.hatched.size())
+    place.at("colours").refuse("has more colours than there are objects and hatched objects");
   if (!slice.level.empty() && !(slice.level[1] > 0.0))
     place.at("level").refuse("is CENTRE and WIDTH, which is above zero");
   for (const std::string& colour : slice.colours) need_colour(colour);
@@ -392,6 +403,8 @@ void write(const Slice& slice, const AnswerBench& bench, Exported& made) {
   std::vector<Outlined> objects;
   for (const ObjectName& name : slice.objects)
     objects.push_back({name.name, bench.objects.at(name.name).voxel.octree});
+  for (const ObjectName& name : slice.hatched)
+    objects.push_back({name.name, bench.objects.at(name.name).voxel.octree, true});
   SlicePicture picture =
       drawn(slice, subject_of(bench.samples(slice.scan.name), slice), objects, bench.timings, bench.stop);
   write(output_file(bench.folder, made.path), picture);
@@ -399,6 +412,18 @@ void write(const Slice& slice, const AnswerBench& bench, Exported& made) {
   made.content = "a " + picture.said["plane"].get<std::string>() + " picture, " +
                  std::to_string(picture.size_px.x) + " x " + std::to_string(picture.size_px.y) + " pixels";
   made.details = std::move(picture.said);
+}
+
+/// The voxels of a file with a binary octree, or with a mesh.
+voxel::Octree octree_on_file(const fs::path& path, const Subject& subject, const FileBench& bench) {
+  if (is_mesh(path)) return voxels_of_mesh(path, std::nullopt, finest_mm(subject.lattice), bench);
+  const voxel::OctreeFile file = read_timed(path, bench.timings);
+  const auto* octree = std::get_if<voxel::Octree>(&file.tree);
+  if (octree == nullptr)
+    throw std::runtime_error(path.string() +
+                             ": only a binary octree has an outline: choose an object with octotomy octree "
+                             "--window LOW:HIGH");
+  return *octree;
 }
 
 FileAnswer on_files(const Slice& asked, const FileBench& bench) {
@@ -413,20 +438,10 @@ FileAnswer on_files(const Slice& asked, const FileBench& bench) {
                           : is_mesh(file) ? subject_of_mesh(file, slice, bench)
                                           : subject_of(file, bench.timings);
   std::vector<Outlined> objects;
-  for (const ObjectName& name : asked.objects) {
-    if (is_mesh(name.name)) {
-      objects.push_back(
-          {name.name, voxels_of_mesh(name.name, std::nullopt, finest_mm(subject.lattice), bench)});
-      continue;
-    }
-    const voxel::OctreeFile outlined = read_timed(name.name, bench.timings);
-    const auto* octree = std::get_if<voxel::Octree>(&outlined.tree);
-    if (octree == nullptr)
-      throw std::runtime_error(name.name +
-                               ": only a binary octree has an outline: choose an object with octotomy octree "
-                               "--window LOW:HIGH");
-    objects.push_back({name.name, *octree});
-  }
+  for (const ObjectName& name : asked.objects)
+    objects.push_back({name.name, octree_on_file(name.name, subject, bench)});
+  for (const ObjectName& name : asked.hatched)
+    objects.push_back({name.name, octree_on_file(name.name, subject, bench), true});
   const SlicePicture picture = drawn(slice, subject, objects, bench.timings, bench.stop);
   {
     const Stopwatch watch(bench.timings, "write");
@@ -487,7 +502,12 @@ Operation slice_operation() {
                    "Objects whose outlines are drawn; of the verb binary octrees and meshes.")
                  .repeated()
                  .called("octree"))
-      .takes(field("colours", &Slice::colours, "Colours of the outlines, #RRGGBB, in their order.")
+      .takes(field("hatched", &Slice::hatched,
+                   "Objects that are drawn with their inside hatched, in red where no colour is said: "
+                   "interference of pieces, for example.")
+                 .repeated())
+      .takes(field("colours", &Slice::colours,
+                   "Colours, #RRGGBB, of the outlines in their order, then of the hatched objects.")
                  .repeated()
                  .called("colour"))
       .takes(

@@ -25,8 +25,8 @@ struct Slice {
   std::optional<glm::dvec3> up;
   std::optional<SampleWindow> window;
   std::vector<double> level;
-  std::vector<ObjectName> objects;
-  std::vector<std::string> colours;
+  std::vector<ObjectName> objects, hatched;
+  std::vector<std::string> colours;  ///< of the objects, then of the hatched ones
   std::optional<double> pixel_mm;
   std::string size;  ///< empty: all of the scan
   std::optional<glm::dvec3> centre_mm;
@@ -42,6 +42,7 @@ struct Slice {
 struct Outlined {
   std::string name;  ///< the path of its file, or its own
   voxel::Octree octree;
+  bool is_hatched = false;  ///< its inside is drawn, too
 };
 
 /// A picture, where it lies, and what is said of it.

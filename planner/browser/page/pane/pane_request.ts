@@ -32,8 +32,9 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
   if (state.preview && !is_elsewhere()) {
     request.preview = state.preview;
     request.overlap = true;
-    request.objects = shown.filter((object) => !object.id || !is_stale(object.id));
+    request.objects = shown.filter((object) => !object.id || !is_interference(object.id));
   }
+  if (pane.is_slice) request.objects = request.objects.map(hatched_where_interfering);
   if (!pane.is_slice && !is_elsewhere() && !state.compare && has_interference(request))
     request.objects = request.objects.map(seen_through);
   return request;
@@ -43,15 +44,18 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
 /// hide it. A picture that has to follow a drag is not made translucent.
 function has_interference({preview, objects, dragging}: PaneRequest): boolean {
   if (preview) return !dragging && (state.overlap_mm3 ?? 0) > 0;
-  return objects.some(({id}) => id !== undefined && is_stale(id) && volume_of(id) > 0);
+  return objects.some(({id}) => id !== undefined && is_interference(id) && volume_of(id) > 0);
 }
 const volume_of = (id: string): number => state.plan?.objects.find((one) => one.id === id)?.volume?.value ?? 0;
 
 /// An object through which interference shows. Half opaque surfaces are still picked.
 const see_through = 0.5;
-const seen_through = (object: DrawnObject): DrawnObject => object.id !== undefined && is_stale(object.id) ?
+const seen_through = (object: DrawnObject): DrawnObject => object.id !== undefined && is_interference(object.id) ?
     object :
     {...object, opacity: Math.min(object.opacity, see_through)};
+
+const hatched_where_interfering = (object: DrawnObject): DrawnObject =>
+    object.id !== undefined && is_interference(object.id) ? {...object, hatched: true} : object;
 
 function add_view(request: PaneRequest, setting: PaneSetting): void {
   request.view = setting.view;
@@ -80,8 +84,9 @@ function add_slice(request: PaneRequest, setting: PaneSetting): void {
     request.threshold = [state.draft_window.low, state.draft_window.high ?? most_sample];
 }
 
-// While a piece is dragged, the overlap that was evaluated before says nothing.
-function is_stale(id: string): boolean {
+/// Whether an object is the overlap of pieces. While a piece is dragged, the one that was evaluated before is
+/// out of date.
+function is_interference(id: string): boolean {
   const step = step_of(id);
   return step !== undefined && is_overlap(step, steps());
 }
