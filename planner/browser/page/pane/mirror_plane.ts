@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The plane of a mirror step, drawn as its trace in slices, and in views that look along it.
-import {ink, label, line} from "../base/ink";
+// The plane of a mirror step, drawn as its trace in slices, and in views that look along it, with handles
+// that move and turn it.
+import {replace_step} from "../actions";
+import {dot_at, ink, label, line} from "../base/ink";
 import type {Pane} from "./panes";
 import {Step} from "../protocol";
-import {state} from "../state";
-import {add, cross, dot, normalised, scaled, sub, Vec3} from "../base/vector";
+import {is_elsewhere, state, step_of} from "../state";
+import {add, cross, dot, hundredths, normalised, scaled, sub, turned_about, Vec2, Vec3} from "../base/vector";
 
 export interface Plane {
   point_mm: Vec3;
@@ -26,20 +28,94 @@ export function plane_of(step: Step): Plane|null {
 
 /// A view shows the plane as a line where it looks along it to within this cosine.
 const most_tilt = 0.2;
+/// Of a handle at an end of the trace, as a share of the pane's shorter side.
+const reach_share = 0.3;
+const near_px = 12;
 
-export function draw_mirror_plane(pane: Pane, context: CanvasRenderingContext2D, step: Step|undefined): void {
-  const plane = step?.do === "mirror" ? plane_of(step) : null;
-  if (!plane) return;
+/// The plane under the hand, until the plan has it.
+let held: {id: string, plane: Plane}|null = null;
+
+const shown_plane = (step: Step): Plane|null => held?.id === step.id ? held.plane : plane_of(step);
+
+interface Trace {
+  middle: Vec3;  // the point of the mirror's plane and the picture's that is nearest to the cross-hair
+  along: Vec3;   // unit vector
+}
+
+function trace_in(pane: Pane, plane: Plane): Trace|null {
+  if (pane.setting.mode === "panoramic") return null;
   const {look} = pane.frame;
   const tilt = dot(plane.normal, look);
   const along = cross(plane.normal, look);
   const length = Math.hypot(...along);
-  if (length < 0.05 || (!pane.is_slice && Math.abs(tilt) > most_tilt)) return;
-  // The point of both planes, the mirror's and the picture's through the cross-hair, nearest to the cross-hair.
+  if (length < 0.05 || (!pane.is_slice && Math.abs(tilt) > most_tilt)) return null;
   const away = dot(sub(plane.point_mm, state.cross_mm), plane.normal);
   const across = sub(plane.normal, scaled(look, tilt));
-  const at = add(state.cross_mm, scaled(across, away / dot(across, across)));
-  const reach = scaled(along, (Math.hypot(...pane.size) * pane.frame.pixel_mm) / length);
-  line(context, [pane.pixel_at(sub(at, reach)), pane.pixel_at(add(at, reach))], ink.mark, 2 * pane.ratio);
-  label(context, "mirror plane", pane.pixel_at(at), pane.ratio, {colour: ink.mark, px: 11});
+  return {
+    middle: add(state.cross_mm, scaled(across, away / dot(across, across))),
+    along: scaled(along, 1 / length)
+  };
+}
+
+/// Where the handles lie: one that moves the plane along its normal, two that turn it.
+function handles_of(pane: Pane, {middle, along}: Trace): [Vec2, Vec2, Vec2] {
+  const reach = scaled(along, reach_share * Math.min(...pane.size) * pane.frame.pixel_mm);
+  return [pane.pixel_at(middle), pane.pixel_at(add(middle, reach)), pane.pixel_at(sub(middle, reach))];
+}
+
+export function draw_mirror_plane(pane: Pane, context: CanvasRenderingContext2D, step: Step|undefined): void {
+  const plane = step?.do === "mirror" ? shown_plane(step) : null;
+  const trace = plane && trace_in(pane, plane);
+  if (!trace) return;
+  const {middle, along} = trace;
+  const reach = scaled(along, Math.hypot(...pane.size) * pane.frame.pixel_mm);
+  line(context, [pane.pixel_at(sub(middle, reach)), pane.pixel_at(add(middle, reach))], ink.mark,
+       2 * pane.ratio);
+  const handles = handles_of(pane, trace);
+  for (const handle of handles) dot_at(context, handle, 5 * pane.ratio, ink.mark);
+  label(context, "mirror plane", handles[0], pane.ratio, {colour: ink.mark, px: 11});
+}
+
+export interface MirrorDrag {
+  to(at: Vec2): void;
+  /// Puts the plane into the step: typed, and no longer found or taken through landmarks.
+  done(): void;
+  cancel(): void;
+}
+
+/// What moves or turns the selected mirror's plane as the pointer goes on, where it has taken hold of a
+/// handle.
+export function mirror_from(pane: Pane, at: Vec2): MirrorDrag|null {
+  const step = step_of(state.selected);
+  const plane = step?.do === "mirror" && !is_elsewhere() ? plane_of(step) : null;
+  const trace = plane && trace_in(pane, plane);
+  if (!step || !plane || !trace) return null;
+  const taken = handles_of(pane, trace).findIndex(
+      (handle) => Math.hypot(handle[0] - at[0], handle[1] - at[1]) < near_px * pane.ratio);
+  if (taken < 0) return null;
+  const {look} = pane.frame;
+  const {middle} = trace;
+  const centre = pane.pixel_at(middle);
+  // Clockwise on the screen, which is a right-handed turn about the direction that is looked in.
+  const angle = (p: Vec2): number => Math.atan2(p[1] - centre[1], p[0] - centre[0]);
+  const start = angle(at), from = pane.point_at(at);
+  return {
+    to(to) {
+      const moved: Plane = taken === 0 ?
+          {...plane, point_mm: add(plane.point_mm, scaled(plane.normal, dot(sub(pane.point_at(to), from), plane.normal)))} :
+          {point_mm: middle, normal: normalised(turned_about(plane.normal, look, angle(to) - start))};
+      held = {id: step.id, plane: moved};
+    },
+    done() {
+      if (held?.id !== step.id) return;
+      const {fit, through, ...kept} = step;
+      const {point_mm, normal} = held.plane;
+      const rounded = normal.map((x) => Math.round(x * 1e6) / 1e6) as Vec3;
+      void replace_step(step.id, {...kept, point_mm: hundredths(point_mm), normal: rounded}, "move the mirror plane")
+          .then(() => (held = null));
+    },
+    cancel() {
+      held = null;
+    },
+  };
 }

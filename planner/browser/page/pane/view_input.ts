@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Pointer, pen, touch, wheel and keys in a pane: the tool in hand first, then turning, panning, zooming,
 // slices, the cross-hair.
+import {mirror_from, MirrorDrag} from "./mirror_plane";
 import {tilt_from} from "./oblique";
 import type {Pane} from "./panes";
 import {change_pane} from "./panes";
@@ -15,7 +16,7 @@ const coarse_px = 12, fine_px = 1;
 const arrows:
     {[key: string]: Vec2} = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 
-type Drag = "turn"|"pan"|"zoom"|"grey"|"cross"|"tilt"|"tool";
+type Drag = "turn"|"pan"|"zoom"|"grey"|"cross"|"tilt"|"mirror"|"tool";
 
 export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane, at: Vec2) => void): void {
   const canvas = pane.canvas;
@@ -26,6 +27,7 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
   let has_moved = false;
   let pinch = 0;
   let tilt: ((to: Vec2) => void)|null = null;
+  let mirror: MirrorDrag|null = null;
 
   const at_of = (event: PointerEvent|WheelEvent|MouseEvent): Vec2 => {
     const box = canvas.getBoundingClientRect();
@@ -35,6 +37,9 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
   const want_slices = (): void => {
     for (const other of all())
       if (other.is_slice) other.want(true);
+  };
+  const redraw_all = (): void => {
+    for (const other of all()) other.redraw();
   };
   const want_oblique = (): void => {
     for (const other of all()) {
@@ -81,12 +86,14 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
         tool.cancel();
       else if (drag === "tool")
         tool?.up?.(pointer(event));
+      mirror?.cancel();
       drag = "pan";
       return hold_fingers();
     }
     const is_plain = event.button === 0 && !event.shiftKey && !event.ctrlKey && !event.metaKey;
     tilt = is_plain ? tilt_from(pane, last) : null;
-    drag = tilt ? "tilt" : is_plain && active_tool()?.down?.(pointer(event)) ? "tool" : drag_of(event);
+    mirror = is_plain && !tilt ? mirror_from(pane, last) : null;
+    drag = tilt ? "tilt" : mirror ? "mirror" : is_plain && active_tool()?.down?.(pointer(event)) ? "tool" : drag_of(event);
     if (drag === "cross") put_cross(last);
   });
 
@@ -109,6 +116,10 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
       tilt?.(at);
       want_oblique();
     }
+    if (drag === "mirror" && has_moved) {
+      mirror?.to(at);
+      redraw_all();
+    }
     if (drag === "grey") {
       const width = Math.max(1, state.grey[1] + (by[0] / pane.ratio) * 8);
       set({grey: [Math.round(state.grey[0] - (by[1] / pane.ratio) * 5), Math.round(width)]});
@@ -120,6 +131,8 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     if (!fingers.delete(event.pointerId)) return;
     if (drag === "tool")
       active_tool()?.up?.(pointer(event));
+    else if (drag === "mirror")
+      mirror?.done();
     else if (drag === "turn" && !has_moved)
       click(at_of(event));
     if (fingers.size)

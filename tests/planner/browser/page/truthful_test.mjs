@@ -124,8 +124,17 @@ test('a mirror image is about the plane that fits, which is shown with its resid
   await one.until(() => twin().normal, 'the plane in the plan');
   assert.equal(twin().fit, undefined);
   assert.ok(Math.abs(Math.abs(twin().point_mm.reduce((sum, x, i) => sum + x * twin().normal[i], 0)) - 2) < 1, `${twin().point_mm}`);
-  await one.press('Control+z');
-  await one.press('Control+z');
+  // The handle in the middle of the plane's trace moves it along its normal.
+  await one.at_rest();
+  const { cross_mm: cross } = await one.look();
+  const { point_mm, normal } = twin();
+  const along = (p) => p.reduce((sum, x, i) => sum + x * normal[i], 0);
+  const away = (along(point_mm) - along(cross)) / (normal[0] ** 2 + normal[2] ** 2);
+  const handle = [cross[0] + normal[0] * away, cross[2] + normal[2] * away];
+  await one.drag(0, handle, [handle[0] + 5 * normal[0], handle[1] + 5 * normal[2]]);
+  await one.until(() => Math.abs(along(twin().point_mm) - along(point_mm)) > 1, 'the plane moved by hand');
+  assert.ok(Math.abs(along(twin().point_mm) - along(point_mm) - 5) < 1.5, `${twin().point_mm} from ${point_mm}`);
+  for (let i = 0; i < 3; ++i) await one.press('Control+z');
   await one.until(() => !twin(), 'the plan as before');
 });
 
