@@ -19,18 +19,7 @@ std::vector<std::string> uses(const Combine& combine) {
 }
 
 void check(const Combine& combine, const Place& place) {
-  const Place at = place.at("expression");
-  // Any object will do to check the grammar and the names; motions are steps of their own.
-  voxel::Names names;
-  names.object = [&](std::string_view name) -> voxel::Expression {
-    at.need_object(std::string(name));
-    return voxel::Sphere{};
-  };
-  try {
-    voxel::parse_expression(combine.expression, names);
-  } catch (const std::invalid_argument& error) {
-    at.refuse(error.what());
-  }
+  check_expression(combine.expression, place.at("expression"));
 }
 
 std::string definition(const Combine& combine, const Objects&) {
@@ -132,6 +121,20 @@ void bound(const Combine& combine, const BoundBench& bench, Object& made) {
 }
 
 }  // namespace
+
+void check_expression(const std::string& expression, const Place& place) {
+  // Any object will do to check the grammar and the names; motions are steps of their own.
+  voxel::Names names;
+  names.object = [&](std::string_view name) -> voxel::Expression {
+    place.need_object(std::string(name));
+    return voxel::Sphere{};
+  };
+  try {
+    voxel::parse_expression(expression, names);
+  } catch (const std::invalid_argument& error) {
+    place.refuse(error.what());
+  }
+}
 
 Operation combine_operation() {
   return Describe<Combine>(operation_name, "Combines earlier objects by a Boolean expression.", Makes::Object)

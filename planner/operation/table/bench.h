@@ -49,11 +49,13 @@ struct ScanRecord {
 
 /// The bench of operations that make a scan of another one.
 struct ScanBench {
-  /// The samples of an earlier scan.
-  std::function<const voxel::Scene&(const std::string& name)> samples;
+  const Scans& scan;  ///< earlier ones
+  const Objects& objects;
   Timings& timings;
   voxel::Progress progress;
   std::filesystem::path folder = {};  ///< paths of files are relative to it
+
+  const voxel::Scene& samples(const std::string& name) const { return scan(name).scene(); }
 };
 
 /// A scan that an operation made.

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/solid/expression_scan.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <tbb/parallel_for.h>
+
+#include "voxel/solid/combine_grey.h"
+#include "voxel/solid/term_walk.h"
+#include "voxel/space/error.h"
+#include "voxel/space/shared_progress.h"
+
+namespace octotomy::voxel {
+namespace {
+
+/// The same expression with windows on the lattices of their scans, where no sample was interpolated.
+Expression on_scan_lattices(const Expression& expression) {
+  using Kind = Expression::Kind;
+  return evaluate_terms<Expression>(
+      expression,
+      [](const Expression::Term& term) -> Expression {
+        if (const auto* window = std::get_if<Window>(&*term.leaf))
+          return Window{window->grey.on_scan_lattice(), window->low, window->high};
+        return std::visit([](const auto& leaf) { return Expression(leaf); }, *term.leaf);
+      },
+      [](const Expression::Term& term, const Expression& a) {
+        if (term.kind == Kind::Not) return ~a;
+        const bool turns = glm::determinant(glm::dmat3(term.moved_from_still)) > 0.0;
+        return turns ? moved(a, term.moved_from_still) : reflected(a, term.moved_from_still);
+      },
+      [](const Expression::Term& term, const Expression& a, const Expression& b) {
+        if (term.kind == Kind::And) return a & b;
+        if (term.kind == Kind::Or) return a | b;
+        return term.kind == Kind::Minus ? a - b : a ^ b;
+      });
+}
+
+/// A value that no sample has, below them all.
+double value_below(const Scene& frame) {
+  const double below = std::floor(range(frame).low) - 1.0;
+  const bool fits = std::holds_alternative<FloatSamples>(frame.samples) ||
+                    below >= std::numeric_limits<std::int16_t>::min();
+  if (!fits)
+    throw Error(ErrorCode::Input,
+                "the scan's samples reach down to the lowest value of 16 bits, so that none is left to mark "
+                "holes: choose a value for holes");
+  return below;
+}
+
+template <typename Sample>
+Sample stored(double value) {
+  if constexpr (std::is_same_v<Sample, float>) return static_cast<float>(value);
+  return static_cast<Sample>(std::clamp(std::floor(value + 0.5), -32768.0, 32767.0));
+}
+
+}  // namespace
+
+ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, const Expression& expression,
+                               const ExpressionScanOptions& options) {
+  const GreyOctree& own = of_frame.on_scan_lattice();
+  if (own.universe().lps_from_voxel != frame.lattice.lps_from_voxel)
+    throw Error(ErrorCode::Input,
+                "the scan has more samples along an axis than an octree can: crop it, or average it down");
+  ExpressionScan made{frame};
+  made.hole = options.hole ? *options.hole : frame.padding ? *frame.padding : value_below(frame);
+  if (!options.hole) made.scene.padding = made.hole;
+  constexpr double largest_of_12_bits = 3071.0;
+  made.filled = options.filled                         ? *options.filled
+                : frame.meaning == Meaning::Hounsfield ? largest_of_12_bits
+                                                       : range(frame).high;
+  GreyResult result;
+  result.background = own.background();
+  const double step = own.step();
+  // combine_grey() counts `filled` in the scan's unit, as 16 bits.
+  result.filled = static_cast<std::int16_t>(std::clamp(made.filled, -32768.0, 32767.0));
+  options.progress.at(0.0);
+  GreyOctree samples = own;
+  try {
+    samples = combine_grey(own.universe(), on_scan_lattices(expression), result);
+  } catch (const std::invalid_argument& error) {
+    throw Error(ErrorCode::Input, error.what());
+  }
+  if (samples.step() != step)
+    throw Error(ErrorCode::Input, "the objects' samples count in other steps than the scan's own");
+
+  const glm::ivec3 dims = frame.lattice.dims;
+  std::atomic<std::uint64_t> holes = 0, changed = 0;
+  const Progress writing = part_of(options.progress, 0.6, 1.0);
+  SharedProgress slices(writing, static_cast<std::size_t>(dims.z));
+  std::visit(
+      [&](auto& values) {
+        using Sample = std::decay_t<decltype(values[0])>;
+        const auto hole = stored<Sample>(made.hole);
+        tbb::parallel_for(0, dims.z, [&](int z) {
+          slices.one_more();
+          std::uint64_t holes_here = 0, changed_here = 0;
+          std::size_t at = static_cast<std::size_t>(z) * static_cast<std::size_t>(dims.y) *
+                           static_cast<std::size_t>(dims.x);
+          for (int y = 0; y < dims.y; ++y)
+            for (int x = 0; x < dims.x; ++x, ++at) {
+              Sample& value = values[at];
+              const bool is_held = samples.scan().contains({x, y, z});
+              const std::int16_t steps = is_held ? samples.sample({x, y, z}) : std::int16_t{0};
+              // A sample that is the frame's, counted in steps, keeps the frame's bits.
+              const bool is_measured = own.scan().contains({x, y, z});
+              if (is_held && is_measured && own.sample({x, y, z}) == steps) continue;
+              if (!is_held && !is_measured && frame.padding) continue;
+              const Sample now = is_held ? stored<Sample>(steps * step) : hole;
+              if (!is_held) ++holes_here;
+              if (now != value) ++changed_here;
+              value = now;
+            }
+          holes += holes_here;
+          changed += changed_here;
+        });
+      },
+      made.scene.samples);
+  made.hole_samples = holes;
+  made.changed_samples = changed;
+  return made;
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "voxel/solid/expression.h"
+#include "voxel/space/progress.h"
+#include "voxel/space/scene.h"
+
+namespace octotomy::voxel {
+
+struct ExpressionScanOptions {
+  /// Sample where the expression contains nothing, in the scan's unit. None: the frame's padding, or where it
+  /// has none a value below all its samples, which becomes the result's padding: no window contains it.
+  std::optional<double> hole;
+  /// Sample of voxels that only objects without samples fill. Default: 3071 of Hounsfield units, otherwise the
+  /// frame's largest sample.
+  std::optional<double> filled;
+  Progress progress;
+};
+
+struct ExpressionScan {
+  Scene scene;
+  std::uint64_t hole_samples = 0;     ///< where the expression contains nothing
+  std::uint64_t changed_samples = 0;  ///< holes, and samples that differ from the frame's
+  double hole = 0.0, filled = 0.0;    ///< as used
+};
+
+/// The scan that a scanner would make of an expression: samples on the frame's lattice, each from the operand
+/// that owns its place, as combine_grey() has it. A sample at rest keeps its bits; one of a moved operand is
+/// interpolated once, trilinearly between that operand's own samples. Padding of the frame stays where the
+/// expression contains nothing. Lattice, type and meaning of the samples
+/// and the patient's identity are the frame's. `of_frame` is a grey octree that keeps the frame
+/// (GreyOctree::with_scan()); the expression's windows are of this or of others with samples in the same steps.
+///
+/// Throws Error (Input) if the frame has more than 1,024 samples a side, if the steps differ, or if no value
+/// is left for holes; Stopped. Parallel; same bits on any thread count. Cost and memory: those of
+/// combine_grey() on the frame's lattice, and a copy of the frame's samples. Source: thesis, chapter 7: grey
+/// octrees of a plan's objects.
+ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, const Expression& expression,
+                               const ExpressionScanOptions& options = {});
+
+}  // namespace octotomy::voxel
