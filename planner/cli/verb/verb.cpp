@@ -112,11 +112,15 @@ void Program::note_tissues(const std::vector<std::string>& words) const {
 }
 
 void Program::say(const Json& answer, const std::string& text) const {
+  std::set<std::string> said;  // a scan that a step made keeps the findings of the one that it was made of
   for (const ScanRecord& scan : *scans_)
-    for (const voxel::Finding& finding : scan.audit)
-      if (finding.verdict != voxel::Verdict::Pass)
-        warn(scan.path.string() + ": " + to_string(finding.verdict) + ", " + finding.check + ": " +
-             finding.detail);
+    for (const voxel::Finding& finding : scan.audit) {
+      const std::string line =
+          std::string(to_string(finding.verdict)) + ", " + finding.check + ": " + finding.detail;
+      if (finding.verdict == voxel::Verdict::Pass || (!scan.made_by.empty() && said.contains(line))) continue;
+      said.insert(line);
+      warn((scan.made_by.empty() ? scan.path.string() : scan.name + ", " + scan.made_by) + ": " + line);
+    }
   const std::vector<MeshRecord> meshes = meshes_read(), landmarks = landmark_files_read();
   for (const std::vector<MeshRecord>* files : {&meshes, &landmarks})
     for (const MeshRecord& file : *files)
