@@ -10,6 +10,8 @@
 #include "planner/operation/file/output_path.h"
 #include "planner/operation/file/outputs.h"
 #include "planner/operation/table/number_format.h"
+#include "planner/plan/rebase.h"
+#include "planner/procedure/template/chain.h"
 #include "planner/procedure/template/procedure.h"
 #include "voxel/space/staged_files.h"
 
@@ -20,7 +22,7 @@ namespace fs = std::filesystem;
 
 struct ProcedureText {
   std::string name;
-  fs::path scan, donor, out, report;
+  fs::path scan, donor, after, out, report;
   Certify certify = Certify::Now;
   std::vector<fs::path> landmarks;
   std::vector<std::string> values;
@@ -68,17 +70,18 @@ int explain(const Program& program, const ProcedureText& text) {
 }
 
 ProcedureInput input_of(const ProcedureText& text) {
-  if (text.scan.empty() || text.landmarks.empty() || text.out.empty())
+  if ((text.after.empty() && (text.scan.empty() || text.landmarks.empty())) || text.out.empty())
     throw std::runtime_error(
-        "to plan it, give --scan, --landmarks and -o; without all three it is explained");
+        "to plan it, give --scan, --landmarks and -o, or --after PLAN and -o; without them it is explained");
   std::vector<fs::path> inputs = text.landmarks;
   inputs.push_back(text.name);
+  if (!text.after.empty()) inputs.push_back(text.after);
   need_extension(text.out, {".json"}, "a plan is");
   need_unread(text.out, inputs);
   need_folder_of(text.out);
   ProcedureInput input;
   const auto entry = [](const fs::path& path) { return Json{{"path", voxel::absolute_of(path).string()}}; };
-  input.scan = entry(text.scan);
+  if (!text.scan.empty()) input.scan = entry(text.scan);
   if (!text.donor.empty()) input.further_scans["donor"] = entry(text.donor);
   for (const fs::path& path : text.landmarks) {
     const std::vector<brep::Landmark> read = read_landmarks(path);
@@ -97,10 +100,26 @@ ProcedureInput input_of(const ProcedureText& text) {
   return input;
 }
 
+/// The procedure's plan, alone or after another one's; sets `carried` to the landmarks that went with a piece.
+Json planned(Program& program, const ProcedureText& text, std::vector<std::string>& carried) {
+  const Procedure procedure = read_procedure(text.name);
+  const ProcedureInput input = input_of(text);
+  if (text.after.empty()) return plan_of(procedure, input);
+  const Plan before = rebased(read_plan(text.after), input.folder);
+  EvaluateOptions options = evaluate_options(program);
+  options.certify = options.meshes = false;
+  if (const std::optional<std::string> outcome = outcome_of(before)) options.wanted = {*outcome};
+  Chained made = chained(before, evaluated(program, before, options), procedure, input);
+  carried = std::move(made.carried);
+  return made.plan;
+}
+
 int procedure(Program& program, const ProcedureText& text) {
-  if (text.scan.empty() && text.landmarks.empty() && text.out.empty()) return explain(program, text);
+  if (text.scan.empty() && text.landmarks.empty() && text.out.empty() && text.after.empty())
+    return explain(program, text);
   if (text.name.empty()) throw std::runtime_error("name the procedure: octotomy procedure lists them");
-  const Json plan = plan_of(read_procedure(text.name), input_of(text));
+  std::vector<std::string> carried;
+  const Json plan = planned(program, text, carried);
   const std::string written = plan.dump(2) + "\n";
   const auto write = [&] { write_whole(text.out, written); };
   if (!text.report.empty()) {
@@ -116,7 +135,12 @@ int procedure(Program& program, const ProcedureText& text) {
   Json json = answer({});
   json["path"] = text.out.string();
   json["plan"] = plan;
-  program.say(json, "written: " + text.out.string() + "; octotomy run " + text.out.string() + " -o FOLDER\n");
+  std::string lines_of_landmarks;
+  if (!text.after.empty()) json["carried_landmarks"] = carried;
+  for (const std::string& name : carried)
+    lines_of_landmarks += "landmark " + name + ": lies on a piece that has moved, and goes with it\n";
+  program.say(json, lines_of_landmarks + "written: " + text.out.string() + "; octotomy run " +
+                        text.out.string() + " -o FOLDER\n");
   return done;
 }
 
@@ -131,11 +155,18 @@ void add_procedure(Program& program) {
       "  octotomy procedure le_fort_i --scan head.nrrd --landmarks marks.mrk.json --set forward_mm=6 "
       "--set up_mm=2 -o my.plan.json\n"
       "  octotomy procedure fibula_flap --scan head.nrrd --landmarks jaw.json --donor leg.nrrd "
-      "--landmarks leg.json -o flap.plan.json",
+      "--landmarks leg.json -o flap.plan.json\n"
+      "  octotomy procedure genioplasty --after my.plan.json --landmarks chin.json --set forward_mm=4 "
+      "-o both.plan.json",
       [&program, text] { return procedure(program, *text); });
   verb.add_option("name", text->name, "The procedure, or a .json file of one");
   verb.add_option("--scan", text->scan, "The scan")->check(scan_path());
   verb.add_option("--donor", text->donor, "The scan of a donor bone, of a flap")->check(scan_path());
+  verb.add_option("--after", text->after,
+                  "A plan that stands before: the procedure acts on its step 'planned' or 'rebuilt', and its "
+                  "landmarks go along with the pieces that they lie on")
+      ->check(CLI::ExistingFile)
+      ->excludes("--scan");
   verb.add_option("--landmarks", text->landmarks,
                   "Named points: JSON, or 3D Slicer's .mrk.json or .fcsv; repeated, as one file a scan")
       ->expected(1)
@@ -147,7 +178,9 @@ void add_procedure(Program& program) {
       ->take_all()
       ->allow_extra_args(false)
       ->type_name("NAME=NUMBER");
-  verb.add_option("--voxel", text->voxel_mm, "Edge of the plan's voxels, mm; default 1")->check(above_zero());
+  verb.add_option("--voxel", text->voxel_mm, "Edge of the plan's voxels, mm; default 1")
+      ->check(above_zero())
+      ->excludes("--after");
   verb.add_option("-o,--out", text->out, "The .plan.json, which stands alone and may be edited");
   verb.add_option("--report", text->report, "Replays the plan into this folder at once, as run does");
   add_certify(verb, text->certify);

@@ -76,19 +76,19 @@ Json scans_of(const Procedure& procedure, const ProcedureInput& input) {
   return scans;
 }
 
-Values values_of(const Procedure& procedure, const ProcedureInput& input) {
+Values values_of(const Procedure& procedure, const std::map<std::string, double>& given) {
   Values values;
   std::vector<std::string> known;
   for (const ProcedureValue& value : procedure.values) {
     known.push_back(value.name);
-    const auto typed = input.values.find(value.name);
-    const double number = typed == input.values.end() ? value.preset : typed->second;
+    const auto typed = given.find(value.name);
+    const double number = typed == given.end() ? value.preset : typed->second;
     if (!(number >= value.least && number <= value.most))
       throw std::runtime_error("value " + value.name + " must be from " + SortedJson(value.least).dump() +
                                " to " + SortedJson(value.most).dump());
     values[value.name] = number;
   }
-  for (const auto& [name, unused] : input.values)
+  for (const auto& [name, unused] : given)
     if (!values.contains(name))
       throw std::runtime_error("procedure " + procedure.name + " has no value '" + name + "'" +
                                suggestion(name, known));
@@ -223,9 +223,30 @@ std::vector<std::string> procedures() {
   return names;
 }
 
+Json steps_of(const Procedure& procedure, const std::vector<brep::Landmark>& landmarks,
+              const std::map<std::string, double>& values, const glm::dmat3& lps_from_head) {
+  need_landmarks(procedure, landmarks);
+  Values names = values_of(procedure, values);
+  const glm::dmat3 head_from_lps = glm::transpose(lps_from_head);
+  for (const brep::Landmark& landmark : landmarks) {
+    const glm::dvec3 p = head_from_lps * landmark.p_mm;
+    names[landmark.name + ".x"] = p.x;
+    names[landmark.name + ".y"] = p.y;
+    names[landmark.name + ".z"] = p.z;
+  }
+  Json steps = Json::array();
+  for (const Json& step : procedure.steps) try {
+      steps.push_back(answered(step, names));
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error("procedure " + procedure.name + ", step '" + step.value("id", "") +
+                               "': " + error.what());
+    }
+  return steps;
+}
+
 Json plan_of(const Procedure& procedure, const ProcedureInput& input) {
   need_landmarks(procedure, input.landmarks);
-  Values names = values_of(procedure, input);
+  values_of(procedure, input.values);
   Json plan{{"octotomy_plan", 1},
             {"name", procedure.says.substr(0, procedure.says.find('.'))},
             {"scans", scans_of(procedure, input)},
@@ -233,19 +254,11 @@ Json plan_of(const Procedure& procedure, const ProcedureInput& input) {
             {"steps", first_steps(input.landmarks)}};
   // Read once for the head's directions, and to refuse landmarks that cannot be.
   const Plan placed = parse_plan(plan.dump(), input.folder);
-  const glm::dmat3 head_from_lps = glm::transpose(placed.lps_from_head.value_or(glm::dmat3(1.0)));
-  for (const NamedPoint& landmark : placed.landmarks) {
-    const glm::dvec3 p = head_from_lps * landmark.p_mm;
-    names[landmark.name + ".x"] = p.x;
-    names[landmark.name + ".y"] = p.y;
-    names[landmark.name + ".z"] = p.z;
-  }
-  for (const Json& step : procedure.steps) try {
-      plan["steps"].push_back(answered(step, names));
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error("procedure " + procedure.name + ", step '" + step.value("id", "") +
-                               "': " + error.what());
-    }
+  std::vector<brep::Landmark> landmarks;
+  for (const NamedPoint& landmark : placed.landmarks) landmarks.push_back({landmark.name, landmark.p_mm});
+  const glm::dmat3 lps_from_head = placed.lps_from_head.value_or(glm::dmat3(1.0));
+  for (Json& step : steps_of(procedure, landmarks, input.values, lps_from_head))
+    plan["steps"].push_back(std::move(step));
   parse_plan(plan.dump(), input.folder);
   return plan;
 }

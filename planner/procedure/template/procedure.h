@@ -66,4 +66,9 @@ struct ProcedureInput {
 /// are interchanged.
 nlohmann::ordered_json plan_of(const Procedure& procedure, const ProcedureInput& input);
 
+/// The procedure's own steps, its formulas answered: `landmarks` are in LPS, `lps_from_head` is how the head is
+/// held. Throws as plan_of() for landmarks, values and formulas.
+nlohmann::ordered_json steps_of(const Procedure& procedure, const std::vector<brep::Landmark>& landmarks,
+                                const std::map<std::string, double>& values, const glm::dmat3& lps_from_head);
+
 }  // namespace octotomy::planner

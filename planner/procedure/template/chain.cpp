@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/procedure/template/chain.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "planner/operation/table/json.h"
+#include "planner/operation/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+constexpr double near_mm = 8.0;
+
+bool is_outcome(const std::string& id) {
+  return id == "planned" || id == "rebuilt" || id.ends_with("_planned") || id.ends_with("_rebuilt");
+}
+
+const Step& step_of(const Plan& plan, const std::string& id) {
+  return *std::find_if(plan.steps.begin(), plan.steps.end(), [&](const Step& step) { return step.id == id; });
+}
+
+/// Squared distances from a point to the nearest voxel of a piece, and of the other bone of `whole`.
+struct Nearest {
+  double piece = std::numeric_limits<double>::infinity();
+  double other = std::numeric_limits<double>::infinity();
+};
+Nearest nearest(const glm::dvec3& p_mm, const voxel::Octree& piece,
+                const std::vector<const voxel::Octree*>& whole) {
+  const voxel::Lattice lattice = piece.universe().lattice();
+  const glm::dvec3 p(glm::inverse(lattice.lps_from_voxel) * glm::dvec4(p_mm, 1.0));
+  const glm::dvec3 reach = near_mm / lattice.spacing_mm();
+  const glm::ivec3 low = glm::max(glm::ivec3(glm::floor(p - reach)), glm::ivec3(0));
+  const glm::ivec3 high = glm::min(glm::ivec3(glm::ceil(p + reach)), lattice.dims - 1);
+  Nearest found;
+  for (int z = low.z; z <= high.z; ++z)
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x) {
+        const glm::ivec3 at(x, y, z);
+        const glm::dvec3 away = lattice.lps_mm(glm::dvec3(at)) - p_mm;
+        const double square = glm::dot(away, away);
+        if (square > near_mm * near_mm) continue;
+        if (piece.contains(at))
+          found.piece = std::min(found.piece, square);
+        else if (std::any_of(whole.begin(), whole.end(),
+                             [&](const auto* each) { return each->contains(at); }))
+          found.other = std::min(found.other, square);
+      }
+  return found;
+}
+
+/// Where a point of the scan lies after the plan's motions.
+glm::dvec3 carried_mm(glm::dvec3 p_mm, const Plan& plan, const Evaluation& evaluated) {
+  for (const Object& moved : evaluated.objects) {
+    if (!moved.moved) continue;
+    const Object& still = evaluated.objects.at(moved.moved->object);
+    std::vector<const voxel::Octree*> whole;
+    for (const std::string& operand : objects_used(step_of(plan, still.id).action))
+      if (!evaluated.objects.at(operand).is_tool)
+        whole.push_back(&evaluated.objects.at(operand).voxel.octree);
+    const Nearest found = nearest(p_mm, still.voxel.octree, whole);
+    if (found.piece < std::numeric_limits<double>::infinity() && found.piece <= found.other)
+      p_mm = glm::dvec3(moved.moved->motion * glm::dvec4(p_mm, 1.0));
+  }
+  return p_mm;
+}
+
+/// Adds landmarks to the step of the plan that names them, or a step that does.
+void add_landmarks(const std::vector<brep::Landmark>& landmarks, const Plan& plan, Json& whole) {
+  Json added = Json::array();
+  for (const brep::Landmark& landmark : landmarks) {
+    const auto known = std::find_if(plan.landmarks.begin(), plan.landmarks.end(),
+                                    [&](const NamedPoint& each) { return each.name == landmark.name; });
+    constexpr double same_mm = 1e-3;
+    if (known == plan.landmarks.end())
+      added.push_back(
+          {{"name", landmark.name}, {"point_mm", {landmark.p_mm.x, landmark.p_mm.y, landmark.p_mm.z}}});
+    else if (glm::distance(known->p_mm, landmark.p_mm) > same_mm)
+      throw std::runtime_error("the landmark '" + landmark.name + "' lies " +
+                               std::to_string(glm::distance(known->p_mm, landmark.p_mm)) +
+                               " mm away in the plan: leave it out, or change the plan's");
+  }
+  if (added.empty()) return;
+  for (Json& step : whole["steps"])
+    if (step["do"] == "landmarks" && step.contains("points")) {
+      for (Json& point : added) step["points"].push_back(std::move(point));
+      return;
+    }
+  std::string id = "landmarks";
+  while (std::any_of(plan.steps.begin(), plan.steps.end(), [&](const Step& step) { return step.id == id; }))
+    id += "_2";
+  whole["steps"].insert(whole["steps"].begin(), Json{{"id", id}, {"do", "landmarks"}, {"points", added}});
+}
+
+/// Adds the scans that the procedure takes beside the patient's, where the plan has none of the name.
+void add_scans(const Procedure& procedure, const ProcedureInput& input, Json& whole) {
+  for (const auto& [name, entry] : input.further_scans) {
+    const bool is_asked =
+        std::any_of(procedure.scans.begin(), procedure.scans.end(),
+                    [&, &name = name](const ProcedureScan& scan) { return scan.name == name; });
+    if (!is_asked)
+      throw std::runtime_error("procedure " + procedure.name + " takes no scan '" + name + "': leave it out");
+    if (whole["scans"].contains(name))
+      throw std::runtime_error("the plan has a scan '" + name + "' already: leave it out");
+    whole["scans"][name] = entry;
+  }
+  for (const ProcedureScan& scan : procedure.scans)
+    if (!whole["scans"].contains(scan.name))
+      throw std::runtime_error("procedure " + procedure.name + " lacks a scan: '" + scan.name + "', " +
+                               scan.says + ": give it by --" + scan.name);
+}
+
+/// Gives a procedure's steps names of their own.
+class Renaming {
+ public:
+  /// `scan`: the plan's name of the patient's scan, which procedures call "ct".
+  Renaming(std::map<std::string, std::string> names, std::map<std::string, glm::dvec3> places,
+           std::string scan)
+      : names_(std::move(names)), places_(std::move(places)), scan_(std::move(scan)) {}
+
+  Json operator()(const Json& step) const {
+    Json made = step;
+    made["id"] = names_.at(step.at("id"));
+    for (const auto& [key, value] : step.items())
+      if (key != "id" && key != "do") made[key] = renamed(value, key);
+    return made;
+  }
+
+ private:
+  /// In an expression each word; elsewhere a text that is the name of a step, or of a landmark, whose place is
+  /// written, as it may have moved.
+  Json renamed(const Json& value, const std::string& key) const {
+    if (value.is_string()) {
+      const auto& text = value.get_ref<const std::string&>();
+      if (key == "expression") return words_renamed(text);
+      if (key == "scan" && text == "ct") return scan_;
+      if (const auto name = names_.find(text); name != names_.end()) return name->second;
+      if (const auto place = places_.find(text); place != places_.end())
+        return {place->second.x, place->second.y, place->second.z};
+      return value;
+    }
+    if (!value.is_structured()) return value;
+    Json made = value;
+    if (value.is_array())
+      for (Json& part : made) part = renamed(part, key);
+    else
+      for (const auto& [inner, part] : value.items()) made[inner] = renamed(part, inner);
+    return made;
+  }
+
+  std::string words_renamed(const std::string& text) const {
+    const auto is_letter = [](char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+    };
+    std::string made;
+    for (std::size_t i = 0; i < text.size();) {
+      std::size_t end = i;
+      while (end < text.size() && is_letter(text[end])) ++end;
+      if (end == i) {
+        made += text[i++];
+        continue;
+      }
+      const std::string word = text.substr(i, end - i);
+      const auto name = names_.find(word);
+      made += name == names_.end() ? word : name->second;
+      i = end;
+    }
+    return made;
+  }
+
+  std::map<std::string, std::string> names_;
+  std::map<std::string, glm::dvec3> places_;
+  std::string scan_;
+};
+
+/// The names of values that a step's formulas use.
+bool uses_value(const Json& value, const std::string& name) {
+  if (value.is_string()) {
+    const auto& text = value.get_ref<const std::string&>();
+    return text.starts_with('=') && text.find(name) != std::string::npos;
+  }
+  return value.is_structured() &&
+         std::any_of(value.begin(), value.end(), [&](const Json& part) { return uses_value(part, name); });
+}
+
+bool is_bone(const Json& step) {
+  return step.value("do", "") == "window" && step.value("scan", "") == "ct";
+}
+
+void need_used_values(const Procedure& procedure, const std::map<std::string, double>& values,
+                      const std::string& on) {
+  for (const auto& [name, unused] : values)
+    if (std::none_of(
+            procedure.steps.begin(), procedure.steps.end(),
+            [&, &name = name](const Json& step) { return !is_bone(step) && uses_value(step, name); }) &&
+        std::any_of(procedure.values.begin(), procedure.values.end(),
+                    [&, &name = name](const ProcedureValue& value) { return value.name == name; }))
+      throw std::runtime_error("value " + name + " changes nothing: the procedure acts on '" + on +
+                               "', whose bone the plan has chosen: leave it out");
+}
+
+}  // namespace
+
+std::optional<std::string> outcome_of(const Plan& plan) {
+  for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step)
+    if (is_outcome(step->id) && step->action.operation().makes == Makes::Object) return step->id;
+  return std::nullopt;
+}
+
+Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& procedure,
+                const ProcedureInput& input) {
+  const std::optional<std::string> outcome = outcome_of(plan);
+  if (!outcome)
+    throw std::runtime_error(
+        "the plan has no step 'planned' or 'rebuilt' for a further procedure to act on: give its last object "
+        "this name");
+  need_used_values(procedure, input.values, *outcome);
+  Chained result;
+  result.plan = Json::parse(plan.text);
+  add_landmarks(input.landmarks, plan, result.plan);
+  add_scans(procedure, input, result.plan);
+  const Plan placed = parse_plan(result.plan.dump(), plan.folder);
+
+  std::vector<brep::Landmark> now;
+  std::map<std::string, glm::dvec3> places;
+  for (const NamedPoint& landmark : placed.landmarks) {
+    const glm::dvec3 p_mm = carried_mm(landmark.p_mm, plan, evaluated);
+    now.push_back({landmark.name, p_mm});
+    places[landmark.name] = p_mm;
+    const bool is_asked =
+        std::any_of(procedure.landmarks.begin(), procedure.landmarks.end(),
+                    [&](const ProcedureLandmark& each) { return each.name == landmark.name; });
+    if (is_asked && p_mm != landmark.p_mm) result.carried.push_back(landmark.name);
+  }
+
+  std::set<std::string> taken;
+  for (const Step& step : placed.steps) taken.insert(step.id);
+  const auto is_free = [&](const std::string& prefix) {
+    return std::none_of(taken.begin(), taken.end(),
+                        [&](const std::string& id) { return id.starts_with(prefix); });
+  };
+  std::string prefix = procedure.name + "_";
+  for (int number = 2; !is_free(prefix); ++number)
+    prefix = procedure.name + "_" + std::to_string(number) + "_";
+
+  const glm::dmat3 lps_from_head = placed.lps_from_head.value_or(glm::dmat3(1.0));
+  const Json steps = steps_of(procedure, now, input.values, lps_from_head);
+  std::map<std::string, std::string> names;
+  for (const Json& step : steps) {
+    const auto id = step.at("id").get<std::string>();
+    names[id] = is_bone(step) ? *outcome : prefix + id;
+  }
+  const Renaming renaming(names, places, result.plan["scans"].begin().key());
+  for (const Json& step : steps) {
+    if (is_bone(step)) continue;
+    result.plan["steps"].push_back(renaming(step));
+    result.made.push_back(result.plan["steps"].back().at("id"));
+  }
+  parse_plan(result.plan.dump(), plan.folder);
+  return result;
+}
+
+}  // namespace octotomy::planner

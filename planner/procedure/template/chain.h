@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/plan/evaluate.h"
+#include "planner/plan/plan.h"
+#include "planner/procedure/template/procedure.h"
+
+// Procedures one after the other: each acts on what the one before has planned.
+namespace octotomy::planner {
+
+/// The object that the plan's last procedure ends with: the last step that is called "planned" or "rebuilt",
+/// alone or after the name of a procedure and "_". None: the plan has no such step.
+std::optional<std::string> outcome_of(const Plan& plan);
+
+struct Chained {
+  nlohmann::ordered_json plan;       ///< JSON, to be parsed in the folder of the plan before
+  std::vector<std::string> made;     ///< ids of the added steps
+  std::vector<std::string> carried;  ///< landmarks of the procedure that lie on a piece that has moved
+};
+
+/// A plan followed by a procedure that acts on its outcome. The added steps are called after the procedure,
+/// "genioplasty_chin", so that each procedure has names of its own; a second one of the same name is
+/// "genioplasty_2". The procedure's bone, its window of the scan, is the outcome before.
+///
+/// Landmarks of the input are where the scan shows them, LPS; those that the plan has need not be given again.
+/// A landmark goes along with the pieces that it lies on: of the voxels within 8 mm of it, of the object that a
+/// piece was cut from, the nearest decides. `evaluated` is the plan's evaluation, with the objects that move.
+/// The input's scan, voxels and folder are not read: they are the plan's.
+///
+/// Throws std::runtime_error as plan_of(); where the plan has no outcome; where a landmark lies elsewhere in
+/// the plan; where a value is typed that only the window uses.
+Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& procedure,
+                const ProcedureInput& input);
+
+}  // namespace octotomy::planner

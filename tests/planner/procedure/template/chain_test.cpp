@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/procedure/template/chain.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "planner/operation/table/json.h"
+#include "tests/voxel/scratch_folder.h"
+#include "verify/phantom/head_phantom.h"
+#include "voxel/scan/write_scene.h"
+
+namespace octotomy::planner {
+namespace {
+
+const std::vector<brep::Landmark> jaw{{"split_front_left", {39, -46, -80}},
+                                      {"split_front_right", {-39, -46, -80}},
+                                      {"split_back_left", {46.5, -25, -45}},
+                                      {"split_back_right", {-46.5, -25, -45}},
+                                      {"lower_incisor", {0, -84, -61}},
+                                      {"lower_molar_left", {27, -54, -61}},
+                                      {"lower_molar_right", {-27, -54, -61}},
+                                      {"lingula_left", {48, -22, -45}},
+                                      {"lingula_right", {-48, -22, -45}},
+                                      {"border_left", {33, -55, -91}},
+                                      {"border_right", {-33, -55, -91}},
+                                      {"menton", {0, -82, -101}},
+                                      {"pogonion", {0, -87, -93}}};
+const std::vector<brep::Landmark> chin{{"foramen_left", {22, -74, -82}}, {"foramen_right", {-22, -74, -82}},
+                                       {"border_left", {33, -55, -91}},  {"border_right", {-33, -55, -91}},
+                                       {"pogonion", {0, -87, -93}},      {"menton", {0, -82, -101}}};
+
+/// The head phantom in voxels of 2 mm, and a plan of a procedure on it.
+class Chain : public testing::Test {
+ protected:
+  void SetUp() override {
+    verify::HeadOptions coarse;
+    coarse.voxel_mm = 2.0;
+    voxel::write_scene(verify::head_phantom(coarse), folder_ / "head.nrrd");
+  }
+
+  ProcedureInput input(std::vector<brep::Landmark> landmarks, std::map<std::string, double> values) const {
+    ProcedureInput made;
+    made.scan = {{"path", "head.nrrd"}};
+    made.landmarks = std::move(landmarks);
+    made.values = std::move(values);
+    made.voxel_mm = 2.0;
+    made.folder = folder_.path();
+    return made;
+  }
+  /// The landmarks that a procedure takes, of the jaw and the chin.
+  std::vector<brep::Landmark> of(const Procedure& procedure) const {
+    std::vector<brep::Landmark> taken;
+    for (const ProcedureLandmark& wanted : procedure.landmarks)
+      for (const auto* list : {&jaw, &chin})
+        for (const brep::Landmark& mark : *list)
+          if (mark.name == wanted.name && (taken.empty() || taken.back().name != mark.name))
+            taken.push_back(mark);
+    return taken;
+  }
+  Plan planned(const char* name, std::map<std::string, double> values) const {
+    const Procedure procedure = read_procedure(name);
+    return parse_plan(plan_of(procedure, input(of(procedure), std::move(values))).dump(), folder_.path());
+  }
+  Evaluation evaluated(const Plan& plan) const {
+    EvaluateOptions options;
+    options.certify = options.meshes = false;
+    return evaluate(plan, options);
+  }
+  Chained after(const Plan& plan, const char* name, std::map<std::string, double> values) const {
+    const Procedure procedure = read_procedure(name);
+    return chained(plan, evaluated(plan), procedure, input(of(procedure), std::move(values)));
+  }
+  Plan read(const Chained& made) const { return parse_plan(made.plan.dump(), folder_.path()); }
+
+  tests::ScratchFolder folder_;
+};
+
+double volume(const Evaluation& evaluation, const char* id) {
+  return evaluation.objects.at(id).voxel.measures.volume_mm3;
+}
+
+TEST_F(Chain, AChinIsCutFromTheJawWhereTheJawHasGone) {
+  const Plan jaws = planned("bilateral_sagittal_split", {{"forward_mm", 6}});
+  const Chained made = after(jaws, "genioplasty", {{"forward_mm", 4}});
+  EXPECT_NE(std::find(made.carried.begin(), made.carried.end(), "pogonion"), made.carried.end());
+  const Evaluation both = evaluated(read(made));
+  const Evaluation alone = evaluated(planned("genioplasty", {{"forward_mm", 4}}));
+  // The same chin, 6 mm in front of where it is cut alone.
+  EXPECT_NEAR(volume(both, "genioplasty_chin") / volume(alone, "chin"), 1.0, 0.01);
+  const auto centre = [](const Evaluation& evaluation, const char* id) {
+    return evaluation.objects.at(id).voxel.measures.centroid_mm.value();
+  };
+  const glm::dvec3 by_mm = centre(both, "genioplasty_chin_moved") - centre(alone, "chin_moved");
+  EXPECT_NEAR(by_mm.y, -6.0, 0.2);
+  EXPECT_NEAR(by_mm.z, 0.0, 0.2);
+  EXPECT_EQ(outcome_of(read(made)), "genioplasty_planned");
+}
+
+TEST_F(Chain, EachProcedureHasNamesOfItsOwnAndEachStaysEditable) {
+  const Plan first = planned("genioplasty", {{"forward_mm", 4}});
+  const Plan second = read(after(first, "genioplasty", {{"up_mm", 2}}));
+  const Plan third = read(after(second, "genioplasty", {{"left_mm", 1}}));
+  std::vector<std::string> ids;
+  for (const Step& step : third.steps) ids.push_back(step.id);
+  for (const char* id : {"chin", "genioplasty_chin", "genioplasty_2_chin", "genioplasty_2_planned"})
+    EXPECT_EQ(std::count(ids.begin(), ids.end(), id), 1) << id;
+  // Without its own steps the plan before is as it was.
+  Json whole = Json::parse(third.text), kept = Json::array();
+  for (const Json& step : whole["steps"])
+    if (!step["id"].get<std::string>().starts_with("genioplasty")) kept.push_back(step);
+  EXPECT_EQ(kept, Json::parse(first.text)["steps"]);
+}
+
+TEST_F(Chain, WhatCannotBeChainedIsRefusedWithAReason) {
+  const auto refusal = [&](const Plan& plan, const char* name, std::map<std::string, double> values,
+                           std::vector<brep::Landmark> landmarks = chin) {
+    try {
+      chained(plan, evaluated(plan), read_procedure(name), input(std::move(landmarks), std::move(values)));
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const Plan first = planned("genioplasty", {});
+  EXPECT_NE(refusal(first, "genioplasty", {{"bone_low", 200}}).find("bone_low changes nothing"),
+            std::string::npos);
+  EXPECT_NE(refusal(first, "genioplasty", {{"forward", 2}}).find("forward_mm"), std::string::npos);
+  EXPECT_NE(refusal(first, "genioplasty", {}, {{"menton", {0, -80, -101}}}).find("away in the plan"),
+            std::string::npos);
+  EXPECT_NE(refusal(first, "le_fort_i", {}).find("lacks landmarks"), std::string::npos);
+  const Plan bone = parse_plan(R"({"octotomy_plan": 1, "name": "b", "scans": {"ct": {"path": "head.nrrd"}},
+      "universe": {"voxel_mm": 2}, "steps": [{"id": "bone", "do": "window", "scan": "ct", "low": 300}]})",
+                               folder_.path());
+  EXPECT_NE(refusal(bone, "genioplasty", {}).find("no step 'planned'"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace octotomy::planner
