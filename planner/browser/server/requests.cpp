@@ -11,6 +11,7 @@
 #include "planner/operation/table/nearest_name.h"
 #include "planner/plan/plan.h"
 #include "planner/plan/rebase.h"
+#include "planner/procedure/template/chain.h"
 #include "planner/procedure/template/procedure.h"
 #include "voxel/filter/tissue.h"
 #include "voxel/space/error.h"
@@ -172,35 +173,84 @@ Json joined(const Json& steps, const Json& of_procedure, const std::string& scan
   return names;
 }
 
-Json procedure(Desk& desk, const Json& said, const Watched&) {
+ProcedureInput input_of(const Json& said, const Json& plan, const Procedure& procedure) {
+  ProcedureInput input;
+  input.scan = plan.at("scans").front();
+  for (const ProcedureScan& scan : procedure.scans)
+    if (plan["scans"].contains(scan.name)) input.further_scans[scan.name] = plan["scans"][scan.name];
+  for (const auto& [name, point] : said.at("landmarks").items())
+    if (const auto p_mm = point_of(said.at("landmarks"), name.c_str()))
+      input.landmarks.push_back({name, *p_mm});
+  const Json values = said.value("values", Json::object());
+  for (const auto& [name, value] : values.items()) input.values[name] = value.get<double>();
+  return input;
+}
+
+/// The plan without what the same procedure added before, to which it is added anew: its steps alone, or those
+/// that are called after it.
+Json without_steps_of(const Procedure& procedure, const Json& plan) {
+  Json kept = plan;
+  kept["steps"] = Json::array();
+  for (const Json& step : plan.at("steps"))
+    if (!step["id"].get<std::string>().starts_with(procedure.name + "_")) kept["steps"].push_back(step);
+  return kept;
+}
+
+/// Whether the plan's own steps are this procedure's, so that it replaces them.
+bool stands_alone(const Procedure& procedure, const Json& plan) {
+  return std::all_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& own) {
+    return std::any_of(plan.at("steps").begin(), plan.at("steps").end(),
+                       [&](const Json& step) { return step["id"] == own["id"]; });
+  });
+}
+
+/// Adds a procedure's steps: in place of its own, after another procedure on what that has planned, or as the
+/// plan's first.
+Json procedure(Desk& desk, const Json& said, const Watched& watched) {
   // A name that is a path would read any file.
   const auto name = said.at("name").get<std::string>();
   const std::vector<std::string> known = procedures();
   if (std::find(known.begin(), known.end(), name) == known.end())
     throw std::runtime_error("there is no procedure '" + name + "'" + suggestion(name, known));
   const Procedure procedure = read_procedure(name);
-  Json ids = Json::array();
-  desk.with_document([&](Document& document) {
-    Json whole = document.json();
-    ProcedureInput input;
-    input.folder = document.path().parent_path();
-    input.scan = whole.at("scans").front();
-    for (const ProcedureScan& scan : procedure.scans)
-      if (whole["scans"].contains(scan.name)) input.further_scans[scan.name] = whole["scans"][scan.name];
-    input.voxel_mm = document.plan()->voxel_mm.value_or(1.0);
-    for (const auto& [name, point] : said.at("landmarks").items())
-      if (const auto p_mm = point_of(said.at("landmarks"), name.c_str()))
-        input.landmarks.push_back({name, *p_mm});
-    const Json values = said.value("values", Json::object());
-    for (const auto& [name, value] : values.items()) input.values[name] = value.get<double>();
-    const Json made = plan_of(procedure, input);
-    whole["steps"] = joined(whole["steps"], made.at("steps"), whole["scans"].begin().key());
-    document.record(whole, procedure.name);
-    for (const Step& step : document.plan()->steps)
-      for (const Json& own : made.at("steps"))
-        if (own.at("id") == step.id && step.action.operation().makes == Makes::Object) ids.push_back(step.id);
+  const auto [text, whole, folder] = desk.with_document([](Document& document) {
+    return std::tuple{document.plan()->text, Json(document.json()), document.path().parent_path()};
   });
-  return {{"made", ids}};
+  ProcedureInput input = input_of(said, whole, procedure);
+  input.folder = folder;
+  const Plan before = parse_plan(without_steps_of(procedure, whole).dump(), folder);
+  const std::optional<std::string> outcome = outcome_of(before);
+  Json made;
+  std::vector<std::string> added, carried;
+  if (outcome && !stands_alone(procedure, whole)) {
+    input.further_scans.clear();  // the plan has them
+    // The page sends every value, those that nobody typed, too.
+    for (const ProcedureValue& value : procedure.values)
+      if (const auto sent = input.values.find(value.name);
+          sent != input.values.end() && sent->second == value.preset)
+        input.values.erase(sent);
+    Chained chain = chained(before, desk.evaluate(before, {*outcome}, false, watched), procedure, input);
+    made = std::move(chain.plan);
+    added = std::move(chain.made);
+    carried = std::move(chain.carried);
+  } else {
+    input.voxel_mm = before.voxel_mm.value_or(1.0);
+    const Json alone = plan_of(procedure, input);
+    made = whole;
+    made["steps"] = joined(whole["steps"], alone.at("steps"), whole["scans"].begin().key());
+    for (const Json& step : alone.at("steps")) added.push_back(step.at("id"));
+  }
+  Json ids = Json::array();
+  desk.with_document([&, &text = text](Document& document) {
+    if (document.plan()->text != text)
+      throw voxel::Error(voxel::ErrorCode::Input, "the plan was changed meanwhile: plan the procedure again");
+    document.record(made, procedure.name);
+    for (const Step& step : document.plan()->steps)
+      if (std::find(added.begin(), added.end(), step.id) != added.end() &&
+          step.action.operation().makes == Makes::Object)
+        ids.push_back(step.id);
+  });
+  return {{"made", ids}, {"carried", carried}};
 }
 
 Json diff(Desk& desk, const Json& said, const Watched&) {

@@ -9,7 +9,7 @@ import {button, Child, el} from "../base/html";
 import {label_of} from "../panel/schema_form";
 import {ask_for_landmarks} from "../tool/point_tools";
 import {PlanState, ProcedureSays} from "../protocol";
-import {on_leaving_plan, set, state} from "../state";
+import {on_leaving_plan, set, state, steps} from "../state";
 import {Vec3} from "../base/vector";
 
 const values: {[name: string]: number} = {};
@@ -65,8 +65,12 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays): Child {
     set({looks: {...state.looks, ...Object.fromEntries(hidden)}});
     void evaluate();
   };
+  const before = outcome_before(chosen.name);
   return [
     el("p", {class: "says"}, chosen.says),
+    before ? el("p", {class: "says"},
+                `It acts on ${before}, what the plan has planned before. Place its landmarks where the scan shows them, as in slices: those that lie on a moved piece go along with it. If the plan holds this procedure already, its steps are replaced.`) :
+             null,
     el("ul", {class: "marks"},
        chosen.landmarks.map(
            (mark) =>
@@ -105,6 +109,10 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays): Child {
         ],
   ];
 }
+/// What an earlier procedure of the plan ends with, on which a further one acts.
+const outcome_before = (procedure: string): string|null =>
+    steps().filter((step) => /(^|_)(planned|rebuilt)$/.test(step.id) && !step.id.startsWith(`${procedure}_`)).pop()?.id ??
+    null;
 const scans = (): {[name: string]: {path: string}} => state.plan?.plan.scans ?? {};
 
 /// A scan that a procedure takes beside the patient's: the file that it is, or a button to choose one.
