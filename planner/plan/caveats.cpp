@@ -114,6 +114,10 @@ std::uint64_t enclosed_samples(const voxel::Scene& scene, const Shown& window) {
   return count;
 }
 
+/// Of an object's volume. More padding within it makes its numbers wrong. Less may be dark samples of an MR that
+/// happen to have the padding's value, 0.
+constexpr double most_missing_share = 0.005;
+
 void add_unmeasured(const MadeOf& from, Object& made) {
   for (const std::string& name : scans_used(from.action)) {
     const auto record = std::find_if(from.records.begin(), from.records.end(),
@@ -140,8 +144,10 @@ void add_unmeasured(const MadeOf& from, Object& made) {
                 " mm3 of it are missing";
     reason += "; measure them again, or leave their slices out";
     made.findings.push_back(reason);
-    made.caveats.push_back(
-        {enclosed > 0 ? voxel::Verdict::Fail : voxel::Verdict::Warn, std::move(reason), false});
+    const double missing_mm3 = static_cast<double>(enclosed) * scene.lattice.voxel_mm3();
+    const bool is_hole =
+        enclosed > 0 && (are_nonfinite || missing_mm3 > most_missing_share * made.voxel.measures.volume_mm3);
+    made.caveats.push_back({is_hole ? voxel::Verdict::Fail : voxel::Verdict::Warn, std::move(reason), false});
   }
 }
 
