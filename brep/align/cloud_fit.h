@@ -10,10 +10,10 @@
 #include "brep/mesh/mesh.h"
 #include "brep/mesh/oriented_surface.h"
 
-// The refinement that register_surfaces() ends with, for what has its samples and a start already.
+// The final refinement of register_surfaces(), for callers that already have samples and a start.
 namespace octotomy::brep {
 
-/// Points of a surface, each for the same area.
+/// Points of a surface; each represents the same area.
 struct Cloud {
   std::vector<glm::dvec3> points_mm, normals;
   glm::dvec3 centre_mm{0.0};
@@ -21,11 +21,12 @@ struct Cloud {
   glm::dmat3 axes{1.0};    ///< columns, by falling spread, right-handed
 };
 
-/// So many samples. Throws std::invalid_argument where the surface has no area.
+/// Spreads `count` samples over the surface. Throws std::invalid_argument, which calls the surface `which`,
+/// if it has no area.
 Cloud cloud_of(const Mesh& mesh, std::size_t count, const std::string& which);
 
-/// The fit from `start`, short of the widening to all samples within the noise unless `widens`. Throws and
-/// tells as register_surfaces().
+/// The fit from `start`. Only if `widens` is set, the last step uses all samples within the noise. Throws and
+/// reports progress as register_surfaces() does.
 SurfaceFit fit_cloud(const Cloud& moving, const OrientedSurface& fixed, const glm::dmat4& start,
                      const SurfaceFitOptions& options, bool widens = true);
 

@@ -5,8 +5,8 @@
 
 namespace octotomy::brep {
 
-/// The axis turned so that its largest component, the first of equals, is not negative: eigenvectors and
-/// edges come with either sign.
+/// The axis with its sign chosen so that its largest component (the first, if several are equal) is not
+/// negative. Needed because the sign of eigenvectors and edges is arbitrary.
 inline glm::dvec3 forward(const glm::dvec3& axis) {
   const glm::dvec3 size = glm::abs(axis);
   const int largest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;

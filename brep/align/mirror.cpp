@@ -29,7 +29,7 @@ glm::dmat4 reflection(const MirrorPlane& plane) {
   return matrix;
 }
 
-/// Unit eigenvectors, of rising eigenvalue.
+/// Unit eigenvectors in order of rising eigenvalue.
 std::array<glm::dvec3, 3> axes_of(const glm::dmat3& symmetric) {
   Eigen::Matrix3d matrix;
   for (int column = 0; column < 3; ++column)
@@ -72,7 +72,7 @@ Spread spread_of(const Triangles& surface) {
   return spread;
 }
 
-/// The samples' mirror image, whose normals look outward still.
+/// The mirror image of the samples, with normals that still point outward.
 Cloud mirrored_cloud(Cloud cloud, const MirrorPlane& plane) {
   const glm::dmat4 image_of = reflection(plane);
   for (glm::dvec3& p : cloud.points_mm) p = glm::dvec3(image_of * glm::dvec4(p, 1.0));
@@ -92,13 +92,14 @@ MirrorFit plane_of(const SurfaceFit& fit, const MirrorPlane& start, const glm::d
   found.last_step_mm = fit.last_step_mm;
   found.rest_mm = fit.rest_mm;
   found.findings = fit.findings;
-  // A reflection has -1 along its normal and 1 in the plane; a twist about the normal leaves that axis alone.
+  // A reflection has the eigenvalue -1 along its normal and 1 in the plane. A twist about the normal does not
+  // change that axis.
   const glm::dmat3 turn(image_of);
   found.plane.normal = axes_of(turn)[0];
   const glm::dvec3 between = glm::dvec3(image_of * glm::dvec4(centre, 1.0)) - centre;
   found.plane.point_mm = centre + 0.5 * glm::dot(between, found.plane.normal) * found.plane.normal;
   found.slide_mm = glm::length(between - glm::dot(between, found.plane.normal) * found.plane.normal);
-  // An improper turn's trace is 2 cos(twist) - 1.
+  // The trace of an improper rotation is 2 cos(twist) - 1.
   const double cosine = std::clamp(0.5 * (turn[0][0] + turn[1][1] + turn[2][2] + 1.0), -1.0, 1.0);
   found.twist_deg = std::acos(cosine) * 180.0 / std::numbers::pi;
   return found;
@@ -137,7 +138,7 @@ MirrorFit fit_mirror_plane(const Mesh& mesh, const MirrorFitOptions& options) {
   fit_options.rest_mm = options.rest_mm;
   fit_options.stop = options.stop;
   const OrientedSurface surface(mesh);
-  // The best start by few samples, then its plane by all.
+  // Finds the best start with few samples, then its plane with all samples.
   MirrorPlane plane = starts.front();
   if (starts.size() > 1) {
     const Cloud few = cloud_of(mesh, trial_samples, "mirrored");

@@ -12,46 +12,47 @@
 
 namespace octotomy::brep {
 
-/// A plane of LPS millimetres by a point and a unit normal.
+/// A plane in LPS millimetres, by a point and a unit normal.
 struct MirrorPlane {
   glm::dvec3 point_mm{0.0}, normal{1, 0, 0};
 };
 
-/// The mesh mirrored about a plane, its triangles outward still. Throws std::invalid_argument if the normal
-/// has no length.
+/// The mesh mirrored about a plane; its triangles still wind outward. Throws std::invalid_argument if the
+/// normal has no length.
 Mesh mirrored(const Mesh& mesh, const MirrorPlane& plane);
 Solid mirrored(const Solid& solid, const MirrorPlane& plane);
 
 struct MirrorFitOptions {
-  /// Near which the plane lies, to some 20 degrees; none tries those square to the surface's three axes.
+  /// A plane within about 20 degrees of the result. None: tries the planes perpendicular to the surface's
+  /// three axes.
   std::optional<MirrorPlane> start = std::nullopt;
-  /// Share of the surface's area that has a counterpart on the other side, as in SurfaceFitOptions: what is
-  /// missing or crooked on one side must be less than the rest.
+  /// Share of the surface's area that has a counterpart on the other side, as in SurfaceFitOptions: the part
+  /// that is missing or deformed on one side must be less than 1 - overlap.
   double overlap = 0.7;
   int max_rounds = 100;                          ///< as in SurfaceFitOptions
   std::optional<double> rest_mm = std::nullopt;  ///< as in SurfaceFitOptions
   std::stop_token stop = {};
-  std::function<void(double)> progress = {};  ///< is called with 0..1
+  std::function<void(double)> progress = {};  ///< called with 0..1
 };
 
 struct MirrorFit {
-  MirrorPlane
-      plane;  ///< through the surface's centre as far as it can be; its normal's largest part positive
-  double rms_mm = 0.0;  ///< of the mirrored surface from the surface, of the samples kept
+  MirrorPlane plane;  ///< as near to the surface's centre as possible; the largest component of its normal is
+                      ///< positive
+  double rms_mm = 0.0;  ///< distance of the mirrored surface from the surface, over the samples kept
   double kept_share = 0.0;
-  /// What is left of the motion that would lay the mirror image on the surface best: a plane's mirror image
-  /// takes none, so both are near zero where there is a mid-plane.
+  /// The remaining motion that would fit the mirror image to the surface best, as rotation about the normal
+  /// and shift in the plane. Both are near zero if the surface has a mid-plane.
   double twist_deg = 0.0, slide_mm = 0.0;
-  int rounds = 0;                            ///< of the last two refinements
-  bool converged = false;                    ///< they came to rest before the rounds ran out
+  int rounds = 0;                            ///< number of rounds of the last two refinements
+  bool converged = false;                    ///< both came to rest within max_rounds
   double last_step_mm = 0.0, rest_mm = 0.0;  ///< as in SurfaceFit
   std::vector<std::string> findings;
 };
 
-/// The plane about which a surface is most nearly its own mirror image. Throws as register_surfaces(). Cost:
-/// that of one such fit, and without a start three short ones with fewer samples. Source: Benz et al., "The
-/// symmetry of faces", VMV 2002: mirror about any plane, register, and take the plane half way between points
-/// and their images.
+/// The plane about which a surface is most nearly its own mirror image. Throws as register_surfaces() does.
+/// Cost: that of one such fit and, without a start, of three short ones with fewer samples. Source: Benz et
+/// al., "The symmetry of faces", VMV 2002: mirror about any plane, register, and choose the plane half way
+/// between points and their images.
 MirrorFit fit_mirror_plane(const Mesh& mesh, const MirrorFitOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -28,10 +28,10 @@ OrientedBox oriented_box(const Mesh& mesh) {
   const std::vector<Kernel::Point_3> points = points_of(mesh);
   if (points.empty()) throw std::invalid_argument("oriented_box: there are no triangles to lay a box about");
   std::array<Kernel::Point_3, 8> corners;
-  // A seed of its own, as the default generator would go on from the call before.
+  // Uses a fixed seed, because the default generator would continue from the previous call.
   CGAL::oriented_bounding_box(points, corners, CGAL::parameters::use_convex_hull(true).random_seed(1));
 
-  // Corner 0 has the corners 1, 3 and 5 for neighbours.
+  // The neighbours of corner 0 are corners 1, 3 and 5.
   const auto at = [&](std::size_t i) { return glm::dvec3(corners[i].x(), corners[i].y(), corners[i].z()); };
   std::array<glm::dvec3, 3> edges = {at(1) - at(0), at(3) - at(0), at(5) - at(0)};
   std::stable_sort(edges.begin(), edges.end(),
@@ -39,7 +39,7 @@ OrientedBox oriented_box(const Mesh& mesh) {
   OrientedBox box;
   box.centre_mm = at(0) + 0.5 * (edges[0] + edges[1] + edges[2]);
   for (int k = 0; k < 3; ++k) box.edges_mm[k] = glm::length(edges[static_cast<std::size_t>(k)]);
-  // A flat box keeps the two axes it has.
+  // A flat box keeps its two axes.
   if (!(box.edges_mm.y > 0.0))
     throw std::invalid_argument("oriented_box: all points lie in one line, so a box has no axes");
   box.axes[0] = forward(edges[0] / box.edges_mm.x);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 pair by name; 2 centre both sets; 3 the best turn is the eigenvector of Horn's symmetric 4 x 4 matrix of
-// largest eigenvalue, found by Jacobi's rotations, or lays the frames of three points on each other; 4 scale
-// and translation follow. Where the two largest
-// eigenvalues are equal the turn is not determined.
+// 1 pair landmarks by name; 2 centre both sets; 3 find the best rotation: the eigenvector of largest
+// eigenvalue of Horn's symmetric 4 x 4 matrix, by Jacobi's rotations, or the rotation that makes the frames
+// of three points coincide; 4 compute scale and translation. If the two largest eigenvalues are equal, the
+// rotation is undetermined.
 #include "brep/align/register_landmarks.h"
 
 #include <algorithm>
@@ -24,9 +24,9 @@ struct Pair {
   double weight = 1.0;
 };
 
-/// The share of a set's spread across its longest line below which it lies on that line: landmarks are
-/// placed to no better than a tenth of a millimetre on a head of some 200 mm, so that a smaller share turns
-/// with the noise alone.
+/// A set counts as lying on a line if its spread across its longest line is below this share of its length.
+/// Landmarks on a head of about 200 mm are placed to a tenth of a millimetre at best, so a smaller spread is
+/// only noise.
 constexpr double line_share() {
   return 0.1 / 200.0;
 }
@@ -86,14 +86,15 @@ bool on_a_line(const std::vector<Pair>& pairs, glm::dvec3 Pair::*which) {
                      [&](const Pair& pair) { return across(pair) <= line_share() * reach; });
 }
 
-/// Columns along the second point and in the plane of the third, seen from the first.
+/// An orthonormal frame at the first point: its first column points to the second point, and the third point
+/// lies in the plane of the first two columns.
 glm::dmat3 frame_of(const std::vector<Pair>& pairs, glm::dvec3 Pair::*which) {
   const glm::dvec3 x = glm::normalize(pairs[1].*which);
   const glm::dvec3 z = glm::normalize(glm::cross(pairs[1].*which, pairs[2].*which));
   return {x, glm::cross(z, x), z};
 }
 
-/// What is laid on each other first: both sets' weighted centres, or the first pair.
+/// The points that the motion makes coincide: the weighted centres of both sets, or the first pair.
 Pair anchor_of(const std::vector<Pair>& pairs, Motion motion) {
   if (motion == Motion::three_points) return pairs.front();
   Pair anchor{glm::dvec3(0.0), glm::dvec3(0.0), 0.0};

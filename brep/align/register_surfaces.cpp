@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 spread samples over the moving surface; 2 where no start is given, refine each of a set of turns shortly
-// with few samples and keep the best; 3 refine those with all samples: find feet, drop what has no
-// counterpart, trim the furthest, solve the linearised motion that brings the rest onto the planes at their
-// feet, until nothing moves; 4 go on with all
-// samples within the noise of those, a departure from trimming that uses the whole overlap. Sums run in the
-// order of the samples.
+// 1 spread samples over the moving surface; 2 without a start, refine each of a set of rotations briefly with
+// few samples and keep the best; 3 refine with all samples: find their nearest points, drop samples without a
+// counterpart, trim the furthest, solve for the linearised motion that moves the rest onto the tangent
+// planes, until nothing moves; 4 refine again with all samples within the noise of those kept. Step 4 is a
+// departure from trimming; it uses the whole overlap. Sums run in the order of the samples.
 #include "brep/align/register_surfaces.h"
 
 #include <Eigen/Dense>
@@ -35,42 +34,45 @@ constexpr int search_rounds = 12;
 constexpr std::size_t finalists = 6;
 constexpr int finalist_rounds = 30;
 
-/// Normals further apart than this belong to different sheets of a surface, of a thin bone for example.
+/// Normals with a smaller cosine between them belong to different sheets of a surface, for example of a thin
+/// bone.
 constexpr double least_normal_cosine() {
   return 0.5;
 }
 
-/// The share of the samples' spread by which a round may still move them and count as at rest where no length
-/// is given: 0.1 um on a head of 100 mm, below what any number of samples of a scan determines, far above
+/// If no length is given, a fit is at rest when a round moves the samples by less than this share of their
+/// spread: 0.1 um on a head of 100 mm. That is below what samples of a scan can determine and far above
 /// rounding.
 constexpr double rest_share() {
   return 1e-6;
 }
 
-/// Rounds after which a fit that comes back to where it was, or nearly stands, counts as at rest: samples at
-/// the trimming's edge then come and go in turn, and none of their choices is better than another.
+/// A fit that repeats itself, or hardly improves, for this many rounds counts as at rest: samples at the
+/// trimming limit are then kept and dropped in turn, and none of these choices is better than another.
 constexpr int cycle_rounds = 12;
 
-/// A fit has settled when its rms falls by less than this share in those rounds.
+/// A fit hardly improves if its rms falls by less than this share in those rounds.
 constexpr double settled_share() {
   return 1e-4;
 }
 
-/// Modes softer than this share of the stiffest are left alone: a step along one would be rounding divided by
-/// nearly nothing. Eigenvalues of sums of some 1e4 terms are good to 1e-12 of the largest.
+/// The step has no component along a mode with less than this share of the largest stiffness: it would be
+/// rounding divided by nearly zero. Eigenvalues of sums of about 1e4 terms are accurate to 1e-12 of the
+/// largest.
 constexpr double softest_share() {
   return 1e-9;
 }
 
-/// Where noise ends and what has no counterpart begins, from the median distance of the nearest: three
-/// standard deviations, of which normal noise has a median of 0.6745.
+/// The largest distance that counts as noise, from the median distance: three standard deviations. The median
+/// of normally distributed noise is 0.6745 standard deviations.
 double noise_limit_mm(double median_mm) {
   return 3.0 / 0.6745 * median_mm;
 }
 
-/// Below it the surfaces count as sliding: a millimetre along the softest motion changes distances by less
-/// than a twentieth of what one along the stiffest does, so that noise of 0.1 mm leaves it open by 2 mm a
-/// sample. The facets of a sphere of some thousand triangles reach 0.02, a face of a person 0.35.
+/// Surfaces with a lower stiffness count as sliding. There, a millimetre along the least determined motion
+/// changes distances by less than a twentieth of what a millimetre along the best determined one does, so
+/// noise of 0.1 mm leaves an uncertainty of 2 mm per sample. A sphere of about a thousand triangles reaches
+/// 0.02, a person's face 0.35.
 constexpr double sliding_stiffness() {
   return 0.05;
 }
@@ -79,7 +81,7 @@ glm::dvec3 through(const glm::dmat4& motion, const glm::dvec3& p) {
   return glm::dvec3(motion * glm::dvec4(p, 1.0));
 }
 
-/// Both clouds' centres and axes on each other, with a turn between.
+/// The motion that makes both clouds' centres and axes coincide, with `turn` in between.
 glm::dmat4 laid_on(const Cloud& moving, const Cloud& fixed, const glm::dmat3& turn) {
   const glm::dmat3 rotation = fixed.axes * turn * glm::transpose(moving.axes);
   glm::dmat4 motion(rotation);
@@ -87,8 +89,8 @@ glm::dmat4 laid_on(const Cloud& moving, const Cloud& fixed, const glm::dmat3& tu
   return motion;
 }
 
-/// The 60 rotations of an icosahedron: neighbours are 72 degrees or less apart. Built from a turn about a
-/// vertex by a fifth and one about the middle of an edge at it by a half, until no new ones come.
+/// The 60 rotations of an icosahedron; neighbours differ by at most 72 degrees. Multiplies a fifth of a turn
+/// about a vertex and half a turn about the middle of an adjacent edge until no new rotations appear.
 std::vector<glm::dmat3> icosahedral_turns() {
   const double phi = std::numbers::phi;
   const glm::dmat3 fifth(
@@ -97,7 +99,7 @@ std::vector<glm::dmat3> icosahedral_turns() {
   std::vector<glm::dmat3> turns = {glm::dmat3(1.0)};
   const auto known = [&](const glm::dmat3& turn) {
     return std::any_of(turns.begin(), turns.end(), [&](const glm::dmat3& other) {
-      // The trace of the turn between them; the smallest turn of the group is 72 degrees.
+      // The trace of the rotation between the two; the smallest rotation of the group is 72 degrees.
       return glm::dot(turn[0], other[0]) + glm::dot(turn[1], other[1]) + glm::dot(turn[2], other[2]) > 2.5;
     });
   };
@@ -113,7 +115,7 @@ std::vector<glm::dmat3> icosahedral_turns() {
 struct Fit {
   glm::dmat4 motion{1.0};
   double rms_mm = 0.0;                                        ///< of the samples kept
-  double limit_mm = std::numeric_limits<double>::infinity();  ///< samples further off do not count
+  double limit_mm = std::numeric_limits<double>::infinity();  ///< samples further away are dropped
   double score_mm = 0.0;  ///< rms of the nearest `overlap` of all samples, counterpart or not
   std::size_t kept = 0;
   double stiffness = 0.0;
@@ -126,7 +128,7 @@ struct Fit {
   int since_best = 0;  ///< rounds since it fell by more than a share of it
 };
 
-/// The samples under a motion, what they meet, and which of them count.
+/// Evaluates a motion: the samples, their counterparts, and which samples are kept.
 class Refinement {
  public:
   Refinement(const Cloud& moving, const OrientedSurface& fixed, const SurfaceFitOptions& options)
@@ -144,7 +146,7 @@ class Refinement {
     return fit;
   }
 
-  /// Goes on with all samples within the noise of those that were kept, whatever their share.
+  /// Refines further with all samples within the noise of those that were kept, whatever their share.
   Fit widened(Fit fit, int rounds) const {
     const std::vector<Meeting> meetings = meet(fit.motion);
     std::vector<double> distances;
@@ -192,7 +194,8 @@ class Refinement {
     return static_cast<std::size_t>(std::ceil(overlap_ * static_cast<double>(moving_.points_mm.size())));
   }
 
-  /// Those with a counterpart, the furthest trimmed until a limit says how far, in the order of the samples.
+  /// The samples with a counterpart, in their order. Trims the furthest by share until a distance limit is
+  /// set.
   std::vector<std::size_t> kept(const std::vector<Meeting>& meetings, const Fit& fit) const {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < meetings.size(); ++i)
@@ -211,7 +214,7 @@ class Refinement {
     return order;
   }
 
-  /// Moves the fit by one linearised motion; false where too few samples have a counterpart to say which.
+  /// Moves the fit by one linearised motion; false if too few samples have a counterpart to determine it.
   bool step(Fit& fit) const {
     const std::vector<Meeting> meetings = meet(fit.motion);
     const std::vector<std::size_t> chosen = kept(meetings, fit);
@@ -248,7 +251,7 @@ class Refinement {
     return true;
   }
 
-  /// How far a sample's distance changes with turns, times the spread, about the centre, and with shifts.
+  /// The derivative of a sample's distance by rotations about the centre (times the spread) and by shifts.
   Vector6 row_of(const Meeting& m, const glm::dvec3& centre) const {
     const glm::dvec3 lever = glm::cross(m.p_mm - centre, m.foot.normal) / moving_.spread_mm;
     Vector6 row;
@@ -256,7 +259,8 @@ class Refinement {
     return row;
   }
 
-  /// The inverse of the normal equations; what they leave open is as large as a double may be in a sum.
+  /// The inverse of the normal equations. An undetermined motion gets the largest value that sums of doubles
+  /// allow.
   MotionDoubt doubt_of(const std::vector<Meeting>& meetings, const std::vector<std::size_t>& chosen,
                        const glm::dmat4& motion) const {
     MotionDoubt doubt{through(motion, moving_.centre_mm), moving_.spread_mm};
@@ -279,7 +283,7 @@ class Refinement {
     return doubt;
   }
 
-  /// Keeps the best motion so far, and tells whether it has not been bettered for a while.
+  /// Stores the best motion so far. Returns whether it has not improved for cycle_rounds.
   static bool is_cycling(Fit& fit, const std::vector<Meeting>& meetings,
                          const std::vector<std::size_t>& chosen) {
     double squares = 0.0;
@@ -297,7 +301,7 @@ class Refinement {
     return fit.since_best >= cycle_rounds;
   }
 
-  /// Gram and Schmidt once more, so that many rounds do not add up to a shear.
+  /// Orthonormalises by Gram-Schmidt, so that rounding over many rounds does not add up to a shear.
   static glm::dmat4 rigid(glm::dmat4 motion) {
     const glm::dvec3 x = glm::normalize(glm::dvec3(motion[0]));
     const glm::dvec3 z = glm::normalize(glm::cross(x, glm::dvec3(motion[1])));
@@ -320,7 +324,8 @@ class Refinement {
     std::sort(all.begin(), all.end());
     all.resize(wanted());
     fit.score_mm = std::sqrt(std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size()));
-    // Laid on with its inside out, a sheet is as near as laid on rightly.
+    // A sheet that is fitted inside out is as near as one that is fitted correctly, but few of its normals
+    // agree.
     if (fit.kept < wanted() / 2) fit.score_mm = std::numeric_limits<double>::infinity();
   }
 
@@ -336,7 +341,7 @@ void sort_by_score(std::vector<Fit>& fits) {
                    [](const Fit& a, const Fit& b) { return a.score_mm < b.score_mm; });
 }
 
-/// The best of all turns, refined with few samples.
+/// The best of all rotations, each refined with few samples.
 glm::dmat4 search(const Mesh& moving, const Cloud& fixed, const OrientedSurface& surface,
                   const SurfaceFitOptions& options) {
   const Cloud cloud = cloud_of(moving, search_samples, "moving");
@@ -365,7 +370,7 @@ void check(const SurfaceFitOptions& options) {
     refuse("the overlap keeps fewer than six samples: place landmarks instead");
 }
 
-/// The deviation of a linear measure of the motion.
+/// The standard deviation of a linear function of the motion.
 double deviation_of(const std::array<double, 36>& covariance, const std::array<double, 6>& row) {
   double variance = 0.0;
   for (std::size_t i = 0; i < 6; ++i)
@@ -384,7 +389,7 @@ double MotionDoubt::turn_deviation(const glm::dvec3& axis) const {
   return deviation_of(covariance, {axis.x, axis.y, axis.z, 0.0, 0.0, 0.0}) / spread_mm;
 }
 
-/// So many samples, each for the same area.
+/// `count` samples, each of which represents the same area.
 Cloud cloud_of(const Mesh& mesh, std::size_t count, const std::string& which) {
   double area = 0.0;
   for (const auto f : mesh.faces()) area += mesh.calc_face_area(f);

@@ -15,59 +15,62 @@
 namespace octotomy::brep {
 
 struct SurfaceFitOptions {
-  /// Where to begin, fixed from moving. None searches: the surfaces' centres and axes are laid on each other
-  /// and turned through the 60 rotations of an icosahedron, which finds any turn but of little overlap.
+  /// Start of the fit, fixed from moving. None: the surfaces' centres and axes are made to coincide and the
+  /// 60 rotations of an icosahedron are tried, which finds any rotation unless the overlap is small.
   std::optional<glm::dmat4> start = std::nullopt;
-  /// Share of the moving surface's area that has a counterpart in the fixed one, above 0 to 1. Too
-  /// large a share lets what is missing pull; a smaller one is safe down to a third of the truth.
+  /// Share of the moving surface's area that has a counterpart in the fixed one, above 0 to 1. If it is too
+  /// large, missing parts distort the fit. A smaller value is safe down to a third of the true share.
   double overlap = 0.7;
-  std::size_t samples = 5000;  ///< of the moving surface, at least 100; the error falls with its root
-  int max_rounds = 100;        ///< of each of the last two refinements, at least 1
-  /// A round that moves the samples by no more ends a refinement, above 0. Default: a millionth of their
-  /// spread. One ends too when the rms has not fallen by a 10 000th in 12 rounds: then the best motion of all
-  /// rounds is taken.
+  std::size_t samples = 5000;  ///< samples of the moving surface, at least 100; the error is inversely
+                               ///< proportional to their square root
+  int max_rounds = 100;        ///< limit for each of the last two refinements, at least 1
+  /// A refinement ends with a round that moves the samples by at most this length, above 0. Default: a
+  /// millionth of their spread. It also ends when the rms has not fallen by a 10 000th in 12 rounds; the
+  /// result is then the best motion of all rounds.
   std::optional<double> rest_mm = std::nullopt;
   std::stop_token stop = {};
   std::function<void(double)> progress = {};  ///< is called with 0..1
 };
 
-/// What a fit's samples leave open of its motion: the covariance of the motion's error for errors of the
-/// samples' distances that are independent and of deviation one.
+/// The uncertainty of a fit's motion: the covariance of its error if the samples' distances have independent
+/// errors of standard deviation one.
 struct MotionDoubt {
-  glm::dvec3 centre_mm{0.0};            ///< of the samples, in the fixed surface's frame
-  double spread_mm = 1.0;               ///< by which turns are scaled
-  std::array<double, 36> covariance{};  ///< of turns about x, y, z times the spread, and shifts; row by row
+  glm::dvec3 centre_mm{0.0};            ///< centre of the samples, in the fixed surface's frame
+  double spread_mm = 1.0;               ///< scale of rotations in the covariance
+  std::array<double, 36> covariance{};  ///< of rotations about x, y, z times the spread, then of shifts; row
+                                        ///< by row
 
-  /// Of a point's displacement along a unit direction, both in the fixed surface's frame, without unit.
+  /// Standard deviation of a point's displacement along a unit direction, both in the fixed surface's frame;
+  /// without unit.
   double deviation(const glm::dvec3& p_mm, const glm::dvec3& along) const;
-  /// Of the turn about a unit axis, radians a millimetre of the samples' error.
+  /// Standard deviation of the rotation about a unit axis, in radians per millimetre of the samples' error.
   double turn_deviation(const glm::dvec3& axis) const;
 };
 
 struct SurfaceFit {
   glm::dmat4 fixed_from_moving{1.0};  ///< rigid
-  double rms_mm = 0.0;                ///< point to surface, of the samples kept
+  double rms_mm = 0.0;                ///< point to surface, over the samples kept
   double kept_share = 0.0;            ///< of the samples
   int rounds = 0;                     ///< of the last two refinements
-  bool converged = false;             ///< it came to rest before the rounds ran out
-  double last_step_mm = 0.0;          ///< by which the last round moved the samples, root mean square
-  double rest_mm = 0.0;               ///< below which that counts as rest
-  /// How far the worst determined motion moves the surface along itself for one unit of distance, as a share
-  /// of the best determined one's: near zero where the surfaces slide, as spheres and planes do.
+  bool converged = false;             ///< it came to rest within max_rounds
+  double last_step_mm = 0.0;          ///< root mean square displacement of the samples in the last round
+  double rest_mm = 0.0;               ///< last_step_mm below this counts as rest
+  /// Ratio of the changes of distance caused by the worst and the best determined motion of equal size: near
+  /// zero if the surfaces can slide on each other, as spheres and planes can.
   double stiffness = 0.0;
   MotionDoubt doubt;
   std::vector<std::string> findings;
 };
 
-/// The rigid motion that lays the moving surface on the fixed one, both in LPS millimetres, where part of
-/// either may be missing: samples whose nearest point lies on the other's border, or whose normal looks the
-/// other way, have no counterpart, and of the rest the furthest are trimmed; at last all within three
-/// standard deviations of those kept count. Throws std::invalid_argument where a surface has no area, an
-/// option is out of its range, or the overlap keeps fewer than six samples; Stopped.
-/// The same bits on any number of threads. Cost: some 70 short searches of 500 samples, then about 50 rounds
-/// of `samples`: a second for heads. Source: Chen and Medioni, "Object modelling by registration of multiple
-/// range images", IVC 10, 1992 (point to plane); Chetverikov et al., "Robust Euclidean alignment of 3D point
-/// sets: the trimmed iterative closest point algorithm", IVC 23, 2005; Turk and Levoy 1994 (borders).
+/// The rigid motion that fits the moving surface to the fixed one, both in LPS millimetres. Parts of either
+/// may be missing: samples whose nearest point lies on the other's border, or whose normal points the other
+/// way, have no counterpart, and the furthest of the others are trimmed. The last refinement uses all samples
+/// within three standard deviations of those kept. Throws std::invalid_argument if a surface has no area, an
+/// option is out of its range, or the overlap keeps fewer than six samples; Stopped. The same bits on any
+/// number of threads. Cost: about 70 short searches of 500 samples, then about 50 rounds of `samples`: a
+/// second for heads. Source: Chen and Medioni, "Object modelling by registration of multiple range images",
+/// IVC 10, 1992 (point to plane); Chetverikov et al., "Robust Euclidean alignment of 3D point sets: the
+/// trimmed iterative closest point algorithm", IVC 23, 2005; Turk and Levoy 1994 (borders).
 SurfaceFit register_surfaces(const Mesh& moving, const Mesh& fixed, const SurfaceFitOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 refuse inside-out operands; 2 put the operands in an order of their own, so that neither the
-// caller's order nor its addresses show in the bits; 3 cut near the common lines only, or corefine the whole
-// where that will not do; 4 let the volumes vouch for each other, and lines through all shells for their
-// places; 5 where a wanted result is not manifold or these do not agree, try again with the second operand
-// moved by far less than any bound, and tell.
+// 1 refuse inside-out operands; 2 put the operands into a canonical order, so that the result's bits depend
+// neither on the caller's order nor on addresses; 3 cut only near the common lines or, if that fails,
+// corefine the whole surfaces; 4 check that the volumes add up and that lines through all shells agree; 5 if
+// a wanted result is not manifold or a check fails, try again with the second operand moved by far less than
+// any bound, and report it.
 #include "brep/boolean/boolean.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// The results' names for the caller's operands.
+/// The names of the caller's operands in messages.
 struct Names {
   std::string first, second;
   std::string of(std::size_t result) const {
@@ -50,7 +50,7 @@ double extent_mm(const Size& a, const Size& b) {
   return glm::length(glm::max(a.high_mm, b.high_mm) - glm::min(a.low_mm, b.low_mm));
 }
 
-/// Largest coordinate: what the last place of the points is relative to.
+/// The largest coordinate, which determines the last place of the points.
 double reach_mm(const Size& a, const Size& b) {
   double reach = 0.0;
   for (const glm::dvec3& p : {a.low_mm, a.high_mm, b.low_mm, b.high_mm})
@@ -58,18 +58,18 @@ double reach_mm(const Size& a, const Size& b) {
   return reach;
 }
 
-/// What the volumes may be off by where all is well. A new point is rounded by half a unit of the last place
-/// in each coordinate, which moves the surface by no more, and errors of either sign cancel: on skulls of
-/// 600k triangles the volumes add up to within a hundredth of one unit over the whole area. Slivers that
-/// cross at a small angle may be worse; 2^12 units leave room for them and are still far below what a lost
-/// triangle costs.
+/// The largest error of a sum of volumes for correct results. A new point is rounded by half a unit of the
+/// last place in each coordinate, which moves the surface by no more than that, and errors of either sign
+/// cancel: on skulls of 600k triangles the volumes add up to within a hundredth of one unit over the whole
+/// area. Slivers that cross at a small angle may be worse. 2^12 units leave room for them and are still far
+/// below the volume of a lost triangle.
 double volume_tolerance_mm3(const Size& a, const Size& b) {
   return 0x1p12 * std::numeric_limits<double>::epsilon() * reach_mm(a, b) * (a.area_mm2 + b.area_mm2);
 }
 
-/// The remedy's shift: 2^-18 of the extent for the first try, about 1 um for a head of 250 mm; further tries
-/// go the other way and further. It lies 2^34 units of the last place above rounding, so that nothing stays
-/// in touch, and far below a voxel. The direction has no plane or edge in common with anything likely.
+/// The shift for a further attempt: 2^-18 of the extent at first, about 1 um for a head of 250 mm; later
+/// attempts reverse it and go further. It is 2^34 times the last place, so that nothing stays in contact, and
+/// far below a voxel. Its direction is unlikely to be parallel to any plane or edge.
 glm::dvec3 shift_mm(int attempt, double extent) {
   assert(attempt >= 0 && std::isfinite(extent));
   if (attempt == 0) return glm::dvec3(0.0);
@@ -79,8 +79,8 @@ glm::dvec3 shift_mm(int attempt, double extent) {
 }
 constexpr int attempt_count = 4;
 
-/// What is wanted and what the volumes need to vouch for it: the intersection always, and where nothing else
-/// is wanted the difference that is the smaller mesh.
+/// The wanted results, and those that the check of volumes needs: always the intersection and, if nothing
+/// else is wanted, the difference with the smaller mesh.
 Wanted with_witnesses(Wanted wanted, const Mesh& a, const Mesh& b) {
   assert(wanted[of_union] || wanted[of_intersection] || wanted[of_a_minus_b] || wanted[of_b_minus_a]);
   wanted[of_intersection] = true;
@@ -104,8 +104,8 @@ std::optional<double> disagreement_mm3(const Volumes& volumes, double a_mm3, dou
   return worst;
 }
 
-/// Points in a box that more than one vertex has: where sheets of the surface touch, corefinement gives each
-/// its own.
+/// The number of points in a box that several vertices share. Where sheets of the surface touch, corefinement
+/// creates a vertex for each sheet.
 std::size_t shared_point_count(const Triangles& surface, const glm::dvec3& low, const glm::dvec3& high) {
   assert(!glm::any(glm::isnan(low)) && !glm::any(glm::isnan(high)));
   std::vector<glm::dvec3> points;
@@ -127,17 +127,18 @@ std::string missing_of(const Results& results, const Wanted& wanted, const Names
   return missing;
 }
 
-/// One way to the results with what vouches for them.
+/// The results of one attempt, with the facts that their checks need.
 struct Attempt {
   Results results;
   Volumes volumes_mm3;
   std::optional<double> disagreement_mm3;
-  std::vector<Corners> widest;  ///< triangles for lines; none if each surface's are still to be found
+  std::vector<Corners> widest;  ///< triangles for lines; empty if they still have to be found for each
+                                ///< surface
   std::array<std::size_t, 4> films{};
   std::size_t flat = 0;
   double shift_mm = 0.0;
   std::vector<std::string> findings;
-  std::string failure;  ///< empty where all that was wanted is there and adds up
+  std::string failure;  ///< empty if all wanted results exist and add up
 };
 
 struct Question {
@@ -148,7 +149,7 @@ struct Question {
   const std::stop_token& stop;
 };
 
-/// All triangles corefined.
+/// Corefines all triangles.
 Attempt whole_attempt(const Question& question, const Solid& b) {
   Attempt attempt;
   Corefined corefined =
@@ -178,7 +179,8 @@ Attempt near_attempt(const Question& question, const Solid& b) {
   return attempt;
 }
 
-/// Adds to the failure what is missing, what does not add up and what lines through all shells find wrong.
+/// Adds to the failure which results are missing, which volumes do not add up, and which lines through the
+/// shells disagree.
 void judge(const Question& question, const Solid& b, Attempt& attempt) {
   const std::string missing = missing_of(attempt.results, question.wanted, question.names);
   if (!missing.empty()) {
@@ -196,7 +198,7 @@ void judge(const Question& question, const Solid& b, Attempt& attempt) {
     attempt.failure = "the results' volumes are " + std::to_string(*attempt.disagreement_mm3) +
                       " mm3 from adding up, " + std::to_string(tolerance) + " is allowed";
   if (!attempt.failure.empty()) return;
-  // Volumes cannot tell a shell that a result has too many from one that it shares with its witness.
+  // Volumes cannot detect a surplus shell that is also in the result it is checked against. Lines can.
   const auto wrong =
       attempt.widest.empty()
           ? disagreement_along_lines(question.a, b, attempt.results, question.wanted)
@@ -219,7 +221,7 @@ Attempt shifted_attempt(const Question& question, const glm::dvec3& shift) {
   return best_attempt(question, trusted_solid(b, Proof::Rounded));
 }
 
-/// Sheets come to touch where both operands are, so the rest need not be searched.
+/// Sheets can only touch where the boxes of both operands overlap, so the rest is not searched.
 void tell_touching(const Question& question, Attempt& attempt) {
   const Size &a = question.a.size(), &b = question.b.size();
   const double margin = glm::length(shift_mm(attempt_count, extent_mm(a, b)));
@@ -251,7 +253,7 @@ void tell_flat(Attempt& attempt) {
                                "; their surfaces stayed where they were");
 }
 
-/// What was wanted, before meshes are made of it.
+/// The wanted results, before meshes are made of them.
 struct Answer {
   Results results;
   std::optional<double> residual;
@@ -296,7 +298,7 @@ Answer answer(const Question& question) {
                   " mm did not help; ask for the health of both operands and repair them, or move one");
 }
 
-/// An order of meshes that does not hang on who is called first.
+/// An order of meshes that does not depend on the order of the arguments.
 bool comes_after(const Triangles& a, const Triangles& b) {
   if (a.faces.size() != b.faces.size()) return a.faces.size() > b.faces.size();
   const auto less = [](const glm::dvec3& p, const glm::dvec3& q) {

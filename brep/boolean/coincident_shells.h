@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// CGAL takes a whole shell of one operand that lies on one of the other for a shell of the same sense: it
-// asks only whether the operands as wholes are inside out. So a plug in its cavity came out as what both have
-// in common. What follows finds such shells of contrary sense and puts the results right.
+// SPDX-License-Identifier: AGPL-3.0-or-later If a whole shell of one operand coincides with a shell of the
+// other, CGAL assumes that both have the same orientation: it checks only whether the operands as wholes are
+// inside out. A plug in its cavity then counts as the common part of both. These functions find coincident
+// shells of opposite orientation and correct the results.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace octotomy::brep {
 
-/// Triangles of points of any kind, which need an order only.
+/// Triangles over points of any type that has an order.
 template <typename Point>
 struct PointTriangles {
   std::vector<Point> points;
@@ -37,7 +37,7 @@ std::vector<std::pair<std::uint32_t, Shell>> shells_by_least_point(const PointTr
     sets.join(face[1], face[2]);
   }
   std::vector<std::pair<std::uint32_t, Shell>> shells;
-  std::vector<std::uint32_t> number(surface.points.size(), 0);  // of the shell, plus one
+  std::vector<std::uint32_t> number(surface.points.size(), 0);  // number of the point's shell plus one
   for (std::uint32_t f = 0; f < surface.faces.size(); ++f) {
     const auto& face = surface.faces[f];
     std::uint32_t& known = number[sets.set_of(face[0])];
@@ -53,7 +53,7 @@ std::vector<std::pair<std::uint32_t, Shell>> shells_by_least_point(const PointTr
   return shells;
 }
 
-/// Some faces alone.
+/// A surface of only these faces.
 template <typename Point>
 PointTriangles<Point> part_of(const PointTriangles<Point>& surface, const Shell& faces) {
   constexpr auto none = static_cast<std::uint32_t>(-1);
@@ -72,7 +72,7 @@ PointTriangles<Point> part_of(const PointTriangles<Point>& surface, const Shell&
   return part;
 }
 
-/// Whether each triangle of one lies on one of the other, wound the other way where `contrary` is set.
+/// Whether the triangles of both surfaces are the same, with opposite winding if `contrary` is set.
 template <typename Point, typename Less>
 bool coincide(const PointTriangles<Point>& a, const PointTriangles<Point>& b, bool contrary,
               const Less& less) {
@@ -94,8 +94,8 @@ bool coincide(const PointTriangles<Point>& a, const PointTriangles<Point>& b, bo
   return places_of(a, contrary) == places_of(b, false);
 }
 
-/// The shells of two surfaces that lie on each other triangle by triangle, in pairs. Cost: linear, and n log
-/// n for shells that share their least point.
+/// The pairs of shells of two surfaces that have the same triangles. Cost: linear, and n log n for shells
+/// that share their least point.
 template <typename Point, typename Less>
 std::vector<std::array<Shell, 2>> coincident_shells(const PointTriangles<Point>& a,
                                                     const PointTriangles<Point>& b, bool contrary,
@@ -117,10 +117,10 @@ std::vector<std::array<Shell, 2>> coincident_shells(const PointTriangles<Point>&
   return pairs;
 }
 
-/// Puts the results of corefined operands right about whole shells that lie on each other with contrary
-/// sense: neither belongs to union and intersection, each belongs to its operand's difference. CGAL took a's
-/// as one of the same sense. Other parts' places do not hang on that. Returns the number of pairs. Cost:
-/// linear where there are none.
+/// Corrects the results of corefined operands for whole shells that coincide with opposite orientation:
+/// neither belongs to union and intersection, and each belongs to its operand's difference. CGAL assumed the
+/// same orientation for the shell of `a`. This does not affect other parts. Returns the number of pairs.
+/// Cost: linear if there are none.
 template <typename Point, typename Less>
 std::size_t correct_contrary_shells(const PointTriangles<Point>& a, const PointTriangles<Point>& b,
                                     std::array<std::optional<PointTriangles<Point>>, 4>& results,

@@ -7,10 +7,10 @@
 
 namespace octotomy::brep {
 
-/// The union of two solids that have whole triangles in common, one's turned about, and else lie apart, as
-/// the pieces of one cut do: these triangles go, and the points about them become one. Nothing moves, and no
-/// triangle is divided. None where no triangle is in common, or where what is left is no closed surface: a
-/// Boolean is asked for then. Precondition: the insides are disjoint. Cost: linear.
+/// The union of two solids that share whole triangles with opposite winding and are otherwise disjoint, like
+/// the pieces of one cut. Removes these triangles and merges their points. No point moves, and no triangle is
+/// divided. None if no triangle is shared or if the rest is not a closed surface; the caller then needs a
+/// Boolean. Precondition: the interiors are disjoint. Cost: linear.
 std::optional<Solid> united_at_common_faces(const Solid& a, const Solid& b);
 
 }  // namespace octotomy::brep

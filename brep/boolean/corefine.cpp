@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/boolean/corefine.h"
 
-// CGAL checks its invariants in every build: where operands are all but degenerate, one without checks goes
-// on with what it broke, to wrong memory. A check that fails is an exception, told and remedied as others.
+// CGAL's checks of its invariants are enabled in every build. Without them, nearly degenerate operands can
+// break CGAL's data and lead to invalid memory accesses. A failed check throws an exception, which is
+// reported and handled like other failures.
 #define CGAL_DEBUG
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
@@ -22,9 +23,10 @@
 #include "brep/mesh/flat_triangles.h"
 #include "brep/mesh/triangles.h"
 
-// One of those checks is not worth its price: after each point on a side of a triangle it asks whether the
-// whole triangulation of that triangle is Delaunay in exact numbers, more than half of all time. What
-// protects memory is that its links are sound; points in a wrong order show in the results' volumes.
+// One of those checks costs more than half of all time: after each point on a side of a triangle it tests in
+// exact numbers whether the whole triangulation of that triangle is Delaunay. It is disabled. Memory is
+// protected by the check of the triangulation's links, and points in a wrong order show up in the results'
+// volumes.
 namespace CGAL {
 using CutTraits = Projection_traits_3<Exact_predicates_exact_constructions_kernel>;
 using CutLinks = Triangulation_data_structure_2<Triangulation_vertex_base_with_info_2<std::size_t, CutTraits>,
@@ -36,9 +38,9 @@ inline bool Constrained_Delaunay_triangulation_2<CutTraits, CutLinks>::is_valid(
 }
 
 namespace Box_intersection_d {
-/// The boxes by which corefinement finds edges and faces that meet. CGAL orders equal ones by their addresses
-/// and computes a point on several of them from the pair that it finds first, so the last places of points
-/// would hang on the heap. These are numbered as they are made.
+/// The boxes by which corefinement finds edges and faces that meet. CGAL orders equal boxes by address and
+/// computes a point on several of them from the first pair that it finds, so the last digits of points would
+/// depend on the heap. These boxes are ordered by a number assigned at creation.
 template <>
 class Box_with_info_d<double, 3, OpenMesh::HalfedgeHandle, ID_FROM_BOX_ADDRESS>
     : public Box_with_info_d<double, 3, OpenMesh::HalfedgeHandle, ID_EXPLICIT> {
@@ -50,7 +52,8 @@ class Box_with_info_d<double, 3, OpenMesh::HalfedgeHandle, ID_FROM_BOX_ADDRESS>
 
 namespace octotomy::brep {
 
-/// Steps along halfedges that the corefinement under way may still take, and what may end it before.
+/// The number of steps along halfedges that the current corefinement may still take, and the request that may
+/// stop it earlier.
 struct StepBudget {
   static thread_local std::size_t left;
   static thread_local std::stop_token stop;
@@ -58,10 +61,10 @@ struct StepBudget {
 thread_local std::size_t StepBudget::left = 0;
 thread_local std::stop_token StepBudget::stop;
 
-// CGAL finds these for our mesh instead of its own.
-// Its output builder distrusts open surfaces as operands: it would refuse what it has classified by edges
-// alone, which is all that patches of solids need. Solids are known to be closed and outward before they come
-// here, and patches wind as their solids do.
+// CGAL finds these overloads for this mesh instead of its own functions. CGAL's output builder does not
+// accept open operands: it would refuse surfaces that it has classified by edges alone, although patches of
+// solids need no more. Solids are checked to be closed and outward before this point, and patches have the
+// winding of their solids.
 inline bool is_closed(const Mesh&) {
   return true;
 }
@@ -69,7 +72,7 @@ template <typename Parameters>
 bool is_outward_oriented(const Mesh&, const Parameters&) {
   return true;
 }
-// Where surfaces all but coincide it may link halfedges into rings that its walks never leave.
+// Where surfaces nearly coincide, CGAL may link halfedges into rings that its loops never leave.
 inline void take_step() {
   if (StepBudget::left == 0) throw std::runtime_error("its walk along the surface does not end");
   constexpr std::size_t between_looks = 1 << 12;
@@ -90,7 +93,7 @@ namespace {
 namespace pmp = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// The mesh's points as CGAL's. CGAL's own map of OpenMesh points writes them through float.
+/// Maps the mesh's points to CGAL's. CGAL's own map for OpenMesh converts points to float.
 struct PointMap {
   using category = boost::read_write_property_map_tag;
   using key_type = boost::graph_traits<Mesh>::vertex_descriptor;
@@ -107,7 +110,7 @@ struct PointMap {
   }
 };
 
-/// Edges that lie on the cut, by number; edges come to be while it is made.
+/// Marks edges on the cut, by number. New edges appear while cutting.
 struct CutEdges {
   using category = boost::read_write_property_map_tag;
   using key_type = boost::graph_traits<Mesh>::edge_descriptor;
@@ -126,9 +129,9 @@ struct CutEdges {
   }
 };
 
-/// How far apart sheets may lie that would coincide but for rounding. The operands' points are rounded by
-/// half a unit of the last place of their largest coordinate, and a face lies where its corners do, however
-/// near to the origin the film itself is; new points add as much again.
+/// The largest distance between sheets that would coincide without rounding. The operands' points are rounded
+/// by half a unit of the last place of the largest coordinate, wherever the film itself lies; new points add
+/// the same error again.
 double film_thickness(const Mesh& a, const Mesh& b) {
   double reach = 0.0;
   for (const Mesh* mesh : {&a, &b})
@@ -138,10 +141,10 @@ double film_thickness(const Mesh& a, const Mesh& b) {
 
 struct Films {
   std::size_t dropped = 0;
-  bool has_open = false;  ///< some part with a border is no wider
+  bool has_open = false;  ///< some part with a border is as thin
 };
 
-/// Deletes the closed shells that are films, whose volume is no more than the thickness over their area.
+/// Deletes closed shells that are films: their volume is at most the thickness times their area.
 Films drop_films(Mesh& mesh, double thickness) {
   std::vector<bool> seen(mesh.n_faces(), false);
   std::vector<Mesh::FaceHandle> shell;
@@ -177,8 +180,8 @@ Films drop_films(Mesh& mesh, double thickness) {
   return films;
 }
 
-/// A point that the operand had, of `known` ones, of each part connected across edges that has none on the
-/// cut.
+/// For each part, connected across edges, without an edge on the cut: one of its points that the operand had
+/// (numbers below `known`).
 std::vector<std::uint32_t> uncut_parts(const Mesh& mesh, const std::vector<bool>& on_cut, std::size_t known) {
   std::vector<bool> seen(mesh.n_faces(), false);
   std::vector<Mesh::FaceHandle> flood;
@@ -214,7 +217,7 @@ PlainTriangles plain(const Mesh& mesh) {
   return {std::move(triangles.points_mm), std::move(triangles.faces)};
 }
 
-/// See correct_contrary_shells(). Results that it does not concern are left alone.
+/// See correct_contrary_shells(). Results without such shells are not changed.
 void correct_results(const Mesh& a, const Mesh& b, std::array<Mesh, 4>& meshes,
                      const std::array<bool, 4>& is_there) {
   const auto less = [](const glm::dvec3& p, const glm::dvec3& q) {
@@ -229,8 +232,8 @@ void correct_results(const Mesh& a, const Mesh& b, std::array<Mesh, 4>& meshes,
       meshes[i] = mesh_of(Triangles{std::move(results[i]->points), std::move(results[i]->faces)});
 }
 
-/// A result in an order of its own, without triangles that rounding left without area: a further Boolean
-/// would break off at them.
+/// A result in a canonical order, without triangles that rounding left without area, because a further
+/// Boolean would fail at them.
 Triangles finished(const Mesh& mesh) {
   Triangles triangles = in_coordinate_order(mesh);
   if (!has_flat_triangles(triangles)) return triangles;
@@ -239,14 +242,15 @@ Triangles finished(const Mesh& mesh) {
   return in_coordinate_order(ordered);
 }
 
-/// What a sound corefinement stays far below: measured are some 100 steps a triangle, and a fan of n
-/// triangles about a point takes n^2. A ring that never ends costs all of them, a nanosecond each.
+/// A number of steps far above that of any correct corefinement, which takes about 100 steps per triangle
+/// (measured), and n^2 for a fan of n triangles around a point. An endless ring uses up all steps, a
+/// nanosecond each.
 std::size_t step_limit(const Mesh& a, const Mesh& b) {
   const std::size_t triangles = a.n_faces() + b.n_faces();
   return std::min<std::size_t>(10'000 * triangles, 100'000'000 + 500 * triangles);
 }
 
-/// Corefines copies of the operands.
+/// Corefines copies of the operands once.
 Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_intersection) {
   static_assert(int{pmp::Corefinement::UNION} == int{of_union} &&
                 int{pmp::Corefinement::INTERSECTION} == int{of_intersection} &&
@@ -279,7 +283,7 @@ Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_interse
     check_joins(triangles_of(meshes[i]));
   }
   corefined.uncut = {uncut_parts(a, cut_a, points[0]), uncut_parts(b, cut_b, points[1])};
-  // A shell that lies on another has no edge on the cut.
+  // Shells that coincide have no edge on the cut.
   if (!corefined.uncut[0].empty() && !corefined.uncut[1].empty()) {
     for (Mesh* operand : {&a, &b}) operand->garbage_collection();
     correct_results(a, b, meshes, is_there);
@@ -297,8 +301,8 @@ Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_interse
 
 }  // namespace
 
-/// CGAL tells three troubles by exceptions: an operand that meets itself, constraints that cross within a
-/// triangle (the same, seen later), and broken invariants.
+/// CGAL reports three failures by exceptions: an operand that intersects itself, constraints that cross
+/// within a triangle (the same, detected later), and broken invariants.
 Corefined corefine(const Mesh& a, const Mesh& b, const Wanted& wanted, const std::stop_token& stop) {
   Corefined failed;
   StepBudget::stop = stop;

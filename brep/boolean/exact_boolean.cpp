@@ -31,7 +31,7 @@ Surface surface_of(const Solid& solid, const std::string& name) {
   return surface_mesh_of<Kernel::Point_3>(solid.triangles());
 }
 
-/// Halves added to halves, so that most sums are of numbers of like length.
+/// Adds by halves, so that most sums are of numbers of similar length.
 Rational sum_of(const std::vector<Rational>& terms, std::size_t begin, std::size_t end) {
   assert(begin <= end && end <= terms.size());
   if (end - begin == 0) return Rational(0);
@@ -93,11 +93,12 @@ Triangles rounded(const ExactTriangles& exact, std::size_t& moved) {
     moved += p != Kernel::Point_3(near.x, near.y, near.z);
     triangles.points_mm.push_back(near);
   }
-  // CGAL's order hangs on addresses.
+  // CGAL iterates in the order of addresses, which differs from run to run.
   return in_coordinate_order(mesh_of(triangles));
 }
 
-/// What CGAL tells while it works: meeting edges and faces are half of the work, cutting faces the other.
+/// Converts CGAL's callbacks to progress: intersecting edges and faces is half of the work, cutting faces the
+/// other half.
 struct Watched : pmp::Corefinement::Default_visitor<Surface> {
   const Progress* progress = nullptr;
   std::size_t steps = 0, step = 0;
@@ -118,10 +119,10 @@ struct Watched : pmp::Corefinement::Default_visitor<Surface> {
   void triangulating_faces_step() { advance(); }
 };
 
-/// The surfaces cut by each other, and the results asked for.
+/// The surfaces cut by each other, and the wanted results.
 struct Cut {
   ExactTriangles a, b;
-  std::array<std::optional<ExactTriangles>, 4> results;  ///< of those asked for, the manifold ones
+  std::array<std::optional<ExactTriangles>, 4> results;  ///< the wanted results that are manifold
 };
 
 Cut cut(const Solid& a, const Solid& b, const std::vector<ResultPlace>& asked, const Progress& progress) {
@@ -154,7 +155,7 @@ ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b, 
   std::vector<ResultPlace> asked = {of_union, of_intersection};
   if (wanted == of_a_minus_b) asked.push_back(wanted);
   Cut made = cut(a, b, asked, progress);
-  // Solids that touch along an edge have a union that is not manifold; the differences prove the rest.
+  // The union of solids that touch along an edge is not manifold. The differences then prove the result.
   if (!made.results[of_union] && wanted != of_union)
     made = cut(a, b, {of_intersection, of_a_minus_b, of_b_minus_a}, progress);
   auto& results = made.results;

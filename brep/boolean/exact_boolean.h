@@ -8,21 +8,22 @@
 namespace octotomy::brep {
 
 struct ExactBoolean {
-  Solid solid;  ///< rounded to doubles at the end; ask health() whether that made it meet itself
+  Solid solid;  ///< rounded to doubles at the end; check with health() whether it then intersects itself
   /// Exact volumes, rounded for reading: of the operands, their union and intersection, and the result.
   double a_mm3 = 0.0, b_mm3 = 0.0, united_mm3 = 0.0, intersection_mm3 = 0.0, result_mm3 = 0.0;
-  double rounding_mm3 = 0.0;  ///< the rounded mesh's volume less the exact one
-  std::size_t points = 0;     ///< of the result, that rounding moved: new ones that no doubles name
+  double rounding_mm3 = 0.0;  ///< volume of the rounded mesh minus the exact volume
+  std::size_t points = 0;     ///< points of the result that rounding moved: new ones that doubles cannot
+                              ///< represent
 };
 
-/// As boolean(), with every new point an exact number, and proof: |A| + |B| = |A u B| + |A n B| and, of a
-/// difference, |A| = |A - B| + |A n B| hold as rational numbers, else Error (Geometry) states by how much
-/// they miss. Where the union would not be manifold and is not wanted, |B| = |B - A| + |A n B| stands in for
-/// the first. The lines that check boolean() check this result, too. Nothing is ever shifted: throws Error
-/// (Geometry) if the wanted result, or another one that the proof needs, would not be manifold. Throws Stopped
-/// too, and std::invalid_argument if an operand is inside out. Cost: four times boolean()'s whole
-/// corefinement, twice that where the union is not manifold, and the volumes some 100 us a triangle. Source:
-/// CGAL's corefinement over its kernel of exact constructions.
+/// boolean() with exact numbers for every new point, and a proof: |A| + |B| = |A u B| + |A n B| and, for a
+/// difference, |A| = |A - B| + |A n B| hold as rational numbers; otherwise Error (Geometry) states the
+/// difference. If the union is not manifold and not wanted, |B| = |B - A| + |A n B| replaces the first
+/// equation. The result is also checked by the lines of boolean(). Nothing is ever shifted: throws Error
+/// (Geometry) if the wanted result, or another one that the proof needs, would not be manifold. Also throws
+/// Stopped, and std::invalid_argument if an operand is inside out. Cost: four times boolean()'s corefinement
+/// of whole surfaces, twice that if the union is not manifold, and about 100 us per triangle for the volumes.
+/// Source: CGAL's corefinement over its kernel of exact constructions.
 ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b,
                            const Progress& progress = {});
 

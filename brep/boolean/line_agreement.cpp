@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 lay a line along x through each of the given triangles; 2 pass all triangles once and list where the
-// lines cross them; 3 follow each line: what is inside a result must be what the operation makes of the
-// insides of the operands; 4 lay lines that disagree anew through the same triangle, twice. Most triangles
-// lie between two lines: that is told by their points' stretches of y, two bytes each, which are computed in
-// order.
+// 1 choose a line along x through each of the given triangles; 2 list all crossings of lines and triangles in
+// one pass; 3 follow each line: the intervals inside a result must be those that the operation makes from the
+// intervals inside the operands; 4 check a line that disagrees with two further lines through the same
+// triangle. Most triangles lie between two lines; they are skipped by comparing the y intervals of their
+// points, two bytes each.
 #include "brep/boolean/line_agreement.h"
 
 #include <algorithm>
@@ -23,11 +23,11 @@
 namespace octotomy::brep {
 namespace {
 
-/// The operands, and behind them the results; those that are not there are null.
+/// The operands, followed by the results; absent ones are null.
 using Surfaces = std::array<const Triangles*, 6>;
 constexpr std::size_t operand_count = 2;
 
-/// Largest coordinate: what the last place of the points is relative to.
+/// The largest coordinate, which determines the last place of the points.
 double reach_mm(const Solid& a, const Solid& b) {
   glm::dvec3 reach(0.0);
   for (const Size* size : {&a.size(), &b.size()})
@@ -35,13 +35,13 @@ double reach_mm(const Solid& a, const Solid& b) {
   return std::max({reach.x, reach.y, reach.z});
 }
 
-/// The length on which a line may disagree: 2^20 units of the last place, 0.06 nm for a head. Points are
-/// rounded by less than one unit, which a side that lies along the line but for 2^-16 turns into 2^16.
+/// The length over which a line may disagree: 2^20 units of the last place, 0.06 nm for a head. Points are
+/// rounded by less than one unit; a side at an angle of 2^-16 to the line enlarges that to 2^16 units.
 double tolerance_mm(double reach) {
   return 0x1p20 * std::numeric_limits<double>::epsilon() * reach;
 }
 
-/// The least height of a triangle, as seen along x, for a line through it to stay clear of its sides.
+/// The least height of a triangle, as seen along x, at which a line through it avoids its sides.
 double clearance_mm(double reach) {
   return 0x1p12 * std::numeric_limits<double>::epsilon() * reach;
 }
@@ -49,18 +49,18 @@ double clearance_mm(double reach) {
 struct Line {
   glm::dvec3 at_mm;
   Corners triangle;
-  double length_mm = 0.0;  ///< of disagreement
+  double length_mm = 0.0;  ///< length over which the line disagrees
   std::size_t result = operand_count;
 };
 
-/// Inside the triangle, another point in each round. No simple fractions, so that the sides of neighbours and
-/// of their counterparts on the other surface do not run there.
+/// A point inside the triangle, a different one in each round. Its fractions are not simple, so that sides of
+/// neighbours and of triangles of the other surface are unlikely to pass through it.
 glm::dvec3 point_in(const Corners& t, std::size_t round) {
   constexpr std::array<glm::dvec2, 3> shares = {{{0.41592, 0.30901}, {0.23606, 0.44721}, {0.28171, 0.17157}}};
   return t[0] + shares.at(round).x * (t[1] - t[0]) + shares.at(round).y * (t[2] - t[0]);
 }
 
-/// Through the triangles that are wide enough.
+/// Lines through the triangles that are wide enough.
 std::vector<Line> lines_through(const std::vector<Corners>& triangles, double clearance) {
   std::vector<Line> lines;
   for (const Corners& t : triangles) {
@@ -82,7 +82,7 @@ struct Crossing {
   double x;
 };
 
-/// The lines by rising y, and stretches of y by which points are told apart.
+/// The lines in order of y, and intervals of y into which points are sorted.
 class LinesByY {
  public:
   explicit LinesByY(const std::vector<Line>& lines) : order_(lines.size()) {
@@ -100,13 +100,13 @@ class LinesByY {
     for (std::size_t s = 0; s < stretch_count; ++s) before_[s + 1] += before_[s];
   }
 
-  /// Rises with y; the first and the last are beside all lines.
+  /// The number of the interval of y, ascending; the first and the last lie outside all lines.
   std::uint16_t stretch(double y) const {
     constexpr auto last = static_cast<double>(stretch_count - 1);
     return static_cast<std::uint16_t>(std::clamp(1.0 + (y - low_) * scale_, 0.0, last));
   }
 
-  /// Calls visit(line) for the lines of the stretches from least to greatest.
+  /// Calls visit(line) for the lines of the intervals from `least` to `greatest`.
   template <typename Visit>
   void visit(std::uint16_t least, std::uint16_t greatest, const Visit& visit) const {
     const std::uint32_t end = before_[greatest + 1u];
@@ -116,7 +116,7 @@ class LinesByY {
  private:
   static constexpr std::size_t stretch_count = 1 << 11;
   std::vector<std::uint32_t> order_;
-  std::vector<std::uint32_t> before_;  ///< of each stretch: the lines in those before
+  std::vector<std::uint32_t> before_;  ///< for each interval: the number of lines in earlier ones
   std::vector<double> y_;
   double low_ = 0.0, scale_ = 0.0;
 };
@@ -145,7 +145,7 @@ bool is_in_result(std::size_t place, bool in_a, bool in_b) {
                                     : in_b && !in_a;
 }
 
-/// Of the crossings begin..end - 1 of one line by rising x, the worst result's disagreement.
+/// Computes the worst disagreement of a line from its crossings begin..end - 1, in order of x.
 void follow(const Surfaces& surfaces, const Crossing* begin, const Crossing* end, Line& line) {
   std::array<int, 6> winding{};
   std::array<double, 6> wrong_mm{};

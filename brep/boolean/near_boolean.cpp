@@ -1,9 +1,9 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 find the triangles that meet; 2 corefine these near patches; 3 let each border
-// between near and far say whether the far part beyond it is inside the other solid: the results have its
-// edges or not; 4 confirm by a ray from each far part, which alone decides for parts that nothing touches;
-// 5 sew: far triangles keep their points, near ones take those of their borders by place.
-// A border belongs to a triangle that does not meet the other surface, so no cut reaches it.
+// SPDX-License-Identifier: AGPL-3.0-or-later 1 find the triangles that intersect; 2 corefine these near
+// patches; 3 decide from each border between near and far whether the far part beyond it is inside the other
+// solid: by whether the results contain the border's edges; 4 confirm this by a ray from each far part, which
+// alone decides for parts without a border; 5 join: far triangles keep their points, near ones use the far
+// points at their borders. A border belongs to a triangle that does not meet the other surface, so no cut
+// reaches it.
 #include "brep/boolean/near_boolean.h"
 
 #include <algorithm>
@@ -29,7 +29,8 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-/// Probes for which building a tree (n log n) costs less than passing all triangles for each.
+/// From this number of probes on, building a tree (n log n) costs less than testing all triangles for each
+/// probe.
 constexpr std::size_t probes_worth_a_tree = 64;
 
 using Place = std::array<double, 3>;
@@ -44,14 +45,14 @@ Edge edge_of(std::uint32_t v, std::uint32_t w) {
   return {std::min(v, w), std::max(v, w)};
 }
 
-/// Where an edge lies, and its points in the order of their places.
+/// The position of an edge, and its points in the order of their coordinates.
 std::pair<EdgePlace, Edge> placed(const Triangles& triangles, const Edge& edge) {
   const Place p = place_of(triangles.points_mm[edge.first]), q = place_of(triangles.points_mm[edge.second]);
   if (q < p) return {{q, p}, {edge.second, edge.first}};
   return {{p, q}, edge};
 }
 
-/// A solid and its triangles as they are to be cut: its own, or others of the same surface.
+/// A solid and the triangles to cut: its own, or other triangles of the same surface.
 struct Operand {
   const Solid& solid;
   const Linked& linked;
@@ -59,26 +60,27 @@ struct Operand {
   const Triangles& triangles() const { return linked.triangles; }
 };
 
-/// What keeps a Boolean from being made near the cut only.
+/// The reason why a Boolean cannot be computed near the cut only.
 struct Obstacle : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// One operand, told apart into near triangles and far parts.
+/// One operand, divided into near triangles and far parts.
 struct Side {
   std::vector<std::uint8_t> near;          ///< 1 for each near triangle
   std::vector<std::uint32_t> near_faces;   ///< ascending
-  std::vector<std::uint32_t> part;         ///< of each point that far triangles have; none else
+  std::vector<std::uint32_t> part;         ///< part of each point of a far triangle; none for other points
   std::vector<std::uint32_t> first;        ///< a point of each part, off the other surface
   std::vector<std::uint8_t> touching;      ///< 1 for each far point that may lie on the other surface
-  std::vector<double> volumes_mm3;         ///< of the cones over each part
-  std::vector<std::uint32_t> widest;       ///< face of each part as seen along x
-  std::map<Edge, std::uint32_t> border;    ///< the part beyond each edge between near and far, by its points
-  std::map<EdgePlace, Edge> border_edges;  ///< the same edges by where they lie, points in that order
+  std::vector<double> volumes_mm3;         ///< volumes of the cones over each part
+  std::vector<std::uint32_t> widest;       ///< widest face of each part as seen along x
+  std::map<Edge, std::uint32_t> border;    ///< for each edge between near and far, by its points: the part
+                                           ///< beyond it
+  std::map<EdgePlace, Edge> border_edges;  ///< the same edges by position, with points in that order
   std::vector<std::uint8_t> inside;        ///< 1 for each part inside the other solid
-  std::vector<std::uint8_t> known;         ///< 1 for each part that a border has placed
+  std::vector<std::uint8_t> known;         ///< 1 for each part that a border has classified
 
-  /// Of a far triangle.
+  /// The part of a far triangle.
   std::uint32_t part_of(const std::array<std::uint32_t, 3>& face) const { return part[face[0]]; }
 };
 
@@ -88,8 +90,8 @@ double cone_mm3(const Triangles& triangles, const std::array<std::uint32_t, 3>& 
   return glm::dot(a, glm::cross(b, c)) / 6.0;
 }
 
-/// Calls visit(side) for each side that leaves the same point as the given one, which is the first. Each is
-/// of another triangle. Precondition: the surface is closed, so that they come round.
+/// Calls visit(side) for each side that leaves the same point as `first`, beginning with `first`. Each
+/// belongs to a different triangle. Precondition: the surface is closed, so that the sides form a cycle.
 template <typename Visit>
 void visit_leaving(const Linked& linked, std::uint32_t first, const Visit& visit) {
   std::uint32_t side = first;
@@ -100,12 +102,12 @@ void visit_leaving(const Linked& linked, std::uint32_t first, const Visit& visit
   } while (side != first);
 }
 
-/// Marks the triangles that meet, and all about points where these would be two fans: corefinement takes
-/// points for different ones where a surface has two at one place.
+/// Marks the triangles that intersect. At a point where these would form two fans, marks all triangles around
+/// it, because corefinement would treat the point as two different ones.
 void mark_near(const Operand& operand, const std::vector<std::uint32_t>& meeting, Side& side) {
   side.near.assign(operand.triangles().faces.size(), 0);
   side.touching.assign(operand.triangles().points_mm.size(), 0);
-  std::vector<std::uint32_t> unseen;  // sides, which stand for the points that they leave
+  std::vector<std::uint32_t> unseen;  // sides, each of which represents the point that it leaves
   const auto mark = [&](std::uint32_t f) {
     assert(f < side.near.size());
     if (side.near[f]) return;
@@ -139,7 +141,8 @@ void find_parts(const Operand& operand, Side& side) {
     parts.join(faces[f][1], faces[f][2]);
     for (const std::uint32_t v : faces[f]) side.part[v] = 0;
   }
-  // A part is named by its least point, so it is numbered before the others.
+  // A part is represented by its least point, so the part gets its number there, before its other points are
+  // reached.
   side.first.clear();
   for (std::uint32_t v = 0; v < side.part.size(); ++v) {
     if (side.part[v] == none) continue;
@@ -174,7 +177,7 @@ void find_border(const Operand& operand, Side& side) {
     }
 }
 
-/// Compensated, as one part may be nearly all of an operand (Neumaier 1974).
+/// Uses compensated sums, because one part may be nearly all of an operand (Neumaier 1974).
 void measure_parts(const Operand& operand, const glm::dvec3& tip, Side& side) {
   side.volumes_mm3.assign(side.first.size(), 0.0);
   std::vector<double> lost(side.first.size(), 0.0), widest_mm2(side.first.size(), -1.0);
@@ -197,10 +200,10 @@ void measure_parts(const Operand& operand, const glm::dvec3& tip, Side& side) {
   for (std::size_t part = 0; part < lost.size(); ++part) side.volumes_mm3[part] += lost[part];
 }
 
-/// Some triangles of an operand by themselves.
+/// Some triangles of an operand as a mesh of their own.
 struct Patch {
   Mesh mesh;
-  std::vector<std::uint32_t> points;  ///< of the operand, in the order of the mesh's
+  std::vector<std::uint32_t> points;  ///< points of the operand, in the order of the mesh's points
 };
 
 Patch patch_of(const Operand& operand, const std::vector<std::uint32_t>& faces) {
@@ -221,8 +224,8 @@ Patch patch_of(const Operand& operand, const std::vector<std::uint32_t>& faces) 
   return {mesh_of(patch), std::move(points)};
 }
 
-/// Takes the near triangles that hang together with the points for far ones: they touch the other surface,
-/// and it does not cut them.
+/// Turns near triangles that are connected to the given points into far ones: they touch the other surface,
+/// but it does not cut them.
 void take_as_far(const Operand& operand, const std::vector<std::uint32_t>& points, Side& side) {
   std::vector<std::uint8_t> is_among(operand.triangles().points_mm.size(), 0);
   for (const std::uint32_t v : points) is_among[v] = 1;
@@ -245,10 +248,10 @@ void take_as_far(const Operand& operand, const std::vector<std::uint32_t>& point
   std::erase_if(side.near_faces, [&](std::uint32_t f) { return !side.near[f]; });
 }
 
-/// A near result's points that lie on a border, as points of an operand.
+/// The points of a near result that lie on a border, matched to points of an operand.
 struct Seam {
-  std::vector<std::uint32_t> on_a, on_b;  ///< of each point; none
-  std::set<Edge> edges_a, edges_b;        ///< where the result ends
+  std::vector<std::uint32_t> on_a, on_b;  ///< operand's point of each point, or none
+  std::set<Edge> edges_a, edges_b;        ///< border edges at which the result ends
 };
 
 Seam seam_of(const Triangles& result, const Side& a, const Side& b) {
@@ -258,8 +261,8 @@ Seam seam_of(const Triangles& result, const Side& a, const Side& b) {
   std::map<Edge, int> sides;
   for (const auto& face : result.faces)
     for (std::size_t k = 0; k < 3; ++k) ++sides[edge_of(face[k], face[(k + 1) % 3])];
-  // Points are known by the edges that end there: where sheets touch in a point, one has it twice, and a new
-  // point may have been rounded to its place.
+  // Points are matched by their edges, because coordinates may coincide: sheets that touch in a point have it
+  // twice, and a new point may have been rounded to the same place.
   const auto know = [](std::vector<std::uint32_t>& on, std::uint32_t v, std::uint32_t point) {
     if (on[v] != none && on[v] != point) throw Obstacle("sheets of an operand touch at a border");
     on[v] = point;
@@ -278,17 +281,17 @@ Seam seam_of(const Triangles& result, const Side& a, const Side& b) {
   return seam;
 }
 
-/// Whether the edges that a result has are those of inside parts, for an operand.
+/// Whether a result contains an operand's inside parts (true) or its outside parts.
 bool takes_inside(std::size_t result, bool of_a) {
   return result == of_intersection || result == (of_a ? of_b_minus_a : of_a_minus_b);
 }
 
-/// Whether the result turns the operand's parts round.
+/// Whether the result contains the operand's parts with reversed winding.
 bool turns_round(std::size_t result, bool of_a) {
   return result == (of_a ? of_b_minus_a : of_a_minus_b);
 }
 
-/// Sets each part's place by the borders of one result, or checks it by a further one.
+/// Classifies each part by the borders of one result, or checks its class by those of a further one.
 void place_parts(const std::set<Edge>& edges, bool inside_where_there, Side& side) {
   for (const auto& [edge, part] : side.border) {
     assert(part < side.known.size());
@@ -300,7 +303,7 @@ void place_parts(const std::set<Edge>& edges, bool inside_where_there, Side& sid
   }
 }
 
-/// A ray from each part; it decides where no border did.
+/// Casts a ray from each part; it decides for parts without a border and checks the others.
 void confirm_parts(const Operand& operand, const Operand& other, Side& side) {
   std::vector<glm::dvec3> probes;
   for (const std::uint32_t v : side.first) probes.push_back(operand.triangles().points_mm[v]);
@@ -317,7 +320,8 @@ void confirm_parts(const Operand& operand, const Operand& other, Side& side) {
   assert(inside.size() == side.inside.size());
 }
 
-/// The far triangles of one operand that belong to a result, and the near result's points that are theirs.
+/// Appends the far triangles of one operand that belong to a result, and uses their points in the near
+/// result.
 class Sewing {
  public:
   void add_far(const Operand& operand, const Side& side, std::size_t result, bool of_a) {
@@ -372,7 +376,7 @@ double volume_of(const Triangles& near, const glm::dvec3& tip, std::size_t resul
   return volume;
 }
 
-/// The near triangles of both, apart.
+/// Divides both operands into near triangles and far parts.
 std::array<Side, 2> sides_of(const Operand& a, const Operand& b) {
   std::array<Side, 2> sides;
   const IntersectingTriangles meeting = intersecting_triangles(a.triangles(), b.triangles());
@@ -384,7 +388,7 @@ std::array<Side, 2> sides_of(const Operand& a, const Operand& b) {
   return sides;
 }
 
-/// Corefines the near triangles. Those that only touch the other surface become far ones.
+/// Corefines the near triangles. Those that only touch the other surface become far triangles.
 Corefined corefine_near(const std::array<Operand, 2>& operands, std::array<Side, 2>& sides,
                         const Wanted& wanted, const std::stop_token& stop) {
   Corefined corefined;
@@ -456,8 +460,8 @@ void sew(const Operand& a, const Operand& b, const Wanted& wanted, const std::st
   }
 }
 
-/// Sews the same surfaces cut into other triangles, if they have any without area: where one of those reaches
-/// over the border it breaks a corefinement off.
+/// If the operands have triangles without area, repeats the computation with other triangles of the same
+/// surfaces: a triangle without area that crosses the border makes corefinement fail.
 void sew_flattened(const Solid& a, const Solid& b, const Wanted& wanted, const std::stop_token& stop,
                    NearBoolean& answer) {
   std::size_t taken = 0;

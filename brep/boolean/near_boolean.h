@@ -10,23 +10,25 @@
 namespace octotomy::brep {
 
 struct NearBoolean {
-  Results results;  ///< those wanted, closed; none of them where `obstacle` says why
-  /// Of those, and for witness of all others that are manifold.
+  Results results;  ///< the wanted results, closed; none if `obstacle` states a reason
+  /// Volumes of the wanted results and, as a check, of the other manifold ones.
   std::array<std::optional<double>, 4> volumes_mm3;
-  /// Of each far part of the operands and each shell of the near results the triangle that is widest along x.
+  /// The triangle that is widest along x, for each far part of the operands and each shell of the near
+  /// results.
   std::vector<Corners> widest;
   std::size_t flat = 0;       ///< see Corefined
   bool meets_itself = false;  ///< see Corefined
   std::string obstacle;
 };
 
-/// The Booleans of two solids with work for few triangles beyond those that meet: those are cut out,
-/// corefined as open surfaces and sewn back along borders that nothing has touched, point by point; what is
-/// left falls into parts wholly inside or outside, which the borders tell and a ray confirms. A wanted
-/// result's volume is that of its triangles; a witness's is the near triangles' and the parts'. Gives up,
-/// with the reason, where that is no gain or not certain: more than half of the triangles are near, the
-/// surfaces only touch, faces all but coincide, a result is not manifold, or border, ray and seam disagree.
-/// Cost: linear in all triangles, some 0.2 us each, and corefine()'s for the near ones.
+/// The Booleans of two solids, with little work for triangles that do not meet the other surface. The
+/// triangles that do are cut out, corefined as open surfaces and joined again along their unchanged borders,
+/// point by point. The remaining triangles form parts that are wholly inside or outside; the borders decide
+/// which, and a ray confirms it. The volume of a wanted result is that of its triangles; the volume of a
+/// result that serves only as a check is computed from near triangles and parts. Gives up, with the reason in
+/// `obstacle`, if this is not faster or not certain: more than half of the triangles are near, the surfaces
+/// only touch, faces nearly coincide, a result is not manifold, or border, ray and seam disagree. Cost:
+/// linear in all triangles, about 0.2 us each, plus corefine() for the near ones.
 NearBoolean near_boolean(const Solid& a, const Solid& b, const Wanted& wanted,
                          const std::stop_token& stop = {});
 

@@ -26,7 +26,7 @@ int sign(int value) {
   return (value > 0) - (value < 0);
 }
 
-/// Steps from one sample to another; `from` becomes `to`.
+/// Appends the steps from one sample to another; sets `from` to `to`.
 void walk(glm::ivec2& from, const glm::ivec2& to, std::vector<std::uint8_t>& steps) {
   const glm::ivec2 way(std::abs(to.x - from.x), std::abs(to.y - from.y));
   const glm::ivec2 step(sign(to.x - from.x), sign(to.y - from.y));
@@ -47,7 +47,7 @@ void walk(glm::ivec2& from, const glm::ivec2& to, std::vector<std::uint8_t>& ste
   }
 }
 
-/// Two straight steps round a corner become the diagonal across it.
+/// Replaces two straight steps around a corner by the diagonal across it.
 std::vector<std::uint8_t> without_corners(const std::vector<std::uint8_t>& steps) {
   std::vector<std::uint8_t> thin;
   for (std::size_t i = 0; i < steps.size(); ++i) {

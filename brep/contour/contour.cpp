@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Following, in passes: 1 each cell of four samples joins its crossed edges by directed segments, object on
-// the left; 2 open chains are walked from the edges no segment leads to; 3 what is left is loops. An edge is
-// crossed at most once and has at most one segment on either side, so chains cannot fork.
+// SPDX-License-Identifier: AGPL-3.0-or-later Follows contours in passes: 1 join the crossed edges of each
+// cell of four samples by directed segments, with the object on the left; 2 walk open chains from edges to
+// which no segment leads; 3 walk the remaining segments, which are loops. An edge is crossed at most once and
+// has at most one segment on either side, so chains cannot fork.
 #include "brep/contour/contour.h"
 
 #include <algorithm>
@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
-/// How near to a sample, in parts of an edge, a crossing may come. A sample exactly at the threshold would
-/// otherwise draw the crossings of all its edges into one point, where contours touch. A thousandth of a
+/// The least distance, as a share of an edge, of a crossing from a sample. Otherwise a sample exactly at the
+/// threshold would move the crossings of all its edges to one point, where contours touch. A thousandth of a
 /// sample is far below what a scan resolves, and far above the rounding of coordinates (2^-52 times the
 /// number of samples along a side).
 constexpr double least_fraction() {
@@ -47,8 +47,8 @@ void check(const Slice& slice, const FollowOptions& options) {
              ") is not finite: fill such samples first");
 }
 
-/// Edges of the lattice with one more ring of nodes about it: node (i, j) is sample (i - 1, j - 1), edge
-/// 2 * node runs from it along x and 2 * node + 1 along y.
+/// The lattice's edges, with one more ring of nodes around it: node (i, j) is sample (i - 1, j - 1); edge 2 *
+/// node runs from it along x and 2 * node + 1 along y.
 class Follower {
  public:
   Follower(const Slice& slice, const FollowOptions& options)
@@ -75,7 +75,7 @@ class Follower {
     return i >= 1 && j >= 1 && i <= slice_.width && j <= slice_.height;
   }
 
-  /// Above the threshold by how much; any negative number beyond the samples.
+  /// The sample minus the threshold; negative outside the samples.
   double above(std::size_t i, std::size_t j) const {
     if (!sampled(i, j)) return -1.0;
     return slice_.samples[(j - 1) * slice_.width + (i - 1)] - options_.threshold;
@@ -102,8 +102,8 @@ class Follower {
     assert(crossings <= 2);
     if (crossings == 1) link(edge[leaving[0]], edge[entering]);
     if (crossings != 2) return;
-    // The saddle of the bilinear interpolant is inside where the inner corners outweigh the outer ones. No
-    // cell at the border is a saddle, as its corners without samples lie side by side.
+    // The saddle point of the bilinear interpolant is inside if the inner corners outweigh the outer ones. No
+    // cell at the border is a saddle, because its corners without samples are adjacent.
     const double even = d[0] * d[2], odd = d[1] * d[3];
     const bool joined = d[0] >= 0.0 ? even >= odd : odd >= even;
     for (const std::size_t k : leaving) link(edge[k], edge[(k + (joined ? 1 : 3)) % 4]);
@@ -143,8 +143,9 @@ class Follower {
   std::vector<std::uint8_t> led_to_;
 };
 
-/// Asks whether a contour encloses points, by the parity of a ray towards +x; a vertex at the ray's height
-/// counts as above it. Runs of pieces beyond the point are crossed oddly if their ends are on two sides.
+/// Computes whether a contour encloses points, by the parity of crossings of a ray towards +x; a vertex at
+/// the ray's height counts as above it. A run of pieces beyond the point is crossed an odd number of times if
+/// its ends are on different sides of the ray.
 class Enclosure {
  public:
   explicit Enclosure(const Contour& contour) : points_(contour.points_mm), pieces_(contour) {}
@@ -171,8 +172,8 @@ class Enclosure {
   }
 
  private:
-  /// How near to a piece's box its sides may be taken for each other: cross() rounds a few times, products of
-  /// the box's sides with those of the way to the point, so 2^-40 of all that is far more.
+  /// Near a piece's box, within this distance, rounding may decide the side of a piece. cross() rounds a few
+  /// products of the box's sides and the way to the point, and 2^-40 of their size is far larger.
   static double rounding_of_sides(const PlaneBox& box, const glm::dvec2& p) {
     return 0x1p-40 * (std::abs(p.x) + std::abs(box.low.x) + std::abs(box.high.x));
   }
@@ -181,8 +182,9 @@ class Enclosure {
   RunTree pieces_;
 };
 
-/// A point that a closed contour encloses, however others touch it: half way along the lowest line that runs
-/// between two heights of its points. The first point where rounding leaves no such line.
+/// A point that a closed contour encloses, even if other contours touch it: half way along the contour's
+/// lowest horizontal line between two heights of its points. The contour's first point if rounding leaves no
+/// such line.
 glm::dvec2 point_within(const Contour& contour) {
   const auto& points = contour.points_mm;
   double lowest = std::numeric_limits<double>::infinity(), next = lowest;
@@ -241,7 +243,7 @@ std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contour
     enclosures.emplace_back(contour);
     middles.emplace_back(contour.points_mm.empty() ? glm::dvec2(0.0) : 0.5 * box.low + 0.5 * box.high, 0.0);
   }
-  // Along a curve that fills the plane, neighbours lie near each other.
+  // Sorts along a space-filling curve, so that neighbours in the sequence are near each other.
   const std::vector<std::uint32_t> order = morton_order(middles).numbers;
   std::vector<PlaneBox> ordered;
   ordered.reserve(order.size());
@@ -257,7 +259,7 @@ std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contour
       if (!box.holds(p)) return false;
       const std::size_t o = order[begin];
       if (end - begin > 1 || o == c || !(areas[o] > areas[c])) return true;
-      // Of equal ones the first.
+      // Among contours of equal area, the first is chosen.
       if (least && (areas[o] > areas[*least] || (areas[o] == areas[*least] && o > *least))) return true;
       if (enclosures[o].holds(p)) least = o;
       return true;

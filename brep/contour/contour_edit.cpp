@@ -47,18 +47,18 @@ std::vector<glm::dvec2> run(const Contour& contour, std::size_t from, std::size_
   return points;
 }
 
-/// A contour's pieces, for exact questions.
+/// A contour's pieces, for exact tests of intersection.
 class Pieces {
  public:
   explicit Pieces(const Contour& contour) : contour_(contour), count_(piece_count(contour)) {}
 
   std::size_t count() const { return count_; }
-  /// Whether two have a point in common beyond the corner that neighbours share. Precondition: i < j.
+  /// Whether two pieces have a common point other than the corner that neighbours share. Precondition: i < j.
   bool meet(std::size_t i, std::size_t j) const {
     assert(i < j && j < count_);
     const bool follows = j == i + 1, closes = contour_.closed && i == 0 && j + 1 == count_;
     if (!follows && !closes) return CGAL::do_intersect(piece(i), piece(j));
-    // Neighbours have a corner in common; more only where one runs back over the other.
+    // Neighbours share a corner. They share more only if one runs back over the other.
     return (follows && (piece(j).has_on(point(i)) || piece(i).has_on(point(j + 1)))) ||
            (closes && (piece(j).has_on(point(1)) || piece(0).has_on(point(j))));
   }

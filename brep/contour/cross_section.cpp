@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 tell each point's side of the plane; 2 from each triangle with points on both, walk from triangle to
-// triangle through the edges that change sides, to where the walk began or the surface ends; 3 place a point
-// on each edge by the distances of its ends. Sides are told once a point, so neighbours agree whatever
-// rounds.
+// 1 compute on which side of the plane each point lies; 2 from each triangle with points on both sides, walk
+// from triangle to triangle through the edges that change sides, until the walk returns or the surface ends;
+// 3 interpolate a point on each edge from the distances of its ends. The side of a point is computed once, so
+// neighbouring triangles agree in spite of rounding.
 #include "brep/contour/cross_section.h"
 
 #include <algorithm>
@@ -37,8 +37,8 @@ class PlaneSection {
 
  private:
   bool is_above(Mesh::VertexHandle v) const { return height_[static_cast<std::size_t>(v.idx())] >= 0.0; }
-  /// The side of a face that runs from above to below. Seen against the normal the section enters the face
-  /// there, with the face's inside on its left.
+  /// The halfedge of a face that runs from above to below. The section enters the face there, with the body
+  /// on its left when seen against the normal.
   Mesh::HalfedgeHandle entry_of(Mesh::FaceHandle face) const {
     Mesh::HalfedgeHandle h = mesh_.halfedge_handle(face);
     for (int k = 0; k < 3; ++k, h = mesh_.next_halfedge_handle(h))
@@ -52,7 +52,7 @@ class PlaneSection {
   }
 
   glm::dvec2 point_on(Mesh::HalfedgeHandle h) const {
-    // From the lower end whichever face asks.
+    // Interpolates from the lower end, so that both faces compute the same point.
     Mesh::VertexHandle low = mesh_.from_vertex_handle(h), high = mesh_.to_vertex_handle(h);
     if (is_above(low)) std::swap(low, high);
     const double below = -height_[static_cast<std::size_t>(low.idx())],
@@ -65,7 +65,7 @@ class PlaneSection {
   }
 
   Contour walk(Mesh::HalfedgeHandle start) {
-    // An open line is followed back to where it begins.
+    // Follows an open line back to its beginning.
     Mesh::HalfedgeHandle entry = start;
     Contour contour;
     for (;;) {
@@ -93,7 +93,7 @@ class PlaneSection {
   }
 
   static void add(Contour contour, CrossSection& section) {
-    // Where the plane touches a vertex, edges meet it in one point.
+    // Where the plane passes through a vertex, several edges produce the same point.
     auto& points = contour.points_mm;
     points.erase(std::unique(points.begin(), points.end()), points.end());
     while (contour.closed && points.size() > 1 && points.front() == points.back()) points.pop_back();
@@ -121,7 +121,8 @@ Plane plane_through(const glm::dvec3& point_mm, const glm::dvec3& normal) {
   Plane plane;
   plane.origin_mm = point_mm;
   plane.normal = normal / length;
-  // Nearer to z than this, z less its part along the normal has lost half of its digits.
+  // If the normal is nearer to z than this, the component of z perpendicular to it has lost half of its
+  // digits.
   const double half_of_digits = std::sqrt(std::numeric_limits<double>::epsilon());
   const glm::dvec3 z(0, 0, 1), aside = z - plane.normal * plane.normal.z;
   const bool is_along_z = glm::length(aside) < half_of_digits;

@@ -1,9 +1,9 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The k-th coefficient of a polygon of length L is the sum over its corners of the change of direction there
-// times e^(-2 pi i k s), s the corner's place along the contour in turns, times L / (2 pi k)^2. 1 Spread the
-// changes of direction over an even grid by a Gaussian; 2 transform; 3 divide by the Gaussian's transform:
-// the sums for all k at once; 4 the same the other way gives the smooth contour's points. Source of 1-4:
-// Greengard and Lee, "Accelerating the nonuniform fast Fourier transform", SIAM Review 46, 2004.
+// SPDX-License-Identifier: AGPL-3.0-or-later The k-th coefficient of a polygon of length L is the sum over
+// its corners of the change of direction there times e^(-2 pi i k s), s the corner's place along the contour
+// in turns, times L / (2 pi k)^2. 1 Spread the changes of direction over an even grid by a Gaussian; 2
+// transform; 3 divide by the Gaussian's transform, which yields the sums for all k at once; 4 do the reverse
+// to compute the smooth contour's points. Source of 1-4: Greengard and Lee, "Accelerating the nonuniform fast
+// Fourier transform", SIAM Review 46, 2004.
 #include "brep/contour/fourier_smooth.h"
 
 #include <bit>
@@ -23,9 +23,9 @@ namespace {
 using Complex = std::complex<double>;
 using std::numbers::pi;
 
-/// An even grid round a circle, on which sums of waves up to a number of harmonics are taken at places that
-/// are not on it. With four grid points a wave or more and a Gaussian cut off 14 of them away, what the cut
-/// and the waves beyond leave is e^-37 of the largest, below rounding.
+/// An even grid around a circle, for sums of waves, up to a number of harmonics, at positions that are not on
+/// the grid. With at least four grid points per wave and a Gaussian cut off at 14 grid points, the error of
+/// the cut and of higher waves is e^-37 of the largest, below rounding.
 class Circle {
  public:
   explicit Circle(std::size_t harmonics) : count_(std::bit_ceil(8 * harmonics)), grid_(count_) {
@@ -34,7 +34,8 @@ class Circle {
     sharpness_ = pi * (1.0 - 0.5 / grids_per_wave) / reach;
   }
 
-  /// Sums of value e^(-2 pi i k turn): spread all, to_waves(), then wave(k) undone().
+  /// To sum value e^(-2 pi i k turn): call spread() for all values, to_waves(), then multiply wave(k) by
+  /// undone(k).
   void spread(double turn, const Complex& value) {
     near(turn, [&](Complex& at, double weight) { at += weight * value; });
   }
@@ -44,7 +45,8 @@ class Circle {
     grid_ = std::move(waves);
   }
 
-  /// Sums of wave(k) e^(2 pi i k turn): set all waves, undone(), then from_waves(), then gather.
+  /// To sum wave(k) e^(2 pi i k turn): set all waves, multiplied by undone(k), call from_waves(), then
+  /// gather.
   void from_waves() {
     std::vector<Complex> sums;
     transform().inv(sums, grid_);
@@ -57,7 +59,7 @@ class Circle {
   }
 
   Complex& wave(std::ptrdiff_t k) { return grid_[static_cast<std::size_t>(k) & (count_ - 1)]; }
-  /// By what the Gaussian's transform at k must be undone.
+  /// The factor that undoes the Gaussian's transform at k.
   double undone(std::ptrdiff_t k) const {
     const double angle = 2.0 * pi * static_cast<double>(k) / static_cast<double>(count_);
     return std::sqrt(sharpness_ / pi) * std::exp(angle * angle / (4.0 * sharpness_));
@@ -68,7 +70,7 @@ class Circle {
 
   static Eigen::FFT<double> transform() { return Eigen::FFT<double>({}, Eigen::FFT<double>::Unscaled); }
 
-  /// Calls use(grid point, weight) for the grid points near a place.
+  /// Calls use(grid point, weight) for the grid points near a position.
   template <typename Use>
   void near(double turn, const Use& use) {
     const double place = turn * static_cast<double>(count_), middle = std::round(place);

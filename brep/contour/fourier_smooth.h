@@ -8,15 +8,16 @@
 namespace octotomy::brep {
 
 struct FourierOptions {
-  std::size_t harmonics = 16;  ///< kept either way round, at least 1: one gives an ellipse
-  std::size_t points = 128;    ///< of the result, evenly in arc length of the original; above 2 * harmonics
+  std::size_t harmonics = 16;  ///< harmonics kept in either direction, at least 1; one makes an ellipse
+  std::size_t points = 128;    ///< points of the result, evenly spaced in the original's arc length; above 2
+                               ///< * harmonics
 };
 
-/// A closed contour from its lowest Fourier harmonics in arc length, their coefficients integrated exactly
-/// over the polygon, but for rounding. Corners have harmonics without end: there is no number beyond which
-/// more change nothing. Throws std::invalid_argument where open, of no length, or an option is out of its
-/// range. Cost: n log n in points and harmonics. Source: Kuhl and Giardina, "Elliptic Fourier features of a
-/// closed contour", CGIP 18, 1982, in complex numbers.
+/// A closed contour from its lowest Fourier harmonics in arc length. Their coefficients are integrated
+/// exactly over the polygon, up to rounding. Corners have infinitely many harmonics, so every further
+/// harmonic changes the result. Throws std::invalid_argument if the contour is open or has no length, or an
+/// option is out of its range. Cost: n log n in points and harmonics. Source: Kuhl and Giardina, "Elliptic
+/// Fourier features of a closed contour", CGIP 18, 1982, in complex numbers.
 Contour fourier_smooth(const Contour& contour, const FourierOptions& options = {});
 
 }  // namespace octotomy::brep

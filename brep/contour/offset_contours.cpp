@@ -28,7 +28,7 @@ Contour contour_of(const Polygon::ring_type& ring) {
   return {{ring.begin(), ring.end()}};
 }
 
-/// Contours at an even depth are polygons, those at an odd one holes of the one around them.
+/// Contours at an even depth are polygons; those at an odd depth are holes of the polygon around them.
 Polygons polygons_of(const std::vector<Contour>& contours) {
   const auto around = nest(contours);
   const std::vector<std::size_t> depth = depths(around);
@@ -49,7 +49,7 @@ Polygons polygons_of(const std::vector<Contour>& contours) {
   return polygons;
 }
 
-/// Chords of a circle that lie within a thousandth of its radius.
+/// The number of chords of a circle that deviate from it by less than a thousandth of its radius.
 const std::size_t chords = static_cast<std::size_t>(std::ceil(std::numbers::pi / std::acos(1.0 - 1e-3)));
 
 }  // namespace

@@ -13,7 +13,7 @@
 
 namespace octotomy::brep {
 
-/// An axis-aligned box in a plane, empty to begin with.
+/// An axis-aligned box in a plane, initially empty.
 struct PlaneBox {
   glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
 
@@ -26,11 +26,11 @@ struct PlaneBox {
     high = glm::max(high, other.high);
   }
   bool holds(const glm::dvec2& p) const { return overlaps({p, p}); }
-  /// Or touches.
+  /// Whether the boxes overlap or touch.
   bool overlaps(const PlaneBox& other) const {
     return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y && other.low.y <= high.y;
   }
-  /// Of the box's points the one farthest from p.
+  /// The distance from p to the farthest point of the box.
   double farthest(const glm::dvec2& p) const {
     const glm::dvec2 away = glm::max(high - p, p - low);
     return glm::length(away);
@@ -43,22 +43,23 @@ std::size_t piece_count(const Contour& contour);
 /// The box of a contour's piece, by its first point.
 PlaneBox box_of_piece(const Contour& contour, std::size_t piece);
 
-/// Boxes over the runs that halving a sequence again and again gives. A question is quick if neighbours in
-/// the sequence lie near each other, as a contour's pieces do. Building: linear, 64 bytes an item.
+/// Boxes around the runs that result from halving a sequence repeatedly. Queries are fast if neighbours in
+/// the sequence are near each other, like a contour's pieces. Building: linear, 64 bytes per item.
 class RunTree {
  public:
-  /// Of items in their order.
+  /// A tree over items in their order.
   explicit RunTree(const std::vector<PlaneBox>& items);
-  /// Of a contour's pieces, numbered by their first points.
+  /// A tree over a contour's pieces, numbered by their first points.
   explicit RunTree(const Contour& contour);
 
-  /// Calls enter(box, begin, end) for the run of all items, and for the halves of each run of two and more
-  /// that it returns true for, in order.
+  /// Calls enter(box, begin, end) for the run of all items. For each run of two or more items for which it
+  /// returns true, calls it for both halves, in order.
   template <typename Enter>
   void walk(const Enter& enter) const {
     if (count_ > 0) walk_run(0, 0, count_, enter);
   }
-  /// The first item in from..until - 1 whose box and whose runs' boxes pass `reaches` and that is `hit`.
+  /// The first item in from..until - 1 for which `hit` is true and `reaches` is true for its box and for the
+  /// boxes of its runs.
   template <typename Reaches, typename Hit>
   std::optional<std::size_t> first(std::size_t from, std::size_t until, const Reaches& reaches,
                                    const Hit& hit) const {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 triangulate the plane with the sides of both sections as constraints, crossings exact; 2 flood from
-// outside to know which sections hold each triangle; 3 lift those held by one section only, splitting the
-// edges that would lie flat in a section's plane; 4 close the walls over sides that the other section's
-// cross. The lifted triangles are a graph over the plane and the walls stand upright below or above its
-// border, so nothing can cross; no edge but the contours' own lies in a section's plane, so slabs share
-// nothing else.
+// 1 triangulate the plane with the sides of both sections as constraints, with exact crossings; 2 flood from
+// outside to find which sections contain each triangle; 3 lift the triangles that only one section contains,
+// and split edges that would lie flat in a section's plane; 4 add vertical walls at sides that are crossed by
+// the other section. The lifted triangles are a graph over the plane and the walls are vertical below or
+// above its border, so nothing can cross. Only edges of contours lie in a section's plane, so neighbouring
+// slabs share nothing else.
 #include "brep/contour/slab.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -29,9 +29,9 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 enum Level : std::uint8_t { at_lower, at_upper, half_way };
 
 struct Mark {
-  Level level = half_way;  ///< half way: sides cross here
+  Level level = half_way;  ///< half way: a crossing of sides
   std::uint32_t point = none;
-  std::uint32_t contour = none;  ///< of both sections in one row
+  std::uint32_t contour = none;  ///< number of its contour, counted over both sections
 };
 struct Held {
   std::uint8_t by = 0;  ///< bit 0 the lower section, bit 1 the upper
@@ -47,7 +47,7 @@ using Plane = CGAL::Constrained_triangulation_plus_2<CGAL::Constrained_Delaunay_
 using Vertex = Plane::Vertex_handle;
 using Face = Plane::Face_handle;
 
-/// A pair of points without order.
+/// A key for an unordered pair of points.
 std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
 }
@@ -77,7 +77,7 @@ class Overlay {
     Level level;
     Vertex from, to;
     Plane::Constraint_id constraint;
-    std::vector<Vertex> chain;  ///< with the crossings on it
+    std::vector<Vertex> chain;  ///< the side's points, including the crossings on it
   };
 
   std::string name(std::uint32_t contour) const {
@@ -102,7 +102,7 @@ class Overlay {
       for (std::size_t k = 0; k < ring.size(); ++k)
         sides_.push_back({level, ring[k], ring[(k + 1) % ring.size()], {}, {}});
     }
-    // After all points, so that a point on a side is seen as one.
+    // Inserted after all points, so that a point on a side is detected.
     if (level == at_upper)
       for (Side& side : sides_) side.constraint = plane_.insert_constraint(side.from, side.to);
   }
@@ -114,7 +114,7 @@ class Overlay {
     throw SectionsCoincide(name(contour) + " and " + name(there->info().contour) + " share a point");
   }
 
-  /// Writes down the crossings on a side and which sections it bounds.
+  /// Records the crossings on a side and which sections it bounds.
   void follow_side(Side& side) {
     const std::uint32_t contour = side.from->info().contour;
     for (auto v = plane_.vertices_in_constraint_begin(side.constraint);
@@ -179,7 +179,8 @@ class Overlay {
     surface_.group.push_back(contour);
   }
 
-  /// Upward where the lower section holds it, downward where the upper does.
+  /// Adds a lifted triangle, facing upward if the lower section contains it and downward if the upper one
+  /// does.
   void lift(Face face) {
     assert(face->info().by == 1 || face->info().by == 2);
     const bool turned = face->info().by == 2;
@@ -215,7 +216,7 @@ class Overlay {
       for (std::size_t k = 0; k < 3; ++k) triangle(corner[k], middle[k], middle[(k + 2) % 3]);
       return triangle(middle[0], middle[1], middle[2]);
     }
-    // Turned until side 0 is split and, of two, side 2 is not.
+    // Rotates the numbering until side 0 is split and, if two sides are, side 2 is not.
     std::size_t first = 0;
     while (middle[first] == none || middle[(first + 2) % 3] != none) ++first;
     const std::uint32_t a = corner[first], b = corner[(first + 1) % 3], c = corner[(first + 2) % 3];
@@ -229,7 +230,7 @@ class Overlay {
     triangle(a, bc, c);
   }
 
-  /// The upright polygon between a side and the crossings on it.
+  /// Adds the vertical polygon between a side and the crossings on it.
   void add_wall(const Side& side) {
     const bool upper = side.level == at_upper;
     const std::uint32_t from = point_of(side.from), contour = side.from->info().contour;
@@ -264,7 +265,7 @@ class Overlay {
   std::uint32_t point_count_ = 0;
   std::vector<Side> sides_;
   std::unordered_map<std::uint64_t, std::uint8_t> bounds_;    ///< sections that a piece of a side bounds
-  std::unordered_map<std::uint64_t, std::uint32_t> middles_;  ///< points half way on flat edges
+  std::unordered_map<std::uint64_t, std::uint32_t> middles_;  ///< middle points of flat edges
   std::unordered_map<std::uint32_t, int> crossed_;
   DisjointSets joined_;
   SlabSurface surface_;

@@ -12,7 +12,7 @@
 
 namespace octotomy::brep {
 
-/// Two neighbouring sections. Contours are closed and turned with the object on their left.
+/// Two neighbouring sections. Contours are closed and have the object on their left.
 struct Slab {
   const std::vector<Contour>& lower;
   const std::vector<Contour>& upper;
@@ -22,10 +22,11 @@ struct Slab {
 /// The surface between two sections. Points are numbered: the lower section's in the order of its contours,
 /// the upper section's, then `inner_mm`.
 struct SlabSurface {
-  std::vector<glm::dvec3> inner_mm;  ///< all half way up
+  std::vector<glm::dvec3> inner_mm;  ///< all at half height
   std::vector<std::array<std::uint32_t, 3>> faces;
-  std::vector<std::uint32_t> group;  ///< of each face: contours that the surface connects are one group
-  /// Of each group, its contours by their numbers in the sections.
+  std::vector<std::uint32_t> group;  ///< group of each face: contours that the surface connects form one
+                                     ///< group
+  /// The contours of a group, by their numbers in the sections.
   struct Group {
     std::vector<std::uint32_t> lower, upper;
   };
@@ -36,18 +37,18 @@ struct SlabSurface {
 struct ContoursMeet : Error {
   explicit ContoursMeet(const std::string& message) : Error(ErrorCode::Geometry, message) {}
 };
-/// A point of one section stands exactly over a point or side of the other's: move one by a little.
+/// A point of one section lies exactly over a point or side of the other. Remedy: move one section slightly.
 struct SectionsCoincide : Error {
   explicit SectionsCoincide(const std::string& message) : Error(ErrorCode::Geometry, message) {}
 };
 
-/// The surface of an object between two sections, oriented outward, whose border are both sections' contours:
-/// manifold and free of self-intersection whatever they are (but for the rounding of points where contours
-/// cross). Where the sections laid over each other agree there is none; over the rest, which lies in one of
-/// them only, runs one height: the section's own at its contours, half way where contours of both cross and
-/// over what only one contour bounds. So contours that overlap are connected, branches join in saddles half
-/// way, and what has nothing over it closes in a roof half way. Throws ContoursMeet and SectionsCoincide.
-/// Cost: n log n, exact arithmetic, some 20 us a point.
+/// The surface of an object between two sections, oriented outward and bounded by both sections' contours. It
+/// is manifold and does not intersect itself for any contours (except for the rounding of points where
+/// contours cross). Projected onto the plane, it covers the area that lies in exactly one section. Its height
+/// is that of the section at the section's contours, and half way where contours of both cross and in the
+/// middle of areas that only one contour bounds. Contours that overlap are thus connected, branches join in
+/// saddles half way, and a contour with nothing over it is closed by a roof half way. Throws ContoursMeet and
+/// SectionsCoincide. Cost: n log n in exact arithmetic, about 20 us per point.
 SlabSurface overlay(const Slab& slab);
 
 }  // namespace octotomy::brep

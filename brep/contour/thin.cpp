@@ -1,10 +1,9 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// From each point kept, the anchor, a piece grows point by point while all points that it passes lie within
-// the distance. They do where 1 its direction lies in the wedge that every point's disc leaves open to lines
-// from the anchor (Williams, "An efficient algorithm for the piecewise linear approximation of planar
-// curves", CGIP 8, 1978), and 2 no point lies beyond its end, or each that does lies near the end, which
-// boxes over the points decide. Both keep clear of the limit by more than rounding; where that decides
-// nothing all points are asked, so the answer is always that of asking all.
+// SPDX-License-Identifier: AGPL-3.0-or-later From each kept point, the anchor, a piece grows point by point
+// while all points that it passes lie within the distance. This holds if 1 its direction lies in the wedge of
+// directions from the anchor that hit every point's disc (Williams, "An efficient algorithm for the piecewise
+// linear approximation of planar curves", CGIP 8, 1978), and 2 no point lies beyond its end, or each that
+// does lies near the end, which boxes over the points decide. Both tests keep a margin above rounding. If
+// they do not decide, all points are tested, so the result is always that of testing all points.
 #include "brep/contour/thin.h"
 
 #include <algorithm>
@@ -24,8 +23,8 @@ double distance_to_piece(const glm::dvec2& p, const glm::dvec2& a, const glm::dv
   return glm::distance(p, a + t * along);
 }
 
-/// Bounds what rounding adds to a distance of points with coordinates up to the largest: some 80 roundings of
-/// 2^-53, of which 512 are allowed for.
+/// Bound on the rounding error of a distance between points with coordinates up to the largest: about 80
+/// roundings of 2^-53; allows 512.
 double rounding_mm(const std::vector<glm::dvec2>& points) {
   double largest = 0.0;
   for (const glm::dvec2& p : points) largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
@@ -40,7 +39,7 @@ class Thinner {
         limit_mm_(limit_mm),
         sure_mm_(limit_mm - rounding_mm(contour.points_mm)) {}
 
-  /// The last point that a piece from the anchor may end at; `end` is one beyond the last of all.
+  /// The last point at which a piece from the anchor may end; `end` is one beyond the last of all points.
   std::size_t reach_from(std::size_t anchor, std::size_t end) {
     anchor_ = anchor;
     is_wedged_ = false;
@@ -55,7 +54,7 @@ class Thinner {
 
  private:
   const glm::dvec2& point(std::size_t k) const { return points_[k % points_.size()]; }
-  /// From the direction of the first point that is not near the anchor.
+  /// The angle from the direction of the first point that is not near the anchor.
   double angle_of(const glm::dvec2& way) const {
     return std::atan2(reference_.x * way.y - reference_.y * way.x, glm::dot(reference_, way));
   }
@@ -65,7 +64,7 @@ class Thinner {
     const double away_mm = glm::length(way);
     farthest_mm_ = std::max(farthest_mm_, away_mm);
     if (away_mm <= sure_mm_) return;
-    // Within a quarter turn, so that angles from the first one's direction need no turns.
+    // The wedge is within a quarter turn, so that angles from the first direction do not wrap around.
     const double open = sure_mm_ > 0.0 ? std::asin(sure_mm_ / away_mm) : -1.0;
     if (!is_wedged_) {
       is_wedged_ = true;
@@ -85,7 +84,7 @@ class Thinner {
 
   bool fits(std::size_t candidate) const {
     assert(candidate > anchor_ + 1);
-    if (!is_wedged_) return true;  // all lie near the anchor
+    if (!is_wedged_) return true;  // all points lie near the anchor
     const glm::dvec2 end_mm = point(candidate), way = end_mm - point(anchor_);
     const double angle = angle_of(way);
     if (lowest_ <= angle && angle <= highest_) {
@@ -107,11 +106,11 @@ class Thinner {
   RunTree tree_;
   double limit_mm_, sure_mm_;
   std::size_t anchor_ = 0;
-  // Of the points passed:
+  // For the points passed so far:
   double farthest_mm_ = 0.0;             ///< from the anchor
-  bool is_wedged_ = false;               ///< one lies farther from the anchor than is sure
-  glm::dvec2 reference_{1, 0};           ///< the first such
-  double lowest_ = 0.0, highest_ = 0.0;  ///< angles from it that are open to pieces
+  bool is_wedged_ = false;               ///< one point is farther from the anchor than sure_mm_
+  glm::dvec2 reference_{1, 0};           ///< direction of the first such point
+  double lowest_ = 0.0, highest_ = 0.0;  ///< range of angles from it in which a piece may run
 };
 
 }  // namespace

@@ -5,11 +5,11 @@
 
 namespace octotomy::brep {
 
-/// The contour without points that are collinear within max_distance_mm: every point left out lies no further
-/// than that from the piece that stands for it. The first point stays; at least three points of a closed
-/// contour do, two of an open one. At distances above zero a thinned contour may cross itself or another.
-/// Throws std::invalid_argument where the distance is negative or not finite. Cost: n log n; n times the
-/// longest run of points whose distances are the largest allowed but for rounding.
+/// The contour without points that are collinear within max_distance_mm: every removed point lies within this
+/// distance of the piece that replaces it. The first point stays, and at least three points of a closed
+/// contour, two of an open one. If the distance is above zero, a thinned contour may cross itself or another
+/// one. Throws std::invalid_argument if the distance is negative or not finite. Cost: n log n; at worst n
+/// times the longest run of points whose distances equal the limit up to rounding.
 Contour thin(const Contour& contour, double max_distance_mm);
 
 }  // namespace octotomy::brep

@@ -1,10 +1,10 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A strip is a path in a graph: node (i, j) is the span from the lower ring's point i to the upper's j, and a
-// step to (i + 1, j) or (i, j + 1) is a triangle. Costs of triangles alone: every strip has a span at the
-// lower ring's first point, so 1 find the paths of least cost from (0, 0) and from (0, n), the same once
-// round, to (m, n) and (m, 2n); 2 find the one that starts half way between two known, which need not cross
-// them, and so on; 3 write the triangles of the best. Else: 1 find the start; 2 walk greedily, or find the
-// path of least cost from there.
+// SPDX-License-Identifier: AGPL-3.0-or-later A strip is a path in a graph: node (i, j) is the span from the
+// lower ring's point i to the upper ring's point j, and a step to (i + 1, j) or (i, j + 1) is a triangle.
+// If costs depend on single triangles: every strip has a span at the lower ring's first point. Therefore 1
+// find the path of least cost from (0, 0) to (m, n); from (0, n) to (m, 2n) it is the same; 2 find the path
+// that starts half way between two known ones, which it need not cross, and so on; 3 write the triangles of
+// the best.
+// Otherwise: 1 find the start; 2 walk greedily, or find the path of least cost from there.
 #include "brep/contour/tile.h"
 
 #include <algorithm>
@@ -27,9 +27,9 @@ struct Triangle {
   glm::dvec3 normal() const { return glm::cross(b - a, c - a); }
 };
 
-/// The rings with both starts turned to their first point.
+/// The rings, rotated so that both starts are their first points.
 struct Pair {
-  std::vector<glm::dvec3> lower, upper;  ///< the first point once more at the end
+  std::vector<glm::dvec3> lower, upper;  ///< the first point is repeated at the end
 
   /// The triangle of a step from a span.
   Triangle triangle(std::size_t i, std::size_t j, Step step) const {
@@ -91,7 +91,7 @@ std::vector<Step> greedy_steps(const Ring& lower, const Ring& upper, std::array<
   return steps;
 }
 
-/// A path once round both rings from node (0, start): the last column it has in each row.
+/// A path once around both rings from node (0, start), as its last column in each row.
 struct Path {
   std::size_t start = 0;
   double cost = 0.0;
@@ -127,7 +127,7 @@ class LeastPath {
   }
 
  private:
-  /// Columns run on once round.
+  /// Columns beyond n continue at the ring's start.
   double cost(std::size_t i, std::size_t j, Step step) const {
     return costs_[step][i * (n_ + 1) + (j < n_ ? j : j - n_)];
   }
@@ -140,7 +140,7 @@ class LeastPath {
     search(middle, high, best);
   }
 
-  /// The least from a start that stays between two others, where they are given.
+  /// The path of least cost from a start; it stays between `low` and `high` if these are given.
   Path from(std::size_t start, const Path* low, const Path* high) const {
     const auto begin = [&](std::size_t i) { return low ? std::max(low->first(i), start) : start; };
     const auto end = [&](std::size_t i) { return high ? std::min(high->last[i], start + n_) : start + n_; };
@@ -174,7 +174,7 @@ class LeastPath {
   }
 
   std::size_t m_, n_;
-  std::array<std::vector<double>, 2> costs_;  ///< of the step from (i, j), at i * (n + 1) + j
+  std::array<std::vector<double>, 2> costs_;  ///< cost of each step from (i, j), at i * (n + 1) + j
 };
 
 std::vector<Step> steps_of(const Path& path) {
@@ -186,13 +186,13 @@ std::vector<Step> steps_of(const Path& path) {
   return steps;
 }
 
-/// Angle between the planes of two triangles; none where one has no area.
+/// Angle between the planes of two triangles; 0 if one has no area.
 double angle_between(const glm::dvec3& n, const glm::dvec3& m) {
   return std::atan2(glm::length(glm::cross(n, m)), glm::dot(n, m));
 }
 
 /// The path from (0, 0) with the least sum of angles. A node has a sum for each step that may have led to it,
-/// as an angle is between the triangle of that step and the next.
+/// because an angle depends on the triangle of that step and the next.
 std::vector<Step> least_angle_steps(const Pair& pair) {
   const std::size_t m = pair.m(), n = pair.n();
   constexpr double far = std::numeric_limits<double>::infinity();
@@ -246,7 +246,7 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
       throw std::invalid_argument("tile: a ring has " + std::to_string(ring->points_mm.size()) +
                                   " points, three are needed");
   if (!(lower.z_mm < upper.z_mm)) throw std::invalid_argument("tile: the lower ring must lie lower");
-  // About 1 GB: 17 bytes a pair of points, and 2 for the least angle.
+  // About 1 GB: 17 bytes per pair of points, or 2 for the least angle.
   const double most_pairs = cost == TileCost::least_angle ? 0x1p29 : 0x1p26;
   const auto pairs =
       static_cast<double>(lower.points_mm.size()) * static_cast<double>(upper.points_mm.size());

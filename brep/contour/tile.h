@@ -8,7 +8,7 @@
 
 namespace octotomy::brep {
 
-/// What a strip of triangles between two contours is chosen by.
+/// The criterion by which a strip of triangles between two contours is chosen.
 enum class TileCost {
   shortest_span,    ///< the nearer of the two next points, step by step (Christiansen and Sederberg 1978)
   least_area,       ///< the least sum of areas (Fuchs, Kedem and Uselton 1977)
@@ -22,14 +22,14 @@ struct Ring {
   double z_mm = 0.0;
 };
 
-/// The closed strip of triangles between two rings, outward: points 0..m-1 are the lower ring's, the upper's
-/// follow, m + n triangles. Least area and greatest volume are so among all strips there are. The other two
-/// start at the span that is shortest once both rings' boxes are laid over each other, so that shifted shapes
-/// are matched by shape; least angle is so among the strips through it. A strip may cross itself where the
-/// rings differ much. Throws std::invalid_argument where a ring has fewer than three points or the lower one
-/// is not lower, Error (Resource) where tables would take more than a gigabyte. Cost: m n time for the start
-/// alone, m n log n and 17 m n bytes among all strips, 2 m n bytes for the least angle.
-/// Source: the papers named above.
+/// The closed strip of m + n triangles between two rings, oriented outward: points 0..m-1 are those of the
+/// lower ring, those of the upper ring follow. least_area and greatest_volume are optimal among all strips.
+/// The other two start at the span that is shortest after both rings' boxes are scaled to coincide, so that
+/// shifted shapes are matched by shape; least_angle is optimal among the strips through this span. A strip
+/// may cross itself if the rings differ much. Throws std::invalid_argument if a ring has fewer than three
+/// points or the lower one is not lower, Error (Resource) if tables would take more than a gigabyte. Cost: m
+/// n time for the start alone; m n log n time and 17 m n bytes for the best of all strips; 2 m n bytes for
+/// least_angle. Source: the papers named above.
 std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& upper, TileCost cost);
 
 }  // namespace octotomy::brep

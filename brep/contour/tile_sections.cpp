@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 turn all contours with the object on their left and move every other section a little; 2 for each slab
-// overlay its sections, then put strips where a contour has one counterpart, and take back those that cross
-// anything; 3 number all points in one row.
+// 1 orient all contours with the object on their left and move every other section slightly; 2 for each slab,
+// overlay its sections, then replace the surface by a strip where a contour has one counterpart, and undo
+// strips that cross anything; 3 number all points consecutively.
 #include "brep/contour/tile_sections.h"
 
 #include <algorithm>
@@ -44,9 +44,9 @@ void check(const std::vector<Section>& sections) {
   }
 }
 
-/// How far every other section is moved, and where to: a share of the largest coordinate that is 2^22 units
-/// of its last place, so that no crossing is lost in rounding, and far below what any scan resolves.
-/// Directions have nothing in common with anything likely; a further attempt takes another.
+/// The shift of every other section: a share of the largest coordinate that is 2^22 units of its last place,
+/// so that no crossing is lost in rounding, and far below the resolution of any scan. Its direction is
+/// unlikely to be parallel to any side; a further attempt uses another one.
 glm::dvec2 shift_mm(const std::vector<Section>& sections, int attempt) {
   double reach = 0.0;
   for (const Section& section : sections)
@@ -75,13 +75,13 @@ std::uint32_t point_count(const std::vector<Contour>& contours) {
   return static_cast<std::uint32_t>(count);
 }
 
-/// One slab's surface and how it came to be.
+/// One slab's surface and counts of how its contours were joined.
 struct Tiled {
   SlabSurface surface;
   std::size_t strips = 0, crossed_strips = 0, overlaid = 0;
 };
 
-/// Puts strips into a slab's surface.
+/// Replaces parts of a slab's surface by strips.
 class Strips {
  public:
   Strips(const Slab& slab, TileCost cost, SlabSurface& surface)
@@ -95,7 +95,7 @@ class Strips {
         std::count_if(strips_.begin(), strips_.end(), [](const FaceList& strip) { return !strip.empty(); }));
   }
 
-  /// Drops the strips that cross anything until none does.
+  /// Drops strips that cross anything, until no strip does.
   void settle() {
     while (count() > 0) {
       std::vector<std::uint32_t> group;
@@ -162,7 +162,7 @@ class Strips {
 
   const Slab& slab_;
   SlabSurface& surface_;
-  std::vector<FaceList> strips_;  ///< of each group; empty where overlay()'s stands
+  std::vector<FaceList> strips_;  ///< strip of each group; empty if the surface of overlay() remains
 };
 
 Tiled tile_slab(const Slab& slab, const std::optional<TileCost>& cost) {
@@ -179,7 +179,8 @@ Tiled tile_slab(const Slab& slab, const std::optional<TileCost>& cost) {
   return tiled;
 }
 
-/// All slabs, those beyond the ends too. Throws SectionsCoincide where another shift is needed.
+/// The surfaces of all slabs, including those beyond the ends. Throws SectionsCoincide if another shift is
+/// needed.
 std::vector<Tiled> tile_slabs(const std::vector<std::vector<Contour>>& contours,
                               const std::vector<double>& heights_mm, const TileSectionsOptions& options) {
   assert(!contours.empty() && contours.size() == heights_mm.size());
@@ -211,7 +212,7 @@ TiledSections joined(const std::vector<std::vector<Contour>>& contours, const st
   for (std::size_t s = 0; s < slabs.size(); ++s) {
     const std::uint32_t lower = point_count(contours[s]), upper = lower + point_count(contours[s + 1]);
     const auto inner = static_cast<std::uint32_t>(tiled.surface.points_mm.size());
-    // Points of an overlay that a strip took the place of are left out.
+    // Leaves out points of an overlay that a strip replaced.
     std::vector<std::uint32_t> number(slabs[s].surface.inner_mm.size(), 0);
     for (const auto& face : slabs[s].surface.faces)
       for (const std::uint32_t v : face)

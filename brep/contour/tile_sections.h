@@ -13,18 +13,18 @@
 
 namespace octotomy::brep {
 
-/// The contours of an object in the plane z_mm, closed, as follow() and editing leave them: apart from each
-/// other, nested as may be; which way round they run does not matter.
+/// The contours of an object in the plane z_mm: closed and disjoint, as follow() and edits produce them. They
+/// may be nested; their direction does not matter.
 struct Section {
   double z_mm = 0.0;
   std::vector<Contour> contours;
 };
 
 struct TileSectionsOptions {
-  /// How a contour with one counterpart is joined to it; none leaves all to overlay(), whose triangles cannot
-  /// cross but are thinner.
+  /// How a contour with one counterpart is joined to it. None: all are joined by overlay(), whose triangles
+  /// cannot cross but are thinner.
   std::optional<TileCost> cost = TileCost::shortest_span;
-  std::function<void(double)> progress = {};  ///< is called with 0..1, from any thread, one at a time
+  std::function<void(double)> progress = {};  ///< called with 0..1, from any thread, one call at a time
   std::stop_token stop = {};
 };
 
@@ -36,17 +36,18 @@ struct TiledSections {
   std::size_t overlaid = 0;  ///< further groups of contours: branchings, ends, contours within contours
 };
 
-/// The surface of an object known by sections: closed, oriented outward, manifold and, but for rounding,
-/// without self-intersection. Contours are connected where the areas they bound overlap; what branches is
-/// joined by saddles half way between sections, and what ends, holes too, is closed by a roof half way to the
-/// next section, beyond the first and last at half the distance to their neighbour (1 mm for a lone one).
-/// Sections may be unevenly apart. So that contours of neighbours never coincide, every other one is moved by
-/// 2^-30 of the largest coordinate, a quarter of a nanometre on a head. In section coordinates: x and y of
-/// the contours, z up. Throws std::invalid_argument where sections are not in ascending order, a contour is
-/// open, has fewer than three points or one that is not finite, and Error (Geometry) naming section and
-/// contours where two of one section cross or touch. Cost: some 40 us a point; parallel over sections, the
-/// same bits on any number of threads. Source: sections overlaid as Boissonnat's "Shape reconstruction from
-/// planar cross sections" (1988) does, in the plane instead of with Delaunay tetrahedra; tile.h for strips.
+/// The surface of an object that is given by sections: closed, oriented outward, manifold and, up to
+/// rounding, without self-intersection. Contours are connected if the areas they bound overlap. Branches are
+/// joined by saddles half way between sections. Ends, also of holes, are closed by a roof half way to the
+/// next section; beyond the first and last section at half the distance to their neighbour (1 mm for a single
+/// section). The distances of sections may vary. To prevent contours of neighbours from coinciding, every
+/// other section is moved by 2^-30 of the largest coordinate, a quarter of a nanometre on a head. In section
+/// coordinates: x and y of the contours, z up. Throws std::invalid_argument if sections are not in ascending
+/// order, or a contour is open, has fewer than three points or one that is not finite; Error (Geometry),
+/// which names section and contours, if two of one section cross or touch. Cost: about 40 us per point;
+/// parallel over sections, the same bits on any number of threads. Source: sections are overlaid as in
+/// Boissonnat's "Shape reconstruction from planar cross sections" (1988), but in the plane instead of with
+/// Delaunay tetrahedra; tile.h for strips.
 TiledSections tile_sections(const std::vector<Section>& sections, const TileSectionsOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -6,7 +6,7 @@
 
 namespace octotomy::brep {
 
-/// The bytes of base64 text, at most so many. Reading ends at the first character that is none of base64's.
+/// Decodes base64 text to at most `most` bytes. Reading ends at the first character that is not base64.
 std::string from_base64(std::string_view text, std::size_t most);
 
 }  // namespace octotomy::brep

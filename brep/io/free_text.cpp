@@ -1,8 +1,8 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Each occurrence of a key is read in four steps: the word before it (a key of another quantity is passed),
-// the sign behind it, the small words up to the unit or frame, and what stands behind that (m is no unit of
-// length in m/s, and two units joined by "to" are a conversion). What is left over is Unclear where the
-// sentence names a unit or frame all the same, so that no reader assumes one without a word.
+// SPDX-License-Identifier: AGPL-3.0-or-later Reads each occurrence of a key in four steps: the word before it
+// (skips the key of another quantity), the sign after it, the small words up to the unit or frame, and the
+// text after that (m is not a unit of length in m/s, and two units joined by "to" are a conversion). If the
+// steps fail but the sentence names a unit or frame, it is Unclear, so that readers do not silently assume a
+// unit.
 #include "brep/io/free_text.h"
 
 #include <algorithm>
@@ -16,19 +16,19 @@
 namespace octotomy::brep {
 namespace {
 
-/// Letters and digits in ASCII, all other bytes of UTF-8, and what joins words to one.
+/// ASCII letters and digits, all bytes of other UTF-8 characters, and the characters that join words.
 bool is_name_letter(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' ||
          (static_cast<unsigned char>(c) & 0x80) != 0;
 }
 
-/// True where `words` holds the word.
+/// Whether `words` contains the word.
 template <std::size_t N>
 bool is_one_of(std::string_view word, const std::array<std::string_view, N>& words) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Quantities that have units and are no length, and screens, whose lengths are not the mesh's.
+/// Quantities with units other than lengths, and screens, whose lengths are not those of the mesh.
 bool is_other_quantity(std::string_view word) {
   static constexpr auto known = std::to_array<std::string_view>(
       {"volume",   "volumes",   "area",      "areas",         "velocity",    "velocities",   "speed",
@@ -42,9 +42,9 @@ bool is_other_quantity(std::string_view word) {
   return is_one_of(word, known);
 }
 
-/// A word or one other character, blanks and quotation marks left out.
+/// A word or one other character; blanks and quotation marks are skipped.
 struct Token {
-  std::string_view text;  ///< as the sentence has it
+  std::string_view text;  ///< as written in the sentence
   std::size_t at = 0;     ///< where it starts in the sentence
   bool joined = false;    ///< follows the token before it without a blank
   bool is_word() const { return !text.empty() && is_name_letter(text.front()); }
@@ -53,10 +53,10 @@ struct Token {
 /// One occurrence of a key, from the word before it to the end of the sentence: a line, or the part up to a
 /// semicolon or to a full stop before a blank.
 struct Sentence {
-  std::string_view key;      ///< as the text has it
-  std::string before;        ///< the word before the key, in lower case; empty where none stands there
+  std::string_view key;      ///< as written in the text
+  std::string before;        ///< the word before the key, in lower case; empty if there is none
   bool is_name_end = false;  ///< an underscore joins the key to that word
-  std::string_view behind;   ///< what stands behind the key
+  std::string_view behind;   ///< the text after the key
   std::vector<Token> tokens;
 
   std::size_t size() const { return tokens.size(); }
@@ -68,7 +68,7 @@ struct Sentence {
   bool is_open(std::size_t i) const {
     return text(i) == "(" || text(i) == "[" || text(i) == "<" || text(i) == "{";
   }
-  /// At most 40 characters from a token on, or of key and all where none is given.
+  /// At most 40 characters, starting at a token.
   std::string excerpt(std::size_t i) const {
     return std::string(behind.substr(i < size() ? tokens[i].at : behind.size()).substr(0, 40));
   }
@@ -110,7 +110,7 @@ std::size_t sentence_end(std::string_view text, std::size_t at) {
   return at;
 }
 
-/// The occurrences of a key that stands alone: letters beside it make it another word.
+/// The occurrences of a key as a whole word.
 std::vector<Sentence> sentences_about(std::string_view text, std::string_view key) {
   std::vector<Sentence> found;
   const std::string folded = lower_case(text);
@@ -126,7 +126,7 @@ std::vector<Sentence> sentences_about(std::string_view text, std::string_view ke
     std::size_t begin = word_end;
     while (begin > 0 && is_name_letter(text[begin - 1]) && text[begin - 1] != '_') --begin;
     const bool is_digit = begin < word_end && std::isdigit(static_cast<unsigned char>(text[begin])) != 0;
-    if (is_digit && begin > 0 && text[begin - 1] == '.') --begin;  // 0.1 is another number than 1
+    if (is_digit && begin > 0 && text[begin - 1] == '.') --begin;  // the number is 0.1, not 1
     made.before = folded.substr(begin, word_end - begin);
     made.is_name_end = at > 0 && text[at - 1] == '_';
     made.behind = text.substr(end, sentence_end(text, end) - end);
@@ -136,14 +136,14 @@ std::vector<Sentence> sentences_about(std::string_view text, std::string_view ke
   return found;
 }
 
-/// A unit that is spelled out: no English word and no single letter.
+/// Whether a unit is unambiguous: neither an English word nor a single letter.
 bool is_plain_unit(std::string_view word) {
   const std::string folded = lower_case(word);
   return length_unit(word) && folded != "in" && folded != "m" && folded != "foot" && folded != "feet" &&
          folded != "mil";
 }
 
-/// The token behind a unit makes it a part of another one: m/s, mm^3, "mm squared", "m s-1".
+/// Whether the token after a unit makes it part of another unit: m/s, mm^3, "mm squared", "m s-1".
 bool is_compound(const Sentence& s, std::size_t unit) {
   const std::string_view next = s.text(unit + 1);
   if (next == "/" || next == "^" || next == "*") return true;
@@ -155,7 +155,7 @@ bool is_compound(const Sentence& s, std::size_t unit) {
          std::isdigit(static_cast<unsigned char>(next.back())) != 0;
 }
 
-/// Two different names joined as from one to the other, or one or the other.
+/// Whether two different names are joined by words such as "to" or "or".
 template <typename Meaning>
 bool is_converted(const Sentence& s, std::size_t at, const Meaning& meaning) {
   const std::string joint = s.lower(at + 1);
@@ -168,7 +168,7 @@ bool is_converted(const Sentence& s, std::size_t at, const Meaning& meaning) {
   return other && *other != *meaning(s.text(at));
 }
 
-/// "10 units = 1 mm" states a scale and no unit.
+/// Whether the word is a number other than 1: "10 units = 1 mm" states a scale, not a unit.
 bool is_number_but_one(std::string_view word) {
   return word != "1" && !word.empty() && word.find_first_not_of("0123456789.") == std::string_view::npos;
 }
@@ -178,7 +178,8 @@ std::optional<std::string> unit_name(std::string_view word) {
   return unit ? std::optional(unit->name) : std::nullopt;
 }
 
-/// "in" at a token is the inch: it follows = or : and ends the sentence, or another statement follows.
+/// Whether "in" means inch: it follows = or : and is followed by the end of the sentence or another
+/// statement.
 bool is_inch(const Sentence& s, std::size_t at) {
   std::size_t next = at + 1;
   while (next < s.size() && s.is_open(next)) ++next;
@@ -187,8 +188,8 @@ bool is_inch(const Sentence& s, std::size_t at) {
   return s.text(at + 2) == "=" || (s.lower(at + 1) == "space" && s.is_sign(at + 2));
 }
 
-/// A single m is the metre without a sign only as a small letter behind "units", or behind "unit" without
-/// another word before it, and where the sentence or its part ends.
+/// Whether a single m without a sign means metre: only in lower case, after "units" (or after "unit" without
+/// another word before it), and at the end of the sentence or of its part.
 bool is_lone_metre(const Sentence& s, std::size_t at) {
   const bool in_capitals = s.key.front() == 'U' && s.key[1] == 'N';
   if (s.text(at) == "M" && !in_capitals) return false;
@@ -196,7 +197,7 @@ bool is_lone_metre(const Sentence& s, std::size_t at) {
   return s.key.size() == 5 || s.before.empty();
 }
 
-/// Where another statement begins that the text is searched for, at `from` or later.
+/// The first token at `from` or later that begins another statement with a known key.
 std::size_t next_key(const Sentence& s, std::size_t from) {
   static constexpr auto keys =
       std::to_array<std::string_view>({"unit", "units", "space", "coordinate", "coordinatesystem"});
@@ -256,7 +257,8 @@ std::optional<TextStatement> unit_in(const Sentence& s) {
   return std::nullopt;
 }
 
-/// Capitals that stand for nothing but a frame, the two usual frames, or words joined by hyphens.
+/// Whether a word can only be a frame: capitals that are not an English word, the two usual frames, or words
+/// joined by hyphens.
 bool is_sure_frame(std::string_view word) {
   static constexpr auto english =
       std::to_array<std::string_view>({"AIR", "LIP", "LAP", "RIP", "SAP", "SPA", "RAP", "PAL", "AIL"});

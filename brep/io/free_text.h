@@ -5,29 +5,31 @@
 #include <string_view>
 #include <vector>
 
-// Sentences of headers, comments and titles that speak of a unit of length or of a frame: "File units =
+// Finds sentences in headers, comments and titles that state a unit of length or a frame: "File units =
 // meters", "Units are in mm", "SPACE=RAS". A sentence is read as a whole, because the words of units and
-// frames have other meanings: "in" is a preposition, m/s a speed, "Unit M" a hospital's ward, "lip" no frame.
+// frames have other meanings: "in" is a preposition, m/s a speed, "Unit M" a hospital's ward, "lip" is not a
+// frame.
 namespace octotomy::brep {
 
 struct TextStatement {
   enum class Kind {
     Stated,   ///< `words` is a unit or a frame
-    Unknown,  ///< `words` stands where the unit or frame belongs, and is none
-    Unclear   ///< `words` speaks of a unit or frame and can be read in more than one way
+    Unknown,  ///< `words` is in the place of a unit or frame but is neither
+    Unclear   ///< `words` mentions a unit or frame but is ambiguous
   };
   Kind kind = Kind::Stated;
   std::string words;
   std::string key;  ///< the key that the sentence is about: "unit", "units", "space", "coordinate system"
 };
 
-/// What follows unit or units, with =, :, a bracket, words such as "are in" or "of length in" or nothing in
-/// between. Empty where the text speaks of no unit, or of the unit of something else than length ("volume
-/// unit", "units of time"). "in" is the inch only where it ends the sentence behind = or :.
+/// Statements that follow "unit" or "units", either directly or after =, :, a bracket, or words such as "are
+/// in" or "of length in". Empty if the text mentions no unit, or only units of other quantities ("volume
+/// unit", "units of time"). "in" means inch only at the end of the sentence after = or :.
 std::vector<TextStatement> stated_units(std::string_view text);
 
-/// What follows space, "coordinate system" or coordinateSystem. Behind = any name of frame_named() is one;
-/// elsewhere only capitals, lps, ras, or words joined by hyphens, and no capitals that are an English word.
+/// Statements that follow "space", "coordinate system" or "coordinateSystem". After =, any name that
+/// frame_named() accepts is a frame; elsewhere only capitals that are not an English word, lps, ras, or words
+/// joined by hyphens.
 std::vector<TextStatement> stated_frames(std::string_view text);
 
 }  // namespace octotomy::brep

@@ -43,12 +43,12 @@ bool meet(const Extent& a, const Extent& b) {
   return true;
 }
 
-/// A side is of a likely size beside a longer one: anything from a small screw to twice as long.
+/// Whether a side has a likely size compared with the other object: from a small screw to twice its length.
 bool is_likely(double side_mm, double other_mm) {
   return side_mm >= other_mm / 50.0 && side_mm <= 2.0 * other_mm;
 }
 
-/// "; in metres it is 180 mm: try --unit m", for the unit that makes a side a likely one.
+/// "; in metres it is 180 mm: try --unit m", for the unit in which a side has a likely size.
 std::string unit_advice(double side_mm, double other_mm) {
   constexpr std::array<std::pair<const char*, const char*>, 4> tried{
       {{"m", "metres"}, {"um", "micrometres"}, {"inch", "inches"}, {"cm", "centimetres"}}};

@@ -71,7 +71,7 @@ double number_of(std::string_view word) {
   if (!word.empty() && word.front() == '+') word.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  // A number too small for a double is zero to any purpose here.
+  // A number too small for a double is read as zero.
   if (error == std::errc::result_out_of_range && end == word.data() + word.size() && std::abs(value) < 1.0)
     return 0.0;
   if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))

@@ -12,27 +12,28 @@
 
 namespace octotomy::brep {
 
-/// Walks over the bytes of a mesh file, as text or as numbers. What cannot be there is an Error (Input)
-/// that says the line (or the byte, once binary numbers were read).
+/// Reads the bytes of a mesh file in order, as text or as numbers. Unexpected content throws Error (Input)
+/// with the line, or with the byte once binary numbers were read.
 class MeshScanner {
  public:
   explicit MeshScanner(std::string_view bytes) : bytes_(bytes) {}
 
   bool at_end() const { return at_ >= bytes_.size(); }
   std::size_t rest() const { return bytes_.size() - at_; }
-  /// Text from here to the end of the line, which is passed.
+  /// Returns the rest of the line and moves past it.
   std::string_view line();
-  /// The next word; empty at the end. With `within_line` also empty at the end of the line, which is not
-  /// passed. A # starts a comment where the format has those.
+  /// The next word; empty at the end. With `within_line`, also empty at the end of the line, which is not
+  /// skipped. A # starts a comment if comments_start_with_hash() was called.
   std::string_view word(bool within_line = false);
   void comments_start_with_hash() { hash_comments_ = true; }
   double number();
   long long integer();
-  /// A count of things that take at least `bytes_each`: never more than the rest of the file can hold.
+  /// Reads a count of items of at least `bytes_each` bytes. Throws if the rest of the file cannot hold that
+  /// many.
   std::size_t count(std::size_t bytes_each);
   std::size_t bounded(long long count, std::size_t bytes_each) const;
 
-  /// A number of the file's byte order.
+  /// A number in the given byte order.
   template <typename T>
   T binary(std::endian order) {
     binary_ = true;
@@ -57,20 +58,21 @@ class MeshScanner {
   bool binary_ = false;
 };
 
-/// A word as a number; throws Error (Input) without place.
+/// A word as a number; throws Error (Input) without a position.
 double number_of(std::string_view word);
 long long integer_of(std::string_view word);
 
-/// With ASCII letters in lower case.
+/// The text with ASCII letters in lower case.
 std::string lower_case(std::string_view text);
 
 /// Throws Error (Input).
 [[noreturn]] void refuse_file(const std::string& why);
 
-/// Whether a text begins with another one in lower case, its own letters in any case.
+/// Whether a text begins with `lower`, which is in lower case; ignores the case of the text.
 bool starts_in_any_case(std::string_view text, std::string_view lower);
 
-/// The formats. All throw Error (Input) without the path. Coordinates stay in the file's frame and unit.
+/// Readers of the formats. All throw Error (Input) without the path. Coordinates stay in the file's frame and
+/// unit.
 MeshContent read_stl(std::string_view bytes);
 MeshContent read_obj(std::string_view bytes);
 MeshContent read_off(std::string_view bytes);

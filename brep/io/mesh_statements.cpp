@@ -12,7 +12,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// As far as it can be printed, blanks at the ends left out, at most 80 characters.
+/// The printable part of a text, without blanks at the ends, at most 80 characters.
 std::string printable(std::string_view text) {
   std::string made;
   for (const char c : text.substr(0, 200)) {
@@ -91,7 +91,7 @@ MeshStatements::Resolved MeshStatements::resolved(const std::optional<std::strin
     return std::any_of(doubts_.begin(), doubts_.end(),
                        [&](const MeshFinding& doubt) { return doubt.check == check; });
   };
-  // What was given against what the file says.
+  // Compares an option with the file's statements.
   const auto override_by = [&](const char* check, const std::string& name,
                                const std::vector<Statement>& says) {
     for (const Statement& each : says)

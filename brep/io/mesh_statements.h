@@ -12,17 +12,16 @@
 
 namespace octotomy::brep {
 
-/// What a file states about its frame and unit, gathered while it is read.
+/// A file's statements about its frame and unit, collected while it is read.
 class MeshStatements {
  public:
-  /// Takes the statements of stated_frames() and stated_units() (free_text.h) in a header, comment or title,
-  /// which `where` names ("the header"); "LPS millimetres" is our own.
+  /// Adds the statements that stated_frames() and stated_units() (free_text.h) find in a header, comment or
+  /// title, which `where` names ("the header"). "LPS millimetres" is written by this program.
   void read_text(std::string_view text, const std::string& where);
-  /// A statement of the format itself or of a field.
+  /// Adds a statement of the format itself or of a field.
   void add_frame(const std::string& name, const std::string& words);
   void add_unit(const std::string& name, const std::string& words);
-  /// The program, of a header's free text: the first text that says anything is kept, as far as it can be
-  /// printed.
+  /// The writing program, from a header's free text. Stores the printable part of the first non-empty text.
   void add_writer(std::string_view text);
   void warn(const std::string& check, const std::string& detail) {
     doubts_.push_back({check, MeshVerdict::Warn, detail});
@@ -30,11 +29,12 @@ class MeshStatements {
   void tell(const std::string& check, const std::string& detail) {
     doubts_.push_back({check, MeshVerdict::Pass, detail});
   }
-  /// Said instead of "the file names no frame" where the format has one of its own.
+  /// Replaces "the file names no frame" for formats that define a frame.
   void silent_frame(std::string words) { silent_frame_ = std::move(words); }
 
-  /// The frame and unit to take, with the audit's lines about both, the writer and all doubts. Throws Error
-  /// (Input) where statements contradict one another and nothing was given, or what was given is none.
+  /// The frame and unit to use, with the audit's lines about both, the writer and all doubts. Throws Error
+  /// (Input) if statements contradict one another and no option decides, or if an option is not a frame or
+  /// unit.
   struct Resolved {
     std::string frame = "LPS";
     LengthUnit unit{"mm", 1.0};
@@ -52,10 +52,10 @@ class MeshStatements {
   std::string writer_, silent_frame_;
 };
 
-/// What a file holds, in its own frame and unit.
+/// The contents of a file, in its own frame and unit.
 struct MeshContent {
   Triangles triangles;
-  double scale = 1.0;  ///< that the coordinates were multiplied by already: numbers of the file times this
+  double scale = 1.0;  ///< factor by which the reader has already multiplied the file's coordinates
   MeshStatements says;
   PolygonCounts polygons;
 };

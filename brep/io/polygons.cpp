@@ -26,8 +26,8 @@ Corner checked_corner(const Triangles& triangles, long long corner) {
   return static_cast<Corner>(corner);
 }
 
-/// Twice the area along its normal (Newell). Zero where it is no more than rounding makes of corners on a
-/// line: each of the products is off by less than four rounding errors of the longest distance squared.
+/// The normal times twice the area (Newell). Zero if it is no larger than rounding produces for corners on a
+/// line: the error of each product is less than four rounding errors of the longest distance squared.
 glm::dvec3 area_vector(const std::vector<glm::dvec3>& p) {
   glm::dvec3 sum(0.0);
   double longest_square = 0.0;
@@ -41,8 +41,8 @@ glm::dvec3 area_vector(const std::vector<glm::dvec3>& p) {
   return glm::length(sum) <= rounding ? glm::dvec3(0.0) : sum;
 }
 
-/// The two coordinates that are left without the normal's main axis, which keeps them exact, in the order
-/// that keeps the winding.
+/// Projects along the normal's main axis: the other two coordinates, unchanged, in the order that preserves
+/// the winding.
 std::vector<glm::dvec2> projected(const std::vector<glm::dvec3>& p, const glm::dvec3& normal) {
   const glm::dvec3 size = glm::abs(normal);
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -54,7 +54,7 @@ std::vector<glm::dvec2> projected(const std::vector<glm::dvec3>& p, const glm::d
   return flat;
 }
 
-/// Whether the triangles from corner 0 all face forward and go less than once around it: then they fill the
+/// Whether the triangles from corner 0 all face forward and turn around it less than once. Then they fill the
 /// polygon without overlap.
 bool is_fan(const std::vector<glm::dvec2>& p) {
   double angle = 0.0;
@@ -63,7 +63,8 @@ bool is_fan(const std::vector<glm::dvec2>& p) {
     const glm::dvec2 a = p[i] - p[0], b = p[i + 1] - p[0];
     angle += std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
   }
-  // Two triangles turn by less than a whole circle; else near one the ears decide.
+  // Two triangles always turn by less than a full circle. If more triangles turn by nearly one, ears are cut
+  // instead.
   return p.size() == 4 || angle < 2.0 * std::numbers::pi - 1e-6;
 }
 
@@ -71,7 +72,7 @@ bool cross(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, const 
   return orientation(a, b, c) * orientation(a, b, d) < 0 && orientation(c, d, a) * orientation(c, d, b) < 0;
 }
 
-/// Whether two sides cross in the middle of both. Sides that touch, or run along one another, do not.
+/// Whether two sides cross in the interior of both. Sides that touch or overlap do not count.
 bool crosses_itself(const std::vector<glm::dvec2>& p) {
   struct Side {
     double low, high;
@@ -90,7 +91,7 @@ bool crosses_itself(const std::vector<glm::dvec2>& p) {
   return false;
 }
 
-/// Cuts ears off a polygon that does not cross itself.
+/// Triangulates a polygon that does not cross itself by cutting ears.
 class Ears {
  public:
   Ears(const std::vector<glm::dvec3>& points, const std::vector<glm::dvec2>& flat)
@@ -103,7 +104,7 @@ class Ears {
     find_blocking();
   }
 
-  /// Triples of corners; empty where no ears are left before the end.
+  /// Triples of corners; empty if no ear is left before the end.
   std::vector<std::array<std::size_t, 3>> run() {
     std::vector<std::array<std::size_t, 3>> triangles;
     std::size_t left = p_.size(), at = 0;
@@ -139,8 +140,8 @@ class Ears {
     }
   };
 
-  /// Corners that may lie within an ear: those that are not convex, and those at the place of another. Ears
-  /// make corners convex and never the reverse.
+  /// Collects corners that may lie within an ear: those that are not convex, and those that coincide with
+  /// another. Cutting ears can make a corner convex, never the reverse.
   void find_blocking() {
     std::vector<std::size_t> order(p_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -157,7 +158,7 @@ class Ears {
 
   bool blocks(std::size_t i, const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) const {
     const glm::dvec2& q = p_[i];
-    // Another corner at the ear's tip: its sides must not run through the ear.
+    // If another corner coincides with the ear's tip, its sides must not run through the ear.
     if (q == b) return cross(a, c, q, p_[next_[i]]) || cross(a, c, q, p_[before_[i]]);
     if (q == a || q == c) return false;
     return orientation(a, b, q) >= 0 && orientation(b, c, q) >= 0 && orientation(c, a, q) >= 0;
@@ -184,7 +185,8 @@ class Ears {
     return true;
   }
 
-  /// All that are left: a corner becomes an ear, too, when what blocked it is gone.
+  /// Adds all remaining corners again, because a corner also becomes an ear when the corner that blocked it
+  /// is gone.
   bool push_all(std::size_t from) {
     bool any = false;
     std::size_t i = from;
@@ -210,8 +212,8 @@ void PolygonSplitter::add_fan(const std::vector<std::uint32_t>& corners) {
     triangles_.faces.push_back({corners[0], corners[i - 1], corners[i]});
 }
 
-/// A coordinate that is rounded to six digits, as many programs print them, moves by at most 5e-6 of itself,
-/// and single precision moves it less. Twice that is still planar.
+/// Many programs print six digits, which changes a coordinate by at most 5e-6 of its value; single precision
+/// changes it less. Twice that still counts as planar.
 void PolygonSplitter::note_bent(const std::vector<std::uint32_t>& corners, const glm::dvec3& normal) {
   glm::dvec3 middle(0.0);
   double largest = 0.0, away = 0.0;
@@ -258,7 +260,7 @@ void PolygonSplitter::add(std::span<const long long> given) {
   const bool fits_fan = corners.size() == 3 || is_fan(flat);
   const bool crosses = !fits_fan && crosses_itself(flat);
   if (length == 0.0 && !crosses) {
-    // Its sides are there for its neighbours.
+    // Adds it in spite of that, so that its neighbours have their sides.
     note(counts_.without_area, counts_.first_without_area);
     return add_fan(corners);
   }

@@ -9,14 +9,14 @@
 #include "brep/io/mesh_audit.h"
 #include "brep/mesh/triangles.h"
 
-// Polygons of mesh files as triangles.
+// Triangulates polygons of mesh files.
 namespace octotomy::brep {
 
-/// What became of polygons with more than three corners. `first_` is the number of the first one in the
-/// file, triangles counted, from 0.
+/// Counts of polygons by kind. `first_` is the number of the first such polygon in the file, counted from 0
+/// with triangles included.
 struct PolygonCounts {
   std::size_t faces = 0;         ///< polygons and triangles
-  std::size_t polygons = 0;      ///< of them, with more than three corners
+  std::size_t polygons = 0;      ///< faces with more than three corners
   std::size_t bent = 0;          ///< not planar to the file's precision
   std::size_t crossing = 0;      ///< cross themselves, so that no triangles fill them
   std::size_t repeating = 0;     ///< with a corner twice in a row
@@ -32,20 +32,20 @@ struct PolygonCounts {
 /// triangles, so that neighbours stay joined; corners in the middle of a straight side stay, too.
 class PolygonSplitter {
  public:
-  /// Both outlive this.
+  /// Both must outlive this object.
   PolygonSplitter(Triangles& triangles, PolygonCounts& counts) : triangles_(triangles), counts_(counts) {}
 
   /// Appends a polygon, which winds as its triangles do:
-  /// 1 Three corners are a triangle, whatever it is.
-  /// 2 Where every triangle of the fan from the first corner faces the same way, the fan fills the polygon.
-  /// 3 Else ears are cut off, the roundest first, in the projection along the polygon's main axis (Meisters,
-  ///   Polygons have ears, 1975), by exact predicates: concave polygons, and those with a hole that a double
-  ///   side joins to the outline.
-  /// 4 A polygon that crosses itself, or has no area, is the fan of 2 and counted.
-  /// Throws Error (Input) if there are too few corners or a corner is no point. Cost: n log n for outlines as
-  /// they occur, n^2 at worst.
+  /// 1 Three corners are a triangle, even if it has no area.
+  /// 2 If every triangle of the fan from the first corner faces the same way, the fan fills the polygon.
+  /// 3 Otherwise cuts ears, those nearest to equilateral first, in the projection along the polygon's main
+  /// axis (Meisters, Polygons have ears, 1975), by exact predicates: concave polygons, and those with a hole
+  /// that a double side joins to the outline.
+  /// 4 A polygon that crosses itself or has no area becomes the fan of 2 and is counted. Throws Error (Input)
+  /// if there are too few corners or a corner is not a point. Cost: usually n log n, n^2 at worst.
   void add(std::span<const long long> corners);
-  /// Appends a strip of triangles; ones that repeat a point only turn the strip and are left out.
+  /// Appends a strip of triangles. Triangles that repeat a point only change the strip's direction and are
+  /// left out.
   void add_strip(std::span<const long long> corners);
 
  private:

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The 3D Manufacturing Format (3MF Consortium, Core Specification 1.3, and the production extension, which
 // spreads objects over several parts of the archive):
-//   1 The archive's relationships name the model.
-//   2 Its XML gives objects: a mesh, or components that place other objects.
-//   3 The items of the build place objects; without a build, all objects that no component places.
-// A matrix has twelve numbers, four rows of three, and stands behind a row of coordinates. Support structures
-// are left out. Other extensions that a file requires are refused, as they change what the solid is.
+//   1 The archive's relationships name the model. 2 Its XML defines objects: a mesh, or components that place
+//   other objects. 3 The items of the build place objects; without a build, all objects that no component
+//   places. A matrix has twelve numbers, four rows of three; a row of coordinates is multiplied by it from
+//   the left. Support structures are left out. Other extensions that a file requires are refused, because
+//   they may change the solid.
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -23,7 +23,7 @@ namespace {
 
 using Attributes = std::map<std::string, std::string>;
 
-/// An object's name: its part of the archive, and its number there.
+/// Identifies an object by its part of the archive and its number there.
 using ObjectKey = std::pair<std::string, std::string>;
 
 struct Placed {
@@ -34,7 +34,7 @@ struct Placed {
 struct Object3mf {
   Triangles mesh;
   std::vector<Placed> components;
-  bool is_solid = true;  ///< no support structure
+  bool is_solid = true;  ///< not a support structure
 };
 
 const std::string& required(const Attributes& attributes, const char* name, const char* element) {
@@ -70,7 +70,7 @@ std::string without_slash(std::string path) {
   return path;
 }
 
-/// The matrix that moves by `inner` first.
+/// The product that applies `inner` first.
 glm::dmat4x3 product(const glm::dmat4x3& outer, const glm::dmat4x3& inner) {
   const glm::dmat3 turn(outer[0], outer[1], outer[2]);
   return {turn * inner[0], turn * inner[1], turn * inner[2], turn * inner[3] + outer[3]};
@@ -137,20 +137,21 @@ class ModelPart {
   bool in_application_ = false;
 };
 
-/// Without the namespace's prefix.
+/// The name without the namespace's prefix.
 std::string local_name(const char* name) {
   const std::string_view whole(name);
   const std::size_t colon = whole.rfind(':');
   return std::string(colon == std::string_view::npos ? whole : whole.substr(colon + 1));
 }
 
-/// Calls a receiver's begin(), end() and text() for XML. Nothing is thrown through the parser, which is C.
+/// Calls a receiver's begin(), end() and text() while parsing XML. No exception passes through the parser,
+/// which is C.
 template <typename Receiver>
 class XmlPass {
  public:
   explicit XmlPass(Receiver& receiver) : receiver_(receiver) {}
 
-  /// Throws what the receiver threw, or Error (Input) naming the line.
+  /// Throws the receiver's exception, or Error (Input) with the line.
   void run(const std::string& xml) {
     const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr),
                                                                               &XML_ParserFree);
@@ -193,7 +194,7 @@ class XmlPass {
       receiver.text(std::string_view(text, static_cast<std::size_t>(length)));
     });
   }
-  /// The format has none, and entities may grow without bound.
+  /// Refuses entity declarations: the format has none, and entities may expand without bound.
   static void declared(void* self, const XML_Char*, const XML_Char*, const XML_Char*, int) {
     guarded(self,
             [](Receiver&) { refuse_file("the model declares a document type, which 3MF does not have"); });
@@ -204,7 +205,7 @@ class XmlPass {
   std::exception_ptr thrown_;
 };
 
-/// The relationship of the archive's root to its model.
+/// Finds the relationship from the archive's root to its model.
 struct Relationships {
   std::string model;
   void begin(const std::string& element, const Attributes& attributes) {
@@ -248,7 +249,7 @@ class Reader3mf {
  private:
   std::string unpacked(const std::string& name) {
     std::string text = archive_.read(name);
-    // Many entries may share the same bytes.
+    // Checks the total, because many entries may share the same bytes.
     if ((unpacked_ += text.size()) / 1100 > bytes_.size())
       refuse_file("the archive unpacks to more than it can hold");
     return text;
@@ -259,7 +260,7 @@ class Reader3mf {
     ModelPart part(path, objects_);
     XmlPass(part).run(unpacked(path));
     MeshScanner extensions(part.required_extensions);
-    // The production extension is read; colours and materials change no surface.
+    // The production extension is supported; colours and materials do not change the surface.
     for (std::string_view word = extensions.word(); !word.empty(); word = extensions.word())
       if (word != "p" && word != "m" && word != "c")
         refuse_file("requires the extension '" + std::string(word.substr(0, 40)) + "', which is not read");
@@ -288,7 +289,7 @@ class Reader3mf {
   }
 
   void add(const Placed& placed, int depth) {
-    // A chain of components that comes back to itself has no end.
+    // A cyclic chain of components would never end.
     if (depth > 100) refuse_file("its components are nested more than 100 deep");
     const Object3mf& from = object(placed.object);
     spend(1 + from.mesh.points_mm.size() + from.mesh.faces.size());
@@ -310,7 +311,7 @@ class Reader3mf {
       add({component.object, product(placed.matrix, component.matrix)}, depth + 1);
   }
 
-  /// Bounds what a file makes, as it may place one object many times.
+  /// Bounds the total output of a file, because it may place one object many times.
   void spend(std::size_t count) {
     const std::size_t most = 10'000'000 + 1100 * bytes_.size();
     if ((spent_ += count) > most)

@@ -1,12 +1,10 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Binary glTF 2.0 (Khronos Group): the triangles of the scene's nodes, each turned and moved as its node and
-// those above say.
-//   1 The chunks: JSON, and the bytes that it describes.
-//   2 The scene's nodes from the roots down. The format wants a tree, so a node met twice is refused.
-//   3 Each triangle primitive's positions and indices, of any number type, sparse or not, under its node's
-//     matrix. Equal points become one, as exporters write one for each normal.
-// Morph targets and skins are left out and told. A file may place one mesh many times; what it makes in all
-// is bounded by its length.
+// SPDX-License-Identifier: AGPL-3.0-or-later Binary glTF 2.0 (Khronos Group): the triangles of the scene's
+// nodes, transformed by the matrices of their node and its ancestors.
+//   1 Read the chunks: JSON, and the bytes that it describes. 2 Visit the scene's nodes from the roots down.
+//   The format requires a tree, so a node visited twice is refused. 3 Read each triangle primitive's
+//   positions and indices, of any number type, sparse or not, and apply its node's matrix. Equal points are
+//   merged, because exporters write one for each normal. Morph targets and skins are ignored and reported. A
+//   file may place one mesh many times; the total output is bounded by the file's length.
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_access.hpp>
@@ -24,7 +22,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A whole number of an object, at most `most`.
+/// An integer member of an object, at most `most`.
 std::size_t whole(const Json& object, const char* key, std::size_t otherwise,
                   std::size_t most = std::size_t{1} << 40) {
   const auto found = object.find(key);
@@ -64,7 +62,8 @@ std::optional<std::array<double, Count>> numbers_of(const Json& object, const ch
   return made;
 }
 
-/// By the extension KHR_node_visibility, or as some writers state it in the node itself.
+/// Whether a node is invisible by the extension KHR_node_visibility or, as some writers state it, by the node
+/// itself.
 bool is_hidden(const Json& node) {
   const auto states = [](const Json& where) {
     return where.is_object() && where.contains("visible") && where["visible"] == false;
@@ -75,7 +74,7 @@ bool is_hidden(const Json& node) {
   return extensions.contains("KHR_node_visibility") && states(extensions["KHR_node_visibility"]);
 }
 
-/// Column-major, as the format has it, and GLM.
+/// Column-major, as in the format and in GLM.
 glm::dmat4 matrix_of(const Json& node) {
   if (const auto m = numbers_of<16>(node, "matrix")) {
     glm::dmat4 made;
@@ -96,7 +95,7 @@ glm::dmat4 matrix_of(const Json& node) {
 /// A number type of accessors.
 struct Component {
   std::size_t bytes = 0;
-  double largest = 1.0;  ///< of a normalised integer
+  double largest = 1.0;  ///< largest value of a normalised integer
 };
 Component component_of(std::size_t type) {
   switch (type) {
@@ -209,7 +208,7 @@ class GlbReader {
     }
   }
 
-  /// So many elements of a view, each `bytes` long and `stride` apart.
+  /// `count` elements of a view, each `bytes` long and `stride` apart.
   std::string_view elements(std::size_t view_number, std::size_t offset, std::size_t count, std::size_t bytes,
                             std::size_t& stride) const {
     const Json& view = entry(document_, "bufferViews", view_number);
@@ -225,7 +224,7 @@ class GlbReader {
     return std::string_view(buffers_[buffer]).substr(begin + offset, length - offset);
   }
 
-  /// An accessor's numbers, `width` an element.
+  /// An accessor's numbers, `width` per element.
   std::vector<double> numbers(std::size_t number, std::size_t width, const char* type) {
     const Json& accessor = entry(document_, "accessors", number);
     if (accessor.value("type", std::string()) != type)
@@ -274,7 +273,7 @@ class GlbReader {
     }
   }
 
-  /// Bounds what a file makes: an element takes bytes, but many accessors and nodes may share them.
+  /// Bounds the total output of a file: elements take bytes, but many accessors and nodes may share them.
   void spend(std::size_t count) {
     const std::size_t most = 10'000'000 + 8 * bytes_.size();
     if (count > most || spent_ > most - count)
@@ -341,7 +340,7 @@ class GlbReader {
       if (!primitive.is_object() || !primitive.contains("attributes"))
         refuse_file("a primitive has no attributes");
       const std::size_t mode = whole(primitive, "mode", 4);
-      if (mode < 4 || !primitive["attributes"].contains("POSITION")) continue;  // points and lines
+      if (mode < 4 || !primitive["attributes"].contains("POSITION")) continue;  // skips points and lines
       if (mode > 6) refuse_file("a primitive has mode " + std::to_string(mode));
       moved_ = moved_ || primitive.contains("targets");
       const std::vector<double> places = numbers(whole(primitive["attributes"], "POSITION", 0), 3, "VEC3");
@@ -390,8 +389,8 @@ class GlbReader {
   std::vector<std::string> buffers_;
   std::size_t spent_ = 0;
   bool moved_ = false;
-  std::size_t hidden_ = 0;    ///< nodes that are stated as invisible
-  std::size_t overlaid_ = 0;  ///< nodes that state a matrix beside a translation, rotation or scale
+  std::size_t hidden_ = 0;    ///< nodes that the file declares invisible
+  std::size_t overlaid_ = 0;  ///< nodes that have a matrix and also a translation, rotation or scale
   MeshContent made_;
 };
 

@@ -17,7 +17,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// Its points lie in another file beside it, or in its text as base 64.
+/// Refuses glTF as text: its points are in another file beside it, or in its text as base64.
 MeshContent refuse_gltf_text(std::string_view /*bytes*/) {
   throw Error(ErrorCode::Input, "is glTF as text, which is not read: save it as .glb, its binary form");
 }
@@ -25,8 +25,8 @@ MeshContent refuse_gltf_text(std::string_view /*bytes*/) {
 struct Format {
   std::string_view extension;
   MeshContent (*read)(std::string_view bytes);
-  bool is_text;         ///< or may be
-  bool repeats_points;  ///< where attributes of a point differ from triangle to triangle
+  bool is_text;         ///< or may be text
+  bool repeats_points;  ///< repeats a point if its attributes differ between triangles
 };
 constexpr std::array<Format, 10> formats{{{".stl", read_stl, true, false},
                                           {".ply", read_ply, true, true},
@@ -48,7 +48,7 @@ const Format* format_of(const std::filesystem::path& path) {
 
 std::string bytes_of(const std::filesystem::path& path) {
   std::error_code error;
-  // A pipe or a device may never end.
+  // Refuses a pipe or a device, which may never end.
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
     throw Error(ErrorCode::Input, "is no regular file: copy it into one first");
   std::ifstream file(path, std::ios::binary);
@@ -60,7 +60,8 @@ std::string bytes_of(const std::filesystem::path& path) {
   return bytes;
 }
 
-/// Without a byte-order mark. Lines of old Macs, which end in a lone carriage return, end in a line feed.
+/// Removes a byte-order mark. If lines end in a single carriage return, as on old Macs, replaces it by a line
+/// feed.
 std::string_view plain_text(std::string& bytes) {
   constexpr std::string_view mark = "\xef\xbb\xbf";
   if ((bytes.starts_with("\xff\xfe") && bytes.substr(3, 1) == std::string(1, '\0')) ||
@@ -71,8 +72,9 @@ std::string_view plain_text(std::string& bytes) {
   return std::string_view(bytes).substr(bytes.starts_with(mark) ? mark.size() : 0);
 }
 
-/// Sums of a thousand products of sixteen coordinates are finite up to it. The longest products known are of
-/// six: the oriented box compares fractions of areas by squares of sides (CGAL, Area_less_rectangle_2).
+/// Up to this limit, sums of a thousand products of sixteen coordinates are finite. The longest products in
+/// use have six factors: the oriented box compares fractions of areas by squares of sides (CGAL,
+/// Area_less_rectangle_2).
 const double largest_coordinate_mm =
     std::pow(std::numeric_limits<double>::max() / 1e3, 1.0 / 16.0);  // 1.2e19
 
@@ -88,14 +90,14 @@ void need_reach(const Triangles& triangles) {
 void turn_to_lps(Triangles& triangles, const std::string& frame, double scale) {
   if (frame == "LPS" && scale == 1.0) return;
   const glm::dmat3 lps = lps_from(frame);
-  // With 0 added, which takes the sign off a zero.
+  // Adding 0 turns -0 into 0.
   for (glm::dvec3& p : triangles.points_mm) p = lps * (p * scale) + 0.0;
   if (glm::determinant(lps) < 0.0)
     for (auto& face : triangles.faces) std::swap(face[1], face[2]);
 }
 
-/// What a size alone tells: nothing in or about a patient is smaller than a millimetre or longer than three
-/// metres.
+/// A finding on the size alone: no object of a patient or of an operation is smaller than a millimetre or
+/// longer than three metres.
 MeshFinding size_finding(const MeshFile& file) {
   const glm::dvec3 side = file.extent().high_mm - file.extent().low_mm;
   const double longest = std::max({side.x, side.y, side.z});

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Wavefront's OBJ and Geomview's OFF, as text. Sources: Wavefront, Advanced Visualizer, appendix B1 (Object
-// Files), whose free-form surfaces (surf, or bzp, bsp and cdc of its version 2.11) are no polygons.
+// SPDX-License-Identifier: AGPL-3.0-or-later Wavefront's OBJ and Geomview's OFF, as text. Sources: Wavefront,
+// Advanced Visualizer, appendix B1 (Object Files), whose free-form surfaces (surf, or bzp, bsp and cdc of its
+// version 2.11) are not polygons.
 #include <stdexcept>
 
 #include "brep/io/mesh_scanner.h"
@@ -9,7 +9,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// Comments at the beginning of a file, where programs say what they are and in what unit they wrote.
+/// Reads the comments at the beginning of a file, in which programs state their name and unit.
 void read_comments(std::string_view bytes, MeshStatements& says) {
   MeshScanner scanner(bytes.substr(0, 10000));
   while (!scanner.at_end()) {
@@ -23,7 +23,7 @@ void read_comments(std::string_view bytes, MeshStatements& says) {
   }
 }
 
-/// `add` with the line that a refusal is about.
+/// Calls `add` and adds the line to the message of an error.
 template <typename Add>
 void on_line(const MeshScanner& scanner, const Add& add) {
   try {
@@ -33,7 +33,7 @@ void on_line(const MeshScanner& scanner, const Add& add) {
   }
 }
 
-/// What an OBJ file has beside its polygons.
+/// Counts of an OBJ file's contents other than polygons.
 struct ObjLeftOut {
   std::size_t surfaces = 0, curves = 0, lines = 0, points = 0, files = 0;
 
@@ -115,7 +115,7 @@ MeshContent read_obj(std::string_view bytes) {
           scanner.line();
           continue;
         }
-        // Negative numbers count back from the last point read.
+        // Negative numbers count backwards from the last point read.
         const long long given = integer_of(word.substr(0, word.find('/')));
         if (given == 0) scanner.fail("a face refers to point 0; OBJ counts from 1");
         if (given > static_cast<long long>(triangles.points_mm.size()))
@@ -134,7 +134,8 @@ MeshContent read_obj(std::string_view bytes) {
 MeshContent read_off(std::string_view bytes) {
   MeshScanner scanner(bytes);
   scanner.comments_start_with_hash();
-  // Prefixes tell of colours (C), normals (N), textures (ST) behind each point; 4 and n change the dimension.
+  // The prefix states which data follow each point: colours (C), normals (N), textures (ST). 4 and n change
+  // the dimension and are refused.
   const std::string_view magic = scanner.word();
   if (!magic.ends_with("OFF") || magic.find_first_of("4n") != std::string_view::npos)
     scanner.fail("an OFF file of points in space starts with OFF, COFF, NOFF or STOFF");
@@ -147,9 +148,9 @@ MeshContent read_off(std::string_view bytes) {
   MeshContent made;
   read_comments(bytes, made.says);
   const long long point_count = scanner.integer(), face_count = scanner.integer();
-  scanner.line();  // the number of edges, which nobody keeps right
+  scanner.line();  // skips the number of edges, which is often wrong
   Triangles& triangles = made.triangles;
-  // The least row of a point is "0 0 0", of a face "1 0", each with the end of its line.
+  // The shortest line of a point is "0 0 0", of a face "1 0", each with its line end.
   const std::size_t points = scanner.bounded(point_count, 5);
   triangles.points_mm.reserve(points);
   for (std::size_t i = 0; i < points; ++i) {

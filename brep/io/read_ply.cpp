@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// PLY as its makers describe it (Turk, The PLY polygon file format, 1994): elements in the header's order,
-// each with scalar and list properties. Only x, y, z of "vertex" and the corner lists of
-// "face" and "tristrips" are kept.
+// SPDX-License-Identifier: AGPL-3.0-or-later Source: Turk, The PLY polygon file format, 1994: elements in the
+// header's order, each with scalar and list properties. Only x, y, z of "vertex" and the corner lists of
+// "face" and "tristrips" are used.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -19,7 +18,7 @@ enum class Scalar { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 
 struct Property {
   std::string name;
   Scalar type = Scalar::Float32;
-  std::optional<Scalar> list_count;  ///< type of a list's count; none where it is no list
+  std::optional<Scalar> list_count;  ///< type of a list's count; none if the property is not a list
 };
 
 struct Element {
@@ -134,16 +133,16 @@ double read_scalar(MeshScanner& scanner, Scalar type, const std::optional<std::e
   throw std::logic_error("a PLY type without reader");
 }
 
-/// The least bytes that a row of an element takes: in text a digit and a space for each number.
+/// The least number of bytes in a row of an element: in text, a digit and a space for each number.
 std::size_t least_row_bytes(const Element& element, bool binary) {
   std::size_t bytes = 0;
   for (const Property& property : element.properties)
     bytes += binary ? byte_count(property.list_count.value_or(property.type)) : 2;
-  // The last number of a text may have no space behind it.
+  // The last number of a text may have no space after it.
   return std::max<std::size_t>(binary ? bytes : bytes - std::min<std::size_t>(bytes, 1), 1);
 }
 
-/// Reads an element's rows; `take` is given each property's number in the row and its values.
+/// Reads an element's rows. Calls `take` with the index of each property and its values.
 template <typename Take, typename EndRow>
 void read_rows(MeshScanner& scanner, const Header& header, const Element& element, const Take& take,
                const EndRow& end_row) {
@@ -206,7 +205,7 @@ void read_vertices(MeshScanner& scanner, const Header& header, const Element& el
       });
 }
 
-/// Lists of points' numbers; with strips -1 ends one strip and begins the next.
+/// Reads lists of point numbers; in strips, -1 ends one strip and begins the next.
 void read_lists(MeshScanner& scanner, const Header& header, const Element& element, bool with_strips,
                 Lists& lists) {
   std::vector<bool> is_list;

@@ -1,10 +1,10 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// STL. The length decides what a file is, not its first word: binary files that begin with "solid" are
-// common. Where a binary file's count and length disagree:
-// - the count fits and less than a triangle stands behind it: those bytes are left out, and counted;
-// - whole triangles stand behind it: the count is too small, as of writers that fill it in at the end and
-//   stopped before; they are read, with a warning;
-// - the count is larger than what the file holds: it is cut short, and refused.
+// SPDX-License-Identifier: AGPL-3.0-or-later Reads STL. The file's length decides whether it is binary, not
+// its first word: binary files that begin with "solid" are common. If the count and the length of a binary
+// file disagree:
+// - less than a triangle follows the counted ones: these bytes are ignored and reported;
+// - whole triangles follow: the count is too small, as when a writer stopped before updating it; they are
+//   read, with a warning;
+// - the count is larger than the file: it is truncated, and refused.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,7 +25,7 @@ std::uint64_t count_of(std::string_view bytes) {
   return scanner.binary<std::uint32_t>(std::endian::little);
 }
 
-/// Whether 50 bytes can be a triangle: finite corners of usual size that are not all zero, and a normal that
+/// Whether 50 bytes can be a triangle: its corners are finite, of usual size and not all zero, and its normal
 /// has unit length or is zero.
 bool is_triangle(std::string_view bytes) {
   MeshScanner scanner(bytes);
@@ -41,7 +41,7 @@ bool is_triangle(std::string_view bytes) {
   return any && (length == 0.0 || std::abs(length - 1.0) < 0.01);
 }
 
-/// The triangles to read, by the header's count and the file's length.
+/// The number of triangles to read, from the header's count and the file's length.
 std::size_t triangles_held(std::string_view bytes, MeshStatements& says) {
   const std::uint64_t count = count_of(bytes);
   const std::uint64_t held = (bytes.size() - header_bytes) / triangle_bytes;
@@ -85,7 +85,7 @@ MeshContent read_binary(std::string_view bytes) {
   scanner.skip(header_bytes);
   Triangles& triangles = made.triangles;
   triangles.faces.reserve(count);
-  PointNumbers numbers(triangles.points_mm, count / 2);  // as a closed surface has
+  PointNumbers numbers(triangles.points_mm, count / 2);  // the number of points of a closed surface
   constexpr std::size_t most_at_once = 64;
   std::array<glm::dvec3, 3 * most_at_once> corners;
   std::array<std::uint32_t, 3 * most_at_once> points;
@@ -110,7 +110,7 @@ MeshContent read_binary(std::string_view bytes) {
   return made;
 }
 
-/// Words in any case, and blanks of any kind between them.
+/// Accepts words in any case, separated by blanks of any kind.
 MeshContent read_text(std::string_view bytes) {
   MeshScanner scanner(bytes);
   MeshContent made;
@@ -158,7 +158,7 @@ MeshContent read_stl(std::string_view bytes) {
   const std::size_t start = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
   const bool has_word = starts_in_any_case(bytes.substr(start), "solid");
   if (bytes.size() >= header_bytes) {
-    // Of a text, the count's four bytes are letters, which make more triangles than any text has bytes for.
+    // In a text, the count's four bytes are letters, which form a count larger than any text has bytes for.
     const bool fits = count_of(bytes) <= (bytes.size() - header_bytes) / triangle_bytes;
     const bool has_zeros = bytes.substr(0, 1000).find('\0') != std::string_view::npos;
     if (!has_word || fits || has_zeros) return read_binary(bytes);

@@ -1,8 +1,8 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// VTK's legacy format (The VTK User's Guide, "Simple legacy formats"): polydata and unstructured grids;
-// version 5 stores cells as offsets and connectivity, earlier ones as counts and corners in one list. Binary
-// numbers are big-endian. Keywords come in any case. Before a point's or a cell's own data, which end the
-// geometry, fields may stand anywhere; an array may have METADATA behind it, up to an empty line.
+// SPDX-License-Identifier: AGPL-3.0-or-later VTK's legacy format (The VTK User's Guide, "Simple legacy
+// formats"): polydata and unstructured grids; version 5 stores cells as offsets and connectivity, earlier
+// ones as counts and corners in one list. Binary numbers are big-endian. Keywords are in any case. The
+// geometry ends at the data of points or cells; before these, fields may occur anywhere. METADATA may follow
+// an array, up to an empty line.
 #include <cmath>
 #include <stdexcept>
 
@@ -71,13 +71,13 @@ struct VtkReader {
     return values;
   }
 
-  /// Up to the next empty line.
+  /// Skips up to the next empty line.
   void skip_metadata() {
     scanner.line();
     while (!scanner.at_end() && !scanner.line().empty()) continue;
   }
 
-  /// The next word is METADATA, behind an array.
+  /// Skips METADATA if it is the next word, after an array.
   void skip_own_metadata() {
     MeshScanner ahead = scanner;
     if (!starts_in_any_case(ahead.word(), "metadata")) return;
@@ -85,8 +85,8 @@ struct VtkReader {
     skip_metadata();
   }
 
-  /// A string of an array: a line of text, or in a binary file behind its length. The length's first two
-  /// bits say in how many bytes it stands: 3 in one, 2 in two, 1 in four, 0 in eight.
+  /// A string of an array: a line of text or, in a binary file, a length and its bytes. The first two bits of
+  /// the length state its size: 3 one byte, 2 two, 1 four, 0 eight.
   std::string text() {
     if (!binary) return std::string(scanner.line());
     const auto first = scanner.binary<std::uint8_t>(std::endian::big);
@@ -143,7 +143,7 @@ struct VtkReader {
     }
   }
 
-  /// Lists of corners, of whichever layout.
+  /// Reads lists of corners in either layout.
   CellCorners cells() {
     const std::size_t first = scanner.count(1), second = scanner.count(1);
     CellCorners cells;

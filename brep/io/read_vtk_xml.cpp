@@ -1,8 +1,8 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// VTK's XML polydata and unstructured grids ("VTK XML file formats", The VTK User's Guide): numbers as text,
-// as base64 within their element, or appended at the end, raw or base64; plain or in blocks of zlib or LZ4.
-// An array starts with a header: its length, or of blocks their count, size, last size and compressed sizes.
-// The XML is scanned for the few elements that matter rather than parsed: raw appended data are no XML.
+// SPDX-License-Identifier: AGPL-3.0-or-later VTK's XML polydata and unstructured grids ("VTK XML file
+// formats", The VTK User's Guide): numbers as text, as base64 within their element, or appended at the end,
+// raw or base64; plain or in blocks of zlib or LZ4. An array starts with a header: its length or, for blocks,
+// their count, size, last size and compressed sizes. The XML is searched for the few relevant elements
+// instead of parsed, because raw appended data are not XML.
 #include <cmath>
 #include <lz4.h>
 #include <map>
@@ -17,7 +17,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// A tag and what stands before the next one.
+/// A tag and the text up to the next one.
 struct XmlElement {
   std::string_view name;
   std::map<std::string_view, std::string_view> attributes;
@@ -49,7 +49,7 @@ XmlElement element_of(std::string_view tag, std::string_view content) {
   return element;
 }
 
-/// Characters of base64 that stand for so many bytes, padding included.
+/// The number of base64 characters for `bytes` bytes, padding included.
 std::size_t base64_length(std::size_t bytes) {
   return (bytes + 2) / 3 * 4;
 }
@@ -85,7 +85,8 @@ class XmlReader {
                   "the data set is neither PolyData nor UnstructuredGrid; export a surface");
     for (const XmlElement& field : fields_) take_field(field);
     for (const Piece& piece : pieces_) add(piece);
-    // Of grids in several pieces all cells at once, as faces between two pieces are no surface.
+    // Processes the cells of all pieces of a grid at once, because faces between two pieces are not on the
+    // surface.
     if (is_grid_) add_grid_surface(grid_, types_, made_);
     return std::move(made_);
   }
@@ -96,7 +97,7 @@ class XmlReader {
     std::map<std::string_view, XmlElement> polys, strips, cells;
   };
 
-  /// Its text is looked through; the end of the comment.
+  /// Searches the comment's text for statements. Returns the end of the comment.
   std::size_t take_comment(std::size_t at) {
     const std::size_t end = bytes_.find("-->", at);
     if (end == bytes_.npos) throw Error(ErrorCode::Input, "a comment does not end");
@@ -125,7 +126,7 @@ class XmlReader {
   void take(const XmlElement& element) {
     if (element.name == "VTKFile") take_file(element);
     if (element.name == "Piece") pieces_.emplace_back();
-    // What describes an array stands within it.
+    // Elements that describe an array are nested in it.
     for (const char* passed :
          {"/DataArray", "/Array", "InformationKey", "/InformationKey", "Value", "/Value"})
       if (element.name == passed) return;
@@ -141,7 +142,7 @@ class XmlReader {
     if (section_ == "Cells") pieces_.back().cells[element.get("Name")] = element;
   }
 
-  /// SPACE names the frame; a string's letters are numbers, as text or as bytes, and 0 ends it.
+  /// SPACE names the frame. The letters of a string are numbers, as text or as bytes, and 0 ends it.
   void take_field(const XmlElement& field) {
     const std::string name = lower_case(field.get("Name"));
     const bool is_frame = name == "space", is_unit = name == "unit" || name == "units";
@@ -270,7 +271,7 @@ class XmlReader {
     } else {
       source.remove_prefix(std::min(source.find_first_not_of(blanks), source.size()));
     }
-    // So many bytes from the start, and where the rest begins: of blocks, base64 is broken after the header.
+    // Decodes the first `count` bytes. For blocks, base64 ends after the header and begins anew.
     const auto head = [&](std::size_t count) {
       return raw ? std::string(source.substr(0, count)) : from_base64(source, count);
     };
@@ -297,7 +298,7 @@ class XmlReader {
     for (std::size_t b = 0; b < blocks; ++b) {
       const std::size_t length = header_number(header, 3 + b);
       const std::size_t wanted = b + 1 == blocks && last > 0 ? last : size;
-      // zlib packs no more than 1032 bytes into one, LZ4 no more than 255.
+      // zlib compresses at most 1032 bytes into one, LZ4 at most 255.
       if (at > packed.size() || length > packed.size() - at ||
           wanted / (packing_ == Packing::Zlib ? 1032 : 255) > length)
         throw Error(ErrorCode::Input, "a compressed block is longer than the file");

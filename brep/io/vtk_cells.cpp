@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Types and numberings of cells: The VTK User's Guide, "VTK file formats".
+// SPDX-License-Identifier: AGPL-3.0-or-later Source of types and numberings of cells: The VTK User's Guide,
+// "VTK file formats".
 #include "brep/io/vtk_cells.h"
 
 #include <algorithm>
@@ -10,17 +10,17 @@
 namespace octotomy::brep {
 namespace {
 
-using Face = std::vector<int>;  ///< corners of a cell, by their place in it
+using Face = std::vector<int>;  ///< corners of a cell, by their index in it
 
 /// The middle node of an edge of a quadratic cell.
 struct Middle {
   int a, b, node;
 };
 
-/// A type of cell: its faces seen from outside, or of a surface cell the one outline.
+/// A type of cell: its faces seen from outside or, for a surface cell, its outline.
 struct Kind {
   int type;
-  std::size_t corners;  ///< at least
+  std::size_t corners;  ///< least number of corners
   bool is_volume;
   std::vector<Face> faces;
   std::vector<Middle> middles = {};
@@ -73,7 +73,7 @@ const Kind* kind_of(long long type) {
   return found == kinds().end() ? nullptr : &*found;
 }
 
-/// A face's points in their order, with the middles of a quadratic cell's edges between.
+/// A face's points in order, including the middle nodes of a quadratic cell's edges.
 std::vector<long long> outline(const std::vector<long long>& cell, const Kind& kind, const Face& face) {
   std::vector<long long> points;
   for (std::size_t i = 0; i < face.size(); ++i) {
@@ -128,7 +128,7 @@ void need_points(const std::vector<long long>& cell, std::size_t number, std::si
                   name + " refers to point " + std::to_string(corner) + " of " + std::to_string(points));
 }
 
-/// The faces that one cell alone has, in the order of the cells.
+/// The faces that belong to exactly one cell, in the order of the cells.
 std::vector<CellFace> outer_faces(std::vector<CellFace> faces) {
   std::sort(faces.begin(), faces.end());
   std::vector<CellFace> outer;

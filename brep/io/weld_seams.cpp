@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 leave out triangles that repeat a point; 2 find points that coincide; 3 pair open sides by the places of
-// their ends; 4 join the ends of each pair; 5 keep that where no edge became worse.
+// 1 leave out triangles that repeat a point; 2 find points that coincide; 3 pair open sides by the positions
+// of their ends; 4 join the ends of each pair; 5 undo this if an edge became worse.
 #include "brep/io/weld_seams.h"
 
 #include <algorithm>
@@ -33,8 +33,8 @@ void tell_left_out(std::size_t count, std::vector<MeshFinding>& findings) {
                           " a corner, so that it has no area, left out"});
 }
 
-/// Of all edges: sides that have no other, edges of more than two triangles, and of two that run along it the
-/// same way.
+/// Counts over all edges: sides without an opposite side, edges of more than two triangles, and edges of two
+/// triangles with the same direction.
 struct EdgeState {
   std::vector<Side> open;
   std::size_t crowded = 0, contrary = 0;
@@ -49,7 +49,7 @@ EdgeState edge_state(const Triangles& triangles) {
   return state;
 }
 
-/// Triangles with coinciding corners that no other shares a side with.
+/// Removes triangles with coinciding corners that share no side with another triangle.
 std::size_t erase_islands(Triangles& triangles, const std::vector<std::uint32_t>& first,
                           const std::vector<Side>& open) {
   std::vector<std::uint8_t> open_count(triangles.faces.size(), 0);
@@ -64,11 +64,11 @@ std::size_t erase_islands(Triangles& triangles, const std::vector<std::uint32_t>
   return count;
 }
 
-/// Joins the ends of open sides that lie on one another. Returns how many sides were paired.
+/// Joins the ends of open sides that coincide. Returns the number of paired sides.
 std::size_t join_seams(const Triangles& triangles, const std::vector<std::uint32_t>& first,
                        const std::vector<Side>& open, DisjointSets& points) {
   struct Placed {
-    std::uint32_t low, high;  ///< first points at the places of the ends
+    std::uint32_t low, high;  ///< first points at the positions of the ends
     bool upward;
     std::uint32_t from, to;
   };
@@ -96,7 +96,7 @@ std::size_t join_seams(const Triangles& triangles, const std::vector<std::uint32
   return paired;
 }
 
-/// The triangles on the joined points, those taken out that were joined to an earlier one.
+/// The triangles with joined points; points that were joined to an earlier one are removed.
 Triangles on_joined(const Triangles& triangles, DisjointSets& points) {
   Triangles made;
   std::vector<std::uint32_t> number(triangles.points_mm.size());

@@ -9,17 +9,17 @@
 
 namespace octotomy::brep {
 
-/// Joins what a file tore only to repeat points, and leaves out triangles that repeat a corner.
-/// - A seam is a pair of open sides that run along the same two places in opposite ways, where no third open
-///   side lies. Its points become one where they have the same coordinates, bit for bit; 0.0 and -0.0 are
-///   equal. Closed shells have no open sides: where they touch they stay apart.
-/// - A triangle that has a point twice is left out. One whose corners coincide and that hangs on no other is
-///   one, too.
-/// - Where joining would make an edge of more than two triangles, or of two that run along it the same way,
-///   nothing is joined: the file's own connection stays.
-/// Points that nothing refers to any more are taken out, the others keep their order. Returns the audit's
-/// lines, none where nothing was done. Preconditions: all triangles refer to points. Cost: linear where no
-/// points coincide and no triangle repeats one, else n log n.
+/// Joins surfaces that a file separated only by repeating points, and leaves out triangles that repeat a
+/// corner.
+/// - A seam is a pair of open sides between the same two positions in opposite directions, without a third
+///   open side there. Its points are merged if their coordinates are equal bit for bit; 0.0 and -0.0 are
+///   equal. Closed shells have no open sides, so they stay separate where they touch.
+/// - A triangle that has a point twice is left out, and so is one whose corners coincide and that shares no
+///   side with another.
+/// - If joining would create an edge of more than two triangles, or of two with the same direction, nothing
+///   is joined. Points that are no longer used are removed; the others keep their order. Returns the audit's
+///   lines; empty if nothing changed. Preconditions: all triangles refer to points. Cost: linear if no points
+///   coincide and no triangle repeats one, else n log n.
 std::vector<MeshFinding> weld_seams(Triangles& triangles);
 
 /// Leaves out triangles that have a point twice, for formats whose reader welds all equal points.

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The glTF 2.0 specification, Khronos Group. Colours are linear there, so sRGB is undone, in 16 bits a
-// channel to keep its dark steps.
+// SPDX-License-Identifier: AGPL-3.0-or-later The glTF 2.0 specification, Khronos Group. Its colours are
+// linear, so sRGB is converted, with 16 bits per channel to preserve dark steps.
 #include <cmath>
 #include <limits>
 
@@ -15,12 +14,12 @@ std::uint16_t linear_of(std::uint8_t srgb) {
   return static_cast<std::uint16_t>(std::lround(65535.0 * linear));
 }
 
-/// The binary chunk and what the JSON says of it.
+/// The binary chunk and its description in JSON.
 struct Buffer {
   std::string bytes, views, accessors;
   int count = 0;
 
-  /// Ends an array that began at `from`; `more` is the accessor's own.
+  /// Ends an array that began at `from`; `more` holds further members of its accessor.
   void close(std::size_t from, int target, const std::string& more) {
     const std::string comma = count == 0 ? "" : ",";
     views += comma + "{\"buffer\":0,\"byteOffset\":" + std::to_string(from) +
@@ -43,7 +42,7 @@ std::string text_of(const glm::vec3& p) {
   return "[" + number(p.x) + "," + number(p.y) + "," + number(p.z) + "]";
 }
 
-/// The points and their bounds, the first array.
+/// Adds the points and their bounds as the first array.
 void add_points(const std::vector<glm::dvec3>& points_mm, Buffer& buffer) {
   glm::vec3 low(std::numeric_limits<float>::infinity()), high(-low);
   for (const glm::dvec3& point : points_mm) {
@@ -74,7 +73,7 @@ void add_corners(const std::vector<std::array<std::uint32_t, 3>>& faces, Buffer&
                "\"componentType\":5125,\"type\":\"SCALAR\",\"count\":" + std::to_string(3 * faces.size()));
 }
 
-/// Turns LPS millimetres to metres with y to the head and z to the front.
+/// Converts LPS millimetres to metres with y to the head and z to the front.
 constexpr const char* node_matrix = "\"matrix\":[0.001,0,0,0,0,0,-0.001,0,0,0.001,0,0,0,0,0,1]";
 constexpr const char* material =
     "\"materials\":[{\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.7}}]";
@@ -91,7 +90,7 @@ void add_chunk(std::string& file, const char* kind, std::string chunk, char fill
   file += chunk;
 }
 
-/// The file of a scene's nodes, meshes and arrays; of none where there is no buffer.
+/// The file with a scene's nodes, meshes and arrays; without a binary chunk if there is no buffer.
 std::string file_of(const std::string& nodes, const std::string& json, const Buffer& buffer) {
   std::string chunks;
   add_chunk(chunks, "JSON",
@@ -105,7 +104,7 @@ std::string file_of(const std::string& nodes, const std::string& json, const Buf
   return file + chunks;
 }
 
-/// A name as JSON's text.
+/// A name as a JSON string.
 std::string quoted(const std::string& name) {
   std::string text = "\"";
   for (const char letter : name)
@@ -137,7 +136,7 @@ std::vector<glm::vec3> vertex_normals(const Triangles& triangles) {
 std::string glb_of(const Triangles& triangles, const VertexData& data) {
   Buffer buffer;
   std::string mesh;
-  // The format has no mesh without points; a scene without nodes stands for it.
+  // The format does not allow a mesh without points; an empty mesh is written as a scene without nodes.
   const bool is_empty = triangles.faces.empty();
   if (!is_empty) {
     add_points(triangles.points_mm, buffer);

@@ -39,12 +39,12 @@ void append_point(std::string& bytes, const glm::dvec3& p) {
   bytes += '\n';
 }
 
-/// A file in the making, written a piece at a time so that the whole need not be in memory.
+/// Writes a file in pieces, so that the whole need not be in memory.
 struct Sink {
   std::ofstream& file;
   std::string bytes{};
 
-  /// Called between items: passes on what has gathered.
+  /// Called between items: writes the buffer if it is large.
   void let_go() {
     if (bytes.size() >= (1u << 20)) flush();
   }
@@ -64,7 +64,7 @@ void write_stl(const Triangles& triangles, Sink& sink) {
                      &c = triangles.points_mm[face[2]];
     glm::dvec3 normal = glm::cross(b - a, c - a);
     const double length = glm::length(normal);
-    // The format's own word for "no normal" is zero.
+    // In this format a zero vector means "no normal".
     normal = length > 0.0 ? normal / length : glm::dvec3(0.0);
     for (const glm::dvec3& v : {normal, a, b, c})
       for (int axis = 0; axis < 3; ++axis) append_little(bytes, static_cast<float>(v[axis]));
@@ -140,7 +140,7 @@ void write_off(const Triangles& triangles, Sink& sink) {
   }
 }
 
-/// The code of a failed system call: Resource if memory, the disk or a limit on it gave out.
+/// The code of a failed system call: Resource if memory or disk space was exhausted or a limit was reached.
 ErrorCode code_of(int number) {
   return number == ENOSPC || number == EDQUOT || number == EFBIG || number == EIO || number == ENOMEM ||
                  number == EMFILE
@@ -148,7 +148,7 @@ ErrorCode code_of(int number) {
              : ErrorCode::Input;
 }
 
-/// Throws Error: the file, the reason by the error number of the failed call, and what to do.
+/// Throws Error with the file, the reason from the failed call's error number, and a remedy.
 [[noreturn]] void refuse_unwritten(const std::filesystem::path& path, int number) {
   throw Error(code_of(number),
               path.string() + ": cannot be written: " + std::generic_category().message(number) +
@@ -156,7 +156,7 @@ ErrorCode code_of(int number) {
                                    : "; check that its folder exists, may be written and has room"));
 }
 
-/// `write` fills the file.
+/// Writes to a temporary file by `write` and renames it into place.
 template <typename Write>
 void replace_file(const std::filesystem::path& path, const Write& write) {
   std::filesystem::path beside = path;
@@ -214,7 +214,7 @@ std::uint64_t least_mesh_bytes(std::size_t vertex_count, std::size_t face_count,
     std::string_view extension;
     std::uint64_t head, a_vertex, a_face;
   };
-  // Of text, the shortest lines: "v 0 0 0", "f 1 2 3", "0 0 0" and "3 0 1 2".
+  // For text, from the shortest lines: "v 0 0 0", "f 1 2 3", "0 0 0" and "3 0 1 2".
   constexpr std::array<Least, 6> formats{{{".stl", 84, 0, 50},
                                           {".ply", 0, 24, 13},
                                           {".obj", 0, 8, 8},

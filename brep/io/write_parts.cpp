@@ -27,7 +27,7 @@ void for_faces(const PartedSurface& parted, int part, const F& f) {
   }
 }
 
-/// A name without what ends a line or a word of a text file.
+/// A name without characters that end a line or a word in a text file.
 std::string word_of(std::string name) {
   for (char& letter : name)
     if (static_cast<unsigned char>(letter) <= ' ' || letter == 0x7f) letter = '_';
@@ -57,7 +57,7 @@ std::string obj_of(const PartedSurface& parted) {
   return text;
 }
 
-/// What a .vtp says of its triangles and of the file.
+/// The data of a .vtp on its triangles and parts.
 CellData cells_of(const PartedSurface& parted) {
   CellData data;
   data.numbers = {{"part_behind", {}}, {"part_in_front", {}}};

@@ -4,10 +4,10 @@
 namespace octotomy::brep {
 namespace {
 
-/// Arrays appended behind the XML, each with its length before it.
+/// Arrays appended after the XML, each preceded by its length.
 class Appended {
  public:
-  /// The element that refers to an array, which `write` appends to the bytes.
+  /// The XML element that refers to an array. `write` appends the array to the bytes.
   template <typename Write>
   std::string array(const std::string& type, const std::string& name, int components, const Write& write) {
     std::string element = "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
@@ -25,8 +25,8 @@ class Appended {
   std::string bytes_;
 };
 
-/// The frame, as 3D Slicer reads it, and what the parts are called: letters' codes, each text ended by 0, as
-/// VTK keeps them.
+/// The frame, as 3D Slicer reads it, and the names of the parts. Texts are stored as in VTK: character codes,
+/// each text ended by 0.
 std::string field_data(const CellData& cells) {
   const std::string frame =
       "<FieldData>\n<DataArray type=\"String\" Name=\"SPACE\" NumberOfTuples=\"1\" format=\"ascii\">76 80 83 "

@@ -12,10 +12,10 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::size_t end_bytes = 22, entry_bytes = 46, local_bytes = 30;
-/// deflate packs no more than this into one byte.
+/// deflate compresses at most this many bytes into one.
 constexpr std::size_t most_packed = 1032;
 
-/// A number of the archive at a place that must be within it.
+/// Reads a number at an offset; throws if it is not within the archive.
 template <typename T>
 T number_at(std::string_view bytes, std::size_t at) {
   if (at > bytes.size()) refuse_file("the archive is cut short or damaged");
@@ -29,9 +29,9 @@ std::string folded(std::string name) {
   return name;
 }
 
-/// Where the directory begins, and how many entries it has.
+/// The offset of the directory and its number of entries.
 std::pair<std::size_t, std::size_t> directory_of(std::string_view bytes) {
-  // A comment of up to 64 kB may stand behind the end's record.
+  // A comment of up to 64 kB may follow the end record.
   const std::size_t at = bytes.rfind("PK\x05\x06");
   if (at == std::string_view::npos || bytes.size() - at < end_bytes)
     refuse_file("is no zip archive, or is cut short: its end is missing");
@@ -83,7 +83,7 @@ ZipArchive::ZipArchive(std::string_view bytes) : bytes_(bytes) {
     if (name_length + more_length + comment_length > bytes.size() - at - entry_bytes)
       refuse_file("the archive's directory is damaged");
     const std::string name(bytes.substr(at + entry_bytes, name_length));
-    // Sizes that do not fit 32 bits stand behind the name, in this order.
+    // Sizes that do not fit 32 bits follow the name, in this order.
     for (std::size_t field = at + entry_bytes + name_length, end = field + more_length; field + 4 <= end;) {
       const std::uint16_t kind = number_at<std::uint16_t>(bytes, field),
                           length = number_at<std::uint16_t>(bytes, field + 2);

@@ -7,16 +7,19 @@
 
 namespace octotomy::brep {
 
-/// A zip archive in memory (PKWARE's APPNOTE, also with 64-bit sizes): stored and deflated entries, one part.
+/// Reads a zip archive in memory (PKWARE's APPNOTE, also with 64-bit sizes): stored and deflated entries, one
+/// volume.
 class ZipArchive {
  public:
-  /// Reads the directory. Throws Error (Input) where there is none or it is damaged. The bytes outlive this.
+  /// Reads the directory. Throws Error (Input) if there is none or it is damaged. The bytes must outlive this
+  /// object.
   explicit ZipArchive(std::string_view bytes);
 
-  /// Names as the archive has them, with the case of their letters ignored: 3MF's are so.
+  /// Whether an entry exists. Ignores case, as 3MF requires.
   bool has(const std::string& name) const;
-  /// An entry's bytes, at most 1032 times as many as it takes in the archive, checked against its checksum.
-  /// Throws Error (Input) naming the entry where it is missing, damaged, encrypted or packed another way.
+  /// An entry's bytes, at most 1032 times as many as it takes in the archive. Verifies its checksum. Throws
+  /// Error (Input), which names the entry, if it is missing, damaged, encrypted or compressed by another
+  /// method.
   std::string read(const std::string& name) const;
 
  private:

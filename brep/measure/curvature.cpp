@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// One pass over the triangles, each giving its corners what is theirs: area, angle, and the gradient of its
-// area, whose sum over area is twice the mean curvature along the normal. Gradients by cotangents of the two
-// other angles, which cross and dot products give without trigonometry.
+// SPDX-License-Identifier: AGPL-3.0-or-later One pass over the triangles adds to each corner its share of
+// area, its angle, and the gradient of the area. The sum of gradients divided by the area is twice the mean
+// curvature along the normal. Gradients use cotangents of the two other angles, computed from cross and dot
+// products without trigonometry.
 #include "brep/measure/curvature.h"
 
 #include <algorithm>
@@ -30,7 +30,8 @@ struct Sums {
         area(count, 0.0) {}
 };
 
-/// The parts of a triangle that are nearest to each corner; an obtuse one gives half to the obtuse corner.
+/// The area of a triangle that is assigned to each corner: the part nearest to it. In an obtuse triangle,
+/// half belongs to the obtuse corner.
 std::array<double, 3> shares_of(const std::array<glm::dvec3, 3>& p, const std::array<Corner, 3>& corners,
                                 double area) {
   for (std::size_t k = 0; k < 3; ++k)

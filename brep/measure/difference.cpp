@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 spread samples over both surfaces, the corners of small triangles among them; 2 find the foot of every
-// sample and vertex on the other surface; 3 weigh the distances by area, sorted where a percentile is asked
-// for. Sums run in the order of the samples.
+// 1 spread samples over both surfaces; corners of small triangles are samples too; 2 find the nearest point
+// (foot) of every sample and vertex on the other surface; 3 weight the distances by area, and sort them for
+// percentiles. Sums run in the order of the samples.
 #include "brep/measure/difference.h"
 
 #include <algorithm>
@@ -24,8 +24,8 @@ namespace {
 
 constexpr double samples_wanted = 200'000.0;
 
-/// A triangle's share of the area is half its side's square at most, so that this side gives the samples
-/// wanted where triangles are large; where they are small each has its own.
+/// A sample's triangle has at most half the square of its side as area, so this side yields the wanted number
+/// of samples if triangles are large. Small triangles each have samples of their own.
 double spacing_mm(double area_mm2, const Triangles& a, const Triangles& b) {
   const double even_mm = std::sqrt(2.0 * area_mm2 / samples_wanted);
   return std::max(widened_spacing_mm(a, even_mm, 8.0 * samples_wanted),
@@ -49,20 +49,21 @@ void check(const DifferenceOptions& options, double area_a_mm2, double area_b_mm
   }
 }
 
-/// Signed distances of samples, and those of the same surface's vertices.
+/// Signed distances of a surface's samples and of its vertices.
 struct Distances {
   std::vector<double> areas_mm2, sample_mm, vertex_mm;
-  std::vector<bool> vertex_has_face;  ///< a point of no triangle is not on the surface
+  std::vector<bool> vertex_has_face;  ///< false for a point of no triangle, which is not on the surface
   double reach_mm = 0.0;
   std::size_t on_border_count = 0;
 };
 
-/// Triangles no longer than the spacing are stood for by their corners, a third of the area each; larger ones
-/// by samples of their own.
+/// Triangles with sides up to the spacing are represented by their corners, each with a third of the area;
+/// larger ones by samples of their own.
 struct Split {
   Triangles large;                 ///< with the surface's points
-  std::vector<double> corner_mm2;  ///< of each of the surface's points
-  double reach_mm = 0.0;           ///< no point of a small triangle is further from its nearest corner
+  std::vector<double> corner_mm2;  ///< area assigned to each of the surface's points
+  double reach_mm = 0.0;           ///< largest distance of a point of a small triangle from its nearest
+                                   ///< corner
 };
 
 Split split_at(const Triangles& surface, double spacing) {
@@ -76,7 +77,7 @@ Split split_at(const Triangles& surface, double spacing) {
       split.large.faces.push_back(face);
       continue;
     }
-    // The middle of an equilateral triangle is furthest.
+    // The largest distance is at the centre of an equilateral triangle.
     split.reach_mm = std::max(split.reach_mm, longest / std::sqrt(3.0));
     for (const std::uint32_t v : face)
       split.corner_mm2[v] += 0.5 * glm::length(glm::cross(b - a, c - a)) / 3.0;
@@ -152,7 +153,7 @@ OneWay one_way(const Distances& distances, const std::vector<double>& tolerances
   return way;
 }
 
-/// Bins lie evenly about zero and reach as far as the largest distance.
+/// Bins are symmetric about zero and extend to the largest distance.
 DistanceHistogram histogram_of(const Distances& distances, double max_mm, std::size_t bins) {
   assert(max_mm >= 0.0 && bins > 0);
   DistanceHistogram histogram;

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Surfaces that meet have no gap. Of those that do not, the nearest triangles are found by two trees, and
-// their nearest points are a corner of one and a point of the other, or lie on an edge of each.
+// SPDX-License-Identifier: AGPL-3.0-or-later Surfaces that intersect have no gap. Otherwise two trees find
+// the nearest triangles. Their nearest points are a corner of one and a point of the other, or lie on an edge
+// of each.
 #include "brep/measure/gap.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -36,7 +36,7 @@ Gap gap_of(const Segment& s, const Segment& t) {
   const auto share = [](double part, double whole) {
     return whole > 0.0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0;
   };
-  // Where they are parallel any point of s will do.
+  // If the segments are parallel, any point of s is valid.
   double on_s = share(st * tr - sr * tt, ss * tt - st * st);
   const double on_t = share(st * on_s + tr, tt);
   on_s = share(st * on_t - sr, ss);
@@ -49,7 +49,8 @@ std::array<glm::dvec3, 3> corners_of(const Triangles& surface, std::uint32_t fac
   return {surface.points_mm[f[0]], surface.points_mm[f[1]], surface.points_mm[f[2]]};
 }
 
-/// How far a triangle lies beyond another one's plane, all of it on one side: no more than their distance.
+/// The distance of a triangle from another one's plane, if it lies wholly on one side: a lower bound of their
+/// distance.
 double beyond_plane(const std::array<glm::dvec3, 3>& s, const std::array<glm::dvec3, 3>& t) {
   const glm::dvec3 normal = glm::cross(s[1] - s[0], s[2] - s[0]);
   const double length = glm::length(normal);
@@ -59,8 +60,8 @@ double beyond_plane(const std::array<glm::dvec3, 3>& s, const std::array<glm::dv
   return std::max(std::max(low, -high) / length, 0.0);
 }
 
-/// Nearest points of two triangles that do not meet: a corner of one and a point of the other, or a point of
-/// an edge of each.
+/// Nearest points of two triangles that do not intersect: a corner of one and a point of the other, or a
+/// point of an edge of each.
 Gap gap_of(const std::array<glm::dvec3, 3>& s, const std::array<glm::dvec3, 3>& t) {
   Gap best{std::numeric_limits<double>::infinity()};
   const auto take = [&](const Gap& one) {
@@ -86,7 +87,7 @@ Kernel::Triangle_3 triangle_of(const Triangles& surface, std::uint32_t face) {
   return {point(0), point(1), point(2)};
 }
 
-/// A point of what two triangles have in common.
+/// A point of the intersection of two triangles.
 struct AnyPoint {
   using result_type = Kernel::Point_3;
   Kernel::Point_3 operator()(const Kernel::Point_3& p) const { return p; }
@@ -95,7 +96,7 @@ struct AnyPoint {
   Kernel::Point_3 operator()(const std::vector<Kernel::Point_3>& polygon) const { return polygon.front(); }
 };
 
-/// A point that two surfaces have in common, to rounding.
+/// A common point of two surfaces, up to rounding.
 glm::dvec3 common_point(const Triangles& a, const Triangles& b, const IntersectingTriangles& meeting) {
   for (const std::uint32_t f : meeting.of_a)
     for (const std::uint32_t g : meeting.of_b) {
@@ -107,7 +108,7 @@ glm::dvec3 common_point(const Triangles& a, const Triangles& b, const Intersecti
       }
     }
   assert(!meeting.of_a.empty());
-  // Only triangles without area meet: a corner of one stands for it.
+  // Only triangles without area intersect: returns a corner of one.
   return a.points_mm[a.faces[meeting.of_a.front()][0]];
 }
 
@@ -126,7 +127,7 @@ Gap gap(const Triangles& a, const Triangles& b) {
       MortonTree(b), [&] { return best.distance_mm * best.distance_mm; },
       [&](std::uint32_t f, std::uint32_t g) {
         const auto s = corners_of(a, f), t = corners_of(b, g);
-        // Where surfaces run alongside, planes part most pairs at a tenth of the cost.
+        // Where surfaces are nearly parallel, the test by planes excludes most pairs at a tenth of the cost.
         constexpr double rounding_mm = 1e-9;
         if (std::max(beyond_plane(s, t), beyond_plane(t, s)) > best.distance_mm + rounding_mm) return;
         if (const Gap between = gap_of(s, t); between.distance_mm < best.distance_mm) best = between;

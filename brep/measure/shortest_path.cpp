@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 bound the way's length by one along edges; 2 keep the triangles that a way no longer than that can touch;
-// 3 search them exactly, which is what costs: most of a head is out of reach of a way of some centimetres.
+// SPDX-License-Identifier: AGPL-3.0-or-later 1 compute an upper bound of the length from a path along edges;
+// 2 keep the triangles that a path of at most this length can touch; 3 search these exactly. Step 3 is the
+// expensive one, and a path of a few centimetres cannot touch most of a head.
 #include "brep/measure/shortest_path.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -30,7 +30,7 @@ using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 using Traits = CGAL::Surface_mesh_shortest_path_traits<Kernel, Surface>;
 using Paths = CGAL::Surface_mesh_shortest_path<Traits>;
 
-/// A foot as CGAL wants it: weights in its own order of the face's corners, from the source of its halfedge.
+/// A foot in CGAL's form: weights in CGAL's order of the face's corners, from the source of its halfedge.
 Paths::Face_location location_of(const Foot& foot, const Triangles& triangles, const Surface& surface) {
   const Surface::Face_index face(foot.face);
   const auto& corners = triangles.faces[foot.face];
@@ -48,8 +48,8 @@ double edge_mm(const Triangles& triangles, std::uint32_t v, std::uint32_t w) {
   return glm::distance(triangles.points_mm[v], triangles.points_mm[w]);
 }
 
-/// The shortest way between two feet by their triangles' corners and the edges between, which is no shorter
-/// than the shortest of all (Dijkstra 1959). Infinite where there is none.
+/// The length of the shortest path between two feet through their triangles' corners and along edges
+/// (Dijkstra 1959): an upper bound for the shortest path. Infinite if there is none.
 double length_along_edges(const Mesh& mesh, const Triangles& triangles, const Foot& from, const Foot& to) {
   using Entry = std::pair<double, std::uint32_t>;
   std::vector<double> lengths(triangles.points_mm.size(), std::numeric_limits<double>::infinity());
@@ -76,8 +76,8 @@ double length_along_edges(const Mesh& mesh, const Triangles& triangles, const Fo
   return shortest;
 }
 
-/// The triangles that a way of at most this length can touch: points of it have distances to both ends that
-/// add up to no more, and no point of a triangle lies further from a corner than its longest side.
+/// The triangles that a path of at most this length can touch: for its points, the distances to both ends add
+/// up to at most the length, and no point of a triangle is further from a corner than the longest side.
 std::vector<std::uint32_t> within_reach(const Triangles& triangles, const Foot& from, const Foot& to,
                                         double length_mm) {
   std::vector<std::uint32_t> faces;
@@ -94,7 +94,7 @@ std::vector<std::uint32_t> within_reach(const Triangles& triangles, const Foot& 
   return faces;
 }
 
-/// Refuses a point that lies farther away than the surface is large: it is meant for another one.
+/// Refuses a point that is farther away than the size of the surface: it probably belongs to another surface.
 void need_near(const glm::dvec3& asked_mm, const glm::dvec3& nearest_mm, const Triangles& triangles) {
   const Size size = size_of(triangles);
   const double off_mm = glm::distance(asked_mm, nearest_mm),
@@ -118,7 +118,7 @@ SurfacePath shortest_path(const Mesh& mesh, const glm::dvec3& from_mm, const glm
   if (!std::isfinite(bound_mm))
     throw Error(ErrorCode::Geometry,
                 "shortest_path: the two points lie on pieces of the surface that nothing connects");
-  // The margin is for the rounding of sums over thousands of edges.
+  // The margin covers the rounding of sums over thousands of edges.
   const Triangles triangles =
       triangles_of(part_of(mesh, within_reach(all, ends[0], ends[1], bound_mm * (1.0 + 0x1p-40))));
   const std::vector<Foot> feet = SurfaceTree(triangles).feet({ends[0].p_mm, ends[1].p_mm});

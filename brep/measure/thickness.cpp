@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 send a ray inward from each point; 2 take the ball through the point whose diameter is the ray's way; 3
-// while the surface's foot of its centre lies in the ball and on another sheet, take the ball through both.
-// All balls shrink together, one step a round, so that feet are found in parallel.
+// 1 cast a ray inward from each point; 2 start with the ball through the point whose diameter is the ray's
+// length; 3 while the surface point nearest to its centre lies in the ball and on another sheet, replace the
+// ball by the one through both points. All balls shrink together, one step per round, so that nearest points
+// are found in parallel.
 #include "brep/measure/thickness.h"
 
 #include <CGAL/AABB_traits.h>
@@ -29,8 +30,9 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Primitive = CGAL::AABB_triangle_primitive<Kernel, std::vector<Kernel::Triangle_3>::const_iterator>;
 using RayTree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
-/// How far inward a ray starts, so that it does not meet the sheet it leaves, and what a ball may be off by:
-/// far above the rounding of points, 2^-52 of their reach, and far below anything measured.
+/// The distance inward at which a ray starts, so that it does not hit the sheet it leaves, and the tolerance
+/// of a ball's diameter. It is far above the rounding of points, 2^-52 of their coordinates, and far below
+/// any measured thickness.
 double step_mm(const Size& size) {
   return 0x1p-30 * glm::length(size.high_mm - size.low_mm);
 }
@@ -39,7 +41,7 @@ Kernel::Point_3 cgal_of(const glm::dvec3& p) {
   return {p.x, p.y, p.z};
 }
 
-/// The way along the ray from each point to the surface.
+/// The length along the ray from each point to the surface.
 class Rays {
  public:
   Rays(const Triangles& surface, double step) : step_mm_(step) {
@@ -57,7 +59,7 @@ class Rays {
     const auto hit = tree_.first_intersection(ray);
     if (!hit) return std::numeric_limits<double>::infinity();
     const Kernel::Point_3* at = boost::get<Kernel::Point_3>(&hit->first);
-    // Along a triangle's own plane the ray runs within the surface.
+    // The ray runs in the plane of a triangle, within the surface.
     if (at == nullptr) return 0.0;
     return step_mm_ + glm::distance(start, glm::dvec3(at->x(), at->y(), at->z()));
   }
@@ -68,7 +70,7 @@ class Rays {
   RayTree tree_;
 };
 
-/// Diameters of the balls, from upper bounds of them.
+/// Computes the diameters of the balls from upper bounds.
 void shrink(const SurfaceTree& tree, const std::vector<SurfacePoint>& points, double step,
             double least_cosine, const ThicknessOptions& options, std::vector<Thickness>& thickness) {
   assert(thickness.size() == points.size() && step > 0.0);

@@ -24,7 +24,7 @@ struct Shell {
   std::vector<std::uint32_t> faces;
   double volume_mm3 = 0.0;
   double area_mm2 = 0.0;
-  glm::dvec3 probe_mm{0.0};  ///< a vertex, one that no other shell touches where there is any
+  glm::dvec3 probe_mm{0.0};  ///< a vertex; if possible, one that no other shell touches
 };
 
 /// Labels faces connected across edges; labels ascend with a shell's first face.
@@ -39,7 +39,7 @@ std::vector<std::uint32_t> labels_of(DisjointSets& shells, std::size_t face_coun
   return label;
 }
 
-/// Shells with their integrals, about the first point of each to keep digits.
+/// Shells with their integrals, computed relative to the first point of each to preserve digits.
 std::vector<Shell> measure_shells(const Triangles& triangles, const std::vector<std::uint32_t>& label,
                                   std::uint32_t shell_count) {
   std::vector<Shell> shells(shell_count);
@@ -48,7 +48,8 @@ std::vector<Shell> measure_shells(const Triangles& triangles, const std::vector<
     assert(label[f] < shell_count);
     shells[label[f]].faces.push_back(f);
   }
-  // Whether a point where another shell has one is inside of that is a toss.
+  // A point that coincides with one of another shell is unsuitable: whether it is inside that shell is
+  // arbitrary.
   const std::vector<std::uint8_t> touching =
       shell_count > 1 ? shared_points(triangles, first_equal_points(triangles.points_mm), label)
                       : std::vector<std::uint8_t>(triangles.points_mm.size(), 0);
@@ -75,7 +76,7 @@ std::vector<Shell> measure_shells(const Triangles& triangles, const std::vector<
   return shells;
 }
 
-/// The smallest outward shell around a cavity's.
+/// The smallest outward shell around a cavity's shell.
 std::optional<std::uint32_t> shell_around(std::uint32_t cavity, const std::vector<Shell>& shells,
                                           const std::vector<std::uint32_t>& label, const SurfaceTree& tree) {
   assert(cavity < shells.size() && shells[cavity].volume_mm3 < 0.0);

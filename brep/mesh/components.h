@@ -13,26 +13,26 @@ namespace octotomy::brep {
 
 /// A connected piece of a solid: one outer shell and the shells of the cavities in it.
 struct Component {
-  std::vector<std::uint32_t> faces;  ///< of the mesh, ascending
-  double volume_mm3 = 0.0;           ///< cavities taken off; negative for a shell turned inside out
+  std::vector<std::uint32_t> faces;  ///< faces of the mesh, ascending
+  double volume_mm3 = 0.0;           ///< volume without cavities; negative for a shell that is inside out
   double area_mm2 = 0.0;
   std::size_t cavities = 0;
 };
 
-/// The pieces of a closed mesh, largest volume first, equal ones by their first face. Shells are connected
-/// across edges. A shell of negative volume is a cavity of the smallest shell around it; one that has none
-/// around it stands alone with its negative volume. Throws std::invalid_argument where the mesh is open.
-/// Cost: n log n, one ray a shell.
+/// The pieces of a closed mesh, largest volume first, pieces of equal volume by their first face. Shells are
+/// connected across edges. A shell of negative volume is a cavity of the smallest shell around it; without
+/// such a shell it is a component of its own with negative volume. Throws std::invalid_argument if the mesh
+/// is open. Cost: n log n, one ray per shell.
 std::vector<Component> components(const Mesh& mesh);
 
-/// The same of triangles with their neighbours; `tree` is their tree, asked for only where there are
-/// cavities. Cost: linear, one ray a cavity.
+/// The same for triangles with their neighbours. `tree` returns their tree and is called only if there are
+/// cavities. Cost: linear, one ray per cavity.
 std::vector<Component> components(const Linked& linked, const std::function<const SurfaceTree&()>& tree);
 
 /// The mesh of some of a mesh's faces, in the order given, without other vertices.
 Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces);
 
-/// The component of largest volume with its cavities; no faces where the mesh has none.
+/// The component of largest volume with its cavities; empty if the mesh is empty.
 Mesh largest_component(const Mesh& mesh);
 
 }  // namespace octotomy::brep

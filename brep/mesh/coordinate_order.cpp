@@ -20,8 +20,8 @@ Place place_of(const Triangles& triangles, std::uint32_t v) {
   return {p.x, p.y, p.z};
 }
 
-/// The places of the neighbours, in order, of the vertices that share their place with another. Read from the
-/// faces, as a walk about a vertex of a mesh that a Boolean left broken need not end.
+/// For each vertex that coincides with another: the positions of its neighbours, in order. Read from the
+/// faces, because a walk around a vertex may never end in a mesh that a Boolean left invalid.
 std::unordered_map<std::uint32_t, std::vector<Place>> rings_of_shared(
     const Triangles& triangles, const std::vector<std::uint32_t>& order) {
   std::unordered_map<std::uint32_t, std::vector<Place>> rings;

@@ -8,8 +8,9 @@
 
 namespace octotomy::brep {
 
-/// Sets of the numbers 0 .. count - 1 that joins merge; a set's name is its smallest member, so names do not
-/// depend on the order of the joins. Members are not checked. Cost of either call: amortised O(log count).
+/// Disjoint sets of the numbers 0 .. count - 1, merged by joins. A set is identified by its smallest member,
+/// which does not depend on the order of the joins. Arguments are not range-checked. Cost of either call:
+/// amortised O(log count).
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }

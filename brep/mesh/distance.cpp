@@ -1,8 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A tree of axis-aligned boxes, split at the median centre along the longest axis. Two levels of halves are
-// one node, whose four boxes are looked at at once (Wald, Benthin, Boulos, "Getting rid of packets", RT
-// 2008); boxes are floats, rounded outward. Nearest point of a triangle: Ericson, Real-Time Collision
-// Detection, 2005, 5.1.5.
+// SPDX-License-Identifier: AGPL-3.0-or-later A tree of axis-aligned boxes, split at the median centre along
+// the longest axis. Two levels of halves form one node, whose four boxes are tested at once (Wald, Benthin,
+// Boulos, "Getting rid of packets", RT 2008); boxes are floats, rounded outward. Nearest point of a triangle:
+// Ericson, Real-Time Collision Detection, 2005, 5.1.5.
 #include "brep/mesh/distance.h"
 
 #include <algorithm>
@@ -26,8 +25,8 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
-/// Halves are 32 deep at most, along a curve 60 more; two of them are a node's depth, which leaves three
-/// others waiting.
+/// Halving has at most 32 levels, plus 60 along a curve. Two levels form a node, and each node leaves at most
+/// three children on the stack.
 constexpr std::size_t most_waiting = 3 * 46 + 4;
 
 struct Corners {
@@ -51,25 +50,25 @@ TreeBox box_of(const Corners& t) {
   return {glm::min(t.a, glm::min(t.b, t.c)), glm::max(t.a, glm::max(t.b, t.c))};
 }
 
-/// What rounding may add to the distance of a box or take off that of a triangle. A float is good to 2^-24 of
-/// itself: along each axis the point, from the middle of all boxes, is rounded, and its difference from the
-/// box, at most the sum of both. 2^-20 of the longest of these ways is five times as much. Triangles are
-/// measured in doubles, good to 2^-53, from the origin: 2^-44 of the largest coordinates leaves room for
-/// their products.
+/// Bound on the rounding error of distances to boxes and triangles. Floats are accurate to 2^-24. Along each
+/// axis two values are rounded: the point, relative to the middle of all boxes, and its difference from the
+/// box, which is at most the sum of both. 2^-20 of the longest of these lengths is five times the error.
+/// Distances to triangles use doubles, accurate to 2^-53, relative to the origin: 2^-44 of the largest
+/// coordinates covers their products.
 double rounding_mm(const glm::dvec3& p, const TreeBox& all, const glm::dvec3& middle) {
   const glm::dvec3 ways = glm::max(glm::abs(p - middle), all.high - middle);
   const glm::dvec3 most = glm::max(glm::abs(p), glm::max(glm::abs(all.low), glm::abs(all.high)));
   return 0x1p-20 * (ways.x + ways.y + ways.z) + 0x1p-44 * (most.x + most.y + most.z);
 }
 
-/// A squared distance to a box, in floats, from which on no triangle in it is computed to be as near as
-/// `nearest`. Five roundings of its squares and their sums are less than the share that is added.
+/// A float bound: if the squared distance to a box exceeds it, no triangle in the box can be computed to be
+/// as near as `nearest`. The added share exceeds five roundings of squares and sums.
 float surely_farther(double nearest, double rounding_mm) {
   const double mm = std::sqrt(nearest) + rounding_mm;
   return static_cast<float>(mm * mm * (1.0 + 0x1p-20));
 }
 
-/// Floats that enclose a number.
+/// Floats that enclose a double.
 float rounded_down(double number) {
   const auto nearest = static_cast<float>(number);
   return static_cast<double>(nearest) <= number
@@ -86,7 +85,7 @@ glm::vec3 rounded_up(const glm::dvec3& p) {
   return {rounded_up(p.x), rounded_up(p.y), rounded_up(p.z)};
 }
 
-/// Four numbers that a processor works on at once.
+/// Four floats of one vector register.
 using Lanes = float __attribute__((vector_size(16)));
 using ThreeLanes = std::array<Lanes, 3>;
 
@@ -100,7 +99,7 @@ Lanes larger(Lanes a, Lanes b) {
   return a > b ? a : b;
 }
 
-/// Four triangles, which a processor measures at once: coordinates by corner, axis and triangle.
+/// Four triangles for one vector operation: coordinates by corner, axis and triangle.
 struct FourTriangles {
   double corner[3][3][4];
 
@@ -119,15 +118,16 @@ struct FourTriangles {
   }
 };
 
-/// Of a point to each. Where the point stands above the triangle, by the barycentric coordinates of its foot
-/// in the plane, the height is the distance; otherwise the nearest side's.
+/// Squared distances from a point to each triangle. If the point is above the triangle (by the barycentric
+/// coordinates of its foot in the plane), the distance is the height; otherwise it is that to the nearest
+/// side.
 OCTOTOMY_FOR_VECTORS void squared_distances(const FourTriangles& four, double px, double py, double pz,
                                             double* squared) {
   for (int i = 0; i < 4; ++i) {
     const double ax = four.corner[0][0][i], ay = four.corner[0][1][i], az = four.corner[0][2][i];
     const double bx = four.corner[1][0][i], by = four.corner[1][1][i], bz = four.corner[1][2][i];
     const double cx = four.corner[2][0][i], cy = four.corner[2][1][i], cz = four.corner[2][2][i];
-    // Sides a b, b c and c a; the cross products take a c.
+    // Sides a b, b c and c a; the cross products use a c.
     const double ux = bx - ax, uy = by - ay, uz = bz - az, vx = cx - bx, vy = cy - by, vz = cz - bz,
                  wx = ax - cx, wy = ay - cy, wz = az - cz, ex = cx - ax, ey = cy - ay, ez = cz - az;
     const double nx = uy * ez - ey * uz, ny = uz * ex - ez * ux, nz = ux * ey - ex * uy;
@@ -160,7 +160,7 @@ OCTOTOMY_FOR_VECTORS void squared_distances(const FourTriangles& four, double px
                  to_w = wx_off * wx_off + wy_off * wy_off + wz_off * wz_off;
     double beside = to_v < to_u ? to_v : to_u;
     beside = to_w < beside ? to_w : beside;
-    // Bits of conditions, as branches would part the lanes.
+    // Combines conditions as bits, because branches would prevent vectorisation.
     const bool inside = (normal2 > 0.0) & (v >= 0.0) & (w >= 0.0) & (v + w <= normal2);
     squared[i] = inside ? above : beside;
   }
@@ -170,9 +170,9 @@ Lanes absolute(Lanes a) {
   return larger(a, -a);
 }
 
-/// The part of a segment that is in a box about the origin, by its own middle and half its way. `slack` is
-/// more than what roundings add up to: in floats of the part's ends and of a box's middle and size, five of
-/// 2^-24 of the longest ways at most; in doubles of where a far end is cut off.
+/// The part of a segment inside a box around the origin, as its middle and half its extent. `slack` exceeds
+/// the sum of all roundings: in floats, those of the part's ends and of a box's middle and size, at most five
+/// times 2^-24 of the largest lengths; in doubles, those of the point where a far end is clipped.
 struct FlatSegment {
   ThreeLanes middle, way, reach;
   Lanes slack;
@@ -189,7 +189,7 @@ struct FlatSegment {
   }
 
  private:
-  /// Whether anything is left.
+  /// Clips the segment to the box; returns whether a part remains.
   static bool cut_off(glm::dvec3& from, glm::dvec3& to, const glm::dvec3& most) {
     const glm::dvec3 start = from, whole = to - from;
     double first = 0.0, last = 1.0;
@@ -210,10 +210,10 @@ struct FlatSegment {
   }
 };
 
-/// From here on a child is a leaf.
+/// Child numbers from here on denote leaves.
 constexpr std::uint32_t first_leaf = std::uint32_t{1} << 31;
 
-/// A node of the tree: boxes, from the middle of all and rounded outward, with what is in them.
+/// A node of the tree: boxes, relative to the middle of all and rounded outward, and their children.
 struct FourBoxes {
   ThreeLanes low{}, high{};
   std::array<std::uint32_t, 4> child{};
@@ -237,9 +237,10 @@ struct FourBoxes {
     return x * x + y * y + z * z;
   }
 
-  /// Not 0 where a segment may meet the box: no axis of the box and no direction across both parts them
-  /// (Akenine-Moller et al., Real-Time Rendering, 2018, 22.9). Along an axis their middles are apart by more
-  /// than both reach; across, a product of what is off by `slack` is off by that times the other's size.
+  /// Not 0 if a segment may meet the box: neither an axis of the box nor a cross product of an axis and the
+  /// segment separates them (Akenine-Moller et al., Real-Time Rendering, 2018, 22.9). An axis separates them
+  /// if their middles are farther apart than the sum of half extents. For a cross product, an error of
+  /// `slack` in one factor is multiplied by the size of the other.
   auto met(const FlatSegment& segment) const {
     ThreeLanes apart, size;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -258,7 +259,7 @@ struct FourBoxes {
     return met;
   }
 
-  /// Not 0 where a ray towards +x may pass the box; the point that it leaves lies in low_mm .. high_mm.
+  /// Not 0 if a ray towards +x may pass through the box. The ray's start lies in low_mm .. high_mm.
   auto passed(const glm::vec3& low_mm, const glm::vec3& high_mm) const {
     const ThreeLanes from = lanes_of(low_mm), to = lanes_of(high_mm);
     return (high[0] >= from[0]) & (low[1] <= to[1]) & (high[1] >= from[1]) & (low[2] <= to[2]) &
@@ -266,7 +267,7 @@ struct FourBoxes {
   }
 };
 
-/// Share of the way from a to b at which a segment is nearest.
+/// The position of the nearest point on the segment from a to b, as a share of its length.
 double share_along(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
   const glm::dvec3 along = b - a;
   const double length2 = glm::dot(along, along);
@@ -329,14 +330,16 @@ struct SurfaceTree::Tree {
     TreeBox box;
     std::uint32_t first = 0, count = 0;
   };
-  std::vector<FourTriangles> triangles;  ///< in the order of the leaves, numbered by it
+  std::vector<FourTriangles> triangles;  ///< in the order of the leaves; a triangle's index here is its
+                                         ///< number in the tree
   std::vector<std::uint32_t> faces;
   std::vector<Node> nodes;
   std::vector<FourBoxes> wide;  ///< two levels of nodes each; the first is the root
-  glm::dvec3 middle{0.0};  ///< of all boxes: floats are taken from here, so that a far place costs no digits
-  bool is_halved;          ///< nodes halve their triangles
-  std::vector<FourBoxes> boxes_of_leaf;    ///< of its triangles; for segments only
-  std::vector<std::uint32_t> leaf_number;  ///< by node; likewise
+  glm::dvec3 middle{0.0};  ///< middle of all boxes: floats are relative to it, so that a position far from
+                           ///< the origin loses no digits
+  bool is_halved;          ///< nodes were split at the median centre
+  std::vector<FourBoxes> boxes_of_leaf;    ///< boxes of each leaf's triangles; for segments only
+  std::vector<std::uint32_t> leaf_number;  ///< by node; for segments only
 
   Tree(const Triangles& source, SurfaceTree::Build build) : is_halved(build != SurfaceTree::Build::Hasty) {
     const auto count = static_cast<std::uint32_t>(source.faces.size());
@@ -388,8 +391,9 @@ struct SurfaceTree::Tree {
           "there is no distance to a surface without triangles; ask whether it is empty first");
   }
 
-  /// The least distance of all triangles, wherever the search starts. Of triangles that are equally near it
-  /// names the one that it started with, or the first that a search through the halves would meet.
+  /// The least distance of all triangles, independent of the triangle at which the search starts. Among
+  /// equally near triangles, returns the start or, if it is not one of them, the first in the order of a
+  /// search through the halves.
   double distance(const glm::dvec3& p, std::uint32_t& nearest_triangle, double enough_mm = 0.0) const {
     assert(nearest_triangle < faces.size());
     const std::uint32_t start = nearest_triangle;
@@ -424,7 +428,7 @@ struct SurfaceTree::Tree {
         for (std::uint32_t four = first / 4; 4 * four < end; ++four) look_at(four, first, end);
         continue;
       }
-      // The nearest of the four comes last, to be the next.
+      // Pushes the nearest of the four last, so that it is visited next.
       const FourBoxes& node = wide[child];
       const Lanes bounds = node.squared_distances(at);
       assert(top + 4 <= waiting.size());
@@ -443,7 +447,7 @@ struct SurfaceTree::Tree {
   template <typename Found>
   void search(const std::vector<glm::dvec3>& points_mm, const Found& found) const {
     check_not_empty();
-    // Blocks are fixed, so that where each search starts does not depend on the threads.
+    // Blocks are fixed, so that the start of each search does not depend on the threads.
     constexpr std::size_t block = 256;
     tbb::parallel_for(std::size_t{0}, (points_mm.size() + block - 1) / block, [&](std::size_t b) {
       std::uint32_t triangle = 0;
@@ -475,7 +479,7 @@ struct SurfaceTree::Tree {
       const FourBoxes& node = is_leaf ? boxes_of_leaf[leaf_number[child - first_leaf]] : wide[child];
       assert(top + 4 <= waiting.size());
       const auto met = node.met(segment);
-      // The first comes last, to be the next.
+      // Pushes the first child last, so that it is visited next.
       for (int lane = node.count - 1; lane >= 0; --lane) {
         if (met[lane] == 0) continue;
         const std::uint32_t number = node.child[static_cast<std::size_t>(lane)];
@@ -491,7 +495,7 @@ struct SurfaceTree::Tree {
   template <typename Visit>
   void visit_crossings(const glm::dvec3& p, Visit visit) const {
     if (nodes.empty()) return;
-    // Less the middle, what was not less is not less: doubles are rounded in order.
+    // Subtracting the middle preserves the order of coordinates, because rounding is monotonic.
     const glm::vec3 low = rounded_down(p - middle), high = rounded_up(p - middle);
     std::array<std::uint32_t, most_waiting> waiting;
     std::size_t top = 0;
@@ -513,7 +517,7 @@ struct SurfaceTree::Tree {
   }
 
  private:
-  /// The leaves and inner nodes of triangles parted along a curve.
+  /// Builds leaves and inner nodes by splitting the triangles along a curve.
   template <typename Leaf, typename Inner>
   void halve_along_curve(std::vector<Centred>& items, const Leaf& leaf, const Inner& inner) {
     std::vector<glm::dvec3> centres_mm(items.size());
@@ -537,7 +541,7 @@ struct SurfaceTree::Tree {
     build_run(build_run, 0, static_cast<std::uint32_t>(items.size()));
   }
 
-  /// Makes a wide node of every second level's inner nodes, and of a root that is a leaf.
+  /// Makes wide nodes from the inner nodes of every second level, and from a root that is a leaf.
   void widen() {
     std::vector<std::uint8_t> is_even(nodes.size(), 1);
     std::vector<std::uint32_t> own, number(nodes.size(), 0);
@@ -584,8 +588,8 @@ struct SurfaceTree::Tree {
     return {nodes[node].first, nodes[node].first + nodes[node].count};
   }
 
-  /// Of two triangles that are equally near: the start, or the one that is met first where the nearer of two
-  /// halves is searched first.
+  /// Whether triangle a precedes b, both equally near: the start comes first, otherwise the one that a search
+  /// of the nearer half first would reach first.
   bool comes_before(const glm::dvec3& p, std::uint32_t a, std::uint32_t b, std::uint32_t start) const {
     if (b == start || !is_halved) return false;
     std::uint32_t node = 0, begin = 0, end = static_cast<std::uint32_t>(faces.size());

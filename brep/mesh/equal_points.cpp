@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A table of the first point at each place, by open addressing: no more than half full.
+// SPDX-License-Identifier: AGPL-3.0-or-later A hash table of the first point at each position, with open
+// addressing, at most half full.
 #include "brep/mesh/equal_points.h"
 
 #include <bit>
@@ -14,14 +14,14 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 std::uint64_t hash_of(const glm::dvec3& p) {
   std::uint64_t hash = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    // -0 stands where 0 does.
+    // Adding 0.0 gives -0 the same hash as 0.
     hash = (hash ^ std::bit_cast<std::uint64_t>(p[axis] + 0.0)) * 0x9e3779b97f4a7c15u;
     hash ^= hash >> 29;
   }
   return hash * 0xbf58476d1ce4e5b9u >> 20;
 }
 
-/// The place in a table of a point, or where it would stand. Precondition: the table has a free place.
+/// The slot of a point in the table, or the free slot for it. Precondition: the table has a free slot.
 std::size_t slot_of(const glm::dvec3& p, const std::vector<glm::dvec3>& points_mm,
                     const std::vector<std::uint32_t>& table) {
   const std::size_t mask = table.size() - 1;
@@ -30,12 +30,12 @@ std::size_t slot_of(const glm::dvec3& p, const std::vector<glm::dvec3>& points_m
   return slot;
 }
 
-/// What is no number equals nothing, so that it has no place: many in one table would search each other.
+/// NaN equals nothing, so such points are not stored: many of them in one table would make searches slow.
 bool has_place(const glm::dvec3& p) {
   return !glm::any(glm::isnan(p));
 }
 
-/// Of a table that so many points fill by half at most.
+/// The size of a table that `points` points fill at most by half.
 std::size_t table_size(std::size_t points) {
   return std::bit_ceil(2 * points + 1);
 }

@@ -11,31 +11,31 @@
 
 namespace octotomy::brep {
 
-/// Gives equal points one number, in the order they are met; 0.0 and -0.0 are equal, what is no number equals
+/// Assigns equal points the same number, in order of first occurrence; 0.0 and -0.0 are equal, NaN equals
 /// nothing. Cost: linear; 32 to 40 bytes for each number.
 class PointNumbers {
  public:
-  /// Appends each new point to a list. `expected` points need no room made on the way. Preconditions: the
-  /// list is empty, outlives this and is not changed otherwise.
+  /// Appends each new point to `points_mm`. Reserves memory for `expected` points. Preconditions: the list is
+  /// empty, outlives this object and is not changed by others.
   explicit PointNumbers(std::vector<glm::dvec3>& points_mm, std::size_t expected = 0);
   std::uint32_t number_of(const glm::dvec3& p_mm);
-  /// The same for several points, in their order; faster than one by one, as their places in the table are
-  /// fetched ahead. Precondition: as many numbers as points.
+  /// The same for several points, in their order; faster than single calls, because table slots are
+  /// prefetched. Precondition: `numbers` has as many entries as `points_mm`.
   void number(std::span<const glm::dvec3> points_mm, std::span<std::uint32_t> numbers);
 
  private:
   void make_room(std::size_t expected);
 
   std::vector<glm::dvec3>& points_mm_;
-  std::vector<std::uint32_t> table_;  ///< of numbers by place: at most half full
+  std::vector<std::uint32_t> table_;  ///< numbers by slot; at most half full
 };
 
-/// For each point the first one that has the same coordinates, itself where it is the first; 0.0 and -0.0 are
-/// equal, what is no number equals nothing. Cost: linear; 12 to 20 bytes a point.
+/// For each point, the first one with the same coordinates, which may be itself; 0.0 and -0.0 are equal, NaN
+/// equals nothing. Cost: linear; 12 to 20 bytes per point.
 std::vector<std::uint32_t> first_equal_points(const std::vector<glm::dvec3>& points_mm);
 
-/// 1 for each point at whose place triangles of more than one label have a corner, 0 for others. `first` is
-/// first_equal_points() of the points, `label` one number a triangle. Cost: linear.
+/// 1 for each point at whose position triangles with different labels have a corner, 0 for others. `first` is
+/// first_equal_points() of the points; `label` has one number per triangle. Cost: linear.
 std::vector<std::uint8_t> shared_points(const Triangles& triangles, const std::vector<std::uint32_t>& first,
                                         const std::vector<std::uint32_t>& label);
 

@@ -6,16 +6,16 @@
 
 namespace octotomy::brep {
 
-/// The kind of an error. Exit statuses follow from it, never from a message.
+/// The kind of an error. Exit statuses depend on it, never on a message.
 enum class ErrorCode {
   Input,      ///< a file or number from outside is wrong
   Geometry,   ///< the data are sound, but the operation has no answer on them
-  Cancelled,  ///< a stop token was set
-  Resource,   ///< memory, disk or time gave out
+  Cancelled,  ///< a stop was requested
+  Resource,   ///< memory, disk or time was exhausted
 };
 
 /// The mesh kernel's error: a code and a message that names the place, the cause and what to do next. A
-/// broken precondition is no Error but std::invalid_argument.
+/// broken precondition is std::invalid_argument instead.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
@@ -25,7 +25,7 @@ class Error : public std::runtime_error {
   ErrorCode code_;
 };
 
-/// A stop token was set: there is no answer because nobody waits for one, not because none exists.
+/// A stop was requested, so no result was computed. Does not mean that there is no result.
 struct Stopped : Error {
   explicit Stopped(const std::string& message) : Error(ErrorCode::Cancelled, message) {}
 };

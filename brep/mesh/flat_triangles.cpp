@@ -1,8 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A triangle without area has its three points in a line, so its long side carries the middle point: the
-// triangle beyond that side, cut in two at the middle point, covers both. Where the neighbour's far point is
-// in the line as well the two that come of it are flat again, so exchanges are counted: each takes a point
-// off a line of n of them at the best, n at the worst.
+// SPDX-License-Identifier: AGPL-3.0-or-later The three points of a triangle without area are collinear, so
+// its middle point lies on its long side: the neighbour at that side, divided at the middle point, covers
+// both. If the neighbour's far point is collinear too, the two new triangles are flat again. Therefore
+// exchanges are counted: reducing a line of n points by one takes one exchange at best, n at worst.
 #include "brep/mesh/flat_triangles.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -21,8 +20,8 @@ Kernel::Point_3 exact(const Point& p) {
   return {p[0], p[1], p[2]};
 }
 
-/// Exact. Most triangles are told by their rounded doubled area: differences of coordinates and products of
-/// them are off by less than eight roundings of the longest sides' product.
+/// Exact. For most triangles the rounded doubled area decides: its error is less than eight roundings of the
+/// product of the longest sides.
 template <typename Point>
 bool is_flat(const Point& p, const Point& q, const Point& r) {
   assert(std::isfinite(p[0] + p[1] + p[2] + q[0] + q[1] + q[2] + r[0] + r[1] + r[2]));

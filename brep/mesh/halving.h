@@ -11,11 +11,11 @@
 
 namespace octotomy::brep {
 
-/// Nodes of a binary tree over `count` items that is halved, the first half the smaller, down to leaves of at
-/// most `leaf_size`: so that halves can be laid out in preorder before they are built, and built in parallel.
+/// The number of nodes of a binary tree over `count` items, halved (first half smaller) down to leaves of at
+/// most `leaf_size`. With it, halves are placed in preorder before they are built, and built in parallel.
 /// Cost: log n.
 inline std::uint32_t halving_nodes(std::uint32_t count, std::uint32_t leaf_size) {
-  // Halves differ by one at most, so that each level has two sizes only, `small` and one more.
+  // Halves differ by at most one, so each level has only two sizes, `small` and `small` + 1.
   std::uint64_t nodes = 0, small = count, small_count = 1, large_count = 0;
   while (small_count + large_count > 0) {
     nodes += small_count + large_count;
@@ -29,20 +29,21 @@ inline std::uint32_t halving_nodes(std::uint32_t count, std::uint32_t leaf_size)
   return static_cast<std::uint32_t>(nodes);
 }
 
-/// An item of a tree, by a point that stands for it.
+/// An item of a tree, represented by a point.
 struct Centred {
   glm::dvec3 centre_mm{0.0};
   std::uint32_t number = 0;
 };
 
-/// Builds such a tree over items, each node split at the median centre along its longest axis, equal centres
-/// by number. Calls leaf(node, begin, end) for each leaf, whose items stand at begin .. end - 1, and
-/// inner(node, second) for each other node after its children, the next one and `second`; in parallel.
-/// Precondition: no two items of one number. The same on any number of threads. Cost: n log n.
+/// Builds such a tree over items. Each node is split at the median centre along its longest axis; equal
+/// centres are ordered by number. Calls leaf(node, begin, end) for each leaf, whose items are begin .. end -
+/// 1, and inner(node, second) for each other node after its children, which are `node` + 1 and `second`; in
+/// parallel. Precondition: item numbers are unique. The result is the same on any number of threads. Cost: n
+/// log n.
 template <typename Leaf, typename Inner>
 void halve(std::vector<Centred>& items, std::uint32_t leaf_size, const Leaf& leaf, const Inner& inner,
            std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
-  constexpr std::uint32_t parallel_size = 8192;  // below it halves are built one after the other
+  constexpr std::uint32_t parallel_size = 8192;  // smaller halves are built one after the other
   assert(begin < end && end <= items.size());
   if (end - begin <= leaf_size) {
     leaf(self, begin, end);
@@ -63,7 +64,7 @@ void halve(std::vector<Centred>& items, std::uint32_t leaf_size, const Leaf& lea
                                                                      : a.number < b.number;
                      });
   };
-  // A constant axis spares each comparison the choice.
+  // With a constant axis, comparisons need no branch on the axis.
   if (axis == 0)
     part_along(std::integral_constant<int, 0>());
   else if (axis == 1)

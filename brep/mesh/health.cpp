@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 gather the sides of all triangles by edge; 2 count edges, fans, shells and duplicates from the sides of
-// each; 3 count degenerate triangles; 4 place each shell among the others; 5 find the triangles that
-// intersect. Works on triangles rather than halfedges so that what is not manifold can be reported.
+// 1 collect the sides of all triangles by edge; 2 count edges, fans, shells and duplicates from these; 3
+// count degenerate triangles; 4 find which shells enclose each shell; 5 find the triangles that intersect.
+// Works on triangles instead of halfedges, so that non-manifold meshes can be examined.
 #include "brep/mesh/health.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -65,7 +65,7 @@ void check_points(const Triangles& triangles) {
   throw Error(ErrorCode::Input, "triangle " + std::to_string(first) + " has a point that is not finite");
 }
 
-/// The first triangle that each of the findings is about.
+/// The first triangle of each finding.
 struct Offenders {
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t boundary = none, nonmanifold_edge = none, nonmanifold_vertex = none, misoriented = none,
@@ -74,11 +74,11 @@ struct Offenders {
   static void note(std::uint32_t& first, std::uint32_t triangle) { first = std::min(first, triangle); }
 };
 
-/// What a thread finds of the edges that it visits.
+/// The counts of one thread over the edges that it visits.
 struct EdgeTally {
   std::size_t edges = 0, open = 0, nonmanifold = 0, misoriented = 0, duplicates = 0;
   Offenders first;
-  /// The sides of edges of more than two triangles, or of two that run along it the same way.
+  /// The sides of edges with more than two triangles, or with two of the same direction.
   std::vector<Side> irregular;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> thirds;  ///< scratch
 
@@ -96,7 +96,7 @@ struct EdgeTally {
   }
 };
 
-/// Counts the pairs of triangles with the same points among those that share an edge.
+/// Counts the pairs of triangles with the same three points among those at one edge.
 void count_duplicates(const Triangles& triangles, const Side* begin, const Side* end, EdgeTally& tally) {
   // A triangle is counted at the edge of its two lowest points.
   auto& thirds = tally.thirds;
@@ -107,7 +107,7 @@ void count_duplicates(const Triangles& triangles, const Side* begin, const Side*
   }
   if (thirds.size() < 2) return;
   std::sort(thirds.begin(), thirds.end());
-  // One that repeats a point has an edge twice.
+  // A triangle that repeats a point has an edge twice.
   thirds.erase(std::unique(thirds.begin(), thirds.end()), thirds.end());
   std::size_t earlier = 0;
   for (std::size_t i = 1; i < thirds.size(); ++i) {
@@ -117,7 +117,8 @@ void count_duplicates(const Triangles& triangles, const Side* begin, const Side*
   }
 }
 
-/// Visits all edges; `opposite` is the other side of those that two triangles run along in opposite ways.
+/// Visits all edges. Sets `opposite` for edges of two triangles with opposite directions: the other
+/// triangle's side.
 EdgeTally visit_edges(const Triangles& triangles, std::vector<std::uint32_t>& opposite) {
   opposite.assign(3 * triangles.faces.size(), Linked::none);
   tbb::enumerable_thread_specific<EdgeTally> tallies;
@@ -151,7 +152,7 @@ EdgeTally visit_edges(const Triangles& triangles, std::vector<std::uint32_t>& op
   return whole;
 }
 
-/// By point, the fans about it: triangles joined by any edge at the point.
+/// The number of fans at each point: sets of triangles joined by edges at the point.
 std::vector<std::uint32_t> count_fans(const Triangles& triangles, const std::vector<std::uint32_t>& opposite,
                                       const std::vector<Side>& irregular) {
   std::vector<std::uint32_t> count(triangles.points_mm.size(), 0);
@@ -177,7 +178,7 @@ std::vector<std::uint32_t> count_fans(const Triangles& triangles, const std::vec
   return count;
 }
 
-/// The shell of each triangle, named by its first triangle: those joined by edges.
+/// The shell of each triangle (triangles joined by edges), identified by its first triangle.
 std::vector<std::uint32_t> shells_of(const std::vector<std::uint32_t>& opposite,
                                      const std::vector<Side>& irregular) {
   DisjointSets shells(opposite.size() / 3);
@@ -192,7 +193,7 @@ std::vector<std::uint32_t> shells_of(const std::vector<std::uint32_t>& opposite,
   return shell;
 }
 
-/// How many parts hang together by points.
+/// The number of parts that are connected by points.
 std::size_t count_components(const Triangles& triangles, const std::vector<std::uint32_t>& fan_count) {
   DisjointSets bodies(triangles.points_mm.size());
   for (const auto& face : triangles.faces) {
@@ -204,7 +205,8 @@ std::size_t count_components(const Triangles& triangles, const std::vector<std::
   return count;
 }
 
-/// Counts what edges and vertices tell; returns the shell of each triangle, named by its first triangle.
+/// Fills the counts of edges and vertices. Returns the shell of each triangle, identified by its first
+/// triangle.
 std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health& health,
                                              Offenders& offenders) {
   std::vector<std::uint32_t> opposite;
@@ -226,7 +228,7 @@ std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health&
 
   std::vector<std::uint32_t> shell = shells_of(opposite, edges.irregular);
   for (std::uint32_t f = 0; f < shell.size(); ++f) health.shells += shell[f] == f;
-  // With one fan about each point, what hangs together by points does so by edges.
+  // If each point has one fan, parts connected by points are also connected by edges.
   health.components =
       health.nonmanifold_vertices == 0 ? health.shells : count_components(triangles, fan_count);
   health.faces = triangles.faces.size();
@@ -235,7 +237,7 @@ std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health&
   return shell;
 }
 
-/// For each point in use the first in use at its place; others are named by their own number.
+/// For each point in use, the first point in use at its position; for other points, their own number.
 std::vector<std::uint32_t> first_in_use(const Triangles& triangles) {
   std::vector<std::uint8_t> used(triangles.points_mm.size(), 0);
   for (const auto& face : triangles.faces)
@@ -255,7 +257,7 @@ std::vector<std::uint32_t> first_in_use(const Triangles& triangles) {
   return first;
 }
 
-/// Counts points that stand on others, and the boundary edges that end when those become one.
+/// Counts points that coincide with others, and the boundary edges that merging these would close.
 void count_coincident(const Triangles& triangles, const std::vector<std::uint32_t>& first, Health& health) {
   for (std::uint32_t v = 0; v < first.size(); ++v) health.coincident_points += first[v] != v;
   if (health.coincident_points == 0 || health.boundary_edges == 0) return;
@@ -299,16 +301,16 @@ std::vector<std::uint8_t> mark_degenerate(const Triangles& triangles, Health& he
   return degenerate;
 }
 
-/// The total volume, and whether every shell is right once all triangles are turned over.
+/// The total volume, and whether every shell would be correct if all triangles were reversed.
 struct PlacedShells {
   double volume_mm3 = 0.0;
   bool all_face_inward = false;
-  std::size_t overlapping = 0;  ///< shells turned outward whose probe lies within others turned outward
+  std::size_t overlapping = 0;  ///< outward shells whose probe lies within other outward shells
 };
 
-/// Counts shells on the wrong side of the others: the shells around one must add up to no winding where it is
-/// turned outward, to one where it is turned inward. Needs a closed, manifold, consistently wound mesh, and a
-/// tree where there are several shells.
+/// Counts misplaced shells: the windings of the shells around a shell must add up to zero if it faces
+/// outward, to one if it faces inward. Needs a closed, manifold, consistently wound mesh, and a tree if there
+/// are several shells.
 PlacedShells place_shells(const Triangles& triangles, const std::vector<std::uint32_t>& first,
                           const std::vector<std::uint32_t>& shell, const MortonTree* tree, Health& health,
                           Offenders& offenders) {
@@ -316,7 +318,7 @@ PlacedShells place_shells(const Triangles& triangles, const std::vector<std::uin
   PlacedShells placed{0.0, true, 0};
   for (const ShellPlace& place : shell_places({triangles, first, shell}, tree)) {
     placed.volume_mm3 += place.volume_mm3;
-    // Turned over, volume and winding change their signs.
+    // Reversing all triangles changes the signs of volume and winding.
     placed.all_face_inward = placed.all_face_inward && place.volume_mm3 != 0.0 &&
                              place.winding == (place.volume_mm3 < 0.0 ? 0 : -1);
     if (place.winding == (place.volume_mm3 > 0.0 ? 0 : 1)) continue;
@@ -336,7 +338,7 @@ void test_intersections(const Triangles& triangles, const MortonTree& tree,
     health.crossing.emplace_back(static_cast<int>(f), static_cast<int>(g));
 }
 
-/// " at (12.5, -80.25, 3) mm", where a triangle's middle is.
+/// The position of a triangle's middle: " at (12.5, -80.25, 3) mm".
 std::string place_of(const Triangles& triangles, std::uint32_t triangle) {
   assert(triangle < triangles.faces.size());
   const auto& [a, b, c] = triangles.faces[triangle];

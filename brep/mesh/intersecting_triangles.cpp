@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 keep the triangles that reach into the box both surfaces have in common; 2 lay a tree of boxes over those
-// of each; 3 descend both trees together to pairs of overlapping boxes; 4 test those pairs by exact
-// predicates.
+// 1 keep the triangles that reach into the common box of both surfaces; 2 build a tree of boxes over those of
+// each; 3 descend both trees together to pairs of overlapping boxes; 4 test those pairs by exact predicates.
 #include "brep/mesh/intersecting_triangles.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -56,7 +55,7 @@ std::vector<std::uint32_t> marked(const std::vector<std::uint8_t>& marks) {
   return numbers;
 }
 
-/// The triangles that reach into the box.
+/// The triangles whose boxes overlap `room`.
 std::vector<std::uint32_t> reaching(const Triangles& surface, const Box& room) {
   std::vector<std::uint8_t> reaches(surface.faces.size(), 0);
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(reaches.size()), 4096),
@@ -94,7 +93,7 @@ IntersectingTriangles intersecting_triangles(const Triangles& a, const Triangles
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       assert(pairs[i].first < a.faces.size() && pairs[i].second < b.faces.size());
       const Kernel::Triangle_3 s = exact(a, pairs[i].first), t = exact(b, pairs[i].second);
-      // The trees' boxes are wider than the triangles'.
+      // Tests the triangles' own boxes, because the trees' boxes are larger.
       meets[i] = s.is_degenerate() || t.is_degenerate()
                      ? box_of(a, pairs[i].first).overlaps(box_of(b, pairs[i].second))
                      : CGAL::do_intersect(s, t);

@@ -8,16 +8,16 @@
 
 namespace octotomy::brep {
 
-/// Triangles of each surface that have a point in common with one of the other, ascending.
+/// Triangles of each surface that share a point with a triangle of the other, ascending.
 struct IntersectingTriangles {
   std::vector<std::uint32_t> of_a, of_b;
 };
 
-/// Finds them exactly, touching ones too. Triangles without area count as meeting whatever their boxes
-/// overlap. Precondition: all points are finite. The same on any number of threads. Cost: linear in the
-/// triangles but for those in both surfaces' boxes, which are sorted; about 5 ms for 100k on two cores.
-/// Source: trees over a Morton curve, after Lauterbach et al., "Fast BVH construction on GPUs", 2009,
-/// descended together.
+/// Finds these triangles exactly, including touching ones. A triangle without area counts as meeting every
+/// triangle whose box overlaps its own. Precondition: all points are finite. The result is the same on any
+/// number of threads. Cost: linear in the triangles, except for sorting those in both surfaces' boxes; about
+/// 5 ms for 100k on two cores. Source: trees over a Morton curve, after Lauterbach et al., "Fast BVH
+/// construction on GPUs", 2009, descended together.
 IntersectingTriangles intersecting_triangles(const Triangles& a, const Triangles& b);
 
 }  // namespace octotomy::brep

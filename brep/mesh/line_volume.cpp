@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 turn both surfaces about x and deal their triangles out to slabs of rows; 2 for each row that a triangle
-// passes, list the lines between its two sides there with the place where they cross it; 3 deal the crossings
-// of a row out to its lines; 4 follow each line and sum the lengths inside.
+// 1 rotate both surfaces about x and distribute their triangles to slabs of rows; 2 for each row that a
+// triangle crosses, list the lines between its two sides with their crossing points; 3 distribute the
+// crossings of a row to its lines; 4 follow each line and sum the lengths inside.
 #include "brep/mesh/line_volume.h"
 
 #include <algorithm>
@@ -22,10 +22,10 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::int64_t rows_a_slab = 8;
-/// A million lines cross up to 64 layers so often; surfaces of more are passed by fewer lines.
+/// The crossings of a million lines with 64 layers. Surfaces with more layers are sampled by fewer lines.
 constexpr double most_crossings = 0x1p26;
 
-/// Where a line of a row crosses a triangle.
+/// A crossing of a line of a row and a triangle.
 struct Hit {
   double x;
   std::uint32_t column;
@@ -48,8 +48,8 @@ struct Lines {
   }
 };
 
-/// The points turned about x, so that flat sides along the axes, where rows of lines all pass or all miss,
-/// are oblique to the rows.
+/// The surface rotated about x, so that flat faces along the axes, which whole rows of lines would either hit
+/// or miss, are oblique to the rows.
 Triangles turned(const Triangles& surface) {
   constexpr double angle_rad = 0.6180339887;
   const double c = std::cos(angle_rad), s = std::sin(angle_rad);
@@ -62,7 +62,7 @@ Triangles turned(const Triangles& surface) {
 
 Lines lines_over(const Triangles& a, const Triangles& b, std::size_t count) {
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-  double passed_mm2 = 0.0;  // by all lines together, an area as often as it has layers
+  double passed_mm2 = 0.0;  // area crossed by all lines, each layer counted
   for (const Triangles* surface : {&a, &b})
     for (const auto& face : surface->faces) {
       for (const std::uint32_t v : face) {
@@ -78,7 +78,7 @@ Lines lines_over(const Triangles& a, const Triangles& b, std::size_t count) {
   lines.spacing = std::sqrt(extent.y * extent.z / static_cast<double>(count));
   lines.spacing = std::max(lines.spacing, std::max(extent.y, extent.z) / static_cast<double>(count));
   lines.spacing = std::max(lines.spacing, std::sqrt(passed_mm2 / most_crossings));
-  // Anything but a simple fraction, so that planes of round coordinates are cut inside.
+  // Not a simple fraction, so that lines avoid edges and planes at round coordinates.
   lines.low_y = low.y + 0.4159265358 * lines.spacing;
   lines.low_z = low.z + 0.5182818284 * lines.spacing;
   lines.columns = static_cast<std::int64_t>(extent.y / lines.spacing) + 1;
@@ -98,7 +98,7 @@ void add_hits(const std::array<glm::dvec3, 3>& t, std::uint8_t surface, const Li
                     static_cast<std::int8_t>(crossing->enters), surface});
 }
 
-/// The hits of one row by their lines, and those of a line by rising x.
+/// The hits of one row, ordered by line and then by x.
 class RowOfHits {
  public:
   explicit RowOfHits(const Lines& lines) : ends_(static_cast<std::size_t>(lines.columns)) {}
@@ -122,7 +122,7 @@ class RowOfHits {
   }
 
  private:
-  std::vector<std::size_t> ends_;  // of each line's hits
+  std::vector<std::size_t> ends_;  // end of each line's hits
   std::vector<Hit> sorted_;
 };
 
@@ -131,7 +131,7 @@ struct Sums {
   std::size_t lines = 0, open_lines = 0;
 };
 
-/// The lengths along one line, from its hits by rising x.
+/// Adds the lengths along one line, from its hits in order of x.
 void follow(std::span<const Hit> line, std::int64_t row, Sums& sums) {
   ++sums.lines;
   std::array<int, 2> winding{};
@@ -150,7 +150,7 @@ void follow(std::span<const Hit> line, std::int64_t row, Sums& sums) {
   }
 }
 
-/// The triangles, by their numbers in a after b, that pass the rows of each slab.
+/// The triangles that cross the rows of each slab, numbered with those of b after those of a.
 std::vector<std::vector<std::uint32_t>> deal(const Triangles& a, const Triangles& b, const Lines& lines) {
   std::vector<std::vector<std::uint32_t>> slabs(
       static_cast<std::size_t>((lines.rows + rows_a_slab - 1) / rows_a_slab));

@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Sums run over blocks of 64 faces, term by term, then over the blocks in pairs: the error grows with 64 and
-// log n instead of n (Higham, "The accuracy of floating point summation", 1993), and no sum knows how many
-// threads there were.
+// SPDX-License-Identifier: AGPL-3.0-or-later Sums run over blocks of 64 faces, term by term, then over the
+// blocks in pairs: the error grows with 64 and log n instead of n (Higham, "The accuracy of floating point
+// summation", 1993), and sums do not depend on the number of threads.
 #include "brep/mesh/measure.h"
 
 #include <algorithm>
@@ -20,7 +19,7 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::size_t block_size = 64;
-/// What a thread takes at a time: some 100 us of work.
+/// Blocks per task: about 100 us of work.
 constexpr std::size_t blocks_a_task = 128;
 
 template <typename Term>
@@ -59,7 +58,7 @@ struct Corners {
   glm::dvec3 a, b, c;
 };
 
-/// Where triangles come from: a mesh or a list.
+/// Access to triangles of a mesh or a list.
 struct MeshCorners {
   const Mesh& mesh;
   std::size_t count() const { return mesh.n_faces(); }
@@ -88,7 +87,7 @@ struct ListCorners {
     return {triangles.points_mm[face[0]], triangles.points_mm[face[1]], triangles.points_mm[face[2]]};
   }
 
-  /// A list does not know which points are in use but by its triangles.
+  /// In a list only the triangles show which points are in use.
   std::size_t point_count() const { return count(); }
   template <typename Visit>
   void visit_point(std::size_t i, const Visit& visit) const {
@@ -129,7 +128,7 @@ Extents extents_of(const Source& source) {
   return extents;
 }
 
-/// The cone from a point to a triangle.
+/// The volume of the cone from a point to a triangle.
 double cone_mm3(const Corners& t, const glm::dvec3& tip) {
   return glm::dot(t.a - tip, normal_of(t)) / 6.0;
 }
@@ -144,7 +143,7 @@ Size size_from(const Source& source) {
   if (source.count() == 0) return {};
   const Extents extents = extents_of(source);
   const glm::dvec3 tip = extents.centre();
-  // Volume and area in one pass, as reading the points is the dearer part.
+  // Computes volume and area in one pass, because reading the points dominates the cost.
   const auto sums = blockwise_sum<glm::dvec2>(source.count(), [&](std::size_t f) {
     const Corners t = source(f);
     const glm::dvec3 normal = normal_of(t);
@@ -153,12 +152,12 @@ Size size_from(const Source& source) {
   return {sums.x, sums.y, extents.low, extents.high};
 }
 
-/// Half of length times unsigned angle between the faces' normals n and m.
+/// Half the edge's length times the unsigned angle between the faces' normals n and m.
 double edge_curvature_mm(const glm::dvec3& n, const glm::dvec3& m, const glm::dvec3& along) {
   return 0.5 * glm::length(along) * std::abs(dihedral_angle(n, m, along));
 }
 
-/// Edges with one triangle count nothing. `normals` are in the order of the faces.
+/// Edges with one triangle are skipped. `normals` are in the order of the faces.
 double absolute_mean_curvature_mm(const MeshCorners& source, const std::vector<glm::dvec3>& normals) {
   const Mesh& mesh = source.mesh;
   assert(normals.size() == mesh.n_faces());
@@ -204,8 +203,8 @@ glm::dvec3 products_of(const glm::dvec3& p, const glm::dvec3& q) {
   return 0.5 * glm::dvec3(p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x);
 }
 
-/// Over the cone from `tip`, about it: a tetrahedron's are V / 20 (sum of p p over its corners + s s), where
-/// s is their sum and the tip's p is zero.
+/// Second moments of the cone from `tip`, about `tip`. Those of a tetrahedron are V / 20 (sum of p p over its
+/// corners + s s), where s is the sum of the corners p and the tip's p is zero.
 SecondMoments second_moments(const Corners& t, const glm::dvec3& tip) {
   const glm::dvec3 a = t.a - tip, b = t.b - tip, c = t.c - tip, sum = a + b + c;
   const double share = cone_mm3(t, tip) / 20.0;
@@ -216,7 +215,8 @@ SecondMoments second_moments(const Corners& t, const glm::dvec3& tip) {
   return moments;
 }
 
-/// The tensor about the centroid, which stands at `arm` from where the moments were taken (Steiner).
+/// The tensor about the centroid, at distance `arm` from the point about which the moments were computed
+/// (Steiner).
 glm::dmat3 inertia_of(SecondMoments moments, double volume, const glm::dvec3& arm) {
   assert(volume != 0.0);
   moments.squares -= volume * arm * arm;
@@ -280,7 +280,7 @@ long euler_number(const Triangles& surface) {
   std::vector<std::uint8_t> used(surface.points_mm.size(), 0);
   for (const auto& face : surface.faces)
     for (const std::uint32_t v : face) used[v] = 1;
-  // Each triangle has three halves of edges.
+  // Each triangle has three half edges.
   return std::count(used.begin(), used.end(), 1) - static_cast<long>(surface.faces.size() / 2);
 }
 

@@ -7,7 +7,7 @@
 
 namespace octotomy::brep {
 
-/// A mesh's point as everything else has points.
+/// Converts a mesh's point to GLM.
 inline glm::dvec3 glm_of(const Mesh::Point& p) {
   return {p[0], p[1], p[2]};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 number the points' cells along the curve; 2 sort by that number, 12 bits at a time from the lowest;
-// 3 part the order where the curve leaves a cube, the largest first, and lay boxes over the runs.
+// 3 split the order where the curve leaves a cube, largest cubes first, and build boxes around the runs.
 #include "brep/mesh/morton_tree.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 constexpr int cell_bits = 20;  ///< of each axis
 constexpr int digit_bits = 12;
 
-/// 20 bits spread to every third.
+/// Spreads 20 bits to every third position.
 std::uint64_t spread(std::uint64_t bits) {
   assert(bits < (1u << cell_bits));
   bits = (bits | bits << 32) & 0x001f00000000ffffu;
@@ -31,7 +31,7 @@ std::uint64_t spread(std::uint64_t bits) {
 
 using Keyed = std::pair<std::uint64_t, std::uint32_t>;
 
-/// By key, equal ones in the order given: the same however many parts the threads take.
+/// Sorts by key; equal keys keep their order. The result does not depend on the number of threads.
 void sort_by_digits(std::vector<Keyed>& keyed) {
   constexpr std::size_t digits = 1u << digit_bits, least_part = 1u << 16;
   const std::size_t parts = std::clamp<std::size_t>(
@@ -98,7 +98,7 @@ MortonOrder morton_order(const std::vector<glm::dvec3>& points_mm) {
       [](const Bounds& a, const Bounds& b) {
         return Bounds(glm::min(a.first, b.first), glm::max(a.second, b.second));
       });
-  // Halves, as the whole extent of the largest doubles is none.
+  // Uses half the extent, because the extent itself may overflow for the largest doubles.
   const glm::dvec3 half = glm::max(0.5 * high - 0.5 * low, glm::dvec3(std::numeric_limits<double>::min()));
   std::vector<Keyed> keyed(points_mm.size());
   for_each_number(keyed.size(), [&, low = low](std::size_t i) {
@@ -164,7 +164,7 @@ void MortonTree::build(const MortonOrder& order) {
     runs[u].reserve(upper[u].end - upper[u].begin);
     append(order, upper[u].begin, upper[u].end, runs[u]);
   });
-  std::vector<std::uint32_t> first(upper.size() + 1, 0);  // node of each
+  std::vector<std::uint32_t> first(upper.size() + 1, 0);  // first node of each upper node
   for (std::size_t u = 0; u < upper.size(); ++u)
     first[u + 1] = first[u] + (upper[u].second != 0 ? 1 : static_cast<std::uint32_t>(runs[u].size()));
   nodes_.reserve(first.back());

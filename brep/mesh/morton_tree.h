@@ -17,8 +17,8 @@
 
 namespace octotomy::brep {
 
-/// An axis-aligned box in single precision, rounded outward: half of double precision's memory, and it misses
-/// nothing.
+/// An axis-aligned box in single precision, rounded outward: half the memory of doubles, and no overlap is
+/// missed.
 struct OuterBox {
   glm::vec3 low{std::numeric_limits<float>::infinity()};
   glm::vec3 high{-std::numeric_limits<float>::infinity()};
@@ -34,11 +34,11 @@ struct OuterBox {
     high = glm::max(high, other.high);
   }
   bool overlaps(const OuterBox& other) const {
-    // One branch: the processor would often predict six wrongly.
+    // A single branch, because six would often be mispredicted.
     return ((low.x <= other.high.x) & (other.low.x <= high.x) & (low.y <= other.high.y) &
             (other.low.y <= high.y) & (low.z <= other.high.z) & (other.low.z <= high.z)) != 0;
   }
-  /// Of two points of the boxes that are nearest.
+  /// The squared distance of the boxes' nearest points.
   double squared_distance(const OuterBox& other) const {
     const glm::dvec3 apart =
         glm::max(glm::max(glm::dvec3(low) - glm::dvec3(other.high), glm::dvec3(other.low) - glm::dvec3(high)),
@@ -47,38 +47,39 @@ struct OuterBox {
   }
 
  private:
-  /// As std::nextafter() towards infinity, of what is less, without a call.
+  /// std::nextafter() towards infinity for values below infinity, without a function call.
   static float next_above(float value) {
     const auto bits = std::bit_cast<std::uint32_t>(value + 0.0f);  // 0 for -0
     return std::bit_cast<float>((bits >> 31) == 0 ? bits + 1 : bits - 1);
   }
 };
 
-/// Points in the order of a Morton curve through their box, those of one cell by number.
+/// Points in the order of a Morton curve through their box; points of one cell in order of number.
 struct MortonOrder {
   std::vector<std::uint32_t> numbers;
   std::vector<std::uint64_t> cells;  ///< along the curve, ascending; 20 bits an axis, x lowest
 
-  /// Where a run of two and more is parted: at the largest cube's face that parts it, or in its middle where
-  /// all are of one cell. Cost: log n.
+  /// The position at which a run of two or more is split: at the face of the largest cube that divides it, or
+  /// in its middle if all points are in one cell. Cost: log n.
   std::size_t split(std::size_t begin, std::size_t end) const;
 };
 
-/// Precondition: all are finite. The same on any number of threads. Cost: linear.
+/// Precondition: all points are finite. The result is the same on any number of threads. Cost: linear.
 MortonOrder morton_order(const std::vector<glm::dvec3>& points_mm);
 
-/// Boxes over triangles along a Morton curve; a node stands for a run of the order. Building: linear; 28
-/// bytes a triangle and about 36 for the nodes. Source: Lauterbach et al., "Fast BVH construction on GPUs",
-/// 2009.
+/// A tree of boxes over triangles along a Morton curve; each node represents a run of the order. Building:
+/// linear; 28 bytes per triangle and about 36 for the nodes. Source: Lauterbach et al., "Fast BVH
+/// construction on GPUs", 2009.
 class MortonTree {
  public:
-  /// Of all triangles, or of some. Precondition: their points are finite.
+  /// A tree over all triangles, or over some. Precondition: their points are finite.
   explicit MortonTree(const Triangles& surface);
   MortonTree(const Triangles& surface, const std::vector<std::uint32_t>& faces);
 
   bool empty() const { return faces_.empty(); }
 
-  /// Calls visit(face) for each face whose box and whose nodes' boxes pass `reaches`.
+  /// Calls visit_face(face) for each face for which `reaches` is true for its box and for the boxes of its
+  /// nodes.
   template <typename Reaches, typename Visit>
   void visit(const Reaches& reaches, const Visit& visit_face) const {
     if (!empty()) visit_node(0, reaches, visit_face);
@@ -96,8 +97,8 @@ class MortonTree {
     if (!empty() && !other.empty()) between(0, other, 0, visit_pair);
   }
 
-  /// Calls visit(face of this, face of the other) for each pair whose boxes are as near as `limit_mm2()`, a
-  /// squared distance that may fall meanwhile; near ones come early. One after the other.
+  /// Calls visit_pair(face of this, face of the other) for each pair whose boxes are within `limit_mm2()`, a
+  /// squared distance that may decrease during the search. Nearer pairs tend to come first. Not parallel.
   template <typename Limit, typename Visit>
   void visit_near_pairs(const MortonTree& other, const Limit& limit_mm2, const Visit& visit_pair) const {
     if (!empty() && !other.empty()) near(0, other, 0, limit_mm2, visit_pair);
@@ -114,9 +115,9 @@ class MortonTree {
     std::uint32_t count() const { return end - begin; }
     bool is_leaf() const { return second == 0; }
   };
-  /// Lays nodes over the faces and their boxes, which stand in the order.
+  /// Builds nodes over the faces and their boxes, which are in Morton order.
   void build(const MortonOrder& order);
-  /// Appends the nodes of a run, its own first; children are numbered as the list is.
+  /// Appends the nodes of a run, its own node first; children have their indices in the list.
   void append(const MortonOrder& order, std::uint32_t begin, std::uint32_t end,
               std::vector<Node>& nodes) const;
 
@@ -207,7 +208,7 @@ class MortonTree {
   }
 
   std::vector<std::uint32_t> faces_;  ///< in the order
-  std::vector<OuterBox> boxes_;       ///< of the faces, in the order
+  std::vector<OuterBox> boxes_;       ///< boxes of the faces, in Morton order
   std::vector<Node> nodes_;           ///< a parent before its children
 };
 

@@ -10,9 +10,9 @@
 namespace octotomy::brep {
 namespace {
 
-/// How far the columns may be from orthonormal: their products are off by at most this. A matrix printed with
-/// ten digits is off by less than 2e-10 in each; a volume moved by one off by t changes by less than 3 t of
-/// itself, far below any bound that a voxel allows.
+/// Tolerance of orthonormality, for the products of the columns. In a matrix printed with ten digits each
+/// product errs by less than 2e-10. With an error t, a moved volume changes by less than the share 3 t, far
+/// below the resolution of voxels.
 constexpr double rigid_tolerance() {
   return 1e-9;
 }

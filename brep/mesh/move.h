@@ -8,7 +8,7 @@
 
 namespace octotomy::brep {
 
-/// The surface under a rigid motion, LPS to LPS. Throws std::invalid_argument where the matrix is not rigid.
+/// The surface moved by a rigid motion, LPS to LPS. Throws std::invalid_argument if the matrix is not rigid.
 Mesh moved(const Mesh& mesh, const glm::dmat4& moved_from_still);
 Triangles moved(const Triangles& triangles, const glm::dmat4& moved_from_still);
 

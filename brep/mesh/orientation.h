@@ -5,14 +5,14 @@
 
 namespace octotomy::brep {
 
-/// On which side of a plane or line a point lies, for the doubles as they stand: +1, -1, or 0 only where it
-/// lies on it. Precondition: all coordinates are finite. Cost: constant; exact numbers are
-/// called for only within rounding of 0. Source: CGAL's filtered predicates.
+/// The side of a plane or line on which a point lies, exactly for the given doubles: +1, -1, or 0 only if it
+/// lies on it. Precondition: all coordinates are finite. Cost: constant; exact numbers are used only within
+/// rounding of 0. Source: CGAL's filtered predicates.
 
-/// Of the plane through a, b, c; +1 where (b - a) x (c - a) points to.
+/// Side of the plane through a, b, c; +1 on the side to which (b - a) x (c - a) points.
 int orientation(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p);
 
-/// Of the line from a to b in their plane; +1 on the left.
+/// Side of the line from a to b in their plane; +1 on the left.
 int orientation(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p);
 
 }  // namespace octotomy::brep

@@ -19,7 +19,7 @@ glm::dvec3 unit(const glm::dvec3& v) {
   return length > 0.0 ? v / length : glm::dvec3(0.0);
 }
 
-/// The angle between two sides; atan2 keeps small ones exact where acos does not.
+/// The angle between two sides. For small angles atan2 is accurate and acos is not.
 double angle_between(const glm::dvec3& u, const glm::dvec3& v) {
   return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
 }
@@ -27,7 +27,7 @@ double angle_between(const glm::dvec3& u, const glm::dvec3& v) {
 }  // namespace
 
 struct OrientedSurface::Surface {
-  /// What lies across a triangle's sides and about its corners; side k runs from corner k to the next.
+  /// Normals of a triangle, its sides and its corners; side k runs from corner k to the next.
   struct Face {
     glm::dvec3 normal{0.0};
     std::array<std::uint32_t, 3> corners{}, across{};

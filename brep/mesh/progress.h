@@ -8,12 +8,12 @@
 
 namespace octotomy::brep {
 
-/// Watches and stops long work. The working function's own thread calls it, no other.
+/// Reports progress of long work and stops it. Only the working function's own thread calls it.
 struct Progress {
   std::stop_token stop = {};
   std::function<void(double fraction)> report = {};  ///< 0 to 1; may be empty
 
-  /// Reports the fraction done. Throws Stopped if the stop token is set.
+  /// Reports the fraction done. Throws Stopped if a stop is requested.
   void at(double fraction) const {
     if (stop.stop_requested()) throw Stopped("stopped before the work was done");
     if (report) report(fraction);

@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A triangle is passed where an odd number of its edges, projected along x, run past the point on one side;
-// each edge is judged from its lower end whichever triangle asks, so neighbours agree and no ray slips
-// between them.
+// SPDX-License-Identifier: AGPL-3.0-or-later A ray crosses a triangle if an odd number of its edges,
+// projected along x, pass the point on one side. Each edge is evaluated from its lower end, whichever
+// triangle it belongs to, so neighbours agree and no ray slips between them.
 #include "brep/mesh/ray_passing.h"
 
 #include "brep/mesh/orientation.h"
@@ -9,13 +8,13 @@
 namespace octotomy::brep {
 namespace {
 
-/// As the ray along x sees it.
+/// Projects along x, the direction of the ray.
 glm::dvec2 projected(const glm::dvec3& p) {
   return {p.y, p.z};
 }
 
-/// Whether the projected edge, which straddles the point's z by the half-open rule, runs past its larger y.
-/// Exactly, as all of passes(): one wrong crossing turns a whole part of a solid inside out.
+/// Whether the projected edge straddles the point's z (by the half-open rule) and passes the point on the
+/// side of larger y. Exact, because one wrong crossing would invert a whole part of a solid.
 bool edge_passes(const glm::dvec3& p, const glm::dvec3& from, const glm::dvec3& to) {
   if ((from.z <= p.z) == (to.z <= p.z)) return false;
   if (from.y <= p.y && to.y <= p.y) return false;
@@ -30,7 +29,7 @@ bool passes(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const
   if (!in_projection) return false;
   if (a.x <= p.x && b.x <= p.x && c.x <= p.x) return false;
   if (a.x > p.x && b.x > p.x && c.x > p.x) return true;
-  // Along +x the plane lies ahead where the point is not on the side that the normal says.
+  // The plane lies ahead along +x if the sign of the normal's x differs from the side of the point.
   const int normal_x = orientation(projected(a), projected(b), projected(c));
   return orientation(a, b, c, p) * normal_x < 0;
 }

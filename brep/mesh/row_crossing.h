@@ -9,24 +9,25 @@
 #include <optional>
 #include <utility>
 
-// Where lines along x cross a triangle, for volumes and insides along them. Where a row meets a side is
-// computed from the side's lower end whichever triangle asks, and the sign of a crossing follows from the
-// direction of that side, so that lines through a closed surface always leave it as often as they enter.
+// Crossings of lines along x and a triangle, for volumes and inside tests. The point where a row meets a side
+// is computed from the side's lower end, whichever triangle the side belongs to, and the sign of a crossing
+// follows from the direction of that side. Lines through a closed surface therefore leave it as often as they
+// enter it.
 
 namespace octotomy::brep {
 
 /// The lines along x at one height that cross a triangle: those from low_y up to, not including, high_y.
 struct RowCrossing {
-  double low_y = 0.0, low_x = 0.0;    ///< where the row meets the side of lower y
-  double high_y = 0.0, high_x = 0.0;  ///< and the other
+  double low_y = 0.0, low_x = 0.0;    ///< the point at which the row meets the side of lower y
+  double high_y = 0.0, high_x = 0.0;  ///< the point at which it meets the other side
   int enters = 1;                     ///< 1 where lines enter a closed surface there, -1 where they leave it
 
   bool has(double y) const { return y >= low_y && y < high_y; }
-  /// Where the line at y crosses. Precondition: has(y).
+  /// The x at which the line at y crosses. Precondition: has(y).
   double x_at(double y) const { return low_x + (y - low_y) / (high_y - low_y) * (high_x - low_x); }
 };
 
-/// Of the row at z; none where it passes the triangle by.
+/// The crossing of the row at z; none if it misses the triangle.
 inline std::optional<RowCrossing> row_crossing(const std::array<glm::dvec3, 3>& corners, double z) {
   struct Meeting {
     double y = 0.0, x = 0.0;
@@ -45,11 +46,12 @@ inline std::optional<RowCrossing> row_crossing(const std::array<glm::dvec3, 3>& 
   assert(count == 0 || count == 2);
   if (count < 2) return std::nullopt;
   if (met[1].y < met[0].y) std::swap(met[0], met[1]);
-  // Counter-clockwise in the plane of y and z, whose left side runs down, faces +x: there the line leaves.
+  // A triangle that is counter-clockwise in the plane of y and z has a left side that runs down, and faces
+  // +x: the line leaves there.
   return RowCrossing{met[0].y, met[0].x, met[1].y, met[1].x, met[0].upward ? 1 : -1};
 }
 
-/// The area of a triangle's shadow along x.
+/// The area of a triangle's projection along x.
 inline double shadow_mm2(const std::array<glm::dvec3, 3>& corners) {
   const glm::dvec3 u = corners[1] - corners[0], v = corners[2] - corners[0];
   return 0.5 * std::abs(u.y * v.z - u.z * v.y);

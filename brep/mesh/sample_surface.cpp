@@ -24,7 +24,7 @@ struct Grid {
 
   double count() const { return parts * parts; }
 
-  /// Tells `add` each part's centre and area.
+  /// Calls `add` with each part's centre and area.
   template <class Add>
   void each(const Add& add) const {
     const auto n = static_cast<int>(parts);
@@ -43,11 +43,11 @@ struct Grid {
 /// of a cell are at most half the spacing long, so its diameter is at most the spacing.
 struct Wedge {
   glm::dvec3 tip, foot, across;    ///< across: the short side, from the foot
-  double area_mm2, strips, cells;  ///< cells: of the strip at the short side, the furthest from the tip
+  double area_mm2, strips, cells;  ///< cells: those of the strip at the short side, furthest from the tip
 
   double cells_at(double share) const { return std::max(1.0, std::ceil(share * cells)); }
 
-  /// Infinite where it surely exceeds `most`.
+  /// The number of cells; infinite if it certainly exceeds `most`.
   double count(double most) const {
     if (area_mm2 == 0.0) return 0.0;
     if (!(strips * std::max(1.0, cells / 2.0) <= most)) return INFINITY;
@@ -56,7 +56,7 @@ struct Wedge {
     return sum;
   }
 
-  /// Tells `add` each cell's centre of gravity and area.
+  /// Calls `add` with each cell's centre of gravity and area.
   template <class Add>
   void each(const Add& add) const {
     if (area_mm2 == 0.0) return;
@@ -69,7 +69,8 @@ struct Wedge {
   }
 };
 
-/// The two halves beside the height over the longest side; their areas add up to `area_mm2`.
+/// The two halves of the triangle on both sides of the height over its longest side; their areas add up to
+/// `area_mm2`.
 std::array<Wedge, 2> wedges_of(const std::array<glm::dvec3, 3>& corners, double area_mm2, double spacing_mm) {
   const auto side_mm = [&](std::size_t k) { return glm::distance(corners[k], corners[(k + 1) % 3]); };
   std::size_t longest = 0;
@@ -87,16 +88,16 @@ std::array<Wedge, 2> wedges_of(const std::array<glm::dvec3, 3>& corners, double 
   return {half(a, share * area_mm2), half(b, (1.0 - share) * area_mm2)};
 }
 
-/// How a triangle is sampled.
+/// The subdivision by which a triangle is sampled.
 struct Split {
   Grid grid;
   std::array<Wedge, 2> wedges;
-  glm::dvec3 normal;  ///< twice the triangle's area long
+  glm::dvec3 normal;  ///< normal whose length is twice the triangle's area
   double longest_mm, count;
-  bool sliver = false;  ///< by its wedges, not by its grid
+  bool sliver = false;  ///< divided into wedges instead of a grid
 
-  /// No point of the triangle lies further than this from a sample: of a convex piece none lies further from
-  /// the centre of gravity than two thirds of the piece's diameter.
+  /// Upper bound on the distance of a point of the triangle from a sample: in a convex piece no point is
+  /// further from the centre of gravity than two thirds of the piece's diameter.
   double reach_mm(double spacing_mm) const {
     return 2.0 / 3.0 * (sliver ? spacing_mm : longest_mm / grid.parts);
   }

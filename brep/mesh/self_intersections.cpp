@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 part the triangles about hubs, points where many meet, from the others; 2 find the pairs that may meet:
-// of one hub by the arcs in which the hub sees them, all others by their boxes; 3 test each pair by exact
-// predicates, behind filters in doubles that part most. Invariant: two triangles with a common corner
-// meet elsewhere only in a direction in which that corner sees both.
+// 1 separate the triangles around hubs, points where many meet, from the others; 2 find the pairs that may
+// meet: those of one hub by the arcs that they cover as seen from the hub, all others by their boxes; 3 test
+// each pair by exact predicates, after filters in doubles that exclude most. Invariant: two triangles with a
+// common corner meet elsewhere only in a direction that both cover as seen from that corner.
 #include "brep/mesh/self_intersections.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -22,17 +22,17 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// Triangles about a point that make it a hub. Fewer make at most 32 pairs for each of them.
+/// From this number of triangles on, a point is a hub. Fewer triangles form at most 32 pairs each.
 constexpr std::uint32_t least_of_hub = 64;
 
-/// Whether two triangles meet elsewhere than in the corners or the side they share.
+/// Tests whether two triangles meet outside the corners or the side that they share.
 class MeetsElsewhere {
  public:
   explicit MeetsElsewhere(const Triangles& triangles) : triangles_(triangles) {}
 
   bool operator()(std::uint32_t f, std::uint32_t g) const {
     const auto &a = triangles_.faces[f], &b = triangles_.faces[g];
-    // Corners of each that the other has too, and one that it has not.
+    // The corners that both share, and a corner of each that the other does not have.
     std::size_t shared = 0, own_a = 0, own_b = 0, shared_a = 0, shared_b = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto at = std::find(b.begin(), b.end(), a[i]);
@@ -45,7 +45,7 @@ class MeetsElsewhere {
       shared_b = static_cast<std::size_t>(at - b.begin());
     }
     if (shared == 3) return true;
-    // Neither reaches through the other's plane: they meet in the corner they share at most.
+    // One does not reach through the other's plane: they meet at most in the shared corner.
     if (shared < 2 &&
         (is_beside(b, shared == 1 ? shared_b : 3, a) || is_beside(a, shared == 1 ? shared_a : 3, b)))
       return false;
@@ -80,14 +80,14 @@ class MeetsElsewhere {
     }
     return true;
   }
-  /// Which side of the line from p to q another point is certainly on, as seen along an axis.
+  /// The side of the line from p to q on which another point certainly is, as seen along an axis.
   static int seen_side(int axis, const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& other) {
     const int i = (axis + 1) % 3, j = (axis + 2) % 3;
     const double one = (q[i] - p[i]) * (other[j] - p[j]), two = (q[j] - p[j]) * (other[i] - p[i]);
     return sure_sign(one - two, std::abs(one) + std::abs(two));
   }
-  /// Whether the line of one of g's sides certainly parts g from f, as seen along the axis that sees g
-  /// widest, but for corners of both on the line.
+  /// Whether the line of one of g's sides certainly separates g from f, as seen along the axis along which g
+  /// is widest, except for corners of both on the line.
   bool is_apart(const Face& f, const Face& g) const {
     const glm::dvec3 seen = glm::abs(glm::cross(at(g[1]) - at(g[0]), at(g[2]) - at(g[0])));
     const int axis = seen.x >= seen.y && seen.x >= seen.z ? 0 : seen.y >= seen.z ? 1 : 2;
@@ -114,8 +114,8 @@ class MeetsElsewhere {
   const Triangles& triangles_;
 };
 
-/// Counts pairs of triangles and keeps the first of them, since there may be as many as the square of
-/// triangles.
+/// Counts pairs of triangles and stores only the first ones, because their number may be the square of the
+/// number of triangles.
 class FirstPairs {
  public:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
@@ -134,7 +134,7 @@ class FirstPairs {
     keep_first();
   }
   std::size_t count() const { return count_; }
-  const std::vector<Pair>& first() const { return first_; }  ///< ascending once others were added
+  const std::vector<Pair>& first() const { return first_; }  ///< ascending after merging with other counts
 
  private:
   void keep_first() {
@@ -145,12 +145,12 @@ class FirstPairs {
   }
 
   std::size_t most_, count_ = 0;
-  /// No pair from here on is among the first.
+  /// Pairs from here on are not among the first.
   Pair bound_{std::numeric_limits<std::uint32_t>::max(), std::numeric_limits<std::uint32_t>::max()};
   std::vector<Pair> first_;
 };
 
-/// A point where many triangles meet, and triangles about it.
+/// A point where many triangles meet, and the triangles around it.
 struct Hub {
   std::uint32_t point = 0;
   std::vector<std::uint32_t> faces;
@@ -185,7 +185,7 @@ Parted parted_by_hubs(const Triangles& triangles, const std::vector<std::uint8_t
   return parted;
 }
 
-/// Boxes to make a tree of, each as a triangle between its ends.
+/// Boxes for a tree, each stored as a triangle between its opposite corners.
 class BoxList {
  public:
   void add(const glm::dvec3& low, const glm::dvec3& high) {
@@ -199,7 +199,8 @@ class BoxList {
   Triangles boxes_;
 };
 
-/// The direction of one point from another as a unit vector; none where their difference has no double.
+/// The direction of one point from another as a unit vector; none if their difference is not a finite double
+/// or is zero.
 std::optional<glm::dvec3> direction(const glm::dvec3& from, const glm::dvec3& to) {
   const glm::dvec3 apart = to - from, size = glm::abs(apart);
   const double largest = std::max({size.x, size.y, size.z});
@@ -207,9 +208,9 @@ std::optional<glm::dvec3> direction(const glm::dvec3& from, const glm::dvec3& to
   return glm::normalize(apart / largest);
 }
 
-/// Boxes of the arcs of great circles in which a hub sees its triangles. An arc bulges from its chord c by
-/// 1 - sqrt(1 - c^2 / 4) at most, which is no more than c^2 / 4. A direction is off by less than eight
-/// epsilons: one for the difference and the quotient, the others for the unit length.
+/// A tree over boxes of the arcs of great circles that triangles cover as seen from a hub. An arc deviates
+/// from its chord c by at most 1 - sqrt(1 - c^2 / 4), which is at most c^2 / 4. The error of a direction is
+/// less than eight epsilons: one for the difference and the quotient, the others for the unit length.
 MortonTree tree_of_arcs(const Triangles& triangles, const Hub& hub) {
   constexpr double off = 16.0 * std::numeric_limits<double>::epsilon();
   const glm::dvec3& centre = triangles.points_mm[hub.point];

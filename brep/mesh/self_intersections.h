@@ -11,23 +11,23 @@
 
 namespace octotomy::brep {
 
-/// Pairs of triangles of one surface that meet elsewhere than in a shared corner or side.
+/// Pairs of triangles of one surface that meet outside a shared corner or side.
 struct SelfIntersections {
   std::size_t count = 0;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> first;  ///< lower triangle first, ascending
 };
 
-/// A surface to find them in. Precondition: all points are finite.
+/// The surface to search. Precondition: all points are finite.
 struct IntersectionSearch {
   const Triangles& triangles;
-  const MortonTree& tree;                       ///< of all triangles
-  const std::vector<std::uint8_t>& degenerate;  ///< marks the triangles without area, which are left out
-  std::size_t most_first = 100;                 ///< most pairs that are kept beside their count
+  const MortonTree& tree;                       ///< tree over all triangles
+  const std::vector<std::uint8_t>& degenerate;  ///< marks the triangles without area, which are excluded
+  std::size_t most_first = 100;                 ///< largest number of pairs to store in `first`
 };
 
-/// Finds the pairs exactly, of triangles with the same points too. The same on any number of threads. Cost:
-/// n log n and constant for each pair of triangles whose boxes overlap. Of 64 and more triangles about one
-/// point only those pairs count that the point sees in about the same direction.
+/// Finds the pairs exactly, including triangles with the same points. The result is the same on any number of
+/// threads. Cost: n log n, and constant for each pair of triangles whose boxes overlap. Among 64 or more
+/// triangles around one point, only pairs in about the same direction from the point are tested.
 SelfIntersections self_intersections(const IntersectionSearch& search);
 
 }  // namespace octotomy::brep

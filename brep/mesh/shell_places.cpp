@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 find the volume, the box and the probe of each shell; 2 for each probe find the shells whose boxes hold
-// it; 3 where there are any, cast a ray along x as far as their boxes reach, and count how it passes their
-// triangles. A closed shell whose box does not hold the probe does not wind about it.
+// 1 find the volume, the box and the probe of each shell; 2 for each probe find the shells whose boxes
+// contain it; 3 if there are any, cast a ray along x to the end of their boxes and count its crossings with
+// their triangles. A closed shell whose box does not contain the probe does not wind around it.
 #include "brep/mesh/shell_places.h"
 
 #include <algorithm>
@@ -15,14 +15,14 @@
 namespace octotomy::brep {
 namespace {
 
-/// What places a shell among the others.
+/// The data by which a shell's place among the others is found.
 struct Probe {
   ShellPlace place;
-  /// The shell's point of largest x, one that no other shell shares where there is any.
+  /// The shell's point of largest x; if possible, one that no other shell shares.
   glm::dvec3 p_mm{-std::numeric_limits<double>::infinity()};
   bool touches = true;
-  glm::dvec3 low_mm{std::numeric_limits<double>::infinity()};    ///< of the shell's box
-  glm::dvec3 high_mm{-std::numeric_limits<double>::infinity()};  ///< of it too
+  glm::dvec3 low_mm{std::numeric_limits<double>::infinity()};    ///< lower end of the shell's box
+  glm::dvec3 high_mm{-std::numeric_limits<double>::infinity()};  ///< upper end of the shell's box
 
   void add(const glm::dvec3& corner_mm, bool is_shared) {
     low_mm = glm::min(low_mm, corner_mm);
@@ -37,16 +37,16 @@ struct Probe {
   }
 };
 
-/// For each triangle which of the shells it belongs to, counted in the order of their names.
+/// The number of each triangle's shell, counted in order of the shells' first triangles.
 std::vector<std::uint32_t> number_shells(const std::vector<std::uint32_t>& shell) {
   std::vector<std::uint32_t> number(shell.size());
   std::uint32_t count = 0;
-  // A shell is named by its first triangle.
+  // A shell is identified by its first triangle.
   for (std::uint32_t f = 0; f < shell.size(); ++f) number[f] = shell[f] == f ? count++ : number[shell[f]];
   return number;
 }
 
-/// The probe of each shell, in the order of their names.
+/// The probe of each shell, in order of the shells' first triangles.
 std::vector<Probe> probes_of(const ShelledSurface& surface, const std::vector<std::uint32_t>& number) {
   const auto& [triangles, first, shell] = surface;
   const bool is_single = std::all_of(number.begin(), number.end(), [](std::uint32_t n) { return n == 0; });
@@ -60,7 +60,7 @@ std::vector<Probe> probes_of(const ShelledSurface& surface, const std::vector<st
     const auto point = [&, &triangles = triangles](std::size_t k) {
       return triangles.points_mm[triangles.faces[f][k]];
     };
-    // About the shell's first point, which keeps digits far from the origin.
+    // Sums relative to the shell's first point, which preserves digits far from the origin.
     const glm::dvec3 origin = triangles.points_mm[triangles.faces[shell[f]][0]];
     probe.place.volume_mm3 +=
         glm::dot(point(0) - origin, glm::cross(point(1) - origin, point(2) - origin)) / 6.0;
@@ -68,7 +68,7 @@ std::vector<Probe> probes_of(const ShelledSurface& surface, const std::vector<st
   return probes;
 }
 
-/// A tree of the shells' boxes, each as a triangle between its ends.
+/// A tree of the shells' boxes, each stored as a triangle between its opposite corners.
 MortonTree tree_of_boxes(const std::vector<Probe>& probes) {
   Triangles boxes;
   for (std::uint32_t i = 0; i < probes.size(); ++i) {
@@ -84,7 +84,7 @@ class Windings {
            const std::vector<Probe>& probes, const MortonTree& tree)
       : triangles_(triangles), number_(number), probes_(probes), tree_(tree), boxes_(tree_of_boxes(probes)) {}
 
-  /// How often the shells other than its own wind about a probe.
+  /// The winding number of all other shells around a probe.
   int about(std::uint32_t own) const {
     const glm::dvec3& p = probes_[own].p_mm;
     const double reach = reach_mm(own);
@@ -105,7 +105,7 @@ class Windings {
   }
 
  private:
-  /// The largest x of the other shells whose boxes hold a probe.
+  /// The largest x of the other shells whose boxes contain a probe.
   double reach_mm(std::uint32_t own) const {
     const glm::dvec3& p = probes_[own].p_mm;
     double reach = -std::numeric_limits<double>::infinity();

@@ -7,7 +7,7 @@
 
 namespace octotomy::brep {
 
-/// A number for people, to three digits.
+/// A number for messages, with three significant digits.
 inline std::string short_text(double value) {
   std::array<char, 32> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "%.3g", value);

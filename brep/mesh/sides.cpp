@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 count the sides of each lower point; 2 lay out their corners by it, in ascending order; 3 sort the few
-// sides of each point by the other.
+// 1 count the sides of each lower point; 2 store their corners by this point, in ascending order; 3 sort the
+// few sides of each point by the other point.
 #include "brep/mesh/sides.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ SidesOfPoints::SidesOfPoints(const Triangles& triangles)
       end_(triangles.points_mm.size(), 0),
       corners_(std::make_unique_for_overwrite<std::uint32_t[]>(3 * triangles.faces.size())) {
   const PointShares shares(triangles);
-  // Each thread takes the sides whose lower points are its own.
+  // Each thread processes the sides whose lower points are in its share.
   const auto each_side = [&](const auto& take) {
     shares.visit([&](std::uint32_t first, std::uint32_t end, const auto& each) {
       each([&](std::uint32_t f) {
@@ -43,7 +43,7 @@ SidesOfPoints::SidesOfPoints(const Triangles& triangles)
   std::uint32_t sum = 0;
   for (std::uint32_t& end : end_) {
     const std::uint32_t count = end;
-    end = sum;  // where the point's sides begin: laying them out takes it to their end
+    end = sum;  // the beginning of the point's sides; storing them moves it to their end
     sum += count;
   }
   each_side([&](std::uint32_t low, std::uint32_t corner) { corners_[end_[low]++] = corner; });

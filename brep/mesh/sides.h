@@ -16,7 +16,7 @@ namespace octotomy::brep {
 
 /// Side `corner % 3` of triangle `corner / 3`, from that corner to the next.
 struct Side {
-  std::uint32_t low, high, corner;  ///< its points, the lower number first
+  std::uint32_t low, high, corner;  ///< points, the lower number first, and the corner
   bool upward;                      ///< runs from the lower point number to the higher
 };
 
@@ -27,7 +27,7 @@ constexpr std::uint32_t previous_corner(std::uint32_t corner) {
   return corner % 3 == 0 ? corner + 2 : corner - 1;
 }
 
-/// The points of a surface shared out among the threads, as far as it goes without locks.
+/// Splits the points of a surface among threads without locks.
 class PointShares {
  public:
   /// Cost: linear, parallel.
@@ -35,8 +35,8 @@ class PointShares {
 
   /// Calls visit(first, end, each) for shares of the points, first..end - 1, from several threads. each(take)
   /// calls take(f), in ascending order, for all triangles with a point of the share and some others. Cost
-  /// beside the calls: the triangles once where they are about in the order of their points, else once a
-  /// share.
+  /// besides the calls: one pass over the triangles if they are roughly in the order of their points, else
+  /// one per share.
   template <typename Visit>
   void visit(const Visit& visit) const {
     const std::size_t points = triangles_.points_mm.size();
@@ -59,11 +59,11 @@ class PointShares {
     std::uint32_t low, high;
   };
   const Triangles& triangles_;
-  std::vector<Points> blocks_;  ///< of triangles: the ends of their points
+  std::vector<Points> blocks_;  ///< range of points of each block of triangles
 };
 
-/// The sides of triangles by the lower of their points. Preconditions: every triangle refers to points; 32
-/// bits number three corners of each. Cost: linear; 4 bytes a side and 4 a point.
+/// The sides of triangles by the lower of their points. Preconditions: every triangle refers to existing
+/// points; 32 bits suffice for three corners of each. Cost: linear; 4 bytes per side and 4 per point.
 class SidesOfPoints {
  public:
   explicit SidesOfPoints(const Triangles& triangles);
@@ -77,7 +77,7 @@ class SidesOfPoints {
  private:
   const Triangles& triangles_;
   std::vector<std::uint32_t> end_;            ///< by point, where its sides end among the corners
-  std::unique_ptr<std::uint32_t[]> corners_;  ///< that the sides leave
+  std::unique_ptr<std::uint32_t[]> corners_;  ///< the corner at which each side starts
 };
 
 /// Calls visit(begin, end) with the sides of each edge, in their order.
@@ -93,8 +93,8 @@ void each_edge(const std::vector<Side>& sides, const Visit& visit) {
   each_edge(sides.data(), sides.size(), visit);
 }
 
-/// The same from several threads, the edges in no order; those of one edge are ordered by `corner`.
-/// Preconditions as SidesOfPoints.
+/// The same from several threads, with edges in arbitrary order; the sides of one edge are ordered by
+/// `corner`. Preconditions are those of SidesOfPoints.
 template <typename Visit>
 void each_edge_in_parallel(const SidesOfPoints& sides, const Visit& visit) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides.point_count(), 4096), [&](const auto& range) {
@@ -112,9 +112,9 @@ void each_edge_in_parallel(const Triangles& triangles, const Visit& visit) {
   each_edge_in_parallel(SidesOfPoints(triangles), visit);
 }
 
-/// Calls begin(corner) for the first corner of each fan, the triangles about a point that are joined by
-/// sides, in ascending order, and place(corner) for each corner of it. `opposite` is as in Linked. Cost:
-/// linear.
+/// Calls begin(corner) for the first corner of each fan (the triangles around a point that are joined by
+/// sides), in ascending order, and place(corner) for each corner of the fan. `opposite` is as in Linked.
+/// Cost: linear.
 template <typename Begin, typename Place>
 void each_fan(const std::vector<std::uint32_t>& opposite, const Begin& begin, const Place& place) {
   std::vector<std::uint8_t> is_placed(opposite.size(), 0);
@@ -125,7 +125,7 @@ void each_fan(const std::vector<std::uint32_t>& opposite, const Begin& begin, co
   for (std::uint32_t first = 0; first < opposite.size(); ++first) {
     if (is_placed[first]) continue;
     begin(first);
-    // All round the point one way; at a boundary the rest of the fan lies the other way.
+    // Walks around the point in one direction; from a boundary, continues in the other direction.
     std::uint32_t turning = first;
     do {
       put(turning);
@@ -137,8 +137,8 @@ void each_fan(const std::vector<std::uint32_t>& opposite, const Begin& begin, co
   }
 }
 
-/// All sides, ordered by `low`, `high` and `corner`: those of one edge stand together. Preconditions as
-/// SidesOfPoints. Cost: linear where few triangles meet in a point, parallel; 16 bytes a side.
+/// All sides, ordered by `low`, `high` and `corner`: those of one edge are adjacent. Preconditions are those
+/// of SidesOfPoints. Cost: linear if few triangles meet in a point, parallel; 16 bytes per side.
 std::vector<Side> sorted_sides(const Triangles& triangles);
 
 }  // namespace octotomy::brep

@@ -39,13 +39,14 @@ void check_health(const Triangles& triangles) {
   if (!found.solid()) throw Error(ErrorCode::Geometry, "is not a solid: " + found.findings.front());
 }
 
-/// A value that is computed when it is first asked for.
+/// A value that is computed at its first use.
 template <typename Value>
 class Kept {
  public:
   template <typename Compute>
   const Value& get(const Compute& compute) {
-    // Isolated: a thread that waits for its parallel loop must not take up work that waits for this value.
+    // Isolated, because a thread that waits for its parallel loop must not run other tasks that wait for this
+    // value.
     std::call_once(once_, [&] { tbb::this_task_arena::isolate([&] { value_.emplace(compute()); }); });
     return *value_;
   }
@@ -70,7 +71,7 @@ struct Solid::State {
     check();
   }
 
-  // One of mesh and linked triangles is given, the other made of it.
+  // Either mesh or linked triangles are set at construction; the other is computed from it.
   mutable Kept<Mesh> mesh;
   mutable Kept<Linked> linked;
   const Linked& list() const {
@@ -114,7 +115,7 @@ const Size& Solid::size() const {
 }
 
 const Measures& Solid::measures() const {
-  // The order of a given mesh's edges is its own, and sums go by it.
+  // A given mesh has its own order of edges, which determines the rounding of sums.
   return state_->measures.get([&] { return state_->from_mesh ? measure(mesh()) : measure(linked()); });
 }
 

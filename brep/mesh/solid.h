@@ -14,47 +14,47 @@
 
 namespace octotomy::brep {
 
-/// What a solid's freedom from self-intersection rests on. Every solid is closed, and its triangles wind
-/// alike.
+/// The reason why a solid does not intersect itself. Every solid is closed and consistently wound.
 enum class Proof {
-  Health,        ///< health() has no finding, in exact arithmetic
-  Construction,  ///< its maker lets no triangles intersect; the maker's header says why
-  /// Made of solids by exact predicates, then rounded to doubles: a Boolean or a motion. Triangles thinner
+  Health,        ///< health(), in exact arithmetic, has no finding
+  Construction,  ///< the algorithm that made it excludes intersections; its header states why
+  /// Made from solids by exact predicates, then rounded to doubles: a Boolean or a motion. Triangles thinner
   /// than the rounding may overlap their neighbours.
   Rounded,
-  /// Only closed and wound alike: its points were moved one by one, or whole shells were chosen. Ask
-  /// health().
+  /// Only closed and consistently wound: its points were moved individually, or whole shells were selected.
+  /// Check with health().
   Connection,
 };
 
-/// The inside of a closed surface in LPS millimetres, or the empty set. An immutable value that is cheap to
-/// copy: copies share one state. Its mesh, size, measures and search tree are computed at the first call
-/// and kept, on any number of threads at once.
+/// The interior of a closed surface in LPS millimetres, or the empty set. An immutable value that is cheap to
+/// copy: copies share one state. Its mesh, size, measures and search tree are computed at the first call and
+/// cached; any number of threads may call.
 class Solid {
  public:
   /// The empty set: no triangles.
   Solid();
 
-  /// First call where the solid was made of triangles: as mesh_of(). Prefer triangles(), which cost less.
+  /// If the solid was made from triangles, the first call costs mesh_of(). Prefer triangles(), which is
+  /// cheaper.
   const Mesh& mesh() const;
-  /// A solid serves wherever a mesh does. The reference holds as long as a copy of this solid lives.
+  /// Converts to a mesh. The reference is valid as long as a copy of this solid exists.
   operator const Mesh&() const { return mesh(); }  // NOLINT(google-explicit-constructor)
   bool empty() const;
   Proof proof() const;
 
-  /// Numbered as the mesh's. 24 bytes a triangle, and 12 for what lies beyond its sides.
+  /// Numbered as in the mesh. 24 bytes per triangle, and 12 for its neighbours.
   const Triangles& triangles() const { return linked().triangles; }
   const Linked& linked() const;
-  /// As size_of(). First call: linear, parallel.
+  /// size_of() of the solid. Cost of the first call: linear, parallel.
   const Size& size() const;
-  /// As measure(). First call: linear, parallel.
+  /// measure() of the solid. Cost of the first call: linear, parallel.
   const Measures& measures() const;
-  /// First call: n log n, about 150 bytes a triangle.
+  /// Cost of the first call: n log n, about 150 bytes per triangle.
   const SurfaceTree& tree() const;
-  /// As components(). First call: linear, and tree() where there are cavities.
+  /// components() of the solid. Cost of the first call: linear, and tree() if there are cavities.
   const std::vector<Component>& components() const;
 
-  /// Whether both are copies of one value. Equal sets that were made apart are not.
+  /// Whether both are copies of one value. Equal solids that were made independently are not.
   bool is_same(const Solid& other) const { return state_ == other.state_; }
 
  private:
@@ -70,20 +70,20 @@ class Solid {
 };
 
 /// The solid of triangles that health() proves to be one. Throws Error (Geometry) with the first finding,
-/// which names the defect, its triangle and its place in mm; as health(). Cost: health()'s, about 1 s for
-/// 300k triangles.
+/// which names the defect, its triangle and its position in mm; throws as health() does. Cost: that of
+/// health(), about 1 s for 300k triangles.
 Solid solid_of(const Triangles& triangles);
 Solid solid_of(const Mesh& mesh);
 
-/// The solid of triangles that their maker vouches for; no triangles make the empty set. Preconditions: the
-/// proof holds; for Health the caller has just called health() on these triangles; a volume by Construction
-/// is not negative. Throws std::invalid_argument naming the first triangle if the surface is open; as
-/// mesh_of(). Cost: linear.
+/// The solid of triangles for which the caller guarantees the proof; no triangles make the empty set.
+/// Preconditions: the proof holds; for Health the caller has just called health() on these triangles; with
+/// Construction the volume is not negative. Throws std::invalid_argument, which names the first triangle, if
+/// the surface is open; throws as mesh_of() does. Cost: linear.
 Solid trusted_solid(Triangles triangles, Proof proof);
 Solid trusted_solid(const Mesh& mesh, Proof proof);
 
-/// What is left of a proof for some of a solid's shells, and for its image under a motion or reflection,
-/// whose points are rounded.
+/// The proof that remains for some of a solid's shells, and for its image under a motion or reflection, whose
+/// points are rounded.
 constexpr Proof proof_of_part(Proof whole) {
   return whole == Proof::Health ? Proof::Construction : whole;
 }
@@ -91,10 +91,10 @@ constexpr Proof proof_of_image(Proof still) {
   return still == Proof::Connection ? Proof::Connection : Proof::Rounded;
 }
 
-/// The solid under a rigid motion, as moved() of its points. Cost: linear.
+/// The solid moved by a rigid motion, as moved() moves its points. Cost: linear.
 Solid moved(const Solid& solid, const glm::dmat4& moved_from_still);
 
-// What a solid keeps, by the names of what computes it for a mesh.
+// Access to a solid's cached values, under the names of the functions that compute them for a mesh.
 inline const Triangles& triangles_of(const Solid& solid) {
   return solid.triangles();
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 sort the sides of all triangles by edge; 2 join the sides of each edge two and two, by their angle about
-// it where there are not just two that fit; 3 join the corners of triangles across joined sides to fans; 4
-// give each fan but a point's first a copy of the point; 5 where pairs of one edge still share both of its
-// ends, give each further pair a point of its own in the edge's middle.
+// 1 sort the sides of all triangles by edge; 2 join the sides of each edge in pairs, by their angle around
+// the edge unless there are exactly two that fit; 3 join the corners of triangles across joined sides to
+// fans; 4 create a copy of the point for each fan at a point except the first; 5 if several pairs of one edge
+// still share both its ends, create for each further pair a point in the edge's middle.
 #include "brep/mesh/split_fans.h"
 
 #include <algorithm>
@@ -30,8 +30,9 @@ bool fits(const Side* begin, const Side* end) {
   return end - begin == 1 || (end - begin == 2 && begin[0].upward != begin[1].upward);
 }
 
-/// A triangle that runs up the edge has the solid at lesser angles, one that runs down at greater ones. So by
-/// falling angle, an upward one opens a part of the solid and the next downward one closes it.
+/// A triangle that runs up the edge has the solid at smaller angles, one that runs down at larger ones. In
+/// order of falling angle, an upward triangle therefore opens a part of the solid and the next downward one
+/// closes it.
 void join_by_angle(const Triangles& triangles, const Side* begin, const Side* end,
                    const std::vector<std::uint8_t>& ends_elsewhere, Pairs& pairs) {
   const glm::dvec3 low = triangles.points_mm[begin->low];
@@ -52,7 +53,7 @@ void join_by_angle(const Triangles& triangles, const Side* begin, const Side* en
     const double across = glm::dot(d, y) / std::sqrt(std::max(length2, std::numeric_limits<double>::min()));
     turned.push_back({std::atan2(across, glm::dot(d, x)), side});
   }
-  // Of triangles on each other those that close come first, so that no part without thickness is made.
+  // Among coinciding triangles those that close come first, so that no part without thickness is created.
   std::sort(turned.begin(), turned.end(), [](const Turned& a, const Turned& b) {
     return std::tuple(-a.angle, a.side->upward, a.side->corner) <
            std::tuple(-b.angle, b.side->upward, b.side->corner);
@@ -74,19 +75,19 @@ void join_by_angle(const Triangles& triangles, const Side* begin, const Side* en
       }
     }
   };
-  // Of more ways up than down, or the reverse, some end here: sooner those that end elsewhere, too, as fins
-  // do.
+  // If the numbers of upward and downward sides differ, some triangles end here: preferably those that also
+  // end elsewhere, like fins.
   if (!balanced) pass([&](const Side& side) { return !ends_elsewhere[side.corner / 3]; });
   pass([](const Side&) { return true; });
 }
 
-/// A pair of corners whose sides are joined, or one whose side is a border: then both are the same.
+/// A pair of corners whose sides are joined; at a border both are the same corner.
 struct Group {
   std::uint32_t first, second;
 };
 
-/// Cuts triangles at points in the middle of their sides, `none` where a side has none; the first part keeps
-/// the triangle's number.
+/// Divides triangles at points in the middle of their sides (`none` for sides without one). The first part
+/// keeps the triangle's number.
 void cut_at_middles(const std::vector<std::uint32_t>& middle, SplitFans& split) {
   const std::size_t count = split.surface.faces.size();
   assert(middle.size() == 3 * count);
@@ -95,7 +96,8 @@ void cut_at_middles(const std::vector<std::uint32_t>& middle, SplitFans& split) 
     const auto cuts = static_cast<std::size_t>(3 - std::count(m.begin(), m.end(), none));
     if (cuts == 0) continue;
     const auto corner = split.surface.faces[f];
-    // Turned so that of one cut it is the first side's, and of two the last side has none.
+    // Rotates the corners so that a single cut is on the first side and, with two cuts, the last side has
+    // none.
     std::size_t k = 0;
     while (cuts < 3 && !(m[k] != none && m[(k + 2) % 3] == none)) ++k;
     const std::uint32_t a = corner[k], b = corner[(k + 1) % 3], c = corner[(k + 2) % 3];
@@ -125,10 +127,11 @@ void check(const Triangles& triangles) {
     }
 }
 
-/// What keeps triangles from being joined two and two.
+/// The defects by which triangles cannot be joined in pairs.
 struct Unfit {
   std::size_t open = 0;  ///< edges of one triangle
-  bool any = false;      ///< an edge of more than two or of contrary ones, or a triangle that repeats a point
+  bool any = false;      ///< an edge of more than two triangles or with inconsistent winding, or a triangle
+                         ///< that repeats a point
 };
 
 Unfit unfit_of(const Triangles& triangles) {
@@ -170,7 +173,7 @@ SplitFans split_fans(const Triangles& triangles) {
     if (end - begin == 1) ends_elsewhere[begin->corner / 3] = 1;
   });
   DisjointSets fans(sides.size());
-  std::vector<std::vector<Group>> groups;  // of each edge that is split
+  std::vector<std::vector<Group>> groups;  // groups of each edge that is split
   each_edge(sides, [&](const Side* begin, const Side* end) {
     Pairs pairs;
     if (fits(begin, end)) {
@@ -193,7 +196,7 @@ SplitFans split_fans(const Triangles& triangles) {
     }
   });
 
-  // A fan is named by its first corner; the point's first fan keeps the point.
+  // A fan is identified by its first corner; the first fan at a point keeps the point.
   std::vector<std::uint32_t> place(sides.size(), none);
   std::vector<std::uint8_t> taken(triangles.points_mm.size(), 0);
   for (std::uint32_t c = 0; c < place.size(); ++c) {

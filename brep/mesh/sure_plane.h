@@ -7,8 +7,8 @@
 
 namespace octotomy::brep {
 
-/// The sign of a sum of products whose terms add up to `permanent` without signs, in doubles; 0 where
-/// rounding may decide: eight half epsilons, and two for the rounding of the bound (Shewchuk, "Adaptive
+/// The sign of a sum of products in doubles; 0 if rounding may decide. `permanent` is the sum of the terms'
+/// absolute values. The bound is eight half epsilons, and two for its own rounding (Shewchuk, "Adaptive
 /// precision floating-point arithmetic and fast robust geometric predicates", 1997, has seven for a
 /// determinant of three differences). Below `least` products may be lost to underflow.
 inline int sure_sign(double determinant, double permanent) {
@@ -19,7 +19,7 @@ inline int sure_sign(double determinant, double permanent) {
   return !(permanent > least) ? 0 : determinant > bound ? 1 : determinant < -bound ? -1 : 0;
 }
 
-/// The plane through three points, and which side of it others are on as far as doubles can tell.
+/// The plane through three points, and a test of the side of other points in doubles.
 class SurePlane {
  public:
   SurePlane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) : a_(a) {
@@ -33,8 +33,9 @@ class SurePlane {
     py_ = std::abs(zx) + std::abs(xz);
     pz_ = std::abs(xy) + std::abs(yx);
   }
-  /// 0 where rounding may decide. A component of the normal is off by four half epsilons of its products at
-  /// most, its product with a difference by two more, and their sum by two more of each.
+  /// The side of a point; 0 if rounding may decide. The error of a component of the normal is at most four
+  /// half epsilons of its products, that of its product with a difference two more, and that of their sum two
+  /// more of each.
   int side(const glm::dvec3& p) const {
     const double x = p.x - a_.x, y = p.y - a_.y, z = p.z - a_.z;
     return sure_sign(nx_ * x + ny_ * y + nz_ * z, px_ * std::abs(x) + py_ * std::abs(y) + pz_ * std::abs(z));

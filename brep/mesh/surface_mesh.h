@@ -7,8 +7,8 @@
 
 namespace octotomy::brep {
 
-/// The triangles as CGAL's own mesh, for the sources that include it: vertex i is point i and, where all can
-/// be joined, face i is triangle i. Cost: linear.
+/// The triangles as CGAL's mesh, for sources that include CGAL: vertex i is point i and, if all can be
+/// joined, face i is triangle i. Cost: linear.
 template <typename Point>
 CGAL::Surface_mesh<Point> surface_mesh_of(const Triangles& triangles) {
   using Surface = CGAL::Surface_mesh<Point>;

@@ -9,8 +9,7 @@
 
 namespace octotomy::brep {
 
-/// A triangle by the places of its corners, in their order: the same whatever its points are numbered,
-/// wherever it begins and however it winds.
+/// A triangle as the sorted positions of its corners: independent of point numbers, first corner and winding.
 using Places = std::array<std::array<double, 3>, 3>;
 
 inline Places places_of(const Triangles& triangles, const std::array<std::uint32_t, 3>& face) {

@@ -20,10 +20,10 @@
 #include "brep/mesh/error.h"
 #include "brep/mesh/sides.h"
 
-// The halfedge structure is written directly rather than by add_face, which prints to the standard error,
-// depends on the order of the triangles at vertices where several fans meet, and cannot say what is wrong.
-// 1 refuse triangles that are none; 2 pair sides by sorting those of each point; 3 separate the fans at each
-// point; 4 write edges, faces and the loops along the boundary.
+// Writes the halfedge structure directly instead of by add_face(), which prints to standard error, depends on
+// the order of triangles at vertices where several fans meet, and reports no reason on failure.
+// 1 refuse invalid triangles; 2 pair sides by sorting those of each point; 3 separate the fans at each point;
+// 4 write edges, faces and the loops along the boundary.
 
 namespace octotomy::brep {
 namespace {
@@ -45,7 +45,7 @@ Flaw flaw_of(const Triangles& triangles, const std::array<std::uint32_t, 3>& fac
 }
 
 void check_triangles(const Triangles& triangles) {
-  // Three corners of each triangle are numbered in 32 bits.
+  // Corners, three per triangle, are numbered in 32 bits.
   if (triangles.faces.size() >= none / 3 || triangles.points_mm.size() >= none / 2)
     throw Error(ErrorCode::Resource, "a mesh of " + std::to_string(triangles.faces.size()) +
                                          " triangles is more than 32-bit numbers hold; reduce it first");
@@ -75,13 +75,13 @@ void check_triangles(const Triangles& triangles) {
   }
 }
 
-/// By side, the one along the same edge the other way, or none.
+/// For each side, the one along the same edge in the opposite direction, or none.
 std::vector<std::uint32_t> pair_sides(const Triangles& triangles) {
   std::vector<std::uint32_t> opposite;
   std::optional<SidesOfPoints> sides;
   tbb::parallel_invoke([&] { opposite.assign(3 * triangles.faces.size(), none); },
                        [&] { sides.emplace(triangles); });
-  // The first offender, and the edge that it offends at.
+  // The first invalid triangle, and the edge at which it is invalid.
   using Offence = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, bool>;
   constexpr Offence no_offence{none, none, none, false};
   tbb::enumerable_thread_specific<Offence> found(no_offence);
@@ -105,11 +105,11 @@ std::vector<std::uint32_t> pair_sides(const Triangles& triangles) {
   return opposite;
 }
 
-/// Whether the triangles about each point form one fan that is closed.
+/// Whether the triangles around each point form a single closed fan.
 bool has_closed_fans_alone(const Linked& linked) {
   std::atomic<bool> alone = true;
   PointShares(linked.triangles).visit([&](std::uint32_t first, std::uint32_t end, const auto& each) {
-    // By point, one more than the corners to come of the fan that its first corner is of.
+    // For each point, one more than the number of remaining corners of the fan of its first corner.
     std::vector<std::uint32_t> to_come(end - first, 0);
     each([&](std::uint32_t f) {
       if (!alone.load(std::memory_order_relaxed)) return;
@@ -126,7 +126,7 @@ bool has_closed_fans_alone(const Linked& linked) {
           } while (turning != none && turning != corner);
           if (turning == none) count = 1;
         }
-        if (count == 1) alone = false;  // of a boundary, or of another fan
+        if (count == 1) alone = false;  // a corner at a boundary or of another fan
         --count;
       }
     });
@@ -134,8 +134,8 @@ bool has_closed_fans_alone(const Linked& linked) {
   return alone;
 }
 
-/// Gives each further fan about a point a copy of the point, so that one fan is left about each. The fan
-/// whose corner comes first keeps the point.
+/// Creates a copy of the point for each further fan around it, so that each point has one fan. The fan with
+/// the first corner keeps the point.
 void separate_fans(Linked& linked) {
   Triangles& triangles = linked.triangles;
   std::vector<std::uint8_t> has_fan(triangles.points_mm.size(), 0);
@@ -182,7 +182,7 @@ Mesh mesh_of(const Linked& linked) {
   const std::vector<std::uint32_t>& opposite = linked.opposite;
   const auto vertex = [](std::uint32_t point) { return Mesh::VertexHandle(static_cast<int>(point)); };
 
-  // An edge is numbered by the first of its sides, whose halfedge is the edge's first.
+  // Edges are numbered in order of their first sides; the halfedge of that side is the edge's first.
   std::vector<Mesh::HalfedgeHandle> halfedge(opposite.size());
   int edge_count = 0;
   for (std::uint32_t c = 0; c < opposite.size(); ++c)
@@ -208,7 +208,8 @@ Mesh mesh_of(const Linked& linked) {
     mesh.set_vertex_handle(boundary.back(), vertex(linked.from(c)));
   }
 
-  // As every fan has its own vertex, at most one boundary halfedge leaves each; a vertex must point to it.
+  // Every fan has its own vertex, so at most one boundary halfedge leaves each vertex. The vertex must point
+  // to it.
   for (const Mesh::HalfedgeHandle outside : boundary) {
     mesh.set_boundary(outside);
     mesh.set_halfedge_handle(mesh.from_vertex_handle(outside), outside);
@@ -246,7 +247,7 @@ Triangles triangles_of(const Mesh& mesh) {
 
 Linked linked_of(const Mesh& mesh) {
   Linked linked{triangles_of(mesh), std::vector<std::uint32_t>(3 * mesh.n_faces(), none)};
-  // By halfedge, the side that it is.
+  // For each halfedge, its side.
   std::vector<std::uint32_t> side_of(mesh.n_halfedges(), none);
   const auto each_side = [&](const auto& visit) {
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(mesh.n_faces()), 4096),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 halve the triangles at the median centre along the longest axis; 2 sum the moments of each half from its
-// own; 3 for eight neighbouring points along a Morton curve, descend where a cluster is within `nearness`
-// radii of their ball, else take the moments. Departure from the source: no third order, as only the level of
-// a half is looked for.
+// 1 halve the triangles at the median centre along the longest axis; 2 sum the moments of each node from its
+// children; 3 for eight neighbouring points along a Morton curve, descend where a cluster is within
+// `nearness` radii of their ball, else use the moments. Departure from the source: no third order, because
+// only the level of one half is needed.
 #include "brep/mesh/winding_number.h"
 
 #include <algorithm>
@@ -23,21 +23,20 @@ namespace {
 
 constexpr std::uint32_t leaf_size = 8;
 
-/// A cluster counts by its moments from this many of its radii on; the source's accuracy scale.
+/// Beyond this many of its radii, a cluster is evaluated by its moments; the source's accuracy scale.
 constexpr double nearness() {
   return 2.0;
 }
 
 using Corners = std::array<glm::dvec3, 3>;
 
-/// Points near each other, which are answered by one descent, and their sums.
+/// Points near each other, evaluated in one descent, and their sums.
 struct Points {
   static constexpr std::size_t size = 8;
   std::array<double, size> x, y, z, sum{};
 };
 
-/// Adds to each point p 4 pi times the share of the sphere about it that the triangles cover, positive seen
-/// from behind.
+/// Adds to each point the solid angle that the triangles cover, positive if seen from behind.
 OCTOTOMY_FOR_VECTORS void add_solid_angles(std::span<const Corners> triangles, Points& points) {
   for (const Corners& t : triangles) {
     std::array<double, Points::size> above, below, angle;
@@ -50,7 +49,7 @@ OCTOTOMY_FOR_VECTORS void add_solid_angles(std::span<const Corners> triangles, P
       below[k] = la * lb * lc + (ax * bx + ay * by + az * bz) * lc + (bx * cx + by * cy + bz * cz) * la +
                  (cx * ax + cy * ay + cz * az) * lb;
       above[k] = ax * (by * cz - cy * bz) + ay * (bz * cx - cz * bx) + az * (bx * cy - cx * by);
-      // A small angle: the series, to 1e-7.
+      // For a small angle the series is accurate to 1e-7.
       const double tangent = above[k] / below[k], t2 = tangent * tangent;
       angle[k] = 2.0 * tangent * (1.0 - t2 * (1.0 / 3.0 - t2 * (1.0 / 5.0 - t2 * (1.0 / 7.0 - t2 / 9.0))));
     }
@@ -61,17 +60,17 @@ OCTOTOMY_FOR_VECTORS void add_solid_angles(std::span<const Corners> triangles, P
   }
 }
 
-/// What is known of a cluster of triangles.
+/// The moments and extent of a cluster of triangles.
 struct Cluster {
   glm::dvec3 centre_mm{0.0};
-  double radius_mm = 0.0;  ///< of a ball about the centre that holds all corners
+  double radius_mm = 0.0;  ///< radius of a ball around the centre that contains all corners
   double area_mm2 = 0.0;
   glm::dvec3 normal{0.0};  ///< sum of area vectors
   glm::dmat3 moment{0.0};  ///< column j: sum of area vectors times coordinate j of (middle - centre)
 };
 
-/// Adds what a cluster covers of the sphere about each point: the gradient of 1 / r and its derivative, on
-/// the area vectors and their first moment.
+/// Adds the solid angle of a cluster at each point: the gradient of 1 / r and its derivative, applied to the
+/// area vectors and their first moment.
 OCTOTOMY_FOR_VECTORS void add_moments(const Cluster& cluster, Points& points) {
   const glm::dmat3 m = cluster.moment;
   const glm::dvec3 centre = cluster.centre_mm, normal = cluster.normal;
@@ -159,12 +158,12 @@ struct WindingTree::Tree {
     }
   }
 
-  /// Points with a ball that holds them.
+  /// Points with a ball that contains them.
   struct Packet : Points {
     glm::dvec3 centre_mm{0.0};
     double radius_mm = 0.0;
 
-    /// Places beyond the last number repeat the first.
+    /// Entries beyond the last number repeat the first.
     Packet(const std::vector<glm::dvec3>& points_mm, std::span<const std::uint32_t> numbers) {
       glm::dvec3 low = points_mm[numbers.front()], high = low;
       for (std::size_t k = 0; k < size; ++k) {

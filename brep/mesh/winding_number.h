@@ -10,21 +10,21 @@
 
 namespace octotomy::brep {
 
-/// How often a surface of any triangles winds about points in LPS millimetres: 1 inside a closed surface, 0
-/// outside, in between near holes. Triangles far from a point count by the first two moments of their
-/// clusters, and so are off by up to some 0.05 in all.
+/// Winding numbers of a surface of arbitrary triangles around points in LPS millimetres: 1 inside a closed
+/// surface, 0 outside, in between near holes. Triangles far from a point are evaluated by the first two
+/// moments of their clusters, with a total error of up to about 0.05.
 class WindingTree {
  public:
-  /// Precondition: triangles refer to finite points. Cost: n log n, about 150 bytes a triangle; parallel.
+  /// Precondition: triangles refer to finite points. Cost: n log n, about 150 bytes per triangle; parallel.
   explicit WindingTree(const Triangles& surface);
   ~WindingTree();
   WindingTree(WindingTree&&) noexcept;
   WindingTree& operator=(WindingTree&&) noexcept;
 
-  /// Points near each other share a descent, so that an answer may hang on the others by as much. The same
-  /// bits on any number of threads. Cost: about log n a point, some 2 us at 500k triangles; parallel. Source:
-  /// Barill, Dickson, Schmidt, Levin, Jacobson, "Fast winding numbers for soups and clouds", SIGGRAPH 2018,
-  /// with its second order; single triangles after Van Oosterom and Strackee, 1983.
+  /// Points near each other share a descent, so a result may depend on the other points, within that error.
+  /// The same bits on any number of threads. Cost: about log n per point, 2 us at 500k triangles; parallel.
+  /// Source: Barill, Dickson, Schmidt, Levin, Jacobson, "Fast winding numbers for soups and clouds", SIGGRAPH
+  /// 2018, with its second order; single triangles after Van Oosterom and Strackee, 1983.
   std::vector<double> at(const std::vector<glm::dvec3>& points_mm) const;
 
  private:

@@ -20,24 +20,24 @@
 namespace octotomy::brep {
 namespace {
 
-/// A closed mesh that edges of are collapsed. The library's own test allocates for each edge and is half of
-/// the time; this one gives the same answers on meshes without a boundary. The library looks at all edges
-/// from a vertex in turn and takes the collapse of the least error: one whose error is too large, or no less
-/// than that of one before it, is refused without a test.
+/// A closed mesh whose edges are collapsed. OpenMesh's own test allocates memory for each edge and takes half
+/// of the time; this one has the same results on meshes without a boundary. OpenMesh tests all edges from a
+/// vertex in turn and chooses the collapse of least error. A collapse whose error is too large, or not
+/// smaller than that of an earlier one, is refused without a test.
 class CollapsedMesh : public Mesh {
  public:
   explicit CollapsedMesh(const Mesh& mesh) : Mesh(mesh) {}
 
-  /// Gives a collapse's error, below 0 where it is too large.
+  /// Returns a collapse's error; negative if it is too large.
   std::function<float(OpenMesh::HalfedgeHandle)> error_of;
 
-  /// That of the collapse that was asked about last.
+  /// The error of the collapse that was tested last.
   float error() const { return error_; }
-  /// Is told that it may be.
+  /// Records that this collapse is allowed.
   void found() { least_error_ = error_; }
 
-  /// Whether the mesh stays a manifold without that edge (the link condition): its ends have no neighbours in
-  /// common but the tips of its two triangles. The library's decimater calls it by this name.
+  /// Whether the mesh stays a manifold without that edge (the link condition): its ends have no common
+  /// neighbours except the tips of its two triangles. OpenMesh's decimater calls this function by name.
   bool is_collapse_ok(OpenMesh::HalfedgeHandle edge) {
     const OpenMesh::HalfedgeHandle back = opposite_halfedge_handle(edge);
     const OpenMesh::VertexHandle from = to_vertex_handle(back), to = to_vertex_handle(edge);
@@ -72,15 +72,15 @@ class CollapsedMesh : public Mesh {
     } while (spoke != first);
   }
 
-  OpenMesh::HalfedgeHandle next_in_turn_;  // none after a vertex' last edge
+  OpenMesh::HalfedgeHandle next_in_turn_;  // none after a vertex's last edge
   float error_ = 0.0F;
   float least_error_ = std::numeric_limits<float>::infinity();
 };
 
 using Decimater = OpenMesh::Decimater::DecimaterT<CollapsedMesh>;
 
-/// A collapse's error, or that it may not be. The library asks each of its modules before the one for errors;
-/// here errors come first, which cost least.
+/// Returns a collapse's error or refuses it. OpenMesh evaluates the other modules before the one for errors;
+/// this module evaluates errors first, because they cost least.
 class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
  public:
   using Handle = OpenMesh::Decimater::ModHandleT<ErrorThenShape>;
@@ -103,7 +103,7 @@ class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
   }
   void preprocess_collapse(const CollapseInfo& collapse) override { aspect_.preprocess_collapse(collapse); }
   float collapse_priority(const CollapseInfo& collapse) override {
-    // The library asks whether a collapse keeps the mesh a manifold just before.
+    // OpenMesh has called is_collapse_ok() for this collapse just before.
     const float error = mesh().error();
     assert(error == Error::collapse_priority(collapse));
     if (error < 0.0F || normals_.collapse_priority(collapse) < 0.0F ||
@@ -118,8 +118,8 @@ class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
   OpenMesh::Decimater::ModAspectRatioT<CollapsedMesh> aspect_;
 };
 
-/// How far about a triangle that intersects another its vertices' forebears are locked, by the triangle's own
-/// reach: the triangles that stood in its place lay within that reach, those that touched them within half
+/// Vertices of the original mesh are locked within this multiple of the extent of a triangle that intersects
+/// another. The original triangles that it replaced lie within its extent, and their neighbours within half
 /// as much again.
 constexpr double lock_reach() {
   return 1.5;
@@ -160,7 +160,7 @@ Mesh round_of_collapses(const Mesh& mesh, const DecimateOptions& options, const 
   return coarse;
 }
 
-/// Locks the vertices of `mesh` about a triangle of `coarse`; how many that are that were not.
+/// Locks the vertices of `mesh` around a triangle of `coarse`. Returns the number of newly locked vertices.
 std::size_t lock_about(const Mesh& coarse, int face, const Mesh& mesh, std::vector<bool>& locked) {
   assert(face >= 0 && static_cast<std::size_t>(face) < coarse.n_faces());
   OpenMesh::Vec3d centre(0.0, 0.0, 0.0);

@@ -1,10 +1,9 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 list the cells that each triangle may pass; 2 find the winding number at their corners; 3 while the
-// surface where it is a half leaves the cells listed, list the cells beyond; 4 on each tetrahedron's edge
-// whose ends lie on either side, take the point where a triangle crosses it, or across a hole, where the
-// winding number is a half; 5 join those points; 6 for the hull, leave out cavities and what is in them. Pass
-// 3 ends with the whole surface: away from the triangles the winding number is harmonic, and so has no part
-// of that surface that is closed by itself.
+// SPDX-License-Identifier: AGPL-3.0-or-later 1 list the cells that each triangle may pass; 2 find the winding
+// number at their corners; 3 while the surface of winding number 1/2 leaves the listed cells, add the cells
+// beyond; 4 on each tetrahedron's edge whose ends lie on different sides, compute the point where a triangle
+// crosses it or, across a hole, where the winding number is 1/2; 5 join those points; 6 for the hull, leave
+// out cavities and their contents. Pass 3 finds the whole surface: away from the triangles the winding number
+// is harmonic, so no closed part of the surface lies there.
 #include "brep/shape/enclose.h"
 
 #include <algorithm>
@@ -39,7 +38,7 @@ bool is_finite(const glm::dvec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-/// The triangles with finite points and three corners.
+/// The triangles with finite points and three different corners.
 Triangles sound_triangles(const Triangles& surface) {
   Triangles sound;
   sound.points_mm = surface.points_mm;
@@ -95,7 +94,8 @@ Lattice lattice_about(const Triangles& surface, const EncloseOptions& options) {
   Lattice lattice;
   lattice.cell_mm =
       options.cell_mm.value_or(std::clamp(mean_side_mm(surface), extent / 1000.0, extent / 60.0));
-  // Moved by odd shares of a cell, so that planes of round coordinates do not run along the lattice's.
+  // Shifted by irregular shares of a cell, so that planes at round coordinates do not coincide with lattice
+  // planes.
   lattice.origin_mm = low - lattice.cell_mm * glm::dvec3(2.27182818, 2.31415926, 2.14142135);
   const glm::dvec3 cells = glm::ceil((high - lattice.origin_mm) / lattice.cell_mm) + 2.0;
   if (!(std::max({cells.x, cells.y, cells.z}) < (1 << side_bits) - 2))
@@ -114,7 +114,7 @@ struct Passage {
   }
 };
 
-/// A triangle among the cells, in cells.
+/// A triangle in lattice coordinates.
 class Crossed {
  public:
   Crossed(const Triangles& surface, std::uint32_t f, const Lattice& lattice) {
@@ -128,11 +128,11 @@ class Crossed {
     steep_ = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
   }
 
-  /// Calls visit(cell) for each cell near the triangle; lists too many rather than too few. Cost: the area in
-  /// cells, and the length.
+  /// Calls visit(cell) for each cell near the triangle; may include more cells, never fewer. Cost:
+  /// proportional to the triangle's area and length in cells.
   template <typename Visit>
   void each_cell(const Visit& visit) const {
-    // Columns along the steepest axis, in rows across the next one, meet the triangle in a few cells each.
+    // Iterates over columns along the steepest axis, in which the triangle passes only a few cells.
     const int u = (steep_ + 1) % 3, v = (steep_ + 2) % 3;
     Place cell{0};
     for (cell[v] = low_[v]; cell[v] <= high_[v]; ++cell[v]) {
@@ -145,13 +145,13 @@ class Crossed {
     }
   }
 
-  /// No more columns than each_cell() goes through.
+  /// A lower bound on the number of columns that each_cell() visits.
   double least_cells() const { return 0.5 * std::abs(normal_[steep_]); }
 
  private:
   static constexpr double slack = 1e-6;
 
-  /// The cells along `u` between which the triangle's shadow meets the row v .. v + 1.
+  /// The range of cells along `u` in which the triangle's projection meets the row v .. v + 1.
   std::pair<int, int> row(int u, int v, int at) const {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     const double low = at - slack, high = at + 1 + slack;
@@ -180,7 +180,7 @@ class Crossed {
             std::min(high_[u], static_cast<int>(std::floor(most + rounding)))};
   }
 
-  /// The cells of a column between which the plane lies near, and one more at each end for rounding.
+  /// The range of cells of a column near the plane, plus one at each end for rounding.
   std::pair<int, int> column(Place cell) const {
     if (normal_[steep_] == 0.0) return {low_[steep_], high_[steep_]};
     cell[steep_] = 0;
@@ -210,7 +210,7 @@ std::vector<Passage> passages_of(const Triangles& surface, const Lattice& lattic
   std::atomic<std::size_t> sum = 0;
   each_face([&](std::uint32_t f) {
     const Crossed crossed(surface, f, lattice);
-    // Too many need not be counted to their end.
+    // Counting stops once there are too many.
     std::size_t cells = 0;
     if (sum > most_passages || crossed.least_cells() > static_cast<double>(most_passages))
       cells = most_passages + 1;
@@ -232,7 +232,7 @@ std::vector<Passage> passages_of(const Triangles& surface, const Lattice& lattic
   return passages;
 }
 
-/// Adds the keys of one ascending list that are new to the other; returns the new ones, ascending.
+/// Adds the keys that are new to `list`; both lists ascend. Returns the new keys, ascending.
 std::vector<std::uint64_t> add_new(const std::vector<std::uint64_t>& keys, std::vector<std::uint64_t>& list) {
   std::vector<std::uint64_t> fresh, all;
   std::set_difference(keys.begin(), keys.end(), list.begin(), list.end(), std::back_inserter(fresh));
@@ -242,7 +242,7 @@ std::vector<std::uint64_t> add_new(const std::vector<std::uint64_t>& keys, std::
   return fresh;
 }
 
-/// A half less the winding number at lattice points: below 0 inside.
+/// 1/2 minus the winding number at lattice points: negative inside.
 class Field {
  public:
   Field(const Triangles& surface, const Lattice& lattice) : tree_(surface), lattice_(lattice) {}
@@ -258,7 +258,7 @@ class Field {
     std::vector<glm::dvec3> points_mm(fresh.size());
     for (std::size_t i = 0; i < fresh.size(); ++i) points_mm[i] = lattice_.at(place_of(fresh[i]));
     std::vector<double> found = at(points_mm), all(keys_.size());
-    // The lattice ends outside of the surface, whatever winds about its border.
+    // Border points of the lattice always count as outside.
     for (std::size_t i = 0; i < fresh.size(); ++i)
       if (lattice_.is_border(place_of(fresh[i]))) found[i] = std::max(found[i], 0.5);
     for (std::size_t i = 0, old = 0, now = 0; i < all.size(); ++i)
@@ -327,7 +327,7 @@ std::vector<std::uint64_t> cells_of(const std::vector<Passage>& passages, const 
   return cells;
 }
 
-/// Where a segment from a to b crosses a triangle, as a share of its length.
+/// The position at which a segment from a to b crosses a triangle, as a share of its length.
 std::optional<double> crossing(const glm::dvec3& a, const glm::dvec3& b, const std::array<glm::dvec3, 3>& t) {
   const glm::dvec3 along = b - a, u = t[1] - t[0], v = t[2] - t[0], h = glm::cross(along, v);
   const double det = glm::dot(u, h);
@@ -339,7 +339,7 @@ std::optional<double> crossing(const glm::dvec3& a, const glm::dvec3& b, const s
   return share;
 }
 
-/// The points on the edges, and how many of them no triangle crosses.
+/// The points on the edges, and the number of edges that no triangle crosses.
 struct EdgePoints {
   std::vector<glm::dvec3> points_mm;
   std::size_t across_holes = 0;
@@ -347,7 +347,7 @@ struct EdgePoints {
 
 EdgePoints points_on(const std::vector<LatticeEdge>& edges, const std::vector<Passage>& passages,
                      const Triangles& surface, const Lattice& lattice, const Field& field) {
-  // From inside outward; the crossing nearest to the outside is the surface's.
+  // Edges run from inside to outside; the crossing nearest to the outside end is on the surface.
   std::vector<double> share(edges.size(), -1.0), at_from(edges.size()), at_to(edges.size());
   const auto ends = [&](std::size_t i) {
     const Place from = place_of(edges[i].from());
@@ -369,7 +369,7 @@ EdgePoints points_on(const std::vector<LatticeEdge>& edges, const std::vector<Pa
       }
     }
   });
-  // Across holes by halving: the winding number is smooth there, and near the rims steep.
+  // Bisects across holes: the winding number is smooth there but steep near the rims.
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < edges.size(); ++i)
     if (share[i] < 0.0) open.push_back(i);
@@ -415,7 +415,8 @@ std::size_t keep_hull(Triangles& surface) {
   const SurfaceTree tree(surface);
   std::map<std::uint32_t, bool> stays;
   for (const auto& [shell, volume] : volumes) {
-    // A point of a shell has parity about the others: what is outermost lies within none of them.
+    // A point of a shell shows by parity which other shells contain it; an outermost shell lies in none of
+    // them.
     std::map<std::uint32_t, int> about;
     for (const Crossing& crossed : tree.crossings(surface.points_mm[shell])) {
       const std::uint32_t other = sets.set_of(surface.faces[crossed.face][0]);

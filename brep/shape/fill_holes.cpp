@@ -1,11 +1,10 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A hole is closed by the triangulation of its border with the least sharpness and area, searched among the
-// triangles of the border's Delaunay tetrahedra and, where none of those close it, among all. Source: Liepa,
-// "Filling holes in meshes", SGP 2003, and Zou et al., "An algorithm for triangulating multiple 3D polygons",
-// SGP 2013, as CGAL has them. The search among all is cubic in the border's sides and the other one recurses
-// as deep as the border is long. Departs from them on long borders: corners are cut off until the border is
-// short enough for a search. A corner is cut off by a triangle of two neighbouring sides, the shortest third
-// side first.
+// SPDX-License-Identifier: AGPL-3.0-or-later A hole is closed by the triangulation of its border with the
+// least sharpness and area. It is searched among the triangles of the border's Delaunay tetrahedra and, if
+// none of those close it, among all triangles. Source: Liepa, "Filling holes in meshes", SGP 2003, and Zou et
+// al., "An algorithm for triangulating multiple 3D polygons", SGP 2013, as implemented in CGAL. The search
+// among all triangles is cubic in the border's sides, and the recursion of the other one is as deep as the
+// border is long. Departure for long borders: corners are cut off until the border is short enough for a
+// search. A corner is cut off by a triangle of two neighbouring sides, in order of the third side's length.
 #include "brep/shape/fill_holes.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -28,17 +27,17 @@ using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 using Halfedge = Surface::Halfedge_index;
 using Patch = std::vector<Surface::Face_index>;
 
-/// Most sides of a border over which all triangulations are searched.
+/// Largest number of sides of a border for a search of all triangulations.
 constexpr std::size_t most_sides_for_all = 128;
-/// Most sides of a border whose Delaunay tetrahedra are searched. A space curve every two points of which are
-/// neighbours costs most.
+/// Largest number of sides of a border for a search of its Delaunay tetrahedra. The worst case is a space
+/// curve in which every two points are Delaunay neighbours.
 constexpr std::size_t most_sides_for_delaunay = 1024;
 
 glm::dvec3 point_of(const Mesh& mesh, std::uint32_t v) {
   return glm_of(mesh.point(Mesh::VertexHandle(static_cast<int>(v))));
 }
 
-/// Makes the border of a hole shorter, corner by corner.
+/// Shortens the border of a hole by cutting off corners.
 class CornerCut {
  public:
   CornerCut(Surface& surface, Halfedge border) : surface_(surface), border_(border) {
@@ -47,7 +46,7 @@ class CornerCut {
     for (const Halfedge h : surface.halfedges_around_face(border)) add(h);
   }
 
-  /// Adds the triangles to the patch; fewer where no other corner can be cut off.
+  /// Cuts off `count` corners, or fewer if no other can be cut off, and adds the triangles to the patch.
   void cut(std::size_t count, Patch& patch) {
     while (count > 0 && !corners_.empty()) {
       const Corner corner = corners_.top();
@@ -65,12 +64,12 @@ class CornerCut {
   Halfedge border() const { return border_; }
 
  private:
-  /// Between two halfedges of the border.
+  /// A corner between two halfedges of the border.
   struct Corner {
-    bool turns_over;  ///< its triangle faces against the hole's, as outside of a flat hole's border
-    double length;    ///< squared, of the side that cuts it off
+    bool turns_over;  ///< its triangle faces opposite to the hole, as at a concave corner of a flat hole
+    double length;    ///< squared length of the side that cuts it off
     Halfedge in, out;
-    /// Those with the same keys are cut in the order of their halfedges, for the same answer everywhere.
+    /// Corners with equal keys are cut in the order of their halfedges, for a deterministic result.
     bool operator<(const Corner& other) const {
       return std::tie(other.turns_over, other.length, other.in) < std::tie(turns_over, length, in);
     }
@@ -81,7 +80,7 @@ class CornerCut {
     return point(v) - point(surface_.source(border_));
   }
 
-  /// The corner at the end of a halfedge of the border.
+  /// Adds the corner at the end of a halfedge of the border.
   void add(Halfedge in) {
     const Halfedge out = surface_.next(in);
     const Kernel::Point_3 &a = point(surface_.source(in)), &b = point(surface_.target(in)),
@@ -91,7 +90,7 @@ class CornerCut {
     corners_.push({turns_over, CGAL::squared_distance(a, c), in, out});
   }
 
-  /// Whether the corner is one still and the side that cuts it off is new to the surface.
+  /// Whether the corner still exists and the side that cuts it off is not an edge of the surface yet.
   bool can_cut(const Corner& corner) const {
     return surface_.is_border(corner.in) && surface_.next(corner.in) == corner.out &&
            !surface_.halfedge(surface_.source(corner.in), surface_.target(corner.out)).is_valid();
@@ -99,11 +98,12 @@ class CornerCut {
 
   Surface& surface_;
   Halfedge border_;
-  Kernel::Vector_3 normal_{0.0, 0.0, 0.0};  ///< of the hole, as long as twice its area where it is flat
+  Kernel::Vector_3 normal_{0.0, 0.0, 0.0};  ///< normal of the hole; for a flat hole its length is twice the
+                                            ///< area
   std::priority_queue<Corner> corners_;
 };
 
-/// Closes a hole by a search that its border is short enough for; false where there is none.
+/// Closes a hole by a search if its border is short enough; false if this fails.
 bool search(Surface& surface, Halfedge border, std::size_t sides, Patch& patch) {
   const std::size_t before = patch.size();
   CGAL::Polygon_mesh_processing::triangulate_hole(
@@ -112,7 +112,7 @@ bool search(Surface& surface, Halfedge border, std::size_t sides, Patch& patch) 
   return patch.size() > before;
 }
 
-/// The triangles that close a hole of so many sides; none where none close it, and the surface as it was.
+/// The triangles that close a hole of `sides` sides; empty if none close it. Leaves the surface unchanged.
 Patch patch_of(Surface& surface, Halfedge border, std::size_t sides) {
   Patch patch;
   if (sides <= most_sides_for_delaunay && search(surface, border, sides, patch)) return patch;
@@ -129,7 +129,7 @@ Patch patch_of(Surface& surface, Halfedge border, std::size_t sides) {
   return {};
 }
 
-/// Closes the hole in the surface, so that later ones do not take an edge that this one made.
+/// Closes the hole in the surface, so that later holes do not use an edge that this one created.
 void close(Surface& surface, Hole& hole) {
   const auto border =
       surface.halfedge(Surface::Vertex_index(hole.border[0]), Surface::Vertex_index(hole.border[1]));

@@ -16,16 +16,16 @@ struct Hole {
   std::vector<std::uint32_t> border;  ///< points of the mesh, the surface on their right
   double perimeter_mm = 0.0;
   glm::dvec3 centre_mm{0.0};  ///< mean of the points
-  /// Of points of the mesh, winding as the surface does; empty where none close it without an edge that the
-  /// mesh has already, or the border is longer than allowed.
+  /// Triangles over points of the mesh, with the winding of the surface. Empty if none close the hole without
+  /// an edge that the mesh already has, or if the border is longer than allowed.
   std::vector<std::array<std::uint32_t, 3>> faces;
 };
 
-/// The holes of a mesh, by their lowest edge. Borders of up to 128 sides are closed by the triangles of least
-/// sharpness and area. Of longer ones up to 1024 sides those of the border's Delaunay tetrahedra are
-/// searched. Where that finds none, and on still longer borders, corners are cut off before such a search,
-/// those with the shortest third side first; the triangles may then be sharper than need be or meet the
-/// surface. Cost: n log n in a border's sides, and the search, cubic in those that it is given at worst.
+/// The holes of a mesh, in order of their lowest edge. Borders of up to 128 sides are closed by the triangles
+/// of least sharpness and area. For borders of up to 1024 sides, only triangles of the border's Delaunay
+/// tetrahedra are searched. If this finds none, and for longer borders, corners are cut off first, in order
+/// of the third side's length; the triangles may then be sharper than necessary or meet the surface. Cost: n
+/// log n in a border's sides, plus the search, which is at worst cubic in the sides passed to it.
 std::vector<Hole> holes(const Mesh& mesh, const std::optional<double>& longest_mm);
 
 }  // namespace octotomy::brep

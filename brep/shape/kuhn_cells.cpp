@@ -18,7 +18,7 @@ constexpr std::array<Tetrahedron, 6> tetrahedra = {
 
 LatticeEdge edge_between(const Place& cell, int p, int q) {
   assert(((p & q) == p || (p & q) == q) && p != q);
-  const int low = p & q;  // one of the two, as the tetrahedra's edges only ascend
+  const int low = p & q;  // equals p or q, because the tetrahedra's edges only ascend
   return {cell + corner_place(low), (p | q) ^ low};
 }
 
@@ -43,7 +43,8 @@ std::vector<std::uint64_t> points_about(const std::vector<std::uint64_t>& lowest
 void add_triangles(const Place& cell, const std::array<double, 8>& values,
                    std::vector<EdgeTriangle>& triangles) {
   for (const Tetrahedron& t : tetrahedra) {
-    // The inside corners first, by an even exchange, so that the tetrahedron stays positive.
+    // Moves the inside corners first by an even permutation, so that the tetrahedron stays positively
+    // oriented.
     std::array<int, 4> in_order{};
     int inside = 0, outside = 4;
     for (const int corner : t)

@@ -11,18 +11,19 @@
 #include <tbb/parallel_for.h>
 #include <vector>
 
-// A lattice of cells, each of six tetrahedra after Kuhn, and the surface between lattice points of either
-// sign. Each triangle lies in a tetrahedron of its own, so that none intersect as long as their corners stay
-// inside their edges.
+// A lattice of cells, each of six tetrahedra after Kuhn, and the surface between lattice points of different
+// sign. Each triangle lies in a tetrahedron of its own, so triangles do not intersect as long as their
+// corners stay inside their edges.
 namespace octotomy::brep {
 
 using Place = glm::ivec3;
-constexpr int side_bits = 20;  ///< of a place's coordinates, 0 .. 2^20 - 1
+constexpr int side_bits = 20;  ///< bits of each coordinate, 0 .. 2^20 - 1
 
-/// Of an edge: points nearer to its end could be one with others.
+/// Least distance of a point from an end of its edge, as a share of the edge: nearer points could coincide
+/// with others.
 constexpr double nearest_end = 0x1p-10;
 
-/// A place as a number that sorts by z, y, x.
+/// A lattice position as a number that sorts by z, y, x.
 inline std::uint64_t key_of(const Place& p) {
   assert(glm::all(glm::greaterThanEqual(p, Place(0))) && glm::all(glm::lessThan(p, Place(1 << side_bits))));
   return (static_cast<std::uint64_t>(p.z) << 2 * side_bits) | (static_cast<std::uint64_t>(p.y) << side_bits) |
@@ -34,17 +35,17 @@ inline Place place_of(std::uint64_t key) {
           static_cast<int>(key >> 2 * side_bits)};
 }
 
-/// Bit 0 is x: one of a cell's corners, or the way along an edge from its lower end.
+/// The offset of a cell's corner, or of an edge from its lower to its upper end. Bit 0 is x.
 inline Place corner_place(int corner) {
   assert(corner >= 0 && corner < 8);
   return {corner & 1, corner >> 1 & 1, corner >> 2 & 1};
 }
 
-/// The lattice points of cubes of `width` cells with these lowest points, each once; both lists ascend.
-/// Linear: a list that is moved along an axis keeps its order, so that nothing is sorted.
+/// The lattice points of cubes of `width` cells with these lowest points, each once; both lists ascend. Cost:
+/// linear, because a list that is shifted along an axis stays sorted.
 std::vector<std::uint64_t> points_about(const std::vector<std::uint64_t>& lowest, int width);
 
-/// What append(place, items) adds for each of the places of these keys, in their order; in parallel.
+/// The items that append(place, items) adds for the positions of these keys, in their order; in parallel.
 template <typename Item, typename Append>
 std::vector<Item> appended(const std::vector<std::uint64_t>& keys, const Append& append) {
   constexpr std::size_t part = 1024;
@@ -64,12 +65,12 @@ std::vector<Item> appended(const std::vector<std::uint64_t>& keys, const Append&
   return all;
 }
 
-/// An edge of a tetrahedron whose ends lie on either side of the surface; sorts by its lower end. One
-/// number, as a surface has millions of them.
+/// An edge of a tetrahedron whose ends lie on different sides of the surface; sorts by its lower end. Packed
+/// in one number, because a surface has millions of them.
 class LatticeEdge {
  public:
   LatticeEdge() = default;
-  /// `along` is the corner of the cell above the lower end where the edge leads.
+  /// `along` is the corner, of the cell whose lowest corner is `from`, at which the edge ends.
   LatticeEdge(const Place& from, int along) : packed_(key_of(from) << 3 | static_cast<std::uint64_t>(along)) {
     assert(along > 0 && along < 8);
   }
@@ -81,7 +82,7 @@ class LatticeEdge {
   std::uint64_t packed_ = 0;
 };
 
-/// Three edges for each triangle, outward.
+/// A triangle by the three edges on which its corners lie, oriented outward.
 using EdgeTriangle = std::array<LatticeEdge, 3>;
 
 /// Appends the triangles of the surface in the cell with this lower corner. Values below 0 are inside.
@@ -91,7 +92,7 @@ void add_triangles(const Place& cell, const std::array<double, 8>& values,
 /// The edges of the triangles, each once, ascending.
 std::vector<LatticeEdge> edges_of(const std::vector<EdgeTriangle>& triangles);
 
-/// The triangles by the places of their edges in the list that edges_of() made.
+/// The triangles by the indices of their edges in the list of edges_of().
 std::vector<std::array<std::uint32_t, 3>> numbered(const std::vector<EdgeTriangle>& triangles,
                                                    const std::vector<LatticeEdge>& edges);
 

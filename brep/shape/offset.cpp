@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 halve blocks of the lattice, keeping those that the surface may pass; 2 find the offset distance at their
-// corners; 3 find the surface on each tetrahedron's edge whose ends lie on either side; 4 join those points.
+// 1 halve blocks of the lattice and keep those that the surface may cross; 2 compute the offset distance at
+// their corners; 3 find the surface on each tetrahedron's edge whose ends lie on different sides; 4 join
+// those points.
 #include "brep/shape/offset.h"
 
 #include <algorithm>
@@ -22,9 +23,9 @@
 namespace octotomy::brep {
 namespace {
 
-constexpr std::size_t most_blocks = std::size_t{1} << 20;  // of eight cells each
+constexpr std::size_t most_blocks = std::size_t{1} << 20;  // blocks of eight cells each
 
-/// Signed distance to the offset surface, negative within.
+/// Signed distance to the offset surface, negative inside.
 class Field {
  public:
   Field(const Solid& solid, double by_mm) : tree_(solid.tree()), by_mm_(by_mm) {}
@@ -41,7 +42,7 @@ class Field {
   double by_mm_;
 };
 
-/// A cube of cells about the offset solid, a power of two along each side.
+/// A cube of cells around the offset solid; the number of cells a side is a power of two.
 struct Lattice {
   glm::dvec3 origin_mm{0.0};
   double cell_mm = 1.0;
@@ -52,8 +53,8 @@ struct Lattice {
 
 Lattice lattice_about(const Solid& solid, const OffsetOptions& options) {
   const Size& size = solid.size();
-  // Moved by odd shares of a cell, so that planes of round coordinates do not run along the lattice's: a
-  // plane there comes out in slivers.
+  // Shifted by irregular shares of a cell, so that planes at round coordinates do not coincide with lattice
+  // planes, where a surface would consist of slivers.
   const double margin = std::max(options.by_mm, 0.0) + 2.0 * options.cell_mm;
   const glm::dvec3 odd_mm = options.cell_mm * glm::dvec3(0.2718281828, 0.3141592653, 0.1414213562);
   const glm::dvec3 extent = size.high_mm - size.low_mm + 2.0 * margin;
@@ -67,7 +68,7 @@ Lattice lattice_about(const Solid& solid, const OffsetOptions& options) {
   return lattice;
 }
 
-/// Lower corners of the blocks of two cells a side that the surface may pass.
+/// Lower corners of the blocks of two cells a side that the surface may cross.
 std::vector<std::uint64_t> blocks_near(const Field& field, const Lattice& lattice,
                                        const OffsetOptions& options) {
   std::vector<std::uint64_t> blocks = {0};
@@ -93,12 +94,12 @@ std::vector<std::uint64_t> blocks_near(const Field& field, const Lattice& lattic
   return blocks;
 }
 
-/// The lattice's points about blocks and the field there.
+/// The lattice points of blocks, and the field there.
 struct Corners {
   std::vector<std::uint64_t> keys;  // ascending
   std::vector<double> values;
 
-  /// The place in the lists of a point that is in them.
+  /// The index of a point in the lists. Precondition: it is in them.
   std::size_t number_of(const Place& p) const {
     const auto found = std::lower_bound(keys.begin(), keys.end(), key_of(p));
     assert(found != keys.end() && *found == key_of(p));
@@ -106,7 +107,7 @@ struct Corners {
   }
   double at(const Place& p) const { return values[number_of(p)]; }
 
-  /// At a block's points, x fastest: three along x follow each other in the lists.
+  /// The values at a block's points, x fastest. Three points along x are adjacent in the lists.
   std::array<double, 27> of_block(const Place& low) const {
     std::array<double, 27> at_points{};
     for (int row = 0; row < 9; ++row) {
@@ -144,11 +145,11 @@ std::vector<EdgeTriangle> triangles_in(const std::vector<std::uint64_t>& blocks,
   });
 }
 
-/// A root between two places of either sign, by regula falsi; an end that stays has its value halved, so that
-/// it moves too (Illinois).
+/// A root between two positions of different sign, by regula falsi. The value at an end that does not move is
+/// halved, so that this end moves too (Illinois).
 struct Root {
   double low = 0.0, high = 1.0, at_low = 0.0, at_high = 0.0, share = 0.5;
-  int kept = 0;  // the end that stayed: -1 low, 1 high
+  int kept = 0;  // the end that did not move: -1 low, 1 high
 
   void guess() {
     assert((at_low < 0.0) != (at_high < 0.0));
@@ -169,7 +170,7 @@ struct Root {
   }
 };
 
-/// Where the surface passes each edge, within a thousandth of a cell.
+/// The point at which the surface crosses each edge, within a thousandth of a cell.
 std::vector<glm::dvec3> points_on(const std::vector<LatticeEdge>& edges, const Corners& corners,
                                   const Field& field, const Lattice& lattice) {
   std::vector<Root> roots(edges.size());
@@ -185,7 +186,7 @@ std::vector<glm::dvec3> points_on(const std::vector<LatticeEdge>& edges, const C
     return lattice.at(place_of(edges[i].from())) +
            roots[i].share * lattice.cell_mm * glm::dvec3(corner_place(edges[i].along()));
   };
-  // Twenty rounds would do by halving alone, were it ever needed.
+  // Twenty rounds suffice even by bisection alone.
   for (int round = 0; round < 20 && !open.empty(); ++round) {
     std::vector<glm::dvec3> tried_mm;
     tried_mm.reserve(open.size());

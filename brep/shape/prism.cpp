@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Caps by constrained Delaunay triangulation without new points; the walls stand on the edges between inside
-// and outside by the even-odd rule, so that the polygons' own winding plays no part.
+// SPDX-License-Identifier: AGPL-3.0-or-later Caps are constrained Delaunay triangulations without new points.
+// Walls are built on the edges between inside and outside by the even-odd rule, so the polygons' winding has
+// no effect.
 #include "brep/shape/prism.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -49,9 +49,8 @@ std::string name_of(std::size_t polygon) {
   return "polygon " + std::to_string(polygon);
 }
 
-/// The frame's products may be off by this: its vectors come from closed forms or from trigonometry, both
-/// good to a few units of the last place, and a shear by it is far below the resolution of a micron per
-/// metre.
+/// Tolerance of the frame's dot products. Its vectors come from closed forms or trigonometry, both accurate
+/// to a few units of the last place, and a shear by this tolerance is far below a micron per metre.
 constexpr double frame_tolerance() {
   return 1e-9;
 }
@@ -72,7 +71,7 @@ void check_frame(const Prism& prism) {
   if (prism.polygons_mm.empty()) throw std::invalid_argument("a prism needs at least one polygon");
 }
 
-/// A polygon's points without those that repeat the one before them.
+/// A polygon's points without those that repeat the previous one.
 std::vector<glm::dvec2> distinct_points(const std::vector<glm::dvec2>& polygon, std::size_t number) {
   std::vector<glm::dvec2> points;
   for (const glm::dvec2& p : polygon) {
@@ -91,7 +90,7 @@ bool follows(const Side& a, const Side& b) {
   return a.polygon == b.polygon && (a.index + 1) % a.side_count == b.index;
 }
 
-/// Whether two sides meet elsewhere than at the end of one that starts the next.
+/// Whether two sides meet other than at the end of one and the start of the next.
 bool collide(const Side& a, const Side& b) {
   if (follows(b, a) && !follows(a, b)) return collide(b, a);
   if (!follows(a, b))
@@ -101,7 +100,7 @@ bool collide(const Side& a, const Side& b) {
          !CGAL::collinear_are_strictly_ordered_along_line(a.from, a.to, b.to);
 }
 
-/// Sweeps along u. Cost: pairs of sides whose ranges of u overlap.
+/// Sweeps along u. Cost: the number of pairs of sides whose ranges of u overlap.
 void check_crossings(std::vector<Side> sides) {
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
     return std::make_tuple(a.low_u(), a.polygon, a.index) < std::make_tuple(b.low_u(), b.polygon, b.index);
@@ -121,11 +120,12 @@ void check_crossings(std::vector<Side> sides) {
     }
 }
 
-/// Fewer take no time; their triangles' diagonals stay those of the outline's order.
+/// Fewer points are fast in any order; they are inserted in the outline's order, which determines the
+/// diagonals.
 constexpr std::size_t many_points = 2000;
 
-/// Along the outline; of one with many points along a Hilbert curve, as each point of a fine outline would
-/// else turn the fan about the last ones.
+/// Along the outline or, for many points, along a Hilbert curve: in the order of a fine outline, each point
+/// would change a large fan of triangles around the last ones.
 std::vector<std::size_t> order_of_insertion(const std::vector<glm::dvec2>& points) {
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -139,7 +139,7 @@ std::vector<std::size_t> order_of_insertion(const std::vector<glm::dvec2>& point
   return order;
 }
 
-/// Counts for every face the polygon edges between it and infinity, one flood per nesting level.
+/// Counts, for every face, the polygon edges between it and infinity, by one flood per nesting level.
 void count_nesting(Triangulation& triangulation) {
   for (auto face : triangulation.all_face_handles()) face->info() = unseen;
   std::deque<std::pair<Triangulation::Face_handle, int>> borders{{triangulation.infinite_face(), 0}};
@@ -172,7 +172,7 @@ void count_nesting(Triangulation& triangulation) {
 Solid solid_of(const Prism& prism) {
   check_frame(prism);
 
-  // Gather points and sides; refuse what is no polygon.
+  // Collect points and sides; refuse invalid polygons.
   std::vector<std::vector<glm::dvec2>> polygons;
   std::vector<Side> sides;
   for (std::size_t n = 0; n < prism.polygons_mm.size(); ++n) {
@@ -202,7 +202,7 @@ Solid solid_of(const Prism& prism) {
   count_nesting(triangulation);
 
   // A polygon's triangles wind counter-clockwise in (right, up), whose normal is -look: they face out of the
-  // near cap and, turned round, of the far one.
+  // near cap and, reversed, out of the far one.
   Triangles triangles;
   const auto count = static_cast<std::uint32_t>(uv.size());
   for (const double depth : {prism.from_mm, prism.to_mm})

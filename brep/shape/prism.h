@@ -18,11 +18,12 @@ struct Prism {
   double to_mm = 1.0;
 };
 
-/// The solid of a prism, by Construction; outward whatever the polygons' winding. A point that repeats the
-/// one before it, or a last point that repeats the first, is one point. Throws std::invalid_argument naming
-/// the polygon if polygons cross or touch each other or themselves (the solid would not be manifold), have
-/// fewer than three points or no area, and if the frame is not orthonormal or the depths are not in order.
-/// Cost: n log n for n points, more where many sides overlap in u.
+/// The solid of a prism, by Construction; oriented outward for any winding of the polygons. A point that
+/// repeats the one before it, or a last point that repeats the first, is one point. Throws
+/// std::invalid_argument, which names the polygon, if polygons cross or touch each other or themselves (the
+/// solid would not be manifold) or have fewer than three points or no area; also if the frame is not
+/// orthonormal or the depths are not in order. Cost: n log n for n points, more where many sides overlap in
+/// u.
 Solid solid_of(const Prism& prism);
 
 }  // namespace octotomy::brep

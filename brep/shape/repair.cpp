@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Each step works on a list of triangles that remembers what each was called when it came in, so that changes
-// can name it. Steps that need a connected mesh say so where the list makes none.
+// SPDX-License-Identifier: AGPL-3.0-or-later Each step works on a list of triangles with their numbers in the
+// input, by which changes name them. Steps that need a connected mesh report it if the list does not form
+// one.
 #include "brep/shape/repair.h"
 
 #include <algorithm>
@@ -40,19 +40,19 @@ namespace {
 constexpr std::uint32_t is_new = std::numeric_limits<std::uint32_t>::max();
 using Face = std::array<std::uint32_t, 3>;
 
-/// A closed shell whose volume is below this share of its area to the power of 1.5 holds nothing: a plate of
-/// 100 mm would be 30 nm thick, below what files of floats can say.
+/// A closed shell counts as empty if its volume is below this share of its area to the power of 1.5: a plate
+/// of 100 mm would be 30 nm thick, below the resolution of files with single precision.
 constexpr double film_share() {
   return 1e-8;
 }
 
-/// The share of the extent over which points are taken for one where a solid is asked for and equal points
-/// alone leave the surface open: sixteen times what rounding to floats makes of a point.
+/// If a solid is requested and merging equal points leaves the surface open, points within this share of the
+/// extent are merged: sixteen times the rounding error of single precision.
 constexpr double weld_share() {
   return 0x1p-20;
 }
 
-/// Whether the mesh has the triangle the other way round, and nothing else about it.
+/// Whether the mesh has the reversed triangle, and no other neighbours of it.
 bool is_lone(const Face& face, const Mesh& mesh) {
   const auto side = mesh.find_halfedge(Mesh::VertexHandle(static_cast<int>(face[1])),
                                        Mesh::VertexHandle(static_cast<int>(face[0])));
@@ -64,8 +64,8 @@ bool is_lone(const Face& face, const Mesh& mesh) {
   return is_border(side) && is_border(next) && is_border(last);
 }
 
-/// Of a surface made anew without the slivers and the spare triangles that a lattice leaves; as it is where
-/// it is large, or where collapses made it meet itself.
+/// A reconstructed surface without the slivers and surplus triangles of the lattice; unchanged if it is large
+/// or if collapses would make it intersect itself.
 Triangles thinned(const Enclosed& made) {
   constexpr std::size_t most_thinned = 300'000;
   if (made.solid.triangles().faces.size() > most_thinned) return made.solid.triangles();
@@ -146,12 +146,12 @@ class Mender {
     });
   }
 
-  /// How closed shells within others are turned. Alternating: inward within an odd number of them, otherwise
-  /// outward. AsGiven: a shell whose triangles all came in wound alike stays as it is. Outward it is a body to
-  /// unite; inward it is a cavity, if the shells around it make a body there.
+  /// How closed shells within others are oriented. Alternating: inward within an odd number of them,
+  /// otherwise outward. AsGiven: a shell with consistent winding in the input keeps it. An outward shell is a
+  /// body to unite; an inward shell is a cavity, if the shells around it form a body there.
   enum class Nested { Alternating, AsGiven };
 
-  /// Whether it turned any.
+  /// Orients triangles; returns whether any was reversed.
   bool orient(Nested nested = Nested::Alternating) {
     std::vector<std::uint8_t> turned(repair_.surface.faces.size(), 0);
     const Across across = across_of(repair_.surface);
@@ -181,7 +181,7 @@ class Mender {
       if (!std::isfinite(glm::dot(p, glm::dvec3(1.0)))) p = glm::dvec3(0.0);
   }
 
-  /// As mesh_of() takes it.
+  /// Splits fans so that mesh_of() accepts the surface.
   void split() {
     SplitFans done = split_fans(repair_.surface);
     for (const std::uint32_t f : done.left_out)
@@ -201,7 +201,7 @@ class Mender {
     repair_.surface = std::move(done.surface);
   }
 
-  /// Whether the shells have a union by Booleans.
+  /// Replaces the shells by their union; false if Booleans find none.
   bool unite(const std::stop_token& stop) {
     split();
     std::optional<UnitedShells> united = united_shells(repair_.surface, stop);
@@ -229,7 +229,7 @@ class Mender {
   }
 
   const Triangles& surface() const { return repair_.surface; }
-  /// Whether a side of a triangle is not shared by just one other.
+  /// Whether a side of a triangle is not shared with exactly one other.
   bool is_open() const {
     const Across across = across_of(repair_.surface);
     return std::find(across.face.begin(), across.face.end(), is_new) != across.face.end();
@@ -268,7 +268,7 @@ class Mender {
     });
   }
 
-  /// Triangles without neighbours, and closed shells that hold nothing: two sheets on each other.
+  /// Removes triangles without neighbours, and closed shells without content: two coincident sheets.
   void remove_films() {
     const Across across = across_of(repair_.surface);
     std::vector<std::uint8_t> turned(repair_.surface.faces.size(), 0);
@@ -321,7 +321,7 @@ class Mender {
       repair_.left.push_back({step, std::move(what), at});
   }
 
-  /// Points in neighbouring cells of a lattice as wide as the distance are all that can be that near.
+  /// Compares only points in neighbouring cells of a lattice whose cells are as wide as the distance.
   static void join_near(const std::vector<glm::dvec3>& points, double distance_mm, DisjointSets& sets) {
     using Cell = std::array<double, 3>;
     std::map<Cell, std::vector<std::uint32_t>> cells;
@@ -357,11 +357,10 @@ class Mender {
     origin_.resize(count);
   }
 
-  /// What lies across side k of triangle f, at 3 f + k, where just one other triangle does; `is_new`
-  /// elsewhere.
+  /// The neighbour at side k of triangle f, at index 3 f + k, if there is exactly one; otherwise `is_new`.
   struct Across {
     std::vector<std::uint32_t> face;
-    std::vector<std::uint8_t> same_way;  ///< the other runs along the side the same way
+    std::vector<std::uint8_t> same_way;  ///< the neighbour runs along the side in the same direction
   };
   static Across across_of(const Triangles& surface) {
     Across across{std::vector<std::uint32_t>(3 * surface.faces.size(), is_new),
@@ -376,7 +375,8 @@ class Mender {
     return across;
   }
 
-  /// Floods across edges of two triangles; returns the shell of each, which triangles to turn is added to.
+  /// Floods across edges of two triangles. Returns the shell of each triangle and marks in `turned` the
+  /// triangles to reverse.
   std::vector<std::uint32_t> wind_alike(const Across& across, std::vector<std::uint8_t>& turned) {
     std::vector<std::uint32_t> shell(turned.size(), is_new), flood;
     std::size_t twisted = 0;
@@ -415,16 +415,16 @@ class Mender {
     std::size_t turns = 0;
     double volume_mm3 = 0.0, area_mm2 = 0.0;
     bool is_closed = true;
-    /// Its furthest points along each axis and against it that no other shell has a corner at.
+    /// Its furthest points in both directions along each axis, without points that other shells share.
     std::array<std::optional<std::uint32_t>, 6> probes;
   };
 
-  /// By the first triangle of each, wound alike.
+  /// The shells, consistently wound, by their first triangle.
   static std::map<std::uint32_t, Shell> shells_of(const Triangles& wound, const Across& across,
                                                   const std::vector<std::uint32_t>& shell,
                                                   const std::vector<std::uint8_t>& turned) {
     std::map<std::uint32_t, Shell> shells;
-    // Of each place the shell that has corners there, or that several have.
+    // For each position, the shell with corners there, or `several`.
     const std::vector<std::uint32_t> place = first_equal_points(wound.points_mm);
     constexpr std::uint32_t several = is_new - 1;
     std::vector<std::uint32_t> owner(wound.points_mm.size(), is_new);
@@ -436,7 +436,7 @@ class Mender {
     for (std::uint32_t f = 0; f < shell.size(); ++f) {
       Shell& own = shells[shell[f]];
       const Face& face = wound.faces[f];
-      // About the shell's first point, which keeps digits far from the origin.
+      // Sums relative to the shell's first point, which preserves digits far from the origin.
       const glm::dvec3 tip = wound.points_mm[wound.faces[shell[f]][0]];
       const glm::dvec3 p = wound.points_mm[face[0]] - tip, q = wound.points_mm[face[1]] - tip,
                        r = wound.points_mm[face[2]] - tip;
@@ -459,8 +459,8 @@ class Mender {
     return shells;
   }
 
-  /// Other closed shells that have all of a shell's probes inside; those that cross it do not. By their first
-  /// triangles.
+  /// The other closed shells that contain all of a shell's probes, by their first triangles. Shells that
+  /// cross it do not contain all.
   static std::vector<std::uint32_t> shells_around(std::uint32_t first, const Shell& own,
                                                   const std::map<std::uint32_t, Shell>& shells,
                                                   const std::vector<std::uint32_t>& shell,
@@ -481,8 +481,8 @@ class Mender {
     return around;
   }
 
-  /// Turns closed shells outward, or inward as `nested` says; of open ones, so that fewer of their triangles
-  /// have been turned.
+  /// Orients closed shells outward or inward by `nested`, and open shells so that fewer of their triangles
+  /// are reversed.
   void place_shells(const Across& across, const std::vector<std::uint32_t>& shell, Nested nested,
                     std::vector<std::uint8_t>& turned) {
     assert(turned.size() == repair_.surface.faces.size() && shell.size() == turned.size());
@@ -494,7 +494,8 @@ class Mender {
     std::map<std::uint32_t, std::vector<std::uint32_t>> around;
     for (const auto& [first, own] : shells)
       if (own.is_closed) around[first] = shells_around(first, own, shells, shell, wound, tree);
-    // Where an outermost shell came in turned inward, or in part, no shell's way says what it is.
+    // If an outermost shell was inward or inconsistent in the input, the orientation of shells carries no
+    // information.
     const bool ways_hold =
         nested == Nested::AsGiven && std::all_of(around.begin(), around.end(), [&](const auto& place) {
           const Shell& own = shells.at(place.first);
@@ -524,7 +525,7 @@ class Mender {
       run(mesh);
   }
 
-  /// Puts another surface in place and lists the triangles that are not in it.
+  /// Replaces the surface and lists the triangles that are no longer in it.
   void replace(Triangles other, const char* step, const std::string& how) {
     std::multimap<Places, std::size_t> before;
     for (std::size_t f = 0; f < repair_.surface.faces.size(); ++f)
@@ -579,7 +580,7 @@ void check(const Triangles& surface, const RepairOptions& options) {
                                           "made without such triangles");
 }
 
-/// The volume inside, for comparing; lines through holes are left out.
+/// The volume inside, for comparison; lines through holes are left out.
 double volume_inside_mm3(const Triangles& surface) {
   const LineVolumes volumes = line_volumes(surface, {});
   const auto closed = static_cast<double>(volumes.lines - volumes.open_lines);
@@ -596,8 +597,8 @@ void check_volume(double before_mm3, const Triangles& now, const RepairOptions& 
                   ": allow a larger one, --max-volume-share, or mend with smaller cells, --cell");
 }
 
-/// In that order for a reason: orienting tells inside from outside where fans are split, splitting closes
-/// shells that orienting can then place, and what holes left open has an outside only when they are filled.
+/// The order matters: splitting fans needs orientation, orienting needs the shells that splitting closes, and
+/// shells with holes can be oriented only after these are filled.
 void connect(Mender& mender, const RepairOptions& options) {
   const bool solid = options.solid;
   if (solid) mender.remove_not_finite();
@@ -615,10 +616,10 @@ void connect(Mender& mender, const RepairOptions& options) {
   if ((options.orient && options.fill_holes) || solid) mender.orient(nested);
 }
 
-/// Triangles above which a solid is enclosed at once, without trying to keep the rest of the surface.
+/// With more triangles, a solid is enclosed at once, without trying to preserve the rest of the surface.
 constexpr std::size_t most_untangled = 100'000;
 
-/// Beyond this number of shells their union by Booleans would take longer than enclosing them.
+/// With more shells, their union by Booleans would take longer than enclosing them.
 constexpr std::size_t most_united = 1000;
 
 void make_solid(Mender& mender, double before_mm3, const RepairOptions& options) {
@@ -664,7 +665,7 @@ Repair repair(const Triangles& surface, const RepairOptions& options) {
     check_volume(before_mm3, mender.surface(), options, "taking out intersections");
   }
   mender.split();
-  // Shells that met have their places only now; each turn may show another.
+  // Shells that intersected can be placed only now; each orientation may make another one necessary.
   for (int turns = 0; (options.orient || options.solid) && turns < 3 && mender.orient(); ++turns) continue;
   return mender.result();
 }
@@ -692,7 +693,7 @@ RepairEffect repair_effect(const Triangles& before, const Triangles& after, cons
   effect.area_after_mm2 = size_after.area_mm2;
   const auto measure = [&](const Triangles& from, const Triangles& to) {
     if (from.faces.empty() || to.faces.empty()) return;
-    // Each point once, then the triangles' middles.
+    // Collects each point once, then the triangles' middles.
     std::vector<glm::dvec3> points;
     std::vector<std::uint32_t> place(from.points_mm.size(), is_new);
     for (const Face& face : from.faces)
@@ -704,7 +705,7 @@ RepairEffect repair_effect(const Triangles& before, const Triangles& after, cons
     for (const Face& face : from.faces)
       points.push_back((from.points_mm[face[0]] + from.points_mm[face[1]] + from.points_mm[face[2]]) / 3.0);
     const std::vector<double> distances = SurfaceTree(to, SurfaceTree::Build::Hasty).distances_mm(points);
-    // Of places that are equally far the first in the order of the triangles.
+    // Among equally distant positions, stores the first in the order of the triangles.
     const auto add = [&](std::size_t i) {
       if (distances[i] <= effect.largest_distance_mm) return;
       effect.largest_distance_mm = distances[i];

@@ -11,71 +11,71 @@
 
 namespace octotomy::brep {
 
-/// Which repairs to make; nothing is done that is not asked for. They are made in this order.
+/// The repairs to make, in this order. Nothing else is changed.
 struct RepairOptions {
-  /// Points no further apart than this become one, chains of them too; 0 joins equal points only. Widths of
-  /// what is to stay must be well above it.
+  /// Points within this distance are merged, also in chains; 0 merges only equal points. Must be well below
+  /// the width of parts to preserve.
   std::optional<double> weld_mm = std::nullopt;
-  bool remove_duplicates = false;  ///< of triangles with the same three points all but the first
-  bool orient = false;             ///< neighbours alike; closed shells outward, or inward as cavities
-  /// Triangles that repeat a point are taken out, others without area as flat_triangles.h says.
+  bool remove_duplicates = false;  ///< removes triangles with the same three points as an earlier one
+  bool orient = false;             ///< neighbours consistently; closed shells outward, or inward as cavities
+  /// Removes triangles that repeat a point, and others without area as in flat_triangles.h.
   bool remove_flat = false;
-  /// Closes holes, each by the triangles of least area and sharpness over its border.
+  /// Closes each hole by the triangles of least area and sharpness over its border.
   bool fill_holes = false;
   std::optional<double> longest_hole_mm = std::nullopt;  ///< holes with a longer border stay open
-  /// Takes out triangles that intersect and those about them and closes what is left by new ones: moves the
+  /// Removes triangles that intersect and those around them, and closes the gaps by new ones, which moves the
   /// surface there.
   bool remove_intersections = false;
-  /// Closed and free of self-intersection in any case: where the steps above, those of them too that were not
-  /// asked for, leave no solid, closed shells are united by united_shells(); where that has no answer, the
-  /// surface is made anew by enclose(). Closed shells within others stay bodies or cavities as they are
-  /// turned, where all outermost ones came in turned outward. The cell and hull of enclose():
+  /// The result is closed and free of self-intersection. Runs all steps above, also those not requested. If
+  /// the result is not a solid, closed shells are united by united_shells(); if that fails, the surface is
+  /// reconstructed by enclose(). Closed shells within others are bodies or cavities by their orientation, if
+  /// all outermost shells of the input face outward. The options of enclose():
   bool solid = false;
   std::optional<double> cell_mm = std::nullopt;
   bool hull = false;
-  /// Of the volume that taking out intersections and enclosing may gain or lose, above 0.
+  /// Largest share of the volume that removing intersections and enclosing may gain or lose, above 0.
   double max_volume_share = 0.05;
   Progress progress = {};
 };
 
-/// One thing that was done, or what could not be done.
+/// One change that was made, or that could not be made.
 struct Change {
   std::string step;  ///< weld, duplicates, orient, flat, fans, holes, intersections, solid
-  std::string what;  ///< triangles and points by their numbers in what came in
+  std::string what;  ///< names triangles and points by their numbers in the input
   glm::dvec3 at_mm{0.0};
 };
 
 struct Repair {
   Triangles surface;
-  std::vector<Change> changes;             ///< every one, in order
-  std::vector<Change> left;                ///< what was asked for and could not be done
-  std::optional<double> enclosed_cell_mm;  ///< where the surface was made anew, the lattice's cell
+  std::vector<Change> changes;             ///< every change, in order
+  std::vector<Change> left;                ///< requested changes that could not be made
+  std::optional<double> enclosed_cell_mm;  ///< the lattice's cell, if the surface was reconstructed
 };
 
-/// Repairs a surface as asked and lists each change. Never moves a point but to weld it to the first of its
-/// set, where intersections are taken out or the surface is enclosed. Edges of three and more triangles, and
-/// points where several fans meet, are split as split_fans() does wherever a step or the result needs it.
-/// Orients last, until health() agrees. Triangles with points that are not finite are taken out where `solid`
-/// is asked for. Ask health() what is left to be wished for. Throws std::invalid_argument if an option is out
-/// of its range, Error (Input) if a triangle refers to no point or to one that is not finite, Error
-/// (Geometry) with both volumes if the volume changes by more than its share, or as enclose(); Stopped. Cost:
-/// n log n, and most for triangles that intersect: those are taken out of up to 100 000 triangles only, when
-/// `solid` can enclose instead. Source: holes after Liepa, "Filling holes in meshes", SGP 2003; both holes
-/// and intersections as CGAL has them.
+/// Repairs a surface by the given options and lists each change. Moves points only to weld them to the first
+/// of their set, to remove intersections, or by enclosing. Edges of three or more triangles, and points where
+/// several fans meet, are split as by split_fans() if a step or the result needs it. Orients last, until
+/// health() has no finding on orientation. With `solid`, removes triangles with points that are not finite.
+/// Check the result with health(). Throws std::invalid_argument if an option is out of its range; Error
+/// (Input) if a triangle refers to a missing point or to one that is not finite; Error (Geometry) with both
+/// volumes if the volume changes by more than its share; as enclose() does; Stopped. Cost: n log n, and
+/// mainly removing intersections, which is tried for at most 100 000 triangles if `solid` can enclose
+/// instead. Source: holes after Liepa, "Filling holes in meshes", SGP 2003; holes and intersections are
+/// repaired by CGAL.
 Repair repair(const Triangles& surface, const RepairOptions& options);
 
-/// How far one surface is from another that was made of it.
+/// The differences between a surface and the one from which it was made.
 struct RepairEffect {
-  /// Of solids the exact sum over their triangles; of other surfaces, also open ones, by line_volumes().
+  /// For solids, the exact sum over their triangles; for other surfaces, also open ones, by line_volumes().
   double volume_before_mm3 = 0.0, volume_after_mm3 = 0.0;
-  double open_line_share = 0.0;  ///< of the lines that the volume before leaves out
+  double open_line_share = 0.0;  ///< share of lines that the volume before leaves out
   double area_before_mm2 = 0.0, area_after_mm2 = 0.0;
-  /// Of corners and middles of triangles of either surface from the other.
+  /// Largest distance of the corners and middles of triangles of either surface from the other.
   double largest_distance_mm = 0.0;
   glm::dvec3 largest_at_mm{0.0};
 };
 
-/// Which of both surfaces health() has found to be solids.
+/// Whether health() has found each of the two surfaces to be a solid.
 struct KnownSolids {
   bool before = false, after = false;
 };

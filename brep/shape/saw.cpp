@@ -18,7 +18,7 @@ glm::dvec2 left_of(const glm::dvec2& along) {
   return glm::dvec2(-along.y, along.x) / glm::length(along);
 }
 
-/// The line moved by `side` to its left; at a corner both moved pieces meet.
+/// The line moved by `side` to its left; moved pieces meet at the corners.
 std::vector<glm::dvec2> moved_aside(const std::vector<glm::dvec2>& line, double side) {
   assert(line.size() >= 2);
   std::vector<glm::dvec2> moved;
@@ -42,7 +42,7 @@ Solid saw_blade(const SawCut& cut) {
     throw std::invalid_argument("saw_blade: depth and kerf must be positive");
   Prism prism;
   prism.look = glm::normalize(cut.direction);
-  // Any axis will do that the direction is not along.
+  // Any axis that is not parallel to the direction is suitable.
   const glm::dvec3 aside = std::abs(prism.look.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
   prism.right = glm::normalize(glm::cross(prism.look, aside));
   prism.up = glm::cross(prism.right, prism.look);

@@ -33,7 +33,8 @@ void check(const Mesh& mesh, const SmoothOptions& options) {
              ": close its holes first");
 }
 
-/// Moves every vertex by a share of the way to its neighbours' mean, all from the places before.
+/// Moves every vertex by a share of the way to its neighbours' mean, computed from the positions before this
+/// step.
 void step(Mesh& mesh, double share, std::vector<Mesh::Point>& before) {
   before.resize(mesh.n_vertices());
   for (const auto vertex : mesh.vertices())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 take the surface apart into shells; 2 make a solid of each, cavities turned outward; 3 find the body of
-// each cavity; 4 cut the cavities out of their bodies; 5 unite the bodies whose boxes meet, group by group.
+// 1 split the surface into shells; 2 make a solid of each, with cavities reversed; 3 find the body of each
+// cavity; 4 subtract the cavities from their bodies; 5 unite the bodies whose boxes meet, group by group.
 #include "brep/shape/unite_shells.h"
 
 #include <algorithm>
@@ -47,7 +47,7 @@ std::vector<Triangles> shells_apart(const Linked& whole) {
   return shells;
 }
 
-/// A shell as the solid that it bounds, whichever way it is turned.
+/// A shell as the solid that it bounds, for either orientation.
 struct Body {
   Solid solid;
   bool is_cavity = false;
@@ -72,14 +72,15 @@ bool boxes_meet(const Solid& a, const Solid& b) {
          glm::all(glm::lessThanEqual(other.low_mm, one.high_mm));
 }
 
-/// How many of the cavity's points the body holds.
+/// The number of the cavity's points inside the body.
 std::size_t points_within(const Solid& cavity, const Solid& body) {
   if (!boxes_meet(cavity, body)) return 0;
   const std::vector<std::uint8_t> inside = body.tree().inside(cavity.triangles().points_mm);
   return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), 1));
 }
 
-/// The number of the body that a cavity is in: of those that hold most of its points the smallest.
+/// The number of the body that contains a cavity: the one with most of its points, and among these the
+/// smallest.
 std::optional<std::size_t> body_around(const Solid& cavity, const std::vector<Solid>& bodies) {
   std::optional<std::size_t> around;
   std::size_t most = 0;
@@ -93,7 +94,7 @@ std::optional<std::size_t> body_around(const Solid& cavity, const std::vector<So
   return around;
 }
 
-/// Solids as one surface, without a cut.
+/// Appends a solid to a surface, without a Boolean.
 void append(Triangles& all, const Triangles& more) {
   const auto first = static_cast<std::uint32_t>(all.points_mm.size());
   all.points_mm.insert(all.points_mm.end(), more.points_mm.begin(), more.points_mm.end());

@@ -2,8 +2,8 @@
 #include "brep/shape/untangle.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-// A build with asserts must not stop where others go on: between its steps CGAL's repair leaves vertices of
-// two fans, which it treats next, and of which its own checks know nothing.
+// Disables CGAL's assertions, so that a build with assertions does not abort where others continue: between
+// its steps CGAL's repair leaves vertices with two fans, which it repairs next but its own checks refuse.
 #undef CGAL_assertion
 #undef CGAL_precondition
 #undef CGAL_postcondition
@@ -51,13 +51,13 @@ Untangled untangle(const Mesh& mesh) {
   Untangled untangled;
   untangled.surface = before;
   std::size_t intersections = health(before).self_intersections;
-  // Where a part passes through another, only another genus has no intersection; and CGAL's own count of what
-  // is left is not ours, which decides.
+  // If a part passes through another, only a different genus has no intersection. The decision uses
+  // health()'s count of remaining intersections, which differs from CGAL's.
   for (const bool keeps_genus : {true, false, false, false}) {
     if (intersections == 0) break;
     Surface surface = surface_mesh_of<Kernel::Point_3>(untangled.surface);
     pmp::experimental::remove_self_intersections(surface, CGAL::parameters::preserve_genus(keeps_genus));
-    // CGAL's order may hang on addresses.
+    // CGAL's order may depend on addresses.
     Triangles tried = in_coordinate_order(mesh_of(triangles_of(surface)));
     const std::size_t still = health(tried).self_intersections;
     if (still >= intersections) continue;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// A fork and an exec, since posix_spawn() cannot ask for a signal at the end of the parent
-// (PR_SET_PDEATHSIG). The system sends that signal when the thread that forked ends; the same thread waits
-// for the child, so it ends first only where the process does.
+// Uses fork and exec, because posix_spawn() cannot request a signal at the end of the parent
+// (PR_SET_PDEATHSIG). The system sends that signal when the forking thread ends. The same thread waits for
+// the child, so it ends first only if the whole process ends.
 #include "planner/cohort/child_process.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// Our environment, but for the variables that `added` sets.
+/// This process's environment, with the variables of `added` replaced or added.
 Words environment_with(const Words& added) {
   Words all = added;
   for (char** each = environ; *each != nullptr; ++each) {
@@ -38,7 +38,7 @@ Words environment_with(const Words& added) {
   return all;
 }
 
-/// The words as exec takes them. The words must outlive it.
+/// Pointers to the words in the form for exec. The words must outlive them.
 std::vector<char*> pointers_to(Words& words) {
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
@@ -46,7 +46,8 @@ std::vector<char*> pointers_to(Words& words) {
   return pointers;
 }
 
-/// What the forked process needs, made before the fork: after it, other threads' locks are held for ever.
+/// The data for the forked process, created before the fork: after it, locks held by other threads are never
+/// released.
 struct ReadyProgram {
   Words words, environment;
   std::vector<char*> arguments = pointers_to(words), variables = pointers_to(environment);
@@ -55,9 +56,9 @@ struct ReadyProgram {
   pid_t parent = getpid();
 };
 
-/// The forked process becomes the program, or writes into `failure` why it cannot.
+/// Replaces the forked process by the program, or writes the reason for a failure to `failure`.
 [[noreturn]] void become(const ReadyProgram& program, int output, int failure) {
-  // Until the exec, our handler would take the signal for a request to this process.
+  // Resets the handler, which until the exec would treat the signal as a request to this process.
   std::signal(program.signal_at_parents_end, SIG_DFL);
   prctl(PR_SET_PDEATHSIG, program.signal_at_parents_end);
   // The parent may have ended before prctl().

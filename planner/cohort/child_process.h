@@ -12,7 +12,7 @@ namespace octotomy::planner {
 /// A pipe that child programs do not inherit, unless one of its ends is passed to them.
 class Pipe {
  public:
-  /// Throws std::system_error where the system has none left.
+  /// Throws std::system_error if the system has none left.
   Pipe();
   Pipe(const Pipe&) = delete;
   Pipe& operator=(const Pipe&) = delete;
@@ -28,19 +28,22 @@ class Pipe {
 
 struct ChildProcess {
   std::vector<std::string> words;             ///< the program, found by PATH, and its arguments
-  std::vector<std::string> environment = {};  ///< "NAME=value", added to ours or in place of it
+  std::vector<std::string> environment = {};  ///< "NAME=value", added to this process's environment or
+                                              ///< replacing it
   std::optional<int> inherited_file = {};     ///< a descriptor that keeps its number in the child
-  /// Sent to the child when this process ends, even by SIGKILL. What the child started is not reached.
+  /// Sent to the child when this process ends, even by SIGKILL. Does not reach processes started by the
+  /// child.
   int signal_at_our_end = SIGTERM;
 };
 
 struct ChildEnd {
   int status = 0;    ///< as waitpid() reports it
-  std::string said;  ///< the first line on its standard output
+  std::string said;  ///< the first line of its standard output
 };
 
-/// Runs a program to its end; its standard input and error are ours. A stop is passed on as SIGTERM and the
-/// end waited for; then throws Stopped. Throws voxel::Error (Resource) where the program cannot be started.
+/// Runs a program to its end; it shares this process's standard input and error. A stop is passed on as
+/// SIGTERM; then waits for the end and throws Stopped. Throws voxel::Error (Resource) if the program cannot
+/// be started.
 ChildEnd run_child_process(const ChildProcess& child, const std::stop_token& stop);
 
 }  // namespace octotomy::planner

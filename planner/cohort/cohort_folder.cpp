@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// A file in code/ is Octotomy's if the list has its name with the SHA-256 of what it holds. A line is added
-// before the file is written and never removed, so that a kill between the two leaves nothing that the next
-// command takes for somebody else's.
+// A file in code/ belongs to Octotomy if the list has its name with the SHA-256 of its content. A line is
+// added before the file is written and never removed, so that after a kill between the two the next command
+// still recognises the file as Octotomy's.
 #include "planner/cohort/cohort_folder.h"
 
 #include <algorithm>
@@ -47,8 +47,8 @@ void need_file(const fs::path& path) {
     refuse(path, "is no regular file: move it");
 }
 
-/// Refuses what stands in the place of a folder and is none. Tries to write into the folder, or into the
-/// nearest above that is there, as a system may grant what it then refuses.
+/// Refuses a path that should be a folder but is not. Tries to write into the folder, or into its nearest
+/// existing parent, because permissions alone do not guarantee that writing succeeds.
 void need_writable_folder(fs::path folder, const fs::path& out) {
   while (!fs::exists(fs::symlink_status(folder))) folder = folder.parent_path();
   std::error_code ignored;
@@ -60,7 +60,7 @@ void need_writable_folder(fs::path folder, const fs::path& out) {
   }
 }
 
-/// Beside and renamed into place.
+/// Writes to a temporary file and renames it into place.
 void replace_text(const fs::path& path, const std::string& text) {
   voxel::StagedFiles staged(path.parent_path());
   write_text(staged.folder() / path.filename(), text);
@@ -75,7 +75,7 @@ std::string description_text(const std::string& version) {
   return description.dump(2) + "\n";
 }
 
-/// What stands in the place of the description.
+/// The state of the file at the description's path.
 enum class Description { None, Generated, Edited, Foreign };
 
 Description description_of(const fs::path& path) {
@@ -177,7 +177,7 @@ void prepare_cohort_folder(const fs::path& out, const std::string& plan_text) {
   {
     const LockedList list(out);
     if (list.is_new()) {
-      // A folder that was made before there was a list: what is there is Octotomy's.
+      // The folder was made before the list existed: its files are Octotomy's.
       std::string lines;
       if (found != Description::None)
         for (const char* name : {plan_name, cohort_labels, cohort_participant_script, cohort_group_script})

@@ -9,11 +9,11 @@
 
 namespace octotomy::planner {
 
-/// What a command will write into a cohort's folder.
+/// The files and folders that a command will write into a cohort's folder.
 struct CohortNeeds {
-  std::string plan_text;             ///< kept as cohort_plan(); empty: the kept plan stays
-  std::vector<std::string> files;    ///< that engines write into code/: cohort_labels, ...
-  std::vector<std::string> folders;  ///< of results: "sub-01", "group"
+  std::string plan_text;             ///< stored as cohort_plan(); empty: the stored plan is not changed
+  std::vector<std::string> files;    ///< files that engines write into code/: cohort_labels, ......
+  std::vector<std::string> folders;  ///< folders of results: "sub-01", "group"
 };
 
 /// Names in code/ that engines write.
@@ -22,9 +22,9 @@ inline constexpr const char* cohort_participant_script = "participant.sbatch";
 inline constexpr const char* cohort_group_script = "group.sbatch";
 inline constexpr const char* cohort_log = "parallel.log";
 
-/// The plan that every subject went through last.
+/// The plan that was last applied to every subject.
 std::filesystem::path cohort_plan(const std::filesystem::path& out);
-/// The folder of a file a subject, locked by the process that has the subject in hand.
+/// The folder with one file per subject, locked by the process that works on the subject.
 std::filesystem::path cohort_locks(const std::filesystem::path& out);
 
 /// Refuses a cohort's folder before anything is written to it. Throws voxel::Error (Input) that names the
@@ -33,20 +33,20 @@ std::filesystem::path cohort_locks(const std::filesystem::path& out);
 /// - the kept plan, unless it is the same, or a file of `needs` was not written by a cohort, or was changed
 /// since;
 /// - the list `code/octotomy.sha256` is another file;
-/// - the description, the list or the kept plan is no regular file;
+/// - the description, the list or the kept plan is not a regular file;
 /// - a folder of `needs` holds files but no result (may_hold_result());
-/// - `out`, `code` or cohort_locks() is no folder, or cannot be made or written to (or Resource, by the
-/// cause). A link to nothing stands for the folder that it names. A folder that was made before there was a
-/// list counts as Octotomy's by its description. Cost: a look into each folder.
+/// - `out`, `code` or cohort_locks() is not a folder, or cannot be made or written to (or Resource, by the
+///   cause). A link to a missing folder counts as that folder. A folder that was made before the list existed
+///   counts as Octotomy's by its description. Cost: reads each folder.
 void need_cohort_folder(const std::filesystem::path& out, const CohortNeeds& needs);
 
 /// Makes the folder, its description and the kept plan. Precondition: need_cohort_folder(). Throws as that
-/// does, and std::filesystem::filesystem_error or voxel::Error where the disk gives out.
+/// does, and std::filesystem::filesystem_error or voxel::Error if the disk is full or fails.
 void prepare_cohort_folder(const std::filesystem::path& out, const std::string& plan_text);
 
-/// Writes a file `name` in code/, beside and renamed into place, unless it is there with this text. The list
-/// `code/octotomy.sha256` tells later commands that the text is Octotomy's. Several processes may do the same
-/// at once. Throws as prepare_cohort_folder().
+/// Writes a file `name` in code/ by a temporary file that is renamed into place, unless it exists with this
+/// text. By the list `code/octotomy.sha256`, later commands recognise the text as Octotomy's. Several
+/// processes may do this at once. Throws as prepare_cohort_folder() does.
 void write_cohort_file(const std::filesystem::path& out, const std::string& name, const std::string& text);
 
 }  // namespace octotomy::planner

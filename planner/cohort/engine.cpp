@@ -25,10 +25,10 @@ using Words = std::vector<std::string>;
 /// Exit status of a process that ran out of time, memory or disk.
 constexpr int out_of_resources = 3;
 
-/// The environment variable by which participants of GNU parallel know the number of a descriptor: a pipe
-/// that this process alone can write into. The system closes that end when this process ends, however it
-/// ends, and the participants watch for it. A signal at the end of a parent would not reach them: their
-/// parent is a shell.
+/// The environment variable that passes a descriptor's number to participants of GNU parallel: a pipe into
+/// which only this process can write. The system closes that end when this process ends for any reason, and
+/// the participants watch it. A signal at the end of a parent would not reach them, because their parent is a
+/// shell.
 constexpr const char* pipe_variable = "OCTOTOMY_ENGINE_PIPE";
 
 Words with_label(const EngineRequest& request, const std::string& label) {
@@ -37,7 +37,7 @@ Words with_label(const EngineRequest& request, const std::string& label) {
   return words;
 }
 
-/// The words as a shell reads them.
+/// The words, quoted for a shell.
 std::string shell_text(const Words& words) {
   std::string text;
   for (const std::string& word : words) {
@@ -76,7 +76,7 @@ std::string submit(const EngineRequest& request, const Words& options, const Wor
   return job;
 }
 
-/// Whether a process ended with that status by GNU parallel's log, whose seventh column holds it.
+/// Whether, by GNU parallel's log, a process ended with that status, which is in the seventh column.
 bool log_tells_end_of_resources(const fs::path& log) {
   std::ifstream file(log);
   bool tells = false;
@@ -96,7 +96,7 @@ void end_with_engine() {
   const int file = text == nullptr ? -1 : std::atoi(text);
   struct stat of_file {};
   if (file < 0 || fstat(file, &of_file) != 0 || !S_ISFIFO(of_file.st_mode)) return;
-  // Never joined: it waits as long as this process lives.
+  // Never joined: the thread waits until this process ends.
   std::thread([file] {
     pollfd engine{file, 0, 0};
     while (poll(&engine, 1, -1) < 0 && errno == EINTR) continue;
@@ -128,7 +128,7 @@ bool run_parallel(const EngineRequest& request) {
                      .environment = {"PARALLEL_SHELL=/bin/sh",
                                      std::string(pipe_variable) + "=" + std::to_string(pipe.reading())},
                      .inherited_file = pipe.reading(),
-                     // GNU parallel ignores SIGTERM at its start, and would go through the whole list.
+                     // GNU parallel ignores SIGTERM at its start and would process the whole list.
                      .signal_at_our_end = SIGKILL},
                     request.stop);
   return log_tells_end_of_resources(code_path(request, cohort_log));

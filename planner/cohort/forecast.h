@@ -21,7 +21,8 @@ struct Forecast {
   Growth seconds, peak_mb;
 };
 
-/// Least squares; where all scans are alike in size, the largest answer for any. No growth is below zero.
+/// Fits by least squares; if all scans have about the same size, returns the largest values for any size.
+/// Growth is never negative.
 Forecast forecast_of(const std::vector<SubjectRecord>& done);
 
 }  // namespace octotomy::planner

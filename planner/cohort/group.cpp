@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a subject whose record has an answer.
+/// The rows of a subject whose record has an answer.
 std::vector<ResultRow> rows_in(const fs::path& out, const Subject& subject) {
   const fs::path path = out / subject.folder() / "rows.csv";
   try {
@@ -31,7 +31,7 @@ std::vector<ResultRow> rows_in(const fs::path& out, const Subject& subject) {
 }
 
 /// The findings of the scans' audits over a cohort: every line of a subject with a FAIL, and the other
-/// subjects' WARNs by their checks, since one export's WARN stands in each of its subjects.
+/// subjects' WARNs by their checks, because a WARN about an export occurs in each of its subjects.
 class AuditFindings {
  public:
   void add(const std::string& label, const SubjectRecord& record) {
@@ -68,7 +68,7 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// Both kernels' answers of a column, mesh less voxel.
+/// Both kernels' answers of a column, for mesh minus voxel.
 std::vector<std::pair<double, double>> of_kernels(const CohortColumn& column) {
   std::vector<std::pair<double, double>> answers;
   for (const CohortValue& value : column.values)
@@ -76,7 +76,7 @@ std::vector<std::pair<double, double>> of_kernels(const CohortColumn& column) {
   return answers;
 }
 
-/// The same subjects' numbers of two observers, the other less this one.
+/// The same subjects' numbers of two observers, for the other minus this one.
 std::vector<std::pair<double, double>> of_observers(const CohortColumn& column, const CohortTable& other) {
   std::map<std::uint32_t, double> others;
   for (const CohortColumn& its : other.columns())

@@ -9,7 +9,7 @@
 
 namespace octotomy::planner {
 
-/// One number over a cohort, as the page shows it.
+/// One number over a cohort, with its plots.
 struct GroupColumn {
   std::string name, unit;
   nlohmann::ordered_json summary;
@@ -22,17 +22,17 @@ struct GroupPage {
     std::string label;
     std::string reason;  ///< why there is no answer; empty: there is one
     bool has_picture = false;
-    bool is_doubtful = false;  ///< the audit of a scan has a FAIL, and the numbers count all the same
-    std::string audit;         ///< of a doubtful one: what its scans' audits say
+    bool is_doubtful = false;  ///< the audit of a scan has a FAIL, but the numbers are used
+    std::string audit;         ///< for a doubtful subject: the findings of its scans' audits
   };
   std::vector<Shown> subjects;
   std::vector<GroupColumn> columns;
-  std::vector<std::string> findings;  ///< of the cohort, as summary.json has them
+  std::vector<std::string> findings;  ///< findings on the cohort, as in summary.json
 };
 
-/// The cohort for quality control: who has no answer and why, whose scans' audits have a FAIL, all findings,
-/// numbers and plots, outliers by name, and
-/// everyone's picture, which lies in the subject's folder beside the group's.
+/// The page for quality control: subjects without an answer and the reasons, subjects with a FAIL in a scan's
+/// audit, all findings, numbers and plots, outliers by label, and all subjects' pictures, which are in the
+/// subjects' folders beside the group's.
 std::string group_page(const GroupPage& page);
 
 }  // namespace octotomy::planner

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 constexpr int picture_px = 240;
 constexpr const char* report_folder = "report";
 
-/// The exclusive claim of one process on a subject. Released when that process ends, however it ends.
+/// The exclusive claim of one process on a subject. Released when that process ends for any reason.
 class Claim {
  public:
   Claim(const fs::path& out, const Subject& subject) {
@@ -52,7 +52,8 @@ class Claim {
 };
 
 std::string key_of(const Plan& plan, const Subject& subject) {
-  // The form of subject.json and rows.csv: answers of another form are made anew.
+  // Includes the version of the format of subject.json and rows.csv: answers in another format are computed
+  // again.
   std::string text = OCTOTOMY_VERSION " 2\n" + plan_sha256(Json::parse(plan.text)) + "\n";
   for (const auto& [name, path] : subject.scans) text += name + " " + sha256_of_path(path) + "\n";
   for (const Step& step : plan.steps)
@@ -61,14 +62,14 @@ std::string key_of(const Plan& plan, const Subject& subject) {
   return sha256_of(text);
 }
 
-/// The bytes of a file; none where it is no regular file, as a pipe would be waited for.
+/// The bytes of a file; none if it is not a regular file, because reading a pipe would block.
 std::string bytes_of_regular(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored) ? voxel::file_bytes(path) : "";
 }
 
-/// The record of a subject whose folder has lost a file of its answer, or holds it changed. None where the
-/// file is as `list`, the folder's list of what was written, has it.
+/// The record of a subject if a file of its answer is missing or changed. None if the file agrees with
+/// `list`, the folder's list of written files.
 std::optional<SubjectRecord> record_of_loss(const fs::path& path, const ResultList& list) {
   const auto listed = list.find(path.filename().string());
   if (listed != list.end() && listed->second == sha256_of(bytes_of_regular(path))) return std::nullopt;
@@ -105,7 +106,7 @@ Json to_json(const SubjectRecord& record, const Subject& subject) {
           {"peak_mb", record.peak_mb}};
 }
 
-/// One small picture of what the plan ends with; none where it shows nothing.
+/// A small picture of the plan's final scene; empty if the scene is empty.
 std::vector<std::uint8_t> picture_of(const Plan& plan, const Evaluation& evaluation) {
   const FinalScene scene = final_scene(plan, evaluation);
   PictureGroup group{"picture", "", scene.after, {}};
@@ -117,7 +118,8 @@ void write_bytes(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
   write_text(path, {bytes.begin(), bytes.end()});
 }
 
-/// The plan with the subject's own files where its steps read files that are not beside it.
+/// The plan with the subject's own files in place of files that its steps read and that are not beside the
+/// plan.
 Plan of_subject(const Plan& plan, const Subject& subject) {
   std::map<fs::path, fs::path> places;
   for (const Step& step : plan.steps)
@@ -128,18 +130,18 @@ Plan of_subject(const Plan& plan, const Subject& subject) {
   return with_files(plan, places);
 }
 
-/// Evaluates and writes into `folder`; what the audits of the scans say.
+/// Evaluates the plan and writes into `folder`. Returns the findings of the scans' audits.
 ScanAudits answer(const Plan& plan, const Subject& subject, const ParticipantOptions& options,
                   const fs::path& folder) {
   Result result;
   result.plan = plan;
-  result.anonymous = true;  // a cohort knows its subjects by their labels
+  result.anonymous = true;  // subjects of a cohort are identified by labels only
   for (auto& [name, scan] : result.plan.scans) scan.path = subject.scans.at(name);
   result.evaluation = evaluate(result.plan, {options.stop, options.progress, true});
   Json json;
   if (options.reports) {
     result.pictures = plan_pictures(result.plan, result.evaluation);
-    // `folder` appears with all that is in it, and its list names the report's files, too.
+    // `folder` appears with its complete contents, and its list includes the report's files.
     voxel::create_folders_in(folder, report_folder);
     json = write_result_files(result, folder / report_folder, {options.stop, options.progress});
   } else {
@@ -163,7 +165,8 @@ std::vector<fs::path> needed_names(const Plan& plan, const ParticipantOptions& o
   return names;
 }
 
-/// Why a subject failed: what the evaluation says. Resource errors and stops are none of the subject's.
+/// The reason why a subject failed: the message of the evaluation. Resource errors and stops are not the
+/// subject's failures and are rethrown.
 template <typename Work>
 std::string reason_of(const Work& work) {
   try {

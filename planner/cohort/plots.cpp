@@ -20,12 +20,12 @@ std::string number(double value) {
   return text.data();
 }
 
-/// For people: a true minus sign.
+/// The label of a tick, with a true minus sign.
 std::string tick_label(double value) {
   return value < 0.0 ? "−" + number(-value) : number(value);
 }
 
-/// One axis: numbers to pixels.
+/// An axis: maps numbers to pixels.
 struct Axis {
   double low, high, from_px, to_px;
 
@@ -43,7 +43,7 @@ struct Axis {
   }
 };
 
-/// Room for numbers from low to high, and some more on both sides.
+/// An axis for numbers from low to high, with a margin on both sides.
 Axis axis(double low, double high, double from_px, double to_px) {
   double margin = 0.06 * (high - low);
   if (!(margin > 0.0)) margin = std::max(1e-6, 0.01 * std::abs(low));
@@ -61,7 +61,7 @@ std::string line(double x1, double y1, double x2, double y2, const std::string& 
          "' " + more + "/>";
 }
 
-/// Title, axes with ticks and their names, around what is drawn.
+/// Adds title, axes, ticks and names around `inside`.
 std::string framed(const std::string& title, const Axis& x, const Axis& y, const std::string& x_name,
                    const std::string& y_name, const std::string& inside) {
   std::string svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " + number(width) + " " +

@@ -9,8 +9,8 @@
 // Plots as SVG, in colours that follow the page around them: light or dark.
 namespace octotomy::planner {
 
-/// The distribution of numbers: a histogram with its median, and ticks below for outliers. `unit` in the form
-/// for people. Precondition: there are numbers, all finite.
+/// The distribution of numbers: a histogram with its median, and ticks below for outliers. `unit` as shown to
+/// users. Precondition: there are numbers, all finite.
 std::string distribution_svg(const std::string& title, const std::string& unit,
                              const std::vector<double>& numbers);
 

@@ -18,9 +18,9 @@ const std::vector<std::string> columns = {"subject", "measurement", "object",   
                                           "unit",    "half_width",  "coverage", "voxel",       "mesh",
                                           "verdict", "octotomy",    "plan",     "plan_sha256", "scan_audit"};
 
-constexpr std::array<const char*, 3> verdicts{"PASS", "WARN", "FAIL"};  ///< the gravest last
+constexpr std::array<const char*, 3> verdicts{"PASS", "WARN", "FAIL"};  ///< most severe last
 
-/// The graver of two verdicts; an empty or unknown one is no verdict.
+/// The more severe of two verdicts; an empty or unknown text is ignored.
 std::string graver(const std::string& a, const std::string& b) {
   const auto rank = [](const std::string& verdict) {
     const auto at = std::find(verdicts.begin(), verdicts.end(), verdict);
@@ -39,7 +39,7 @@ std::optional<double> number_at(const Json& object, const std::string& key) {
   return found != object.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
 }
 
-/// "volume_mm3" is a volume in mm3; keys of another form, and those that tell of another number, are none.
+/// "volume_mm3" is a volume in mm3; none for keys of another form and for keys that describe another number.
 std::optional<std::pair<std::string, std::string>> quantity_and_unit(const std::string& key) {
   static constexpr std::array<const char*, 6> units{"mm3", "mm2", "mm", "degrees", "deg", "percent"};
   for (const char* tells : {"half_width", "difference", "tolerance"})
@@ -50,7 +50,7 @@ std::optional<std::pair<std::string, std::string>> quantity_and_unit(const std::
   return std::nullopt;
 }
 
-/// The gravest verdict of the objects that a measurement names.
+/// The most severe verdict of the objects that a measurement names.
 std::string verdict_of(const Json& measurement, const Json& result) {
   std::string gravest;
   const auto certificates = result.find("certificates");
@@ -137,7 +137,7 @@ std::vector<ResultRow> rows_of(const Json& result, const std::string& subject) {
   const auto measurements = result.find("measurements");
   if (measurements == result.end()) return rows;
   for (const Json& measurement : *measurements) {
-    std::set<std::string> told;  // a number with its interval, and again by its plain key
+    std::set<std::string> told;  // numbers that were added with their interval; skipped under their plain key
     std::vector<ResultRow> own;
     for (const bool with_interval : {true, false})
       for (const auto& [key, value] : measurement.items()) {

@@ -14,7 +14,7 @@ namespace octotomy::planner {
 
 /// One subject's number.
 struct CohortValue {
-  std::uint32_t subject = 0;  ///< its place in the cohort
+  std::uint32_t subject = 0;  ///< its index in the cohort
   double value = 0.0;
   std::optional<double> half_width;
   std::optional<double> voxel, mesh;
@@ -30,7 +30,7 @@ struct CohortColumn {
   std::string name() const { return measurement + "." + quantity; }
 };
 
-/// The numbers of a cohort, in the order in which rows named them. Memory: some 100 bytes a row.
+/// The numbers of a cohort, in the order in which rows named them. Memory: about 100 bytes per row.
 class CohortTable {
  public:
   /// Rows of one subject; those without a value are left out.
@@ -42,20 +42,20 @@ class CohortTable {
   std::map<std::string, std::size_t> at_;
 };
 
-/// What is told of numbers. Nothing is told of none.
+/// Statistics of numbers. All zero if there are no numbers.
 struct Spread {
   std::size_t count = 0;
-  double mean = 0.0, sd = 0.0;  ///< the sample's, 0 for one number
+  double mean = 0.0, sd = 0.0;  ///< sample mean and standard deviation; sd is 0 for one number
   double least = 0.0, median = 0.0, greatest = 0.0;
-  double lower_fence = 0.0, upper_fence = 0.0;  ///< outliers lie beyond
+  double lower_fence = 0.0, upper_fence = 0.0;  ///< numbers beyond the fences are outliers
 };
 /// Outliers are more than 3.5 robust standard deviations from the median: 1.4826 times the median distance
 /// from it (Iglewicz, Hoaglin 1993).
 Spread spread_of(std::vector<double> numbers);
 
-/// Two answers to the same question, over a cohort (Bland, Altman 1986).
+/// Agreement of two methods over a cohort (Bland, Altman 1986).
 struct Agreement {
-  std::vector<std::pair<double, double>> points;  ///< mean of both, and second less first
+  std::vector<std::pair<double, double>> points;  ///< mean of both, and second minus first
   double bias = 0.0;                              ///< mean difference
   double low = 0.0, high = 0.0;                   ///< limits of agreement: bias -+ 1.96 sd
 };

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
   throw voxel::Error(voxel::ErrorCode::Input, message);
 }
 
-/// The name without the extension of a scan; empty: it is no scan.
+/// The name without the extension of a scan; empty if it is not a scan.
 std::string stem_of_scan(const std::string& name) {
   static constexpr std::array<const char*, 6> extensions{".nii.gz", ".nii", ".nrrd", ".nhdr", ".mha", ".mhd"};
   for (const std::string extension : extensions)
@@ -45,14 +45,14 @@ std::string without_prefix(const std::string& said) {
   return label.starts_with("sub-") ? label.substr(4) : label;
 }
 
-/// BIDS's suffixes of files that are no scan but drawn on one.
+/// Whether a name has a BIDS suffix of files that are drawn on a scan.
 bool is_drawn(const std::string& stem) {
   const std::string end = stem.substr(stem.rfind('_') + 1);
   return end == "dseg" || end == "probseg" || end == "mask" || end == "seg" || end == "label" ||
          end == "labels" || end == "roi";
 }
 
-/// BIDS's suffixes of pictures that are no CT, after the last underscore of a name.
+/// Whether a name has, after its last underscore, a BIDS suffix of images that are not CT.
 bool is_of_another_modality(const std::string& stem) {
   static const std::set<std::string> suffixes{
       "T1w",        "T2w",      "T2star", "FLAIR",  "PDw",     "PDT2",  "bold",  "cbv",
@@ -61,7 +61,7 @@ bool is_of_another_modality(const std::string& stem) {
   return suffixes.contains(stem.substr(stem.rfind('_') + 1));
 }
 
-/// The first file that names another subject than its folder's; none where all are of one.
+/// The first file that names a different subject than its folder; none if all agree.
 std::optional<fs::path> file_of_another(const std::string& label, const std::vector<fs::path>& files) {
   const std::string own = "sub-" + label.substr(0, label.find("_ses-"));
   for (const fs::path& file : files) {
@@ -71,8 +71,8 @@ std::optional<fs::path> file_of_another(const std::string& label, const std::vec
   return std::nullopt;
 }
 
-/// The files below a subject's folder; those of sessions, which stand for themselves, only where the folder
-/// is one.
+/// The files below a subject's folder. Files of sessions, which are subjects of their own, are included only
+/// if the folder is a session.
 std::vector<fs::path> files_below(const fs::path& folder) {
   std::vector<fs::path> files;
   auto at = fs::recursive_directory_iterator(folder);
@@ -86,7 +86,7 @@ std::vector<fs::path> files_below(const fs::path& folder) {
   return files;
 }
 
-/// What a subject's folder holds for each of the plan's scans.
+/// The subject of a folder, with the file for each of the plan's scans.
 Subject subject_of_folder(const std::string& label, const fs::path& folder, const Plan& plan) {
   Subject subject{label, {}};
   subject.place = fs::absolute(folder).lexically_normal();
@@ -130,7 +130,7 @@ std::vector<fs::path> folders_in(const fs::path& folder, const std::string& pref
   return found;
 }
 
-/// A subject of each session, and of what lies outside of them.
+/// Adds a subject for each session, and one for files outside sessions.
 void add_subject(const std::string& label, const fs::path& folder, const Plan& plan,
                  std::vector<Subject>& subjects) {
   const std::vector<fs::path> sessions = folders_in(folder, "ses-");
@@ -140,7 +140,7 @@ void add_subject(const std::string& label, const fs::path& folder, const Plan& p
   if (sessions.empty() || !own.scans.empty()) subjects.push_back(std::move(own));
 }
 
-/// A subject of a table of which there is no folder.
+/// A subject in a table without a folder.
 Subject missing_subject(const std::string& label, const fs::path& table) {
   Subject subject{label, {}};
   subject.place = fs::absolute(table).parent_path() / ("sub-" + label);
@@ -159,7 +159,7 @@ std::vector<std::vector<std::string>> rows_of_table(const fs::path& input) {
   }
 }
 
-/// The column of this name; without one, that whose name differs by capitals only.
+/// The column of this name or, if there is none, one whose name differs only in case.
 std::optional<std::size_t> column_of(const std::vector<std::string>& header, const std::string& name) {
   auto found = std::find(header.begin(), header.end(), name);
   if (found == header.end())
@@ -199,8 +199,8 @@ std::vector<Subject> subjects_of_folder(const fs::path& input, const Plan& plan)
   return subjects;
 }
 
-/// BIDS's table of participants names no scans: the subjects' folders beside it. None where a column names
-/// scans, or no subject has a folder.
+/// BIDS's table of participants names no scans; the subjects are then the folders beside it. None if a column
+/// names scans or no subject has a folder.
 std::optional<std::vector<Subject>> folders_of_rows(const std::vector<std::vector<std::string>>& rows,
                                                     std::size_t id, const fs::path& input, const Plan& plan) {
   const std::vector<std::string>& header = rows.front();
@@ -234,7 +234,7 @@ std::vector<Subject> subjects_of_table(const fs::path& input, const Plan& plan) 
   if (!id) id = column("subject");
   if (!id) {
     std::string row = csv_line(header);
-    row.pop_back();  // the line's end
+    row.pop_back();  // removes the line's end
     refuse(input.string() + ": has no column participant_id; its first row is '" + row + "'");
   }
   if (const auto folders = folders_of_rows(rows, *id, input, plan)) return *folders;
@@ -296,7 +296,7 @@ std::vector<Subject> find_subjects(const fs::path& input, const Plan& plan) {
 std::vector<std::string> doubts_of_cohort(const fs::path& input, const Plan& plan,
                                           const std::vector<Subject>& subjects) {
   std::vector<std::string> doubts;
-  std::map<fs::path, std::set<std::string>> labels;  // by what a path leads to
+  std::map<fs::path, std::set<std::string>> labels;  // by the file to which a path resolves
   for (const Subject& subject : subjects)
     for (const auto& [name, path] : subject.scans) {
       std::error_code none;
@@ -323,7 +323,7 @@ std::vector<std::string> doubts_of_cohort(const fs::path& input, const Plan& pla
     if (!at && plan.scans.size() == 1) at = column_of(header, "scan");
     if (at) read.insert(*at);
   }
-  if (read.size() == ids) return doubts;  // of no scans: of people
+  if (read.size() == ids) return doubts;  // the columns describe people, not scans
   std::string passed_over;
   for (std::size_t i = 0; i < header.size(); ++i)
     if (!read.contains(i)) passed_over += (passed_over.empty() ? "'" : ", '") + header[i] + "'";
@@ -356,7 +356,7 @@ std::vector<Subject> chosen_subjects(std::vector<Subject> subjects, const std::v
   for (const Subject& subject : subjects) known.push_back(subject.label);
   for (const std::string& said : labels) {
     const std::string label = without_prefix(said);
-    // Engines ask for one subject by its whole label.
+    // Engines request one subject by its complete label.
     const bool is_whole = std::binary_search(known.begin(), known.end(), label);
     bool is_there = is_whole;
     for (const std::string& each : known)

@@ -14,14 +14,14 @@
 
 namespace octotomy::planner {
 
-/// Work on files of a plan's result, begun on a thread of its own as soon as the files' objects are made, so
-/// that it goes on while they are certified. Its end stops the work and waits for that.
+/// Prepares files of a plan's result on a thread of its own, started as soon as the files' objects exist, in
+/// parallel with their certificates. The destructor stops the work and waits for it.
 class Ahead {
  public:
   using Kept = std::map<std::string, std::shared_ptr<const void>>;
 
-  /// Works for the actions one after the other; what one keeps the next finds. `objects` are those made so
-  /// far, the actions' among them. Precondition: the operations work ahead.
+  /// Runs the actions in order. Each may leave values in `kept` for the next. `objects` are those made so
+  /// far, including those of the actions. Precondition: the operations have an `ahead` function.
   Ahead(std::vector<Action> actions, const voxel::Universe& universe, Objects objects,
         const std::stop_token& stop);
 
@@ -29,9 +29,9 @@ class Ahead {
   Ahead(const Ahead&) = delete;
   Ahead& operator=(const Ahead&) = delete;
 
-  /// Waits for the work and tells its progress, which may be empty; adds what it kept for the writing and,
-  /// once, its time. Throws what the work threw, and Stopped where `stop` or the constructor's token asks for
-  /// it. Not for several threads at once.
+  /// Waits for the work and reports its progress to `progress`, which may be empty. Adds the values in `kept`
+  /// for writing and, at the first call, the time to `timings`. Rethrows exceptions of the work; throws
+  /// Stopped if `stop` or the constructor's token requests it. Only one thread may call it at a time.
   void finish(Kept& kept, Timings& timings, const std::stop_token& stop,
               const std::function<void(const std::string& doing, double fraction)>& progress);
 
@@ -41,7 +41,7 @@ class Ahead {
   std::stop_source stop_;
   std::stop_callback<std::function<void()>> stopped_with_;
   std::shared_future<void> done_;
-  std::jthread thread_;  ///< ends before what stands above
+  std::jthread thread_;  ///< last member, so that it ends before the others are destroyed
 };
 
 }  // namespace octotomy::planner

@@ -14,27 +14,27 @@ namespace octotomy::planner {
 
 struct ExportOptions {
   std::stop_token stop{};
-  /// Called with what is being done and a fraction of it, 0..1.
+  /// Called with the current task and its fraction done, 0..1.
   std::function<void(const std::string& doing, double fraction)> progress{};
-  /// write_files(): a file that cannot be made is not written, with a finding that says why, and the others
-  /// are. Else its error ends them all.
+  /// For write_files(): if a file cannot be made, reports the reason as a finding and writes the others.
+  /// Otherwise the error ends the whole call.
   bool keeps_going = false;
 };
 
-/// The answers of a plan's measurements, in the order of their steps, each number with its half-width and the
-/// terms that make it: sizes of objects by both kernels, gaps between two, distances and angles of points.
+/// The results of a plan's measurements, in the order of their steps: sizes of objects by both kernels, gaps
+/// between objects, distances and angles of points. Each number has its half-width and the terms of it.
 nlohmann::ordered_json measurements_json(const Plan& plan, const Evaluation& evaluation);
 
-/// Writes one file of a plan's result below `folder`. Decks of one object share a filling where the calls
-/// share `kept`. An object that is empty, has no mesh, or that no mesher can fill is not written; a finding
-/// says why. Throws as the writers do where the disk does not take it, and Stopped; then the file is not
-/// there. Preconditions: the step makes a file, and `folder` is there.
+/// Writes one file of a plan's result below `folder`. Decks of one object share a volume mesh if the calls
+/// share `kept`. If an object is empty, has no mesh, or no mesher can fill it, the file is not written and a
+/// finding states the reason. Throws as the writers do, and Stopped; then the file does not exist.
+/// Preconditions: the step makes a file, and `folder` exists.
 Exported write_file(const Plan& plan, const Evaluation& evaluation, const Step& step,
                     const std::filesystem::path& folder, Timings& timings,
                     std::map<std::string, std::shared_ptr<const void>>& kept,
                     const ExportOptions& options = {});
 
-/// Writes all files of a plan's result below `folder`, which is there. The time is added to `timings`.
+/// Writes all files of a plan's result below `folder`, which must exist. The time is added to `timings`.
 std::vector<Exported> write_files(const Plan& plan, const Evaluation& evaluation,
                                   const std::filesystem::path& folder, Timings& timings,
                                   const ExportOptions& options = {});

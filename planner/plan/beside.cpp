@@ -13,26 +13,28 @@ struct Beside::Pieces {
 
   std::stop_source stop;
   std::stop_callback<std::function<void()>> with;
-  std::deque<tbb::task_group> groups;  ///< one a piece, so that each is waited for by itself
+  std::deque<tbb::task_group> groups;  ///< one per task, so that each can be awaited separately
 };
 
 Beside::Beside(const std::stop_token& stop) : pieces_(std::make_unique<Pieces>(stop)) {}
 
 Beside::~Beside() {
   pieces_->stop.request_stop();
-  // No group is cancelled: TBB would leave out parts of loops within a piece, which then works on with them.
+  // No group is cancelled: TBB would skip parts of loops within a task, and the task would continue with
+  // incomplete results.
   for (tbb::task_group& group : pieces_->groups) {
     try {
       group.wait();
     } catch (...) {
-      // Nobody waits for the piece any more.
+      // Ignores the exception, because nobody waits for the task any more.
     }
   }
 }
 
 void Beside::begin(std::function<void(const std::stop_token&)> piece) {
   pieces_->groups.emplace_back().run([piece = std::move(piece), stop = pieces_->stop.get_token()] {
-    // A thread that waits within a piece begins no other: that would have to end first.
+    // Isolated, so that a thread that waits within a task starts no other task, which would have to end
+    // first.
     tbb::this_task_arena::isolate([&] { piece(stop); });
   });
 }

@@ -8,22 +8,22 @@
 
 namespace octotomy::planner {
 
-/// Pieces of work that go on beside the caller's, on the threads that it leaves idle; with one thread they
-/// wait until they are waited for. The end stops them and waits for that. Not for several threads at once.
+/// Background tasks on idle threads. With one thread a task runs inside wait(). The destructor stops the
+/// tasks and waits for them. Only one thread may call the members at a time.
 class Beside {
  public:
-  /// `stop` stops the pieces, too.
+  /// `stop` also stops the tasks.
   explicit Beside(const std::stop_token& stop);
   ~Beside();
   Beside(const Beside&) = delete;
   Beside& operator=(const Beside&) = delete;
 
-  /// Begins a piece, which heeds the token that it is given. Pieces are numbered from 0 and begun in order.
-  /// Precondition: not within apart().
+  /// Starts a task, which must check the token passed to it. Tasks are numbered from 0 and started in order.
+  /// Precondition: not called within apart().
   void begin(std::function<void(const std::stop_token&)> piece);
-  /// Waits for a piece, at work on the others meanwhile; throws what the piece threw.
+  /// Waits for a task and may run others meanwhile. Rethrows the task's exception.
   void wait(std::size_t piece);
-  /// Runs work of the caller whose parallel loops take up no piece while they wait.
+  /// Runs work of the caller. Its parallel loops do not run background tasks while they wait.
   void apart(const std::function<void()>& work) const;
 
  private:

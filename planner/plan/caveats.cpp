@@ -18,8 +18,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// The parts of an object from a scan that no image measured; of an object made of such an object, that it
-/// is.
+/// The parts of an object from a scan that no image measured. For an object made from such an object, a note
+/// of this.
 std::vector<std::string> interpolated_parts(const MadeOf& from, const Object& object) {
   if (!object.voxel.measures.extents) return {};
   const voxel::Box& box = *object.voxel.measures.extents;
@@ -47,7 +47,8 @@ std::vector<std::string> interpolated_parts(const MadeOf& from, const Object& ob
   return parts;
 }
 
-/// Whether a scan's audit says that samples were no finite numbers, here or in a scan that it was made of.
+/// The finding of a scan's audit that samples were not finite numbers, in this scan or in one from which it
+/// was made.
 const voxel::Finding* unmeasured_finding(const std::vector<voxel::Finding>& audit) {
   const auto found = std::find_if(audit.begin(), audit.end(), [](const voxel::Finding& finding) {
     return finding.check == "finite" && finding.verdict != voxel::Verdict::Pass;
@@ -55,7 +56,7 @@ const voxel::Finding* unmeasured_finding(const std::vector<voxel::Finding>& audi
   return found == audit.end() ? nullptr : &*found;
 }
 
-/// A reader makes padding of samples that are no finite numbers; scans in memory may hold them as they are.
+/// Readers turn samples that are not finite into padding; scans in memory may still contain them.
 bool is_unmeasured(const voxel::Scene& scene, double sample) {
   return !std::isfinite(sample) || (scene.padding && sample == *scene.padding);
 }
@@ -70,7 +71,7 @@ std::uint64_t unmeasured_samples(const voxel::Scene& scene) {
       scene.samples);
 }
 
-/// The number of unmeasured samples in rows along an axis that begin and end beside samples of a window.
+/// The number of unmeasured samples in runs along an axis with samples of a window at both ends.
 std::uint64_t enclosed_samples(const voxel::Scene& scene, const Shown& window) {
   const glm::ivec3 dims = scene.lattice.dims;
   const std::array<std::size_t, 3> strides{
@@ -133,7 +134,7 @@ void add_unmeasured(const MadeOf& from, Object& made) {
     std::uint64_t enclosed = 0;
     for (const Shown& window : made.bound.windows)
       if (window.scan == name) enclosed = std::max(enclosed, enclosed_samples(scene, window));
-    // Padding that a scanner states lies around what it measured.
+    // Padding that a scanner states surrounds the measured region, so it is no caveat unless enclosed.
     if (!are_nonfinite && enclosed == 0) continue;
     std::string reason = (count == 0 ? "Some" : std::to_string(count)) + " samples of '" + name + "' are " +
                          (are_nonfinite ? "no finite numbers" : "padding") +
@@ -155,8 +156,8 @@ void add_inherited(const MadeOf& from, Object& made) {
   for (const std::string& name : objects_used(from.action)) {
     const Object& operand = from.objects.at(name);
     for (const Caveat& caveat : operand.caveats) {
-      // A motion begins with all of its object, also with what lies outside, unless that was cut off for
-      // good.
+      // A motion starts from the whole object, including its part outside the universe, unless that part was
+      // cut off permanently.
       if (caveat.is_of_place && made.image && !operand.ends_with_universe) continue;
       const std::string reason =
           caveat.is_inherited ? caveat.reason : "made of '" + name + "': " + caveat.reason;
@@ -174,7 +175,7 @@ std::string outside_text(double outside_mm3, double whole_mm3, const voxel::Box&
          plain(universe_mm) + ") and are left out of every number: move less, or use a scan with more room";
 }
 
-/// The same as add_part_outside() of an image that has voxels alone: those that its object has lost.
+/// The counterpart of add_part_outside() for a moved object without a mesh: reports the voxels that it lost.
 void add_voxels_outside(const Objects& objects, Object& made) {
   if (made.bound.spacing_mm == glm::dvec3(0.0) || made.is_tool || made.mesh.whole) return;
   if (!made.image || made.image->is_whole) return;
@@ -187,14 +188,15 @@ void add_voxels_outside(const Objects& objects, Object& made) {
   made.caveats.push_back({voxel::Verdict::Fail, std::move(text), false, true});
 }
 
-/// Told of an object that a step makes of a scan itself; what is made of it has the same border.
+/// Reported only for objects made directly from a scan; objects made from these have the same border.
 void add_border_finding(const MadeOf& from, Object& made) {
   if (made.is_tool) return;
   made.border_finding = made.image ? still_of(from.objects, made).border_finding : border_finding_of(made);
   if (made.border_finding && !scans_used(from.action).empty()) made.findings.push_back(*made.border_finding);
 }
 
-/// Whether an object ends by itself: a complement or a mask without an end of its own ends with the universe.
+/// Whether an object is bounded by itself. A complement or an unbounded mask ends only at the universe's
+/// border.
 bool ends_by_itself(const Object& object) {
   constexpr double endless_mm = 1e12;
   const voxel::Box& reach = object.witness.lines().box_mm;
@@ -208,7 +210,7 @@ void add_caveats(const MadeOf& from, Object& made) {
   const std::vector<std::string> interpolated = interpolated_parts(from, made);
   made.is_interpolated = !interpolated.empty();
   made.findings.insert(made.findings.end(), interpolated.begin(), interpolated.end());
-  // The kernels cannot disagree over samples that both take from the same interpolation.
+  // Both kernels use the same interpolated samples, so these cannot show as a disagreement.
   for (const std::string& part : interpolated) made.caveats.push_back({voxel::Verdict::Warn, part, false});
   add_unmeasured(from, made);
   add_border_finding(from, made);
@@ -263,7 +265,7 @@ void add_part_outside(const voxel::Box& universe_mm, Object& made) {
       ") and is left out of every number and picture: move less, or use a scan with more room");
   const double whole_mm3 = made.mesh.whole->measures().volume_mm3;
   const double lost_mm3 = whole_mm3 - (made.mesh.within ? made.mesh.within->measures().volume_mm3 : 0.0);
-  constexpr double rounding = 1e-9;  // where the object touches the universe's border
+  constexpr double rounding = 1e-9;  // tolerance for touching the universe's border
   if (!ends_by_itself(made) || !(lost_mm3 > rounding * std::abs(whole_mm3))) return;
   made.caveats.push_back({voxel::Verdict::Fail, outside_text(lost_mm3, whole_mm3, universe_mm), false, true});
 }

@@ -8,39 +8,42 @@
 #include "planner/operation/table/operation.h"
 #include "verify/certificate/necks.h"
 
-// What forbids an object's certificate a PASS however well both kernels agree: samples that nobody measured,
-// parts that left the universe, and doubts about the objects that it was made of.
+// Reasons why an object's certificate cannot be a PASS even if both kernels agree: samples that were not
+// measured, parts that left the universe, and caveats of the objects from which it was made.
 namespace octotomy::planner {
 
-/// What an object was made of.
+/// The inputs from which an object was made.
 struct MadeOf {
   const Action& action;
-  const Objects& objects;                  ///< all earlier ones
-  const Scans& scan;                       ///< of the scans that the action uses
-  const std::vector<ScanRecord>& records;  ///< of all scans so far
+  const Objects& objects;                  ///< all earlier objects
+  const Scans& scan;                       ///< access to the scans that the action uses
+  const std::vector<ScanRecord>& records;  ///< records of all scans so far
 };
 
-/// Adds to an object's caveats and findings the gaps between images that it reaches into, samples of its
-/// scans that were no finite numbers, what a motion brought out of the universe of an object that has voxels
-/// alone, and the caveats of the objects that it was made of. A FAIL where such samples lie between samples
-/// of the object's own windows, because a part is missing there, and where one lies outside; the operands'
-/// caveats are a WARN. That a part of an operand lies outside is none of an image's, which has its own
-/// place. Where the scan's border cuts the object off is a finding. Precondition: both kernels have answered
-/// and the object's bound is known. Cost: where a scan has such samples one walk over it.
+/// Adds caveats and findings to an object: gaps between images that it reaches into; samples of its scans
+/// that were not finite numbers; for an object with voxels only, the part that a motion moved out of the
+/// universe; and the caveats of the objects from which it was made. A FAIL if samples that are not finite lie
+/// between samples of the object's own windows, because a part is missing there, or if a part lies outside;
+/// the operands' caveats are a WARN. A moved object does not inherit that a part of its operand lies outside,
+/// because it has a position of its own. If the scan's border cuts the object off, adds a finding.
+/// Precondition: both kernels have answered and the object's bound is set. Cost: one pass over a scan that
+/// has such samples.
 void add_caveats(const MadeOf& from, Object& made);
 
-/// Adds to the audit of a scan that an action made of others what theirs say of samples that were no finite
-/// numbers, unless it says so itself.
+/// Copies, into the audit of a scan made from others, their findings on samples that were not finite numbers,
+/// unless it has such a finding.
 void keep_unmeasured(const Action& action, const std::vector<ScanRecord>& records, ScanRecord& made);
 
-/// Adds a finding with the parts that stay in an object because one kernel joins them by a thin neck, but for
-/// those that are still open; a WARN where they are over a twentieth of it. Their places are details, too.
+/// Adds a finding with the parts that stay in an object because only one kernel joins them by a thin neck,
+/// except for those in `open`; a WARN if they exceed a twentieth of the object. Also lists their positions in
+/// the details.
 void add_kept_parts(std::vector<verify::OpenPart> kept, const std::vector<verify::OpenPart>& open,
                     Object& made);
 
-/// Adds a finding, and a FAIL with the volume, where a part of an object lies outside of the universe, a box
-/// in LPS millimetres. Tools and objects of masks alone end there by their nature. Preconditions: the mesh's
-/// `whole` reaches out of the box, and `within` is the rest of it, if the mesh kernel could cut it.
+/// Adds a finding, and a FAIL with the volume, if a part of an object lies outside the universe, a box in LPS
+/// millimetres. Tools and objects made only of masks are exempt, because they normally end there.
+/// Preconditions: the mesh's `whole` reaches out of the box, and `within` is the part inside, if the mesh
+/// kernel could cut it.
 void add_part_outside(const voxel::Box& universe_mm, Object& made);
 
 }  // namespace octotomy::planner

@@ -42,7 +42,7 @@ std::set<std::string> needed_for(const Plan& plan, const std::vector<std::string
   for (const Step& step : plan.steps) known.insert(step.id);
   for (const std::string& id : ids)
     if (!known.contains(id)) throw std::invalid_argument("the plan has no step called '" + id + "'");
-  // Steps use earlier ones only: one pass from the last to the first finds all.
+  // Steps use only earlier ones, so one pass from the last to the first finds all.
   for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step)
     if (needed.contains(step->id))
       for (const std::string& input : inputs_of(*step))

@@ -9,25 +9,25 @@
 
 #include "planner/plan/plan.h"
 
-// Which steps of a plan depend on which, and what each one's answer depends on.
+// The dependences between a plan's steps, and keys of everything on which a step's answer depends.
 namespace octotomy::planner {
 
-/// The files that a step reads, as its fields name them: relative to the plan's folder.
+/// The files that a step reads, as written in its fields: relative to the plan's folder.
 std::vector<std::filesystem::path> files_read(const Step& step);
 
-/// The ids of the steps that these steps depend on, and these. Throws std::invalid_argument where the plan
-/// has no such step.
+/// The ids of these steps and of all steps on which they depend. Throws std::invalid_argument if the plan has
+/// no such step.
 std::set<std::string> needed_for(const Plan& plan, const std::vector<std::string>& ids);
 
-/// Of these steps the ones whose voxel answer cannot be had without meshes: those that only the mesh kernel
-/// does or that settle a value on meshes, and all that they depend on.
+/// The subset of these steps whose voxel answer needs meshes: steps that only the mesh kernel does, steps
+/// that compute values on meshes, and all steps on which these depend.
 std::set<std::string> needing_meshes(const Plan& plan, const std::set<std::string>& steps);
 
-/// Steps' keys by their ids: SHA-256 of everything that decides a step's answer. Two steps with one key have
-/// the same answer, in one plan or in two: the operation and its values, the steps and scans it uses by their
-/// own keys, landmarks by their places, how the head is held, and the files it reads by their content.
-/// `scan_key` answers for a scan of the plan; `common` is what all of the steps depend on, as the universe.
-/// Cost: linear in steps; reads the files that steps name.
+/// Steps' keys by their ids: the SHA-256 of everything that determines a step's answer. Steps with equal keys
+/// have the same answer, in the same or in different plans. A key covers the operation and its values, the
+/// keys of the steps and scans that it uses, positions of landmarks, the head's orientation, and the contents
+/// of files that it reads. `scan_key` returns the key of a scan of the plan; `common` describes what all
+/// steps depend on, such as the universe. Cost: linear in steps; reads the files that steps name.
 std::map<std::string, std::string> step_keys(
     const Plan& plan, const std::string& common,
     const std::function<std::string(const std::string& scan)>& scan_key);

@@ -9,9 +9,9 @@
 
 namespace octotomy::planner {
 
-/// One value that two plans have differently. A value that one of them has not is null.
+/// A value in which two plans differ. It is null if a plan does not have it.
 struct FieldChange {
-  std::string field;  ///< its place: "rotate, degrees", "regions[0], view"
+  std::string field;  ///< its path: "rotate, degrees", "regions[0], view"
   nlohmann::ordered_json from, to;
 };
 struct StepChange {
@@ -19,12 +19,13 @@ struct StepChange {
   std::vector<FieldChange> fields;
 };
 
-/// How a plan differs from another one. A default that is said is none that is left out.
+/// The differences between two plans. A stated default and an omitted one count as different.
 struct PlanDifference {
-  std::vector<FieldChange> document;  ///< name, scans, universe
+  std::vector<FieldChange> document;  ///< changes of name, scans, universe
   std::vector<std::string> added, removed;
   std::vector<StepChange> changed;
-  std::vector<std::string> reordered;  ///< steps of both that come after another one of both than they did
+  std::vector<std::string> reordered;  ///< steps of both plans that follow a different common step than
+                                       ///< before
 
   bool is_empty() const {
     return document.empty() && added.empty() && removed.empty() && changed.empty() && reordered.empty();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Steps are evaluated in order, each in both kernels before the next:
-// 1 Read every scan once; sample it into a grey octree, keep its samples until the last step that uses them.
+// 1 Read every scan once, sample it into a grey octree, and store its samples until the last step that uses
+// them.
 // 2 Voxel kernel: the operation's answer from other voxel answers.
 // 3 Mesh kernel: the operation's answer from other mesh answers and the scan's own samples.
-// 4 Certify, beside the steps that follow where no cache waits for the certificate: only here do the two
-//   answers meet.
-// Invariant: the benches of steps 2 and 3 show one kernel each.
+// 4 Certify: only here are the two answers compared. Without a cache, certificates run in parallel with later
+// steps. Invariant: the benches of 2 and 3 give access to one kernel each.
 #include "planner/plan/evaluate.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ brep::Prism prism_of(const voxel::Box& box) {
   return {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {{{a.x, a.z}, {b.x, a.z}, {b.x, b.z}, {a.x, b.z}}}, a.y, b.y};
 }
 
-/// The samples beyond the scan have the least value that the scan has: air.
+/// Samples beyond the scan get the scan's lowest value: air.
 std::int16_t background_of(const voxel::Scene& scene) {
   const double low = std::floor(std::min(voxel::range(scene).low, -1024.0));
   return static_cast<std::int16_t>(std::max(low, -32768.0));
@@ -95,7 +95,7 @@ class Evaluator {
         beside_.apart([&] {
           if (!take_cached(step)) makes == Makes::Scan ? make_scan(step) : make(step);
         });
-        // Not within apart(), whose loops could take up what is begun there.
+        // Not within apart(), whose loops could run the task.
         if (begun_ < uncertified_.size() && !works_ahead()) beside_.begin(uncertified_[begun_++].certify);
       });
       for (const std::string& scan : scans_used(step.action))
@@ -122,11 +122,11 @@ class Evaluator {
     if (options_.progress) options_.progress(doing, fraction);
   }
 
-  /// The plan's scans that steps use, or all where they are kept, the first step's first: it fixes the
-  /// universe. Those that steps make are counted, too.
+  /// The plan's scans that steps use, or all if they are to be stored. The scan of the first step comes
+  /// first, because it determines the universe. Scans made by steps are included.
   std::vector<std::string> scans_in_use() {
     std::vector<std::string> names;
-    std::string first;  // of all steps, wanted or not
+    std::string first;  // first scan of all steps, wanted or not
     for (const Step& step : plan_.steps)
       for (const std::string& scan : scans_used(step.action)) {
         if (first.empty() && plan_.scans.contains(scan)) first = scan;
@@ -178,9 +178,9 @@ class Evaluator {
     check_identities();
   }
 
-  /// Adds to the scans' audits whether they are of one patient. A label map is held against the scans that it
-  /// may lie on, and refused where it differs from all; another scan against the first, as plans may take
-  /// donors and later scans.
+  /// Adds to the scans' audits whether they are of one patient. A label map is compared with the scans on
+  /// which it may lie, and refused if it differs from all. Another scan is only compared with the first one,
+  /// because plans may use donors and later scans.
   void check_identities() {
     for (ScanRecord& laid : result_.scans) {
       std::erase_if(laid.audit, [](const voxel::Finding& finding) { return finding.check == "identity"; });
@@ -223,8 +223,8 @@ class Evaluator {
     return sum;
   }
 
-  /// What a loaded scan depends on: its files, how they are read, and the universe, which the plan's voxels
-  /// and its first scan fix.
+  /// The key of a loaded scan: its files, the options for reading them, and the universe, which the plan's
+  /// voxel size and first scan determine.
   std::string scan_key(const std::string& name, const ScanSource& source) const {
     nlohmann::ordered_json says{{"name", name},
                                 {"sum", sum_of(scan_path(plan_, source))},
@@ -271,12 +271,12 @@ class Evaluator {
     loaded_.insert_or_assign(name, scan);
   }
 
-  /// What every answer depends on beside its own step.
+  /// The key of everything that all answers depend on besides their own step.
   std::string common_key() const {
     return scan_keys_.at(result_.scans.front().name) + (options_.certify ? " certified" : "");
   }
 
-  /// The answer's key tells apart whether the mesh kernel answered.
+  /// The key distinguishes answers with and without the mesh kernel.
   std::string key_of(const Step& step) const {
     return keys_.at(step.id) + (with_mesh_.contains(step.id) ? "" : " voxels");
   }
@@ -306,7 +306,7 @@ class Evaluator {
     loaded_.insert_or_assign(name, LoadedScan{shared, grey.with_scan(shared)});
   }
 
-  /// Makes a scan of another one. The universe stays that of the first scan that was read.
+  /// Makes a scan from another one. The universe remains that of the first scan that was read.
   void make_scan(const Step& step) {
     const Operation& operation = step.action.operation();
     MadeScan made;
@@ -328,7 +328,7 @@ class Evaluator {
       options_.cache->keep(keys_.at(step.id), {loaded_.at(step.id), result_.scans.back()});
   }
 
-  /// Both kernels' answers to a step, and what bounds their difference.
+  /// Computes both kernels' answers to a step and the bound of their difference.
   Object answer(const Step& step, const void* value, Object object) {
     const Operation& operation = step.action.operation();
     if (operation.voxel)
@@ -350,8 +350,8 @@ class Evaluator {
     return object;
   }
 
-  /// The same of connected parts that are chosen. A neck thinner than a few voxels is there or not by chance,
-  /// so parts that one kernel alone joins by such a neck stay in both.
+  /// The same for operations that choose connected parts. Whether a neck thinner than a few voxels exists is
+  /// accidental, so parts that only one kernel joins by such a neck stay in both answers.
   Object agreed_answer(const Step& step, const void* value, const Object& begun) {
     constexpr int most_rounds = 4;
     Object made = answer(step, value, begun);
@@ -415,24 +415,24 @@ class Evaluator {
     result_.objects.add(std::move(object));
   }
 
-  /// The work ahead takes longer than all else: it should begin as soon as can be, and certificates go on
-  /// beside it.
+  /// Preparing files takes longest, so it starts as soon as possible, and certificates run in parallel with
+  /// it.
   bool works_ahead() const {
     return options_.ahead && std::any_of(plan_.steps.begin(), plan_.steps.end(), [](const Step& step) {
              return step.action.operation().ahead != nullptr;
            });
   }
 
-  /// A cache keeps objects with their certificates.
+  /// With a cache, objects are stored together with their certificates, so these must be finished.
   bool certifies_beside() const { return options_.cache == nullptr; }
 
   static void certify_made(Object& object, Timings& timings, const std::stop_token& stop) {
-    // Certificates overlap: their times add up to more than passes.
+    // Certificates overlap, so their times add up to more than the elapsed time.
     const Stopwatch watch(timings, "certify");
     certify(object, object.id + " = " + object.definition, {stop, {}});
   }
 
-  /// Begins the work on the files that this object was the last to wait for.
+  /// Starts preparing the files for which this object was the last one missing.
   void work_ahead(const Object& object) {
     const auto is_made = [&](const std::string& id) {
       return id == object.id || std::any_of(result_.objects.begin(), result_.objects.end(),
@@ -457,7 +457,7 @@ class Evaluator {
     for (const std::string& step : steps) result_.ahead[step] = begun;
   }
 
-  /// The voxels of an answer that only the mesh kernel has.
+  /// Voxelises an answer that only the mesh kernel has.
   void voxelise(Object& object) {
     if (!object.mesh.whole)
       throw std::runtime_error(object.findings.empty() ? "there is no mesh to make voxels of"
@@ -468,7 +468,7 @@ class Evaluator {
     object.findings.emplace_back(mesh_alone);
   }
 
-  /// The mesh kernel's answer; a finding where it has none.
+  /// Computes the mesh kernel's answer; adds a finding if it has none.
   void make_mesh(const Step& step, const void* value, Object& object) {
     const Operation& operation = step.action.operation();
     if (!operation.mesh) return object.findings.push_back("no mesh: the mesh kernel does not do this");
@@ -493,8 +493,8 @@ class Evaluator {
     }
   }
 
-  /// Cuts the mesh at the universe's border, where its voxels end. Masks reach beyond by their nature; a
-  /// piece that comes from a scan and does has lost voxels, which is a finding.
+  /// Cuts the mesh at the universe's border, where its voxels end. Masks normally reach beyond it; an object
+  /// from a scan that does has lost voxels, which is a finding.
   void take_within(Object& object) {
     object.mesh.within = object.mesh.whole;
     if (!object.mesh.whole || object.mesh.whole->empty()) return;
@@ -520,26 +520,27 @@ class Evaluator {
   const Plan& plan_;
   const EvaluateOptions& options_;
   Evaluation result_;
-  double told_ = 0.0;  ///< the share of the work that was told last
+  double told_ = 0.0;  ///< the fraction that was reported last
   std::map<std::string, LoadedScan> loaded_;
   std::map<std::string, std::size_t> uses_left_;
   std::set<std::string> wanted_, with_mesh_;      ///< steps
-  std::map<std::string, std::string> scan_keys_;  ///< of the plan's scans, where there is a cache
-  std::map<std::string, std::string> keys_;       ///< of the steps, where there is a cache
+  std::map<std::string, std::string> scan_keys_;  ///< keys of the plan's scans; only with a cache
+  std::map<std::string, std::string> keys_;       ///< keys of the steps; only with a cache
   const Scans scan_ = [this](const std::string& name) -> const LoadedScan& { return loaded_.at(name); };
-  voxel::Box box_;  ///< of the universe
+  voxel::Box box_;  ///< box of the universe
   brep::Solid world_;
   std::unique_ptr<verify::MeshExpressions> expressions_;
-  /// An object as its operation made it, its place among the others, and the time of its certificate.
+  /// An object before certification, its index among the objects, and the time of its certificate.
   struct Uncertified {
     Object object;
     std::size_t index = 0;
     Timings timings;
     std::function<void(const std::stop_token&)> certify;
   };
-  std::deque<Uncertified> uncertified_;  ///< in the order of the pieces beside
-  std::size_t begun_ = 0;                ///< of these, beside
-  Beside beside_{options_.stop};         ///< the certificates; ends before what they are made of
+  std::deque<Uncertified> uncertified_;  ///< in the order of the background tasks
+  std::size_t begun_ = 0;                ///< number of these that were started
+  Beside beside_{options_.stop};         ///< runs the certificates; last member, so that it ends before their
+                                         ///< inputs are destroyed
 };
 
 }  // namespace

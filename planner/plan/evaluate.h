@@ -17,57 +17,59 @@
 
 namespace octotomy::planner {
 
-/// What a plan's steps made, in both kernels.
+/// The results of a plan's steps, in both kernels.
 struct Evaluation {
   std::vector<ScanRecord> scans;
   voxel::Universe universe;
   Objects objects;  ///< in the order of their steps
   Timings timings;
-  /// The scans that measurements and files use, read or made; all of them with EvaluateOptions::keep_scans.
+  /// The scans, read or made, that measurements and files use; all scans with EvaluateOptions::keep_scans.
   std::map<std::string, std::shared_ptr<const LoadedScan>> loaded;
-  /// The work on files that was begun ahead, by their steps.
+  /// Files that are being prepared, by their steps.
   std::map<std::string, std::shared_ptr<Ahead>> ahead;
 
   const Object& object(const std::string& id) const { return objects.at(id); }
 };
 
-/// The stop token was set: nothing was decided, nothing is written.
+/// A stop was requested: there is no result, and nothing is written.
 using voxel::Stopped;
 
 struct EvaluateOptions {
   std::stop_token stop;
-  /// Called with what is being done and the fraction of the steps done, 0..1.
+  /// Called with the current task and the fraction of steps done, 0..1.
   std::function<void(const std::string& doing, double fraction)> progress;
   bool certify = true;
-  /// Without them the mesh kernel answers only where voxels cannot be had without it (needing_meshes()), and
-  /// nothing is certified.
+  /// If false, the mesh kernel answers only steps whose voxels need it (needing_meshes()), and nothing is
+  /// certified.
   bool meshes = true;
-  /// The steps that are wanted; those that they need are evaluated, and no others. Empty: all.
+  /// The steps to evaluate, together with those on which they depend. Empty: all.
   std::vector<std::string> wanted = {};
-  /// Begins the work on files beside the evaluation; for whoever writes them afterwards.
+  /// Prepares files in parallel with the evaluation. For callers that write the files afterwards.
   bool ahead = false;
-  /// Leaves every scan in Evaluation::loaded, so that slices of it can be drawn.
+  /// Stores every scan in Evaluation::loaded, so that its slices can be drawn.
   bool keep_scans = false;
-  /// An earlier evaluation whose plan has the same scans and that kept them: they are not read again. May be
-  /// null.
+  /// An earlier evaluation of a plan with the same scans that stored them; they are then not read again. May
+  /// be null.
   const Evaluation* scans_of = nullptr;
-  /// Answers of earlier evaluations, which are not made again, and to which new ones are added; may be null.
+  /// A cache of answers of earlier evaluations, which are not computed again; new answers are added. May be
+  /// null.
   ObjectCache* cache = nullptr;
-  /// Adds no objects to the cache, as for a piece that is dragged, of which none comes again.
+  /// Adds no objects to the cache. For a piece that is being dragged, whose intermediate positions do not
+  /// recur.
   bool only_look_up = false;
-  /// Reads a scan; whoever has read one already hands it out here. Default: voxel::read_scene().
+  /// Reads a scan, or returns one that was read before. Default: voxel::read_scene().
   std::function<voxel::Scene(const std::filesystem::path&, const voxel::ReadOptions&)> read_scene = nullptr;
 };
 
 /// Evaluates every step that makes an object or a scan, objects in the voxel kernel and in the mesh kernel,
 /// as its operation says (planner/operation), and certifies their agreement object by object. Neither kernel
-/// sees the other's answer before both are there. A moved object keeps its motion symbolic, so that moving it
-/// again samples the still object once.
+/// has access to the other's answer before both are computed. A moved object stores its motion symbolically,
+/// so that after further motions the original object is sampled only once.
 ///
-/// Throws std::runtime_error with step and reason where a scan cannot be read, is not the one whose SHA-256
-/// is given, or an operation refuses; Stopped. An object whose operation the mesh kernel cannot do keeps its
-/// voxel answer, has no mesh and a finding; so do the objects that depend on it. Memory: the largest scan,
-/// its grey octree, and one mesh and octree an object.
+/// Throws std::runtime_error with step and reason if a scan cannot be read or does not have the stated
+/// SHA-256, or if an operation refuses; Stopped. If the mesh kernel cannot do an operation, the object has
+/// its voxel answer, no mesh and a finding, and so have the objects that depend on it. Memory: the largest
+/// scan, its grey octree, and one mesh and octree per object.
 Evaluation evaluate(const Plan& plan, const EvaluateOptions& options = {});
 
 }  // namespace octotomy::planner

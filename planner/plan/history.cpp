@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// A text is kept as what it changed of its parent's: lengths of the beginning and the end that stay, and the
-// bytes between; every 64th whole, so that none takes more than 64 reads. A change of state is
+// A text is stored as its difference from its parent's: the lengths of the unchanged beginning and end, and
+// the bytes between them. Every 64th text is stored whole, so that reading one takes at most 64 reads. A
+// change of state consists of
 //   1 one transaction of the database: the edit and the current state; 2 the plan's file, as a whole; 3 a
-//   note of the sum of what step 2 wrote.
-// Whoever opens it compares the file's sum with that note: the same and not the current state's means that
-// step 2 was not reached, and is done then; another one means that another program wrote the file.
+//   record of the checksum of the file written in step 2. On opening, the file's checksum is compared with
+//   that record. If they are equal but differ from the current state's checksum, step 2 was not reached and
+//   is done then. If they differ, another program wrote the file.
 //
-// The journal is one that is removed at each commit, so that the history is whole in its one file between
-// edits: whoever copies that file has all of it. A write-ahead log would take a third less time an edit, and
-// keep the newest edits in a second file.
+// The journal is deleted at each commit, so that between edits the history is complete in one file and can be
+// copied. A write-ahead log would make edits a third faster but store the newest ones in a second file.
 #include "planner/plan/history.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 constexpr int layout = 1;
 constexpr int whole_every = 64;
 constexpr int busy_ms = 5000;
-constexpr std::size_t longest_name = 200;  // of a branch or a version, in bytes
+constexpr std::size_t longest_name = 200;  // longest name of a branch or a version, in bytes
 
 using Access = PlanHistory::Access;
 
@@ -53,7 +53,7 @@ constexpr const char* tables = R"(
   CREATE TABLE state (current INTEGER NOT NULL, branch TEXT NOT NULL, written TEXT NOT NULL);
 )";
 
-/// States that are not yet in the history's file are in others beside it.
+/// Refuses because some states are not yet in the history's file but in files beside it.
 [[noreturn]] void refuse_read_only(const fs::path& path) {
   throw std::runtime_error(path.string() +
                            ": cannot be written, which its newest states need: copy the plan and all files "
@@ -80,7 +80,7 @@ struct Bytes {
   std::string bytes;
 };
 
-/// A statement with its values; steps through rows.
+/// A SQL statement with bound values; iterates over its rows.
 class Query {
  public:
   Query(sqlite3* database, const fs::path& path, const char* text) : database_(database), path_(path) {
@@ -108,7 +108,7 @@ class Query {
     sqlite3_bind_blob(statement_, ++bound_, bytes.bytes.data(), static_cast<int>(bytes.bytes.size()),
                       SQLITE_TRANSIENT);
   }
-  /// Whether there is one more row.
+  /// Moves to the next row; false if there is none.
   bool next() {
     const int code = sqlite3_step(statement_);
     if (code == SQLITE_ROW) return true;
@@ -130,7 +130,7 @@ class Query {
   int bound_ = 0;
 };
 
-/// A path within a URI, where these three letters have a meaning.
+/// A path for a URI, in which three characters must be escaped.
 std::string uri_of(const fs::path& path) {
   std::string uri;
   for (const char letter : path.string())
@@ -267,7 +267,7 @@ class PlanHistory::Database {
                        {}});
     }
     if (edits.empty()) return edits;
-    // Versions have no index by their states: all are read once.
+    // Versions have no index by state, so all are read once.
     Query names = query("SELECT edit, name FROM versions WHERE edit >= ? ORDER BY name", edits.back().id);
     while (names.next()) {
       const auto named = std::lower_bound(edits.begin(), edits.end(), names.number(0),
@@ -295,7 +295,7 @@ class PlanHistory::Database {
     need_writable();
     make_as_readable_as_the_plan();
     open_file(SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, path_.string());
-    // Where another process holds an older history with a log, the log stays; nothing is lost by that.
+    // If another process has an older history with a log open, the log stays; nothing is lost.
     sqlite3_exec(database_, "PRAGMA journal_mode = DELETE", nullptr, nullptr, nullptr);
     run("PRAGMA synchronous = EXTRA");
     open();
@@ -303,8 +303,8 @@ class PlanHistory::Database {
   void open_to_read() {
     need_history();
     open_file(SQLITE_OPEN_READONLY, path_.string());
-    // An older history has a log, whose reader writes beside it. Where that is not allowed and the log is
-    // empty, nobody has it open, and it is read without locks.
+    // An older history has a log, and reading it writes a file beside it. If that is not permitted and the
+    // log is empty, no process has it open, so it is read without locks.
     const int code = sqlite3_exec(database_, "PRAGMA user_version", nullptr, nullptr, nullptr);
     if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) {
       for (const char* ending : {"-wal", "-journal"}) need_nothing_beside(ending);
@@ -332,12 +332,13 @@ class PlanHistory::Database {
                              ": cannot be written, so that the plan's states cannot be kept there: copy the "
                              "plan and its .history to a folder of yours");
   }
-  /// An edit follows those of smaller numbers, and its text has the sum that was kept with it.
+  /// Called if an edit does not follow its parent, or its text does not have the stored checksum.
   [[noreturn]] void refuse_damaged(std::int64_t edit) const {
     throw std::runtime_error(path_.string() + ": the history is damaged at state " + std::to_string(edit) +
                              ": move it away, and a new one is begun");
   }
-  /// A new history has the plan's permissions, since it holds the plan's text; its owner may always write it.
+  /// A new history gets the plan's permissions, because it contains the plan's text. Its owner may always
+  /// write it.
   void make_as_readable_as_the_plan() const {
     struct stat of_plan {};
     if (::stat(plan_.c_str(), &of_plan) != 0) return;
@@ -356,7 +357,8 @@ class PlanHistory::Database {
     if (sqlite3_exec(database_, text, nullptr, nullptr, nullptr) != SQLITE_OK) fail(database_, path_);
   }
 
-  /// Runs a function while no other program writes: all of it, or nothing, is in the database afterwards.
+  /// Runs a function in an exclusive transaction: afterwards the database has either all of its changes or
+  /// none.
   template <typename Act>
   void locked(const Act& act) {
     run("BEGIN IMMEDIATE");
@@ -382,7 +384,7 @@ class PlanHistory::Database {
       query("UPDATE state SET current = ?, written = ?", current_, written_).next();
     });
   }
-  /// The layout of the file; 0: it is new.
+  /// The layout version of the file; 0: it is new.
   int need_known_layout() {
     Query row = query("PRAGMA user_version");
     row.next();
@@ -406,7 +408,7 @@ class PlanHistory::Database {
     if (!has_edit(current_)) refuse_damaged(current_);
   }
 
-  /// Runs a change of state as steps 1 to 3. Throws where another writer came first.
+  /// Runs a change of state as steps 1 to 3. Throws if another program has written first.
   template <typename Change>
   void change(const Change& make) {
     const std::int64_t current = current_;
@@ -459,8 +461,8 @@ class PlanHistory::Database {
     if (row.number(0) >= edit) refuse_damaged(edit);
     return row.number(0);
   }
-  /// The state that undo() left on the current branch; none where the branch ends at the current one, or does
-  /// not lead through it.
+  /// The state after the current one on the current branch; none if the branch ends at the current state or
+  /// does not contain it.
   std::optional<std::int64_t> state_above() {
     const std::optional<std::int64_t> tip = tip_of(branch_);
     if (!tip || *tip <= current_) return std::nullopt;
@@ -470,7 +472,7 @@ class PlanHistory::Database {
     if (here == way_.end() || *here != current_) return std::nullopt;
     return *std::prev(here);
   }
-  /// Goes on down until the current state, or one before it.
+  /// Extends the path downwards to the current state or one before it.
   void extend_way() {
     Query row = query(
         "WITH RECURSIVE way (id, parent) AS (SELECT id, parent FROM edits WHERE id = ? UNION ALL "
@@ -509,7 +511,7 @@ class PlanHistory::Database {
   std::int64_t current_ = 0;
   std::string branch_, written_;
   std::vector<std::int64_t>
-      way_;  ///< from a branch's end down: it stays, as no edit ever gets another parent
+      way_;  ///< path from a branch's end downwards; it never changes, because edits keep their parents
 };
 
 PlanHistory::PlanHistory(const fs::path& plan, Access access)

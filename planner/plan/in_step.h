@@ -7,7 +7,8 @@
 
 namespace octotomy::planner {
 
-/// The answer of a step's work. What the work throws keeps its kind and names the step: "step 'cut': ...".
+/// Returns the result of a step's work. Exceptions of the work are rethrown with the same type and the step's
+/// name: "step 'cut': ...".
 template <typename Work>
 auto in_step(const std::string& id, const Work& work) {
   try {

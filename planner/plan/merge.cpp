@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A three-way merge by names, not by lines: 1 values beside the steps; 2 steps by their ids, field by field;
-// 3 the order, which is the one that changed; 4 steps that the other plan adds stand behind the step that
-// they stood behind there.
+// SPDX-License-Identifier: AGPL-3.0-or-later A three-way merge by names, not by lines: 1 merge values outside
+// the steps; 2 merge steps by their ids, field by field; 3 use the order of the plan that changed it; 4
+// insert steps that the other plan adds after the step that they follow there.
 #include "planner/plan/merge.h"
 
 #include <iterator>
@@ -17,7 +16,7 @@ namespace {
 
 using Ids = std::vector<std::string>;
 
-/// Null stands for "not there".
+/// The value of a key; null if it is absent.
 Json value_at(const Json& object, const std::string& key) {
   return object.is_object() && object.contains(key) ? object[key] : Json();
 }
@@ -26,7 +25,7 @@ class Merge {
  public:
   std::vector<MergeConflict> conflicts;
 
-  /// The merged value; null where it is gone.
+  /// The merged value; null if it was removed.
   Json value(const Json& base, const Json& a, const Json& b, const std::string& step,
              const std::string& field) {
     if (a == b || b == base) return a;
@@ -40,7 +39,7 @@ class Merge {
       if (merged.contains(key)) return;
       Json one = value(value_at(base, key), value_at(a, key), value_at(b, key), step,
                        field.empty() ? key : field + ", " + key);
-      // A null that both say stays, as of "sha256".
+      // A null that both plans state is kept, such as that of "sha256".
       if (!one.is_null() || (a.contains(key) && b.contains(key))) merged[key] = std::move(one);
     };
     for (const auto& [key, unused] : a.items()) take(key);
@@ -69,7 +68,7 @@ Ids those_in(const Ids& ids, const Ids& others, const Ids& more) {
   return kept;
 }
 
-/// Adds the ids of `from` that `order` lacks, each behind the one that it follows there.
+/// Adds the ids of `from` that `order` lacks, each after the id that it follows in `from`.
 void add_missing(const Ids& from, Ids& order) {
   std::list<std::string> all(order.begin(), order.end());
   std::map<std::string, std::list<std::string>::iterator> place_of;

@@ -9,9 +9,9 @@
 
 namespace octotomy::planner {
 
-/// A value that both plans changed, each in its own way; null where a plan has it not.
+/// A value that both plans changed differently; null if a plan does not have it.
 struct MergeConflict {
-  std::string step;   ///< empty: beside the steps
+  std::string step;   ///< empty: outside the steps
   std::string field;  ///< empty: the step as a whole
   nlohmann::ordered_json base, a, b;
 
@@ -20,14 +20,14 @@ struct MergeConflict {
 };
 
 struct Merged {
-  std::string text;  ///< the plan as JSON; empty where there are conflicts
+  std::string text;  ///< the plan as JSON; empty if there are conflicts
   std::vector<MergeConflict> conflicts;
 };
 
-/// What two plans changed of one that both come from, in one plan: fields of steps that one of them changed,
-/// steps that one added or removed, and the order of one. Lists are one value. Throws std::runtime_error
-/// where the changes are at peace and yet make no plan together, as one removes a step that the other now
-/// uses; the refusal names step and field.
+/// Merges the changes that two plans made to a common base: changed fields of steps, added or removed steps,
+/// and a changed order. A list counts as a single value. Throws std::runtime_error, which names step and
+/// field, if the changes do not conflict but the merged plan is invalid, for example because one plan removes
+/// a step that the other now uses.
 Merged merge(const Plan& base, const Plan& a, const Plan& b);
 
 }  // namespace octotomy::planner

@@ -15,13 +15,13 @@
 
 namespace octotomy::planner {
 
-/// What earlier evaluations made, by the keys of what made it (step_keys()). Whoever evaluates a plan again
-/// and again holds one: a step whose key is known is not evaluated. Answers are shared, never copied. All
-/// members may be called from any thread.
+/// Results of earlier evaluations, by their keys (step_keys()). For callers that evaluate a plan repeatedly:
+/// a step whose key is stored is not evaluated again. Results are shared, never copied. All members may be
+/// called from any thread.
 class ObjectCache {
  public:
-  /// Keeps so many objects and as many scans, each kind of so many bytes, and always the newest; the one that
-  /// was used longest ago goes first.
+  /// Stores up to `most` objects and as many scans, each kind up to `most_bytes` bytes, but always the newest
+  /// one. Removes the least recently used first.
   explicit ObjectCache(std::size_t most = 512, std::uint64_t most_bytes = std::uint64_t{2} << 30)
       : most_(most), most_bytes_(most_bytes) {}
 
@@ -38,11 +38,11 @@ class ObjectCache {
     const std::uint64_t bytes = bytes_of(scan);
     scans_.keep(key, std::make_shared<const Scan>(std::move(scan)), bytes, *this);
   }
-  /// Memory of an answer when all that is computed of it at need has been. What answers share counts in each.
+  /// Memory of a result including everything that is computed lazily. Memory shared by several results counts
+  /// in each.
   static std::uint64_t bytes_of(const Object& object);
   static std::uint64_t bytes_of(const Scan& scan);
-  /// The SHA-256 of a scan's files that have not changed since it was computed: `state` says their sizes and
-  /// times.
+  /// The stored SHA-256 of a scan's files, if they have not changed since: `state` has their sizes and times.
   std::optional<std::string> sum(const std::string& state) const;
   void keep_sum(const std::string& state, const std::string& sha256);
 
@@ -88,7 +88,7 @@ class ObjectCache {
       values_.erase(found);
     }
     std::map<std::string, Entry> values_;
-    std::list<std::string> order_;  ///< used last first
+    std::list<std::string> order_;  ///< most recently used first
     std::uint64_t bytes_ = 0;
   };
 
@@ -101,7 +101,7 @@ class ObjectCache {
   Counts counts_;
 };
 
-/// The sizes and times of a scan's file, or of all the files of its folder: what changes where they change.
+/// The sizes and times of a scan's file, or of all files in its folder. The text differs if a file changes.
 std::string state_of_path(const std::filesystem::path& path);
 
 }  // namespace octotomy::planner

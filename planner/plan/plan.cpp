@@ -37,7 +37,7 @@ std::vector<voxel::SliceRange> slices_of(const Keys& scan) {
   }
 }
 
-/// What `parse` makes of a key's text, if the scan has it.
+/// The result of `parse` for a key's text, if the scan has this key.
 template <typename Value>
 std::optional<Value> parsed(const Keys& scan, const char* key, Value (*parse)(const std::string&)) {
   if (scan.find(key) == nullptr) return std::nullopt;
@@ -48,7 +48,7 @@ std::optional<Value> parsed(const Keys& scan, const char* key, Value (*parse)(co
   }
 }
 
-/// How a scan is read: its series, and what images and raw files do not say of themselves.
+/// The options for reading a scan: its series, and facts that images and raw files do not state.
 voxel::ReadOptions read_options_of(const Keys& scan) {
   voxel::ReadOptions read;
   if (scan.find("series") != nullptr) read.series = scan.text("series");
@@ -102,12 +102,13 @@ std::map<std::string, ScanSource> scans_of(const Keys& top) {
   return scans;
 }
 
-/// Whether plans have such a step. What only goes from files to files has another one there, as tet has deck.
+/// Whether plans have such a step. An operation that only converts files has a counterpart in plans, such as
+/// deck for tet.
 bool is_step(const Operation& operation) {
   return operation.makes != Makes::File || operation.write;
 }
 
-/// What a step may do: the operations, and "export".
+/// The words for a step's `do`: the operations, and "export".
 std::vector<std::string> step_words() {
   std::vector<std::string> words;
   for (const Operation& operation : operations())
@@ -145,7 +146,7 @@ Step step_of(const SortedJson& value, std::size_t index, Scope& scope) {
   Step step{id->get<std::string>(), Action(*operation)};
   read_fields(operation->fields, value, step.action.value(), place, {"id", "do"});
   if (operation->check) operation->check(step.action.value(), place);
-  // Bound last, so that no step can name itself.
+  // The id is bound last, so that no step can refer to itself.
   scope.bind(place.where, step.id, *operation);
   return step;
 }
@@ -166,8 +167,8 @@ const char* word(Makes makes) {
   return "";
 }
 
-/// The schema of one operation's step. `x-makes` says what it leaves behind; a tool is an object that only
-/// helps to make others. `x-moves` names the field whose object it moves rigidly.
+/// The schema of one operation's step. `x-makes` states what it makes; a tool is an object that only helps to
+/// make others. `x-moves` names the field whose object it moves rigidly.
 Json step_schema(const Operation& operation) {
   Json schema{{"title", operation.name}, {"description", operation.says}};
   schema.update(fields_schema(operation.fields, operation.fresh().get()));
@@ -196,7 +197,7 @@ Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
   plan.folder = folder;
   plan.name = top.text("name");
   plan.scans = scans_of(top);
-  signatures_of(json);  // refuses what is none
+  signatures_of(json);  // refuses invalid signatures
   if (const SortedJson* universe = top.find("universe")) {
     const Keys keys(*universe, "universe", {"voxel_mm"});
     plan.voxel_mm = keys.number_if("voxel_mm");
@@ -262,7 +263,7 @@ Json plan_schema() {
   Json steps = Json::array();
   for (const Operation& operation : operations())
     if (is_step(operation)) steps.push_back(step_schema(operation));
-  // "export" stands for the operation that writes the path's extension.
+  // "export" denotes the operation that writes the path's extension.
   for (const char* name : {"surface", "deck", "label_map"}) {
     Json schema = step_schema(*find_operation(name));
     schema["title"] = std::string("export, as ") + name;

@@ -15,14 +15,14 @@ namespace octotomy::planner {
 
 struct ScanSource {
   std::filesystem::path path;         ///< relative paths are relative to the plan's folder
-  std::optional<std::string> sha256;  ///< checked where given
-  voxel::ReadOptions read = {};       ///< the series, and what the file does not say of itself
-  /// Of a label map: taken, with a FAIL in its audit, though it states another patient, study or frame of
-  /// reference than the other scans.
+  std::optional<std::string> sha256;  ///< verified if given
+  voxel::ReadOptions read = {};       ///< the series, and facts that the file does not state
+  /// For a label map: accepted, with a FAIL in its audit, even if it states a different patient, study or
+  /// frame of reference than the other scans.
   bool other_identity = false;
 };
 
-/// A step: an operation with its values, and the name of what it makes.
+/// A step: an operation with its values, and the name of its result.
 struct Step {
   std::string id;
   Action action;
@@ -31,25 +31,24 @@ struct Step {
 /// An operation as pure data: ordered steps, each of which names its result.
 struct Plan {
   std::string name;
-  std::string text;              ///< the JSON it was read from
-  std::filesystem::path file;    ///< empty where the plan was not read from a file
-  std::filesystem::path folder;  ///< where the plan lies
+  std::string text;              ///< the JSON from which it was read
+  std::filesystem::path file;    ///< empty if the plan was not read from a file
+  std::filesystem::path folder;  ///< folder of the plan
   std::map<std::string, ScanSource> scans;
   std::optional<double>
       voxel_mm;  ///< edge of the universe's voxels; none: as fine as the scan, at most 512 a side
   std::vector<Step> steps;
-  std::vector<NamedPoint> landmarks;  ///< that its steps name
-  /// How a step holds the head (Scope); none: as the scan does.
+  std::vector<NamedPoint> landmarks;  ///< landmarks that its steps name
+  /// The head's orientation as set by a step (Scope); none: that of the scan.
   std::optional<glm::dmat3> lps_from_head;
 };
 
-/// Reads a plan. Keys, steps and names that are not known, and keys said twice, are refused with the nearest
-/// known one; names must be bound before they are used. Expressions are parsed, polygons checked to have an
-/// area, paths of files to have an extension that can be written, before anything is evaluated. A step that
-/// does "export" is the surface, deck or label_map that its path's extension says. Throws std::runtime_error
-/// saying file, step, key and what to try.
+/// Reads a plan. Refuses unknown keys, steps and names, with the nearest known one, and duplicate keys; names
+/// must be bound before they are used. Before anything is evaluated, parses expressions, checks that polygons
+/// have an area, and that extensions of output files can be written. A step with "export" becomes surface,
+/// deck or label_map, by its path's extension. Throws std::runtime_error with file, step, key and a remedy.
 Plan read_plan(const std::filesystem::path& path);
-/// The same of a text; `folder` is what relative paths are relative to.
+/// The same for a text; relative paths are relative to `folder`.
 Plan parse_plan(const std::string& json, const std::filesystem::path& folder);
 
 /// The scan's path, made absolute against the plan's folder.

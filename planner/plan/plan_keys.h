@@ -13,7 +13,7 @@
 
 namespace octotomy::planner {
 
-// How a plan's JSON is read: what every kind of step takes, and refuses, alike.
+// Functions for reading a plan's JSON, common to all kinds of steps.
 
 /// The names of pairs or of a map's entries, in their order.
 template <typename Pairs>
@@ -23,21 +23,21 @@ std::vector<std::string> names_of(const Pairs& pairs) {
   return names;
 }
 
-/// One JSON object, read key by key; it refuses keys that are not known. Members throw std::runtime_error
-/// where a value is missing or of another kind than asked for.
+/// Reads a JSON object key by key; refuses unknown keys. Members throw std::runtime_error if a value is
+/// missing or has another type.
 class Keys {
  public:
-  /// `where` names the object in refusals; the value must live as long.
+  /// `where` names the object in error messages. `value` must outlive this object.
   Keys(const nlohmann::json& value, std::string where, std::vector<std::string> known);
 
   const std::string& where() const { return where_; }
-  /// The same of a key within.
+  /// The name of a key of this object for messages.
   std::string at(const std::string& key) const { return where_.empty() ? key : where_ + ", " + key; }
 
-  /// None where the key is not there or null.
+  /// Null if the key is absent or its value is null.
   const nlohmann::json* find(const std::string& key) const;
   const nlohmann::json& need(const std::string& key) const;
-  /// Not empty.
+  /// A text that is not empty.
   std::string text(const std::string& key) const;
   double number(const std::string& key) const { return number_of(need(key), at(key)); }
   std::optional<double> number_if(const std::string& key) const;

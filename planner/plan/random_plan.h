@@ -12,8 +12,7 @@
 // Random plans, for the bounded tier: windows on scans, masks, rigid motions and expressions of them.
 namespace octotomy::planner {
 
-/// A scan that random plans use, and the window bounds between which objects of it are neither all nor
-/// nothing.
+/// A scan for random plans, and window bounds for which objects are neither empty nor the whole scan.
 struct RandomScan {
   std::string name;
   std::filesystem::path path;
@@ -21,13 +20,14 @@ struct RandomScan {
 };
 
 /// Writes the scans into a folder that exists: smooth random waves on cubic and on oblong samples, each
-/// within an ellipsoid of its own, and the head phantom at six millimetres. The same bytes each time.
+/// within an ellipsoid of its own, and the head phantom with samples of six millimetres. Always the same
+/// bytes.
 std::vector<RandomScan> write_random_scans(const std::filesystem::path& folder);
 
-/// A step of a random plan: as JSON, but for the expression of a `combine`.
+/// A step of a random plan: as JSON, without the expression of a `combine`.
 struct RandomStep {
   Json json;
-  verify::ExpressionTree tree;  ///< of a combine; leaf i is the object operands[i]
+  verify::ExpressionTree tree;  ///< expression of a combine; leaf i is the object operands[i]
   std::vector<std::string> operands;
 };
 
@@ -36,14 +36,14 @@ struct RandomPlan {
   std::vector<RandomStep> steps;  ///< the last is the result
 };
 
-/// Two to four objects, some of them moved, and an expression of them up to six operators deep; now and then
+/// Two to four objects, some of them moved, and an expression of them up to six operators deep; occasionally
 /// the result is moved and combined again.
 RandomPlan random_plan(verify::Random& random, const std::vector<RandomScan>& scans);
 
 /// The plan's JSON.
 std::string text(const RandomPlan& plan);
 
-/// The steps that an object needs, in order, and none else.
+/// Only the steps that an object needs, in order.
 RandomPlan up_to(const RandomPlan& plan, const std::string& id);
 
 /// All plans that are simpler by one operator, one motion or one region.

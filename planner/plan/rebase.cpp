@@ -17,7 +17,7 @@ fs::path whole(const fs::path& folder) {
   return fs::weakly_canonical(fs::absolute(folder.empty() ? fs::path(".") : folder));
 }
 
-/// Names paths of one folder from another one.
+/// Rewrites paths relative to one folder as relative to another.
 struct Rebase {
   fs::path from, to;
 
@@ -31,7 +31,7 @@ struct Rebase {
   }
 };
 
-/// Changes the fields of a step that name a file which the step reads: a text, or texts of a list.
+/// Changes the fields of a step that name a file which the step reads: texts, or lists of texts.
 void change_files(Json& step, const std::vector<fs::path>& read,
                   const std::function<std::string(const std::string&)>& change) {
   const auto is_read = [&](const Json& value) {

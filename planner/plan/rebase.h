@@ -8,10 +8,10 @@
 
 namespace octotomy::planner {
 
-/// The same plan as it reads in another folder: relative paths of scans, and of the files that steps read,
-/// name the same files from there. Paths of files that the plan writes stay, as they lie in the result's
-/// folder; so do absolute ones. A plan of the same folder keeps its text to the byte. Throws
-/// std::runtime_error where the two folders share no root.
+/// The same plan for another folder: relative paths of scans, and of files that steps read, are rewritten to
+/// name the same files from there. Paths of files that the plan writes are unchanged, because they are
+/// relative to the result's folder; so are absolute paths. If the folder is the same, the text is unchanged
+/// to the byte. Throws std::runtime_error if the two folders have no common root.
 Plan rebased(const Plan& plan, const std::filesystem::path& folder);
 
 /// The plan with other files in place of those that its steps read.

@@ -10,31 +10,31 @@
 
 namespace octotomy::planner {
 
-/// Who has read a plan and stands by it. It says what was read by sums, so that a later change is seen; it is
-/// no proof of who signed.
+/// A statement that a person has read and approved a plan. It identifies the plan and scans by checksums, so
+/// that later changes are detected. It does not prove who signed.
 struct Signature {
-  std::string by, as, note;  ///< name, role ("second reader"), what the reader adds; `note` may be empty
+  std::string by, as, note;  ///< name, role ("second reader") and remark; `note` may be empty
   std::string at;            ///< UTC, "2026-01-31T12:00:00Z"
   std::string plan_sha256;   ///< sum_of_plan()
   std::map<std::string, std::string> scans_sha256;  ///< by the plan's names of scans
 };
 
-/// The SHA-256 of what a plan does: its JSON without signatures and without the paths of scans, keys in
-/// order, so that neither layout nor another folder changes it.
+/// The SHA-256 of a plan's content: its JSON without signatures and paths of scans, with sorted keys, so that
+/// it depends neither on layout nor on the folder.
 std::string sum_of_plan(const std::string& text);
 
-/// The signatures in a plan's text, in their order. Throws std::runtime_error with the place in it.
+/// The signatures in a plan's text, in their order. Throws std::runtime_error with the position in the text.
 std::vector<Signature> signatures_of(const std::string& text);
 
-/// A reader's signature of a plan as it is, on its scans as they are. Throws std::runtime_error where a scan
-/// cannot be read. Cost: reads the scans' files.
+/// A reader's signature of the current plan and scans. Throws std::runtime_error if a scan cannot be read.
+/// Cost: reads the scans' files.
 Signature sign(const Plan& plan, const std::string& by, const std::string& as, const std::string& note);
 
 /// The plan's text with one more signature.
 std::string with_signature(const std::string& text, const Signature& signature);
 
-/// What has changed since: "the plan", "scan ct"; empty where the signature holds. Scans that `sums` does not
-/// name are passed over.
+/// The parts that have changed since: "the plan", "scan ct"; empty if the signature is valid. Ignores scans
+/// that `sums` does not name.
 std::vector<std::string> changed_since(const Signature& signature, const std::string& text,
                                        const std::map<std::string, std::string>& sums);
 

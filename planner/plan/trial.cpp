@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1. What is to be known: a list of numbers, each a function of one trial's motions and landmarks.
-// 2. A trial draws an error for each landmark, saw, moved piece and for the segmentation, and goes through
-//    the plan's motions with them, symbolically: no object is made.
-// 3. All trials with every error, then with the errors of one source at a time.
+// 1. The results: a list of numbers, each a function of one trial's motions and landmarks.
+// 2. A trial draws an error for each landmark, saw, moved piece and for the segmentation, and applies the
+// plan's motions with these errors, symbolically: no object is made.
+// 3. Run all trials with all errors, then with the errors of one source at a time.
 #include "planner/plan/trial.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// What is wrong in one trial.
+/// The errors of one trial.
 struct Errors {
   std::map<std::string, glm::dvec3> landmarks_mm;
   std::map<std::string, double> kerf_mm;                             ///< by saw steps
@@ -36,9 +36,10 @@ struct Errors {
 
 /// The motions of a trial by objects, LPS to LPS.
 struct Motions {
-  std::map<std::string, glm::dmat4> own;    ///< of the step that moved it
-  std::map<std::string, glm::dmat4> total;  ///< since it was made, with what its parts missed before
-  std::map<std::string, glm::dmat4> off;    ///< from where the plan has it to where it comes
+  std::map<std::string, glm::dmat4> own;    ///< motion of the step that moved it
+  std::map<std::string, glm::dmat4> total;  ///< motion since it was made, including earlier errors of its
+                                            ///< parts
+  std::map<std::string, glm::dmat4> off;    ///< from its planned position to its position in the trial
 };
 
 struct Number {
@@ -46,11 +47,11 @@ struct Number {
   std::function<double(const Errors& errors, const Motions& motions)> value;
 };
 
-/// A pair of objects, by the points of the one that may come nearest to the other.
+/// A pair of objects, with the points of the first that may come nearest to the second.
 struct Pair {
   std::string one, other;
   std::vector<NearPoint> points;
-  std::set<std::string> saws;  ///< that parted the two
+  std::set<std::string> saws;  ///< saw steps that separated the two
   double scale = 1.0;          ///< of the overlap
 
   template <typename Each>
@@ -135,7 +136,7 @@ class Through {
     return mark.object.empty() ? p_mm : carried(motions.total.at(mark.object), p_mm);
   }
 
-  /// The error of a piece about where the plan brings its centroid.
+  /// The seating error of a piece, as a motion about the planned position of its centroid.
   glm::dmat4 seated(const Object& object, const Errors& errors) const {
     const auto found = errors.seating.find(object.id);
     if (found == errors.seating.end()) return glm::dmat4(1.0);
@@ -147,7 +148,7 @@ class Through {
     return glm::translate(motion, -centre_mm);
   }
 
-  /// What all that an object is made of is off by, where that is the same.
+  /// The common error of all objects from which an object is made, if it is the same for all.
   glm::dmat4 inherited(const Object& object, const Motions& made) const {
     const auto step = steps_.find(object.id);
     if (step == steps_.end()) return glm::dmat4(1.0);
@@ -277,7 +278,7 @@ class Through {
   std::vector<std::string> findings_;
 };
 
-/// Half of the shortest interval about each value that holds the claimed share of the trials.
+/// The half-width of the shortest interval around each value that contains the claimed share of trials.
 std::vector<double> half_widths(const Through& through, const Trials& asked,
                                 const std::vector<double>& values) {
   std::vector<std::vector<double>> off(values.size());

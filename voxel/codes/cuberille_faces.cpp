@@ -90,7 +90,7 @@ CuberilleFaces cuberille_faces(const Octree& octree) {
 Octree octree_of(const CuberilleFaces& faces) {
   check(faces);
   Octree octree = octree_between_x_faces(faces);
-  // The x faces fix the object; the other lists must agree with it.
+  // The x faces determine the object; the other lists must agree with it.
   const CuberilleFaces expected = cuberille_faces(octree);
   for (int direction = 0; direction < direction_count; ++direction) {
     const auto& given = faces.lists[static_cast<std::size_t>(direction)];

@@ -19,9 +19,9 @@ inline constexpr int direction_count = 6;
 /// The unit step along a direction in index space.
 glm::ivec3 step(Direction direction);
 
-/// The cuberille (thesis 3.1.2.2): a list for each of the six directions of the object's voxels whose face in
-/// that direction borders on a voxel outside the object, or on the universe's end. Each list is in ascending
-/// order, x fastest, then y, z.
+/// The cuberille (thesis 3.1.2.2): for each of the six directions, a list of the object's voxels whose
+/// neighbour in that direction is outside the object or the universe. Each list is in ascending order, x
+/// fastest, then y, z.
 struct CuberilleFaces {
   Universe universe;
   std::array<std::vector<glm::ivec3>, direction_count> lists;

@@ -34,7 +34,7 @@ void fill(const LogicalNode& node, int level, std::size_t entry, std::vector<std
   for (int k = 0; k < 8; ++k) fill(node.child(k), level + 1, 8 * entry + static_cast<std::size_t>(k), levels);
 }
 
-// Reads and writes entries in preorder, which on each level is their order; next_ holds each level's next
+// Reads and writes entries in preorder, which is ascending within each level; next_ holds each level's next
 // entry.
 class ExplicitSource {
  public:

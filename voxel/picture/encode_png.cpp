@@ -1,7 +1,8 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// ISO/IEC 15948 (PNG), and its advice on filters (12.8): 1 of each row's five filtered forms take the one
-// whose bytes, as signed numbers, have the least sum of magnitudes; 2 deflate all rows as one stream; 3 cut
-// the stream into chunks.
+// SPDX-License-Identifier: AGPL-3.0-or-later Source: ISO/IEC 15948 (PNG) and its advice on filters (12.8).
+// 1 filter each row in five ways and choose the one whose bytes, as signed numbers, have the least sum of
+// magnitudes;
+// 2 deflate all rows as one stream;
+// 3 cut the stream into chunks.
 #include "voxel/picture/encode_png.h"
 
 #include <algorithm>
@@ -51,7 +52,7 @@ OCTOTOMY_VECTOR_CLONES std::size_t filter(const Byte* row, const Byte* above, st
 using Filter = std::size_t (*)(const Byte*, const Byte*, std::size_t, Byte*);
 constexpr std::array<Filter, 5> filters{filter<0>, filter<1>, filter<2>, filter<3>, filter<4>};
 
-/// The rows in their filtered forms, each behind the number of its filter.
+/// The filtered rows, each after the number of its filter.
 std::vector<Byte> filtered_rows(const glm::ivec2& size_px, const std::vector<Byte>& rgb) {
   const std::size_t count = pixel_bytes * static_cast<std::size_t>(size_px.x);
   std::vector<Byte> rows, row(count + pixel_bytes, 0), above = row, best(count + 1), tried(count + 1);
@@ -60,7 +61,7 @@ std::vector<Byte> filtered_rows(const glm::ivec2& size_px, const std::vector<Byt
     std::copy_n(from, count, row.begin() + pixel_bytes);
     std::size_t least = SIZE_MAX;
     for (std::size_t number = 0; number < filters.size(); ++number) {
-      // A picture one pixel wide or high is without the neighbours that a filter asks for.
+      // In a picture one pixel wide or high, some filters have no neighbours to read.
       if ((size_px.x == 1 && number != 0 && number != 2) || (size_px.y == 1 && number >= 2)) continue;
       tried[0] = static_cast<Byte>(number);
       const std::size_t sum = filters[number](row.data(), above.data(), count, tried.data() + 1);
@@ -74,7 +75,7 @@ std::vector<Byte> filtered_rows(const glm::ivec2& size_px, const std::vector<Byt
   return rows;
 }
 
-/// The window is no larger than what is deflated: decoders set memory aside for it.
+/// Makes the window no larger than the data, because decoders allocate memory for it.
 std::vector<Byte> deflated(std::vector<Byte>& bytes) {
   constexpr std::size_t least_lookahead = 262;
   int window_bits = 15;
@@ -93,8 +94,8 @@ std::vector<Byte> deflated(std::vector<Byte>& bytes) {
   stream.avail_out = static_cast<uInt>(made.size());
   need(deflate(&stream, Z_FINISH) == Z_STREAM_END);
   made.resize(stream.total_out);
-  // Packing takes a window that reaches 262 bytes past the data, unpacking none: the stream's first byte
-  // tells the window that unpacking takes, its second completes a multiple of 31.
+  // Compressing needs a window 262 bytes larger than the data; decompressing does not. The stream's first
+  // byte states the window for decompressing and is lowered here; its second completes a multiple of 31.
   int told = made[0] >> 4;
   while (told > 0 && bytes.size() <= std::size_t{1} << (told + 7)) --told;
   made[0] = static_cast<Byte>(told << 4 | Z_DEFLATED);
@@ -115,9 +116,9 @@ std::vector<std::uint8_t> encode_png(const glm::ivec2& size_px, const std::vecto
   const std::vector<Byte> stream = deflated(rows);
   const auto four_bytes = [](int number) { return big_endian(static_cast<std::uint32_t>(number)); };
   std::string png(png_signature);
-  // Eight bits a sample, colours; deflated, filtered by row, not interlaced.
+  // Eight bits per sample, colour; deflated, filtered by row, not interlaced.
   png += png_chunk("IHDR", four_bytes(size_px.x) + four_bytes(size_px.y) + std::string("\x08\x02\0\0\0", 5));
-  // What sRGB is, for readers that do not know it by name: its gamma, white and primaries, in 100 000ths.
+  // The gamma, white point and primaries of sRGB, in 100 000ths, for readers that ignore the sRGB chunk.
   png += png_chunk("gAMA", four_bytes(45455));
   png += png_chunk("sRGB", "\x03");
   std::string colours;

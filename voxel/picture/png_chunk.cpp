@@ -8,7 +8,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Length, letters and CRC, the bytes of a chunk beside its data.
+/// The bytes of a chunk besides its data: length, letters and CRC.
 constexpr std::size_t around_data = 4 + 4 + 4;
 
 }  // namespace
@@ -55,7 +55,8 @@ std::vector<std::uint8_t> with_png_text(const std::vector<std::uint8_t>& png, co
                                         const std::string& text) {
   const std::string_view bytes(reinterpret_cast<const char*>(png.data()), png.size());
   const std::string_view header = png_chunks(bytes).front().data;
-  const auto end = header.data() + header.size() + 4 - bytes.data();  // behind its CRC
+  const auto end = header.data() + header.size() + 4 - bytes.data();  // end of the header chunk, after its
+                                                                      // CRC
   const std::string chunk = png_chunk("tEXt", keyword + '\0' + text);
   std::vector<std::uint8_t> made = png;
   made.insert(made.begin() + end, chunk.begin(), chunk.end());

@@ -15,29 +15,29 @@ inline constexpr std::string_view png_signature("\x89PNG\r\n\x1a\n", 8);
 
 /// A number as four bytes, highest first.
 std::string big_endian(std::uint32_t number);
-/// Reads four bytes at `at` as a number, highest first. Precondition: they are there.
+/// Reads four bytes at `at` as a number, highest first. Precondition: `bytes` holds them.
 std::uint32_t big_endian_at(std::string_view bytes, std::size_t at);
 std::string png_chunk(const std::string& letters, std::string_view data);
 
-/// A chunk of a picture whose bytes are kept elsewhere.
+/// A view of a chunk; the caller holds the picture's bytes.
 struct PngChunk {
   std::string_view letters, data;
 };
-/// All chunks, from IHDR, of 13 bytes, to IEND or the end; what follows IEND is none of the picture's. CRCs
-/// are not looked at. Throws std::invalid_argument if the bytes are no PNG, or end within a chunk.
+/// All chunks from IHDR (13 bytes of data) to IEND or the end of the bytes. Ignores bytes after IEND and does
+/// not check CRCs. Throws std::invalid_argument if the bytes are not a PNG or end within a chunk.
 std::vector<PngChunk> png_chunks(std::string_view bytes);
 
-/// A PNG's bytes with a text chunk (tEXt) behind its header. Throws std::invalid_argument as png_chunks().
-/// Precondition: keyword and text are ASCII, the keyword 1 to 79 characters.
+/// The bytes of a PNG with a text chunk (tEXt) inserted after its header. Throws std::invalid_argument as
+/// png_chunks() does. Precondition: keyword and text are ASCII, the keyword 1 to 79 characters.
 std::vector<std::uint8_t> with_png_text(const std::vector<std::uint8_t>& png, const std::string& keyword,
                                         const std::string& text);
 
-/// What a PNG says of itself.
+/// The size of a PNG and one of its texts.
 struct PngText {
   glm::ivec2 size_px{0};
-  std::optional<std::string> text;  ///< none: it has no such chunk
+  std::optional<std::string> text;  ///< none: the PNG has no such chunk
 };
-/// The size and the text of that keyword. Throws std::invalid_argument as png_chunks().
+/// The size, and the text with the given keyword. Throws std::invalid_argument as png_chunks() does.
 PngText png_text(std::string_view bytes, const std::string& keyword);
 
 }  // namespace octotomy::voxel

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 cut each name into numbers and the text between them; 2 gather what the names of equal text have at each
-// number: signs, digits behind the dot; 3 decide for each number what its minus and its dot mean; 4 sort.
+// 1 cut each name into numbers and the text between them; 2 for names with equal text, collect the signs and
+// the digits after the dot at each number; 3 decide for each number the meaning of its minus and its dot; 4
+// sort.
 #include "voxel/picture/slice_names.h"
 
 #include <algorithm>
@@ -28,13 +29,13 @@ bool is_letter_or_digit(char c) {
 
 struct NumberInName {
   char sign = '\0';             ///< as written: '-', '+' or none
-  bool is_behind_word = false;  ///< the sign stands behind a letter
-  std::string whole, fraction;  ///< digits; of the whole number without leading zeros
+  bool is_behind_word = false;  ///< the sign follows a letter
+  std::string whole, fraction;  ///< digits; those of the integer part without leading zeros
   bool is_negative = false, is_decimal = true;
 };
 
 struct CutName {
-  std::string text;  ///< with '\1' for each number and its sign
+  std::string text;  ///< the name with '\1' in place of each number and its sign
   std::vector<std::string> between;
   std::vector<NumberInName> numbers;
 };
@@ -70,7 +71,7 @@ CutName cut(const std::string& name) {
     if (!is_chained && at < name.size() && name[at] == '.' && is_digit_at(name, at + 1)) {
       const std::size_t dot = at++;
       number.fraction = digits();
-      // 1.2.840 are three numbers.
+      // 1.2.840 is read as three numbers.
       if (at < name.size() && name[at] == '.' && is_digit_at(name, at + 1)) {
         number.fraction.clear();
         at = dot;
@@ -84,11 +85,11 @@ CutName cut(const std::string& name) {
   return made;
 }
 
-/// What the names of equal text have at one of their numbers.
+/// Properties that names with equal text have at one of their numbers.
 struct Place {
   bool has_minus = false, has_other = false, is_behind_word = false;
-  std::size_t least_digits = 0, most_digits = 0;  ///< behind a dot, where there is one
-  bool ends_with_zero = false;                    ///< of several digits behind a dot
+  std::size_t least_digits = 0, most_digits = 0;  ///< counts of digits after a dot, if there is one
+  bool ends_with_zero = false;                    ///< several digits after a dot end with 0
 
   void add(const NumberInName& number) {
     (number.sign == '-' ? has_minus : has_other) = true;
@@ -198,8 +199,7 @@ SliceNames ordered_by_name(const std::vector<fs::path>& files) {
 
 namespace {
 
-/// A file's name with # in the place of each number and its sign, and its numbers, zeros before them left
-/// out.
+/// A file's name with # in place of each number and its sign, and its numbers without leading zeros.
 struct NumberedName {
   std::string pattern, numbers;
 };
@@ -254,7 +254,7 @@ std::string stacks_named(const std::vector<fs::path>& files) {
 }
 
 std::string numbered_alike(const SliceNames& names) {
-  std::map<std::string, std::set<double>> numbers_of;  // by what stands before the last number
+  std::map<std::string, std::set<double>> numbers_of;  // by the text before the last number
   for (std::size_t i = 0; i < names.files.size(); ++i) {
     const std::string stem = names.files[i].stem().string();
     const std::size_t last = stem.find_last_of("0123456789");

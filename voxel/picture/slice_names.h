@@ -8,26 +8,26 @@
 
 namespace octotomy::voxel {
 
-/// What the numbers in the names of a stack's files say, without their folders and extensions:
+/// The order of a stack's files by the numbers in their names, without folders and extensions:
 /// - Numbers are compared as numbers: slice2 comes before slice10.
-/// - A minus before a number is its sign where no letter or digit stands before it (z_-10), or where other
-///   files have a plus or nothing in its place (z-10 beside z10). Else it separates (head-10, 2024-01-05).
-/// - One dot within a number is a decimal point: 1.25 comes before 1.5. Where the files have different counts
-///   of digits behind it and one of several ends with 0, it separates: 1.10 comes behind 1.9.
+/// - A minus before a number is its sign if no letter or digit precedes it (z_-10), or if other files have a
+///   plus or nothing in its place (z-10 and z10). Otherwise it is a separator (head-10, 2024-01-05).
+/// - One dot within a number is a decimal point: 1.25 comes before 1.5. If the files have different counts of
+///   digits after it, and one with several digits ends with 0, the dot is a separator: 1.10 comes after 1.9.
 struct SliceNames {
   std::vector<std::filesystem::path> files;   ///< in the order of their numbers
-  std::vector<std::optional<double>> number;  ///< by file: the last in its name; of nine digits at most
-  std::vector<std::string> doubts;            ///< where the names allow another order: what was assumed
+  std::vector<std::optional<double>> number;  ///< by file: the last number in its name; at most nine digits
+  std::vector<std::string> doubts;            ///< the assumption made, where the names allow another order
 };
 /// Cost: n log n. Equal numbers are in the order of their names' letters.
 SliceNames ordered_by_name(const std::vector<std::filesystem::path>& files);
 
-/// The stacks of files whose names differ by more than numbers and have the same numbers: "ct_#.png (5 files)
-/// and mask_#.png (5 files)". Empty where the names are those of one stack.
+/// Lists stacks if names differ by more than numbers but have the same numbers: "ct_#.png (5 files) and
+/// mask_#.png (5 files)". Empty if the names are those of one stack.
 std::string stacks_named(const std::vector<std::filesystem::path>& files);
 
-/// A sentence on names that have the same last numbers behind different numbers ("s1_000" and "s2_000"):
-/// stacks in one folder, or the blocks of one stack. Empty where the last numbers are those of one stack.
+/// A sentence on names with the same last number after different numbers ("s1_000" and "s2_000"): several
+/// stacks in one folder, or the blocks of one stack. Empty if the last numbers are those of one stack.
 std::string numbered_alike(const SliceNames& names);
 
 }  // namespace octotomy::voxel

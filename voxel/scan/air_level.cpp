@@ -44,12 +44,13 @@ Counts counts_of(std::span<const float> samples) {
 /// A 16-bit counter does not overflow in this many samples.
 constexpr std::size_t short_run = 1 << 15;
 
-/// Counts at most short_run samples, in 16 bits throughout so that a vector holds the most lanes.
+/// Counts at most short_run samples. All counters have 16 bits, so that a vector has as many lanes as
+/// possible.
 OCTOTOMY_VECTOR_CLONES void count_run(const std::int16_t* __restrict samples, std::size_t count,
                                       std::uint16_t* __restrict found) {
   std::uint16_t air = 0, above = 0, soft = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    // Unsigned, a sample below a band wraps to a number above it.
+    // In unsigned arithmetic a sample below a band wraps to a number above it.
     const auto from_air = static_cast<std::uint16_t>(samples[i] + 1100);
     const auto from_above = static_cast<std::uint16_t>(samples[i] + 899);
     air = static_cast<std::uint16_t>(air + (from_air <= 200));
@@ -103,7 +104,7 @@ std::string span(const Scene& scene) {
   return text;
 }
 
-/// Air is -1000; noise of 30 to 50 HU leaves hardly a sample below this.
+/// Air is -1000 HU. With noise of 30 to 50 HU almost no sample is below this.
 constexpr double below_air = -1100.0;
 constexpr double padding_gap = 100.0;
 constexpr std::size_t least_padded = 64, samples_for_one_padded = 10000, padded_for_one_in_gap = 100;

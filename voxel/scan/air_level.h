@@ -7,40 +7,42 @@
 
 namespace octotomy::voxel {
 
-// Judges by their air, which is -1000 by definition, if samples are Hounsfield units, and what lies too far
-// below it to be measured. Air is a sample within 100 of -1000. Air is seen if at least one sample in a
-// thousand is air.
+// Decides from the air in a scan, which is -1000 HU by definition, whether samples are Hounsfield units and
+// which samples are too low to be measurements. A sample within 100 of -1000 is air. A scan has air if at
+// least one sample in a thousand is air.
 
 struct AirLevel {
   Meaning meaning = Meaning::Raw;
   Finding finding;
 };
 
-/// For scans that declare themselves CT. Air seen: Hounsfield, Pass. No air, but at least one sample in a
-/// thousand between -900 and -20 (fat, foam, partial volume): Hounsfield, Warn. Neither, as after a lost
-/// intercept of -1024: Raw, Fail.
+/// For scans that declare themselves CT. With air: Hounsfield, Pass. Without air, but with at least one
+/// sample in a thousand between -900 and -20 (fat, foam, partial volume): Hounsfield, Warn. With neither, as
+/// when an intercept of -1024 was lost: Raw, Fail.
 AirLevel air_level_of_ct(const Scene& scene);
 
-/// For files that do not state their modality. Hounsfield if air is seen and is a peak: at least twice as
-/// many samples as in the equally wide band above it. Warn, since it is a guess. Otherwise Raw, Pass: nothing
-/// is assumed.
+/// For files that do not state their modality. Hounsfield if the scan has air and the air is a peak: at least
+/// twice as many samples as the band of equal width above it. That is a guess and therefore a Warn. Otherwise
+/// Raw, Pass: nothing is assumed.
 AirLevel air_level_of_unnamed(const Scene& scene);
 
-/// Numbers below 0 that were stored or read as 16 bits without a sign, so that air or padding is brighter
-/// than bone: samples above 40000, beyond what a CT measures, with nothing between them and the others for
-/// half of the numbers of 16 bits, at least 64 of them and one in ten thousand. A FAIL in a CT, else a WARN;
-/// none where there are none. The samples stay as they are. Cost: two passes over samples in single
-/// precision; those of 16 bits with a sign cannot hold such numbers.
+/// Detects negative numbers that were stored or read as unsigned 16-bit numbers, which makes air or padding
+/// brighter than bone. The signs are samples above 40000, which no CT measures, and a gap of at least 32768
+/// between these and the others. Requires at least 64 such samples and one in ten thousand. A FAIL in a CT, a
+/// WARN otherwise; none if there are no such samples. Does not change the samples. Cost: two passes over
+/// samples in single precision; signed 16-bit samples cannot hold such numbers and are not read.
 std::optional<Finding> lost_sign_finding(const Scene& scene, bool is_ct);
 
-/// Takes as padding what only padding can be in a CT and what its file does not name. Many converters drop
-/// that statement and keep the samples: corners of -2000 or -3024 around a round field of view.
+/// Marks samples as padding that a CT cannot have measured, although the file states no padding. Many
+/// converters drop the statement and keep the samples: corners of -2000 or -3024 around a round field of
+/// view.
 ///
-/// Taken is the least sample that is no padding yet if it lies below -1100 HU, thus below air and its noise,
-/// if at least 64 samples and one in ten thousand hold it, and if the hundred units above it are empty but
-/// for one sample for each hundred of its own. The audit gains a WARN, since it is a guess; nothing happens
-/// otherwise. In a scene that has padding already the samples become that. Precondition: samples in
-/// Hounsfield units. Two passes over the samples.
+/// The lowest sample that is not padding yet becomes padding if three conditions hold. It lies below -1100
+/// HU, thus below air and its noise. At least 64 samples and one in ten thousand have this value. The hundred
+/// units above it hold at most one sample for each hundred samples of this value. As this is a guess, the
+/// audit then has a WARN; otherwise the scene is unchanged. In a scene that already has padding, the samples
+/// take the value of that padding. Precondition: samples in Hounsfield units. Cost: two passes over the
+/// samples.
 void take_unstated_padding(Scene& scene);
 
 }  // namespace octotomy::voxel

@@ -10,7 +10,7 @@
 
 namespace octotomy::voxel {
 
-/// The first of the names, and how many there are beyond them.
+/// The first `most` names, and the number of the others.
 inline std::string listed(const std::vector<std::string>& names, std::size_t most = 8) {
   std::string text;
   for (std::size_t i = 0; i < std::min(names.size(), most); ++i) text += (i == 0 ? "" : ", ") + names[i];

@@ -9,8 +9,8 @@
 namespace octotomy::voxel {
 namespace {
 
-/// How iconv calls DICOM's sets. The keys end the names with and without code extensions alike: "ISO_IR 100"
-/// and "ISO 2022 IR 100".
+/// The names that iconv has for DICOM's sets. Each key is the common end of a set's names with and without
+/// code extensions: "ISO_IR 100" and "ISO 2022 IR 100".
 constexpr std::array<std::pair<std::string_view, const char*>, 18> encodings{{
     {"IR 6", "ASCII"},
     {"IR 100", "ISO-8859-1"},
@@ -40,7 +40,8 @@ void erase_all(std::string& text, std::string_view part) {
 
 bool is_ascii(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char letter) {
-    return static_cast<unsigned char>(letter) < 0x80 && letter != '\x1b';  // escapes begin other sets
+    return static_cast<unsigned char>(letter) < 0x80 && letter != '\x1b';  // an escape switches to another
+                                                                           // set
   });
 }
 
@@ -53,7 +54,7 @@ std::optional<std::string> utf8_of(std::string_view character_set, std::string_v
   const iconv_t converter = iconv_open("UTF-8", known->second);
   if (converter == reinterpret_cast<iconv_t>(-1)) return std::nullopt;
   std::string from(text);
-  erase_all(from, "\x1b$)C");  // announces Korean, which EUC-KR knows by its bytes
+  erase_all(from, "\x1b$)C");  // switches to Korean, which EUC-KR recognises without it
   std::string to(4 * from.size(), '\0');
   char* in = from.data();
   char* out = to.data();

@@ -11,11 +11,11 @@
 
 #include "voxel/scan/dicom_file.h"
 
-// Values, identifiers, attributes and the file around them, for the writers of DICOM files.
+// Values, identifiers, attributes and file headers for the writers of DICOM files.
 
 namespace octotomy::voxel {
 
-/// A decimal string: as many digits as fit its 16 characters.
+/// A decimal string with as many digits as fit into 16 characters.
 std::string dicom_decimal(double number);
 std::string dicom_decimals(const glm::dvec3& p);
 
@@ -23,8 +23,8 @@ std::string dicom_decimals(const glm::dvec3& p);
 /// DICOM's LO or holds a backslash, which separates values.
 void check_dicom_text(const std::string& text, const char* name);
 
-/// A 128-bit digest of content. Unique identifiers made from it are the same for the same content. Two FNV-1a
-/// sums from different starts; not for secrets.
+/// A 128-bit digest of content: two FNV-1a sums with different start values. Equal content produces equal
+/// unique identifiers. Not cryptographically secure.
 class DicomDigest {
  public:
   void add(const void* bytes, std::size_t count);
@@ -32,7 +32,7 @@ class DicomDigest {
 
   /// An identifier of the form 2.25.<UUID as an integer>, a UUID of version 8 (RFC 9562).
   std::string uid() const;
-  /// The identifier of the content and a further text.
+  /// The identifier of the content together with a further text.
   std::string uid(const std::string& text) const;
 
  private:
@@ -53,7 +53,7 @@ class DicomAttributes {
   void put_sequence(DicomTag tag, const std::vector<DicomAttributes>& items);
   void remove(DicomTag tag) { values_.erase(tag); }
 
-  /// As stored, with its padding. Precondition: the attribute is there.
+  /// The value as stored, with its padding. Precondition: the attribute exists.
   const std::string& value(DicomTag tag) const { return values_.at(tag).bytes; }
   void write(std::ostream& out) const;
 
@@ -69,7 +69,7 @@ class DicomAttributes {
 DicomAttributes dicom_code(const char* value, const char* scheme, const char* meaning);
 
 /// Writes a file of one instance (PS3.10, 7.1); its class and identifier are the attributes (0008,0016) and
-/// (0008,0018). Errors call the file `name`. Throws Error, Resource.
+/// (0008,0018). Error messages refer to the file as `name`. Throws Error, Resource.
 void write_dicom_file(const std::filesystem::path& path, const std::filesystem::path& name,
                       const DicomAttributes& attributes);
 

@@ -18,7 +18,7 @@ namespace octotomy::voxel {
 
 namespace {
 
-/// The process at the other end of a socket. It ends with the object, or by itself when the program ends.
+/// The decoding process, connected by a socket. It ends when this object is destroyed or the program ends.
 class CodecProcess {
  public:
   CodecProcess() {
@@ -28,13 +28,14 @@ class CodecProcess {
       throw Error(ErrorCode::Resource,
                   "compressed DICOM cannot be read: no socket: " + std::string(std::strerror(errno)));
     socket_ = sockets[0];
-    // The slowest codec takes a second for the largest slice. After a minute it is stuck.
+    // The slowest codec needs a second for the largest slice. After a minute without an answer it counts as
+    // hung.
     const timeval limit{60, 0};
     setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, sockets[1], STDIN_FILENO);
-    // One of GDCM's codecs prints to both while it decodes.
+    // One of GDCM's codecs prints to both streams while it decodes.
     for (const int spoken : {STDOUT_FILENO, STDERR_FILENO})
       posix_spawn_file_actions_addopen(&actions, spoken, "/dev/null", O_WRONLY, 0);
     std::string name = path;

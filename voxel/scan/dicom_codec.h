@@ -20,8 +20,8 @@ struct CompressedFrame {
   std::vector<std::string_view> fragments;
 };
 
-/// Decompresses RLE, JPEG, JPEG-LS and JPEG 2000 by GDCM to little-endian pixels in the bits allocated. None
-/// if the pixels are damaged or the transfer syntax is another. Each thread starts a process of its own,
+/// Decompresses RLE, JPEG, JPEG-LS and JPEG 2000 with GDCM to little-endian pixels of BitsAllocated bits.
+/// None if the pixels are damaged or have another transfer syntax. Each thread starts a process of its own,
 /// octotomy_dicom_codec: GDCM and its codecs crash on some damaged pixels, and loading GDCM would add 30 ms
 /// to every start of the program. Throws Error, Resource, if that process cannot be started.
 std::optional<std::string> decompress(const CompressedFrame& frame);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// octotomy_dicom_codec: decompresses the DICOM frames that come over the socket at its standard input until
-// the socket closes. Started by voxel/scan/dicom_codec.cpp, never by people.
+// octotomy_dicom_codec: decompresses the DICOM frames that it receives over the socket at its standard input,
+// until the socket closes. voxel/scan/dicom_codec.cpp starts it; users never do.
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
@@ -19,12 +19,13 @@ namespace {
 
 using octotomy::voxel::FrameHead;
 
-/// A damaged frame may ask for any amount of memory; a crash must leave no core file.
+/// Limits memory, because a damaged frame can request any amount of it, and prevents a core file after a
+/// crash.
 void set_limits() {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-#ifndef OCTOTOMY_SANITIZED  // a sanitizer's shadow takes terabytes
-  // The largest accepted frame has 4096 x 4096 pixels of four bytes; codecs hold it a few times.
+#ifndef OCTOTOMY_SANITIZED  // a sanitizer reserves terabytes of address space
+  // The largest accepted frame has 4096 x 4096 pixels of four bytes; codecs hold a few copies of it.
   const rlimit memory{std::size_t{4} << 30, std::size_t{4} << 30};
   setrlimit(RLIMIT_AS, &memory);
 #endif
@@ -32,7 +33,8 @@ void set_limits() {
 
 gdcm::Image image_of(const FrameHead& head, const std::string& syntax,
                      const std::vector<std::string>& parts) {
-  auto* fragments = new gdcm::SequenceOfFragments;  // counts its references; `pixels` takes the first
+  auto* fragments = new gdcm::SequenceOfFragments;  // reference-counted; `pixels` takes over the first
+                                                    // reference
   for (const std::string& part : parts) {
     gdcm::Fragment fragment;
     fragment.SetByteValue(part.data(), static_cast<std::uint32_t>(part.size()));
@@ -94,7 +96,7 @@ int main(int count, char** arguments) {
   gdcm::Trace::DebugOff();
   gdcm::Trace::WarningOff();
   gdcm::Trace::ErrorOff();
-  // One of GDCM's codecs works on temporary files and leaves them behind when it fails.
+  // One of GDCM's codecs uses temporary files and does not remove them when it fails.
   if (count != 2 || setenv("TMPDIR", arguments[1], 1) != 0) return 1;
   while (answer_next()) {
   }

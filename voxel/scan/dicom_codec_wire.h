@@ -11,9 +11,9 @@
 
 // The messages between decompress() and its process over a socket. A request is a FrameHead, the transfer
 // syntax, and for each fragment its length as std::uint64_t and its bytes. The answer is the length of the
-// pixels as std::uint64_t, zero on failure, and the pixels. The process's one argument is an empty folder for
-// its temporary files, which the other end removes, or the process where the other end is gone. Both ends are
-// built together.
+// pixels as std::uint64_t, zero on failure, and the pixels. The only argument of the process is an empty
+// folder for its temporary files. The program removes this folder, or the process does if the program has
+// ended. Both ends are built together, so the format has no version.
 
 namespace octotomy::voxel {
 
@@ -28,7 +28,7 @@ struct FrameHead {
   std::uint32_t fragment_count = 0;
 };
 
-/// False if the other end is gone or the socket's time limit has passed.
+/// Returns false if the connection is closed or the socket's time limit has passed.
 inline bool send_all(int socket, const void* bytes, std::size_t count) {
   for (const auto* at = static_cast<const char*>(bytes); count > 0;) {
     const ssize_t sent = send(socket, at, count, MSG_NOSIGNAL);

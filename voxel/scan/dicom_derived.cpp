@@ -22,7 +22,8 @@ void put_study(DicomAttributes& attributes, const DicomOptions& options, const D
                bool in_utf8) {
   const auto own = [&](const char* value) { return options.source ? "" : value; };
   attributes.put(character_set_tag, "CS", "ISO_IR 192");
-  attributes.put(0x00080020, "DA", own("20000101"));  // today's date would break byte equality
+  attributes.put(0x00080020, "DA", own("20000101"));  // a fixed date, so that equal content is written as
+                                                      // equal bytes
   attributes.put(0x00080030, "TM", own("000000"));
   attributes.put(0x00080050, "SH", "");
   attributes.put(0x00080070, "LO", "Octotomy");

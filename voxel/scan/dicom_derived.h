@@ -12,16 +12,16 @@
 
 namespace octotomy::voxel {
 
-/// Puts patient, study, frame of reference and series: the source's, or those of a phantom in a study of its
-/// own. Texts stay in the source's character set, or become UTF-8 where `in_utf8` is set. Throws Error,
-/// Input, if the source's set cannot be converted.
+/// Writes patient, study, frame of reference and series: those of the source, or those of a phantom in a
+/// study of its own. Texts keep the source's character set, or are converted to UTF-8 if `in_utf8` is set.
+/// Throws Error, Input, if the source's set cannot be converted.
 void put_study(DicomAttributes& attributes, const DicomOptions& options, const DicomDigest& digest,
                bool in_utf8);
 
-/// Puts the images that an image or a frame was made from (PS3.3, C.7.6.1 and C.7.6.16.2.6).
+/// Writes references to the images that an image or a frame was made from (PS3.3, C.7.6.1 and C.7.6.16.2.6).
 void put_source_images(DicomAttributes& attributes, const std::vector<DicomSource::Image>& images);
 
-/// Puts the series and those of its images that an instance refers to (PS3.3, C.12.2).
+/// Writes the series, and those of its images that an instance refers to (PS3.3, C.12.2).
 void put_referenced_series(DicomAttributes& attributes, const std::string& series_uid,
                            const std::vector<DicomSource::Image>& images);
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Headers are read here and GDCM only decompresses pixels, because GDCM aborts the program on some damaged
-// headers (its Debian build keeps assertions) and allocates as many bytes as an attribute claims.
+// This reader parses headers itself and uses GDCM only to decompress pixels: on some damaged headers GDCM
+// aborts the program (its Debian build has assertions enabled), and it allocates as many bytes as an
+// attribute claims.
 #include "voxel/scan/dicom_file.h"
 
 #include <array>
@@ -29,8 +30,8 @@ bool has_prefix(std::string_view bytes) {
   return bytes.size() >= 132 && bytes.substr(128, 4) == "DICM";
 }
 
-/// Whether the first attribute states its value representation. As an implicit length, two capital letters
-/// would mean a first value of 16 kilobytes.
+/// Whether the first attribute states its value representation. Read as an implicit length, two capital
+/// letters would mean a first value of at least 16 kilobytes, longer than any first attribute is.
 bool spells_vr(std::string_view bytes) {
   const auto is_capital = [&](std::size_t i) { return bytes[i] >= 'A' && bytes[i] <= 'Z'; };
   return bytes.size() >= 8 && is_capital(4) && is_capital(5);
@@ -45,8 +46,8 @@ bool is_wide(std::string_view vr) {
   return false;
 }
 
-/// Whether a transfer syntax is DICOM's, all of which are explicit and little-endian but for those that
-/// leave_meta() names. An empty one is an old file's.
+/// Whether a transfer syntax is one of DICOM's. All are explicit and little-endian except those that
+/// leave_meta() lists. Old files state none.
 bool is_readable_syntax(std::string_view syntax) {
   return syntax.empty() || syntax.starts_with("1.2.840.10008.1.2");
 }
@@ -118,14 +119,15 @@ void DicomFile::leave_meta() {
   transfer_syntax_ = text(transfer_syntax_tag);
   const bool is_implicit = transfer_syntax_ == "1.2.840.10008.1.2";
   const bool is_deflated = transfer_syntax_ == "1.2.840.10008.1.2.1.99" && !inflated_;
-  // Some tools change the syntax without the attributes, which show how they are coded themselves.
+  // Some tools change the stated syntax but not the attributes. The coding of the attributes is therefore
+  // read from the attributes.
   explicit_ = left() >= 8 && !is_deflated ? spells_vr(bytes_.substr(at_)) : !is_implicit;
   contradicts_syntax_ = explicit_ == is_implicit;
   if (transfer_syntax_ == "1.2.840.10008.1.2.2") big_endian_ = true;
   if (is_deflated) throw Deflated{at_};
 }
 
-/// Steps over the head of the attribute at hand. Precondition: eight bytes are left.
+/// Reads the head of the current attribute and moves past it. Precondition: eight bytes are left.
 DicomFile::Head DicomFile::take_head() {
   Head head;
   head.tag = (u16(at_) << 16) | u16(at_ + 2);
@@ -178,7 +180,7 @@ void DicomFile::take_fragments() {
 }
 
 void DicomFile::walk() {
-  // The open sequences and items, those without a length, and the coding around each.
+  // The open sequences and items of undefined length, and the coding outside each.
   struct Coding {
     bool explicit_vr, big_endian;
   };
@@ -211,7 +213,8 @@ void DicomFile::walk() {
         open_start = at_;
       }
       outside.push_back({explicit_, big_endian_});
-      // PS3.5, 6.2.2: unknown sequences are implicit and little-endian inside. Some writers keep their order.
+      // PS3.5, 6.2.2: sequences of unknown representation are implicit and little-endian inside. Some writers
+      // keep the file's byte order.
       if (head.is_unknown) {
         explicit_ = false;
         big_endian_ = big_endian_ && !begins_little_endian_item(bytes_.substr(at_));
@@ -249,7 +252,7 @@ std::vector<DicomFile> DicomFile::items(DicomTag sequence) const {
     const std::size_t length = head.is_open() ? marks.left() : head.length;
     found.push_back(DicomFile(marks.bytes_.substr(marks.at_, length), explicit_vr, marks.big_endian_));
     marks.at_ += head.is_open() ? found.back().at_ : length;
-    // An item that states no set of its own has the one around it (PS3.5, 6.1.1).
+    // An item without a character set of its own has that of the data set around it (PS3.5, 6.1.1).
     if (character_set != values_.end()) found.back().values_.insert(*character_set);
   }
   return found;

@@ -13,7 +13,7 @@ namespace octotomy::voxel {
 
 /// Group and element of a DICOM attribute as one number: (0028,0010) is 0x00280010.
 using DicomTag = std::uint32_t;
-/// Which character set a file's texts are in.
+/// Specific Character Set: the character set of a file's texts.
 constexpr DicomTag character_set_tag = 0x00080005;
 
 /// A range of bytes in a file.
@@ -39,23 +39,23 @@ class DicomFile {
   static bool begins(std::string_view head);
 
   /// `bytes` must outlive the object. They are the whole file of `file_bytes`, or its beginning up to the
-  /// pixels or beyond. `inflated` says that deflated attributes are inflated already; otherwise throws
-  /// Deflated. Throws NeedsMore; Error, Input, with the reason and without a path, if an attribute ends
-  /// beyond the file.
+  /// pixels or beyond. Throws Deflated for deflated attributes unless `inflated` is set, which means that
+  /// they have been inflated. Throws NeedsMore. Throws Error, Input, with the reason and without a path, if
+  /// an attribute ends beyond the file.
   DicomFile(std::string_view bytes, std::size_t file_bytes, bool inflated = false);
 
-  /// As stored, in the file's character set, without padding; empty if the attribute is absent.
+  /// The text as stored, in the file's character set, without padding; empty if the attribute is absent.
   std::string text(DicomTag tag) const;
-  /// As UTF-8. Control characters, and non-ASCII in a character set that utf8_of() refuses, become question
-  /// marks.
+  /// The text in UTF-8. Control characters, and non-ASCII characters in a set that utf8_of() refuses, become
+  /// question marks.
   std::string readable_text(DicomTag tag) const;
   std::optional<std::uint16_t> unsigned_short(DicomTag tag) const;
   /// All values of an attribute of two-byte numbers; empty if it is absent.
   std::vector<std::uint16_t> unsigned_shorts(DicomTag tag) const;
-  /// How many bytes an attribute's value takes; none if it is absent.
+  /// The number of bytes in an attribute's value; none if the attribute is absent.
   std::optional<std::size_t> length(DicomTag tag) const;
-  /// Decimal strings; none if the attribute is absent or one value is no finite number. A comma is read as
-  /// the point that a writer with another language's numbers meant.
+  /// The numbers of a decimal string; none if the attribute is absent or one value is not a finite number. A
+  /// comma is read as a decimal point, because some writers format numbers in the user's language.
   std::optional<std::vector<double>> decimals(DicomTag tag) const;
   std::optional<double> decimal(DicomTag tag) const;
   /// The items of a sequence, with their own attributes and the character set around them; empty if the
@@ -70,12 +70,12 @@ class DicomFile {
   std::optional<double> float_double(DicomTag tag) const;
   bool big_endian() const { return big_endian_; }
   const std::string& transfer_syntax() const { return transfer_syntax_; }
-  /// Whether the attributes' value representations are explicit where the transfer syntax states implicit
-  /// ones, or the other way round. They are read as they are.
+  /// Whether the attributes' value representations are explicit although the transfer syntax states implicit
+  /// ones, or the reverse. The attributes are read as they are coded.
   bool contradicts_syntax() const { return contradicts_syntax_; }
   /// Uncompressed pixel data; none if the file has none or compressed ones.
   std::optional<DicomExtent> raw_pixels() const { return raw_pixels_; }
-  /// Whether uncompressed pixels are stated as words of two bytes, VR OW.
+  /// Whether uncompressed pixels are declared as words of two bytes, VR OW.
   bool has_words_of_pixels() const { return has_words_of_pixels_; }
   /// Fragments of compressed pixels without the offset table; none if the pixels are raw.
   const std::optional<std::vector<DicomExtent>>& fragments() const { return fragments_; }
@@ -125,8 +125,8 @@ class DicomFile {
   std::vector<std::uint64_t> frame_offsets_;
 };
 
-/// A DICOM file's bytes with deflated attributes inflated, for DicomFile's `inflated`. `bytes` are the whole
-/// file. Throws as DicomFile; Error, Input, without a path, if the deflated bytes are damaged.
+/// The bytes of a whole DICOM file with deflated attributes inflated, for DicomFile's `inflated`. Throws as
+/// DicomFile does, and Error, Input, without a path, if the deflated bytes are damaged.
 std::string whole_dicom(std::string bytes);
 
 }  // namespace octotomy::voxel

@@ -11,14 +11,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether an entry is a regular file, or a link to nothing, which is reported as unreadable.
+/// Whether an entry is a regular file or a broken link. Broken links count so that they are reported as
+/// unreadable.
 bool is_file(const fs::directory_entry& entry) {
   std::error_code ignored;
   return entry.is_regular_file(ignored) || (entry.is_symlink(ignored) && !entry.exists(ignored));
 }
 
-/// Whether a name is that of a folder of staged files, which are not in their place yet, or of the list of a
-/// result's files.
+/// Whether a name is that of a folder of staged files, which have not been renamed into place, or of the list
+/// of a result's files.
 bool is_of_octotomy(const fs::path& path) {
   const std::string name = path.filename().string();
   return name.starts_with('.') && name.find(".octotomy-") != std::string::npos;

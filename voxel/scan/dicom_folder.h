@@ -9,7 +9,7 @@ namespace octotomy::voxel {
 struct FolderFiles {
   std::vector<std::filesystem::path> files;  ///< of a folder and its subfolders, sorted
   std::vector<std::filesystem::path>
-      staged;  ///< folders of files that a run has not put in their place, sorted
+      staged;  ///< folders of files that a run has not renamed into place, sorted
 };
 
 bool is_folder(const std::filesystem::path& path);

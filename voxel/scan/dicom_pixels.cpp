@@ -73,7 +73,7 @@ std::vector<std::string> stored_parts(const DicomSlice& slice) {
   return parts;
 }
 
-/// All parts of raw pixels behind each other.
+/// Concatenates all parts of raw pixels.
 std::string joined(std::vector<std::string> parts) {
   for (std::size_t i = 1; i < parts.size(); ++i) parts.front() += parts[i];
   return std::move(parts.front());
@@ -129,7 +129,7 @@ double value_of(std::uint32_t word, const DicomPixels& pixels) {
                                                 : static_cast<double>(word);
 }
 
-/// Whether a pixel's word has bits outside of the stored ones that are no copy of its sign.
+/// Whether a pixel's word has bits set outside the stored ones that are not copies of its sign.
 bool has_foreign_bits(std::uint32_t word, const DicomPixels& pixels) {
   const unsigned low = pixels.high + 1 - pixels.stored;
   const std::uint32_t mask = (pixels.stored == 32 ? 0xffffffffu : (1u << pixels.stored) - 1) << low;
@@ -141,8 +141,8 @@ bool has_foreign_bits(std::uint32_t word, const DicomPixels& pixels) {
   return !(is_negative && others == above);
 }
 
-/// The usual CT: 16 bits, little-endian, slope 1, an integer intercept. Rescales the stored words in place,
-/// in integers so that the compiler vectorises. Values at or below the mark of padding do not fit.
+/// The usual CT: 16 bits, little-endian, slope 1, an integer intercept. Rescales the stored words in place.
+/// Uses integers so that the compiler vectorises. Values at or below the mark of padding do not fit.
 DecodedSlice rescale_shorts(const DicomSlice& slice, int intercept, std::span<std::int16_t> samples,
                             std::optional<std::int16_t> padding_mark) {
   const DicomPixels& pixels = slice.pixels;
@@ -184,7 +184,7 @@ DecodedSlice rescale_shorts(const DicomSlice& slice, int intercept, std::span<st
   return {low >= least && high <= std::numeric_limits<std::int16_t>::max(), foreign};
 }
 
-/// A slope of 0 would leave one value: it is taken for 1.
+/// A slope of 0 would map all pixels to one value; it is read as 1.
 double slope_of(const DicomSlice& slice) {
   const double slope = slice.slope.value_or(1.0);
   return slope == 0.0 ? 1.0 : slope;
@@ -197,7 +197,7 @@ bool is_usual(const DicomSlice& slice) {
          intercept == std::trunc(intercept) && std::abs(intercept) < 1e6;
 }
 
-/// The value that a stored number means.
+/// The value of a stored number after Modality LUT or rescale.
 double meant(double stored, const DicomSlice& slice) {
   if (!slice.lut) return slope_of(slice) * stored + slice.intercept.value_or(0.0);
   const double last = static_cast<double>(slice.lut->values.size() - 1);

@@ -10,18 +10,18 @@
 
 namespace octotomy::voxel {
 
-/// What decoding a slice showed.
+/// Facts about a slice's values, found while decoding it.
 struct DecodedSlice {
   bool fits = true;               ///< every value is an integer in the samples' range
-  std::size_t foreign_count = 0;  ///< pixels with bits outside of BitsStored that are no copy of the sign
+  std::size_t foreign_count = 0;  ///< pixels with bits outside BitsStored that are not copies of the sign
 };
 
 /// Whether two images store the same pixels in the same way. Throws Error, Input, if a file has changed.
 bool same_pixels(const DicomSlice& a, const DicomSlice& b);
 
-/// Decodes a slice and applies its Modality LUT or its rescale (absent, or a slope of 0: slope 1; absent:
-/// intercept 0), row by row, x fastest. Padded pixels become `padding_mark`; then a measured value at or
-/// below the mark does not fit. Precondition: `samples` has a place for every pixel. Throws Error, Input,
+/// Decodes a slice and applies its Modality LUT or its rescale, row by row, x fastest. A slope that is absent
+/// or 0 is read as 1, an absent intercept as 0. Padded pixels become `padding_mark`; then a measured value at
+/// or below the mark does not fit. Precondition: `samples` has a place for every pixel. Throws Error, Input,
 /// with path and reason if the pixels cannot be decoded.
 DecodedSlice read_dicom_samples(const DicomSlice& slice, std::span<std::int16_t> samples,
                                 std::optional<std::int16_t> padding_mark = std::nullopt);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Files to the stack of one series:
-//   1  read every file's header; name the files that hold no slice
-//   2  choose the series or stack asked for, else the series with most slices; leave out scout views
-//   3  keep the commonest patient, study, modality and frame of reference, size and orientation
-//   4  if several stacks lie at one place, keep the largest
-//   5  order the slices by position along their normal and drop repeated ones
-//   6  keep the slices asked for and judge what they have in common
-// Longer than most sources because the steps share what the folder holds and what the caller can choose from.
+// Turns files into the stack of one series:
+//   1 read every file's header; list the files that hold no slice 2 choose the requested series or stack,
+//   else the series with most slices; leave out scout views 3 keep the commonest patient, study, modality and
+//   frame of reference, size and orientation 4 if several stacks lie at one place, keep the largest 5 order
+//   the slices by position along their normal and drop repeated ones 6 keep the requested slices and check
+//   what they have in common Longer than most sources because the steps share what the folder holds and what
+//   the caller can choose from.
 #include "voxel/scan/dicom_series.h"
 
 #include <algorithm>
@@ -36,17 +35,17 @@ double repeat_tolerance_mm(double usual_gap_mm) {
   return 0.1 * usual_gap_mm;
 }
 
-/// Turns that move an image's farthest pixel by no more than a tenth change its samples less than a slice's
-/// partial volume does.
+/// A rotation that moves an image's farthest pixel by at most a tenth of a pixel changes its samples less
+/// than a slice's partial volume does.
 constexpr double unseen_turn_px() {
   return 0.1;
 }
 
-/// Directions whose length is further from 1 are no rounded or badly scaled unit vectors.
+/// A direction whose length differs from 1 by more than this is not a rounded or badly scaled unit vector.
 constexpr double most_length_error = 0.1;
 
-/// Cosines rounded to two decimals, each by 0.005, make a vector's length or a product of two vectors err by
-/// up to 0.005 times the root of three, and twice that.
+/// Rounding to two decimals changes each cosine by up to 0.005. A vector's length then errs by up to 0.005
+/// times the root of three, a product of two vectors by twice that.
 double two_decimals_error() {
   return 0.01 * std::sqrt(3.0);
 }
@@ -145,13 +144,13 @@ class SeriesAssembler {
     return none != nullptr && none->is_directory;
   }
 
-  /// For people: the path below the scan's folder.
+  /// The name to show to users: the path below the scan's folder.
   std::string name_of(const fs::path& file) const {
     return (is_folder(path_) ? file.lexically_relative(path_) : file.filename()).string();
   }
 
   [[noreturn]] void refuse_empty(std::size_t file_count, const Skipped& skipped) const {
-    // Damaged and unusable images say more than files that are no images at all.
+    // Reports damaged and unusable images first, because they explain more than files that are not images.
     for (const auto kind : {NoSlice::Kind::Damaged, NoSlice::Kind::Unusable, NoSlice::Kind::Stray})
       if (const auto some = skipped.find(kind); some != skipped.end())
         refuse(path_, "no DICOM slice in the folder or below; " + std::to_string(file_count) +
@@ -160,7 +159,8 @@ class SeriesAssembler {
     refuse(path_, "no DICOM slice in the folder or below; it holds no files");
   }
 
-  /// Files that hold no slice; one that belongs to the series taken is a slice of it that is lost.
+  /// Reports files that hold no slice. If such a file belongs to the chosen series, that series lacks a
+  /// slice.
   void audit_skipped(const std::string& taken_uid) {
     const auto tell = [&](const char* check, NoSlice::Kind kind, Verdict verdict, const char* passed,
                           const char* what) {
@@ -183,7 +183,7 @@ class SeriesAssembler {
          " left out that are damaged or cannot be read; copy them again: ");
   }
 
-  /// The slices that choose() takes; lines about files that hold none stand first.
+  /// The slices that choose() selects. Lines about files without slices come first in the audit.
   std::vector<DicomSlice> chosen_of(std::vector<DicomSlice> found) {
     const auto before = static_cast<std::ptrdiff_t>(audit_.size());
     std::vector<DicomSlice> taken = choose(std::move(found));
@@ -227,10 +227,10 @@ class SeriesAssembler {
     return list;
   }
 
-  /// "; choose by --series N of ...", or nothing where there is no choice.
+  /// "; choose by --series N of ...", or empty if there is no choice.
   std::string advice() const { return choice_count_ > 1 ? "; choose by --series N of " + choices_ : ""; }
 
-  /// The series or stack asked for, else the series with most slices.
+  /// The requested series or stack, else the series with most slices.
   std::vector<DicomSlice> choose(std::vector<DicomSlice> found) {
     std::vector<Series> all = by_series(std::move(found));
     choices_ = choices(all);
@@ -269,7 +269,7 @@ class SeriesAssembler {
     return std::move(taken.members);
   }
 
-  /// Images of other series that may continue a series: alike, at other places.
+  /// Images of other series that may continue a series: same kind, other positions.
   struct Scattered {
     std::size_t series = 0, images = 0;
   };
@@ -350,7 +350,7 @@ class SeriesAssembler {
     return members;
   }
 
-  /// Keeps the largest group of slices that are alike; a finding states the others.
+  /// Keeps the largest group of slices that are alike. A finding lists the others.
   void keep_commonest(const char* check, std::vector<DicomSlice>& members,
                       const std::function<bool(const DicomSlice&, const DicomSlice&)>& alike,
                       const std::function<std::string(const DicomSlice&)>& named) {
@@ -372,8 +372,8 @@ class SeriesAssembler {
     members = std::vector<DicomSlice>(std::move(most));
   }
 
-  /// Keeps the commonest patient, study, modality and frame of reference. An image without the attribute is
-  /// taken to be of the commonest.
+  /// Keeps the commonest patient, study, modality and frame of reference. An image without the attribute
+  /// counts as one of the commonest.
   std::vector<DicomSlice> with_one_identity(std::vector<DicomSlice> members) {
     for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait) {
       const bool is_joinable = dicom_traits[trait].role == TraitRole::Origin;
@@ -489,7 +489,7 @@ class SeriesAssembler {
     return stack;
   }
 
-  /// Spacings of one grid may differ in their last decimals: all slices take their mean.
+  /// Spacings of one grid may differ in their last decimals. All slices get the mean.
   static void take_mean_spacing(DicomStack& stack) {
     glm::dvec2 sum(0.0);
     bool is_one = true;
@@ -501,7 +501,7 @@ class SeriesAssembler {
     for (DicomSlice& slice : stack.slices) slice.spacing_mm = sum / static_cast<double>(stack.slices.size());
   }
 
-  /// The mean of the slices' directions; that of the first, to the bit, where all are equal.
+  /// The mean of the slices' directions. If all are equal, exactly those of the first slice, bit for bit.
   std::pair<glm::dvec3, glm::dvec3> mean_directions(const DicomStack& stack) {
     const DicomSlice& first = stack.first();
     glm::dvec3 along_row(0.0), along_column(0.0);
@@ -519,7 +519,7 @@ class SeriesAssembler {
       most_px = std::max(most_px, px);
       if (px > unseen_turn_px()) turned.push_back(slice.name);
     }
-    // With the line about the orientation that has passed, one line more only if there is a doubt.
+    // The audit already has a passing line on the orientation. Adds another line only if there is a doubt.
     if (!turned.empty())
       find("orientation_noise", Verdict::Warn,
            "directions differ from slice to slice, which moves pixels of " + slices(turned.size()) +
@@ -556,14 +556,15 @@ class SeriesAssembler {
     stack.along_row = along_row / row;
     stack.along_column =
         glm::normalize(along_column - glm::dot(along_column, stack.along_row) * stack.along_row);
-    // Adding zero turns -0, which headers hold, into 0.
+    // Adding zero turns -0, which some headers contain, into 0.
     stack.along_row += 0.0;
     stack.along_column += 0.0;
     stack.normal = glm::cross(stack.along_row, stack.along_column) + 0.0;
   }
 
   void order(DicomStack& stack) {
-    // height_mm() counts from the first slice, which sorting moves: compare heights from the origin instead.
+    // height_mm() counts from the first slice, and sorting changes which slice is first. Compares heights
+    // from the origin instead.
     const glm::dvec3 normal = stack.normal;
     std::stable_sort(stack.slices.begin(), stack.slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
       const double height_a = glm::dot(a.first_mm, normal);
@@ -577,7 +578,8 @@ class SeriesAssembler {
     std::vector<double> gaps;
     for (std::size_t i = 1; i < stack.slices.size(); ++i)
       gaps.push_back(stack.height_mm(stack.slices[i]) - stack.height_mm(stack.slices[i - 1]));
-    std::erase_if(gaps, [](double gap) { return gap < 1e-6; });  // below the rounding of any file's positions
+    std::erase_if(gaps, [](double gap) { return gap < 1e-6; });  // less than the rounding of positions in any
+                                                                 // file
     double usual_gap_mm = 0.0;
     if (!gaps.empty()) {
       std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2), gaps.end());
@@ -646,7 +648,7 @@ class SeriesAssembler {
   std::vector<Finding>& audit_;
   Skipped skipped_;
   std::size_t choice_count_ = 0;
-  std::string choices_;  ///< of all series and stacks, for findings and refusals
+  std::string choices_;  ///< list of all series and stacks, for findings and error messages
 };
 
 }  // namespace

@@ -30,17 +30,17 @@ struct DicomStack {
 };
 
 /// Reads the headers below a path, chooses the series that the options ask for, and keeps the slices that
-/// form a stack. The audit names the files that were left out and why: stray_files, unusable_images,
-/// damaged_files, series, localizers, patient, patient_issuer where it is stated, study, modality,
-/// frame_of_reference, size, orientation, stacks, pixel_spacing, duplicates; then audit_stack()'s lines.
-/// Slices left out of a series are a Fail. If there is a doubt also orientation_noise, orientation_rounded,
+/// form a stack. The audit lists the files that were left out, and why, under these checks: stray_files,
+/// unusable_images, damaged_files, series, localizers, patient, patient_issuer (if stated), study, modality,
+/// frame_of_reference, size, orientation, stacks, pixel_spacing, duplicates; then the lines of audit_stack().
+/// A slice left out of a series is a Fail. Only if there is a doubt: orientation_noise, orientation_rounded,
 /// orientation_length, join, image_count and concatenation. Folders of staged files count as stray files.
-/// Throws as read_scene().
+/// Throws as read_scene() does.
 DicomStack stack_of_series(const std::filesystem::path& path, const ReadOptions& options,
                            std::vector<Finding>& audit);
 
-/// Runs a task for every index in parallel. Of several exceptions it throws that of the lowest index, on any
-/// thread count. Throws Stopped if the stop token is set before a task begins.
+/// Runs a task for every index in parallel. If several tasks throw, rethrows the exception of the lowest
+/// index, on any thread count. Throws Stopped if a stop is requested before a task begins.
 void for_each_index(std::size_t count, const Progress& progress,
                     const std::function<void(std::size_t)>& task);
 

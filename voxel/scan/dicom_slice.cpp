@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// A header to slices, attribute by attribute: longer than most sources because each attribute that a volume
-// needs has its own way to be absent, wrong or elsewhere.
+// Turns a header into slices, attribute by attribute. Longer than most sources, because each attribute that a
+// volume needs can be absent, wrong or elsewhere in its own way.
 #include "voxel/scan/dicom_slice.h"
 
 #include <algorithm>
@@ -26,8 +26,8 @@ namespace {
 constexpr DicomTag shared_groups_tag = 0x52009229;
 constexpr DicomTag frame_groups_tag = 0x52009230;
 
-/// Attributes of a slice by tag. A frame's are looked for in its own functional groups, then in the shared
-/// ones, then in the file (DICOM PS3.3, C.7.6.16).
+/// Attributes of a slice by tag. The attributes of a frame are searched in its own functional groups, then in
+/// the shared ones, then in the file (DICOM PS3.3, C.7.6.16).
 class Attributes {
  public:
   explicit Attributes(const DicomFile& file) : file_(&file) {}
@@ -41,7 +41,7 @@ class Attributes {
         for (DicomFile& item : groups->items(group)) groups_.push_back(std::move(item));
     }
   }
-  /// Attributes that an item states for this frame, too, before the file's own.
+  /// Adds an item whose attributes apply to this frame and take precedence over those of the file.
   void add(const DicomFile& item) { groups_.push_back(item); }
 
   std::string text(DicomTag tag) const {
@@ -51,7 +51,7 @@ class Attributes {
            })
         .value_or("");
   }
-  /// A trait's value as text, also where it is a binary number.
+  /// A trait's value as text, also if it is stored as a binary number.
   std::string trait(DicomTag tag) const {
     const auto wide = [&] {
       return first<double>([&](const DicomFile& from) { return from.float_double(tag); });
@@ -64,7 +64,8 @@ class Attributes {
     if (tag == 0x00209128)  // VR UL
       return word() ? std::to_string(*word()) : std::string();
     const std::string found = text(tag);
-    // VR FL, which some writers make a decimal string. The bytes of a small number, as of 0, are no text.
+    // VR FL, which some writers store as a decimal string. The bytes of a float, such as 0, are not digits of
+    // a text.
     if ((tag == 0x00209241 || tag == 0x00209245) && word() &&
         (found.empty() || found.find_first_not_of("0123456789.+- ") != std::string::npos))
       return print("%g", static_cast<double>(std::bit_cast<float>(*word())));
@@ -99,7 +100,7 @@ bool is_raw_syntax(const std::string& syntax) {
          syntax == "1.2.840.10008.1.2.2";
 }
 
-/// How an image's pixels lost values by compression, by its transfer syntax and LossyImageCompression.
+/// The lossy compression of an image's pixels, from its transfer syntax and LossyImageCompression.
 std::string lossy_of(const DicomFile& file) {
   const std::string& syntax = file.transfer_syntax();
   std::string how;
@@ -118,7 +119,7 @@ DicomPixels pixels_of(const DicomFile& file) {
   pixels.transfer_syntax = file.transfer_syntax();
   pixels.allocated = file.unsigned_short(0x00280100).value_or(16);
   const auto stored = file.unsigned_short(0x00280101), high = file.unsigned_short(0x00280102);
-  // One of both states the other, as values end at the lowest bit.
+  // If one of the two is absent, the other determines it, because values end at the lowest bit.
   pixels.stored = stored ? *stored : high ? *high + 1u : pixels.allocated;
   pixels.high = high ? *high : pixels.stored - 1;
   const auto representation = file.unsigned_short(0x00280103);
@@ -127,7 +128,7 @@ DicomPixels pixels_of(const DicomFile& file) {
   for (DicomTag group = 0x60000000; group < 0x60200000; group += 0x00020000)
     pixels.holds_overlay = pixels.holds_overlay || (file.unsigned_short(group + 0x0102).value_or(0) != 0 &&
                                                     !file.length(group + 0x3000));
-  // Fragments in a syntax without compression are raw pixels in pieces.
+  // In an uncompressed transfer syntax, fragments are pieces of raw pixels.
   pixels.is_compressed = file.fragments().has_value() && !is_raw_syntax(pixels.transfer_syntax);
   pixels.is_big_endian = file.big_endian() && !pixels.is_compressed;
   pixels.are_bytes_swapped = pixels.is_big_endian && pixels.allocated == 8 && file.has_words_of_pixels();
@@ -151,7 +152,7 @@ bool is_rescale_finite(const DicomSlice& slice) {
 struct NamedTag {
   DicomTag tag;
   const char* name;
-  bool is_needed;  ///< an image whose value cannot be read has no place or no values
+  bool is_needed;  ///< without this value an image has no position or no samples
 };
 constexpr std::array<NamedTag, 10> decimal_tags{{{0x00200032, "ImagePositionPatient", true},
                                                  {0x00200037, "ImageOrientationPatient", true},
@@ -164,7 +165,8 @@ constexpr std::array<NamedTag, 10> decimal_tags{{{0x00200032, "ImagePositionPati
                                                  {0x00181120, "GantryDetectorTilt", false},
                                                  {0x3004000c, "GridFrameOffsetVector", true}}};
 
-/// An attribute that is there and holds no numbers: to take it for absent would change places or values.
+/// The reason if an attribute exists but holds no numbers. Treating it as absent would change positions or
+/// values.
 std::optional<NoSlice> unreadable_number(const Attributes& attributes) {
   for (const NamedTag& named : decimal_tags) {
     const std::string text = attributes.text(named.tag);
@@ -199,7 +201,7 @@ std::optional<NoSlice> take_geometry(const Attributes& attributes, std::size_t f
     orientation = attributes.decimals(0x00200035);
     slice.position_of_acr_nema = position && orientation;
   }
-  // Some writers put the positions of all frames behind each other.
+  // Some writers store the positions of all frames in one attribute.
   if (position && frame_count > 1 && position->size() == 3 * frame_count) {
     const auto own = position->begin() + 3 * slice.frame;
     position = std::vector<double>(own, own + 3);
@@ -234,30 +236,31 @@ std::optional<NoSlice> take_geometry(const Attributes& attributes, std::size_t f
   if (!spacing)
     return NoSlice{"an image without PixelSpacing: add it, or read the pixels by --raw with --spacing",
                    unusable};
-  if (!are_within(*spacing, 1e-6, 1e6))  // no scanner's or microscope's
+  if (!are_within(*spacing, 1e-6, 1e6))  // outside the range of any scanner or microscope
     return NoSlice{"an image whose PixelSpacing is not 1e-6 to 1e6 mm", unusable};
-  if (!are_within(*position, -1e9, 1e9))  // doubles still part places by 1e-7 mm there
+  if (!are_within(*position, -1e9, 1e9))  // up to here doubles resolve 1e-7 mm
     return NoSlice{"an image whose ImagePositionPatient is beyond 1e9 mm", unusable};
-  if (!are_within(*orientation, -1.1, 1.1))  // with the tolerance of the stack's own directions
+  if (!are_within(*orientation, -1.1, 1.1))  // the same tolerance as for the directions of a stack
     return NoSlice{"an image whose ImageOrientationPatient is not two unit vectors", unusable};
   slice.first_mm = {(*position)[0], (*position)[1], (*position)[2]};
   slice.along_row = {(*orientation)[0], (*orientation)[1], (*orientation)[2]};
   slice.along_column = {(*orientation)[3], (*orientation)[4], (*orientation)[5]};
-  slice.spacing_mm = {(*spacing)[1], (*spacing)[0]};  // the tag gives the distance of rows first
+  slice.spacing_mm = {(*spacing)[1], (*spacing)[0]};  // the tag holds the distance between rows first
   slice.thickness_mm = attributes.decimal(0x00180050);
   slice.spacing_tag_mm = attributes.decimal(0x00180088);
   slice.tilt_deg = attributes.decimal(0x00181120);
   return std::nullopt;
 }
 
-/// Whether a fragment begins a frame of JPEG, JPEG-LS or JPEG 2000: by its start-of-image marker.
+/// Whether a fragment begins a frame of JPEG, JPEG-LS or JPEG 2000, which start with a start-of-image marker.
 bool begins_image(std::string_view fragment) {
   return fragment.size() >= 4 && fragment[0] == '\xff' &&
          ((fragment[1] == '\xd8' && fragment[2] == '\xff') ||
           (fragment[1] == '\x4f' && fragment[2] == '\xff'));
 }
 
-/// How many images the fragments begin, by the offset table and by their marks. An RLE frame is one fragment.
+/// The number of images that begin among the fragments, by the offset table and by their markers. An RLE
+/// frame is one fragment.
 std::size_t images_begun(const DicomFile& file) {
   const std::vector<DicomExtent>& fragments = *file.fragments();
   if (file.transfer_syntax() == "1.2.840.10008.1.2.5") return fragments.size();
@@ -267,8 +270,8 @@ std::size_t images_begun(const DicomFile& file) {
   return std::max(file.frame_offsets().size(), static_cast<std::size_t>(begun));
 }
 
-/// The fragments of each frame: one for each, or by the offset table, or by the fragments' start-of-image
-/// markers. None if no way fits.
+/// The fragments of each frame: one per frame, or as the offset table says, or as the start-of-image markers
+/// say. None if none of these fits.
 std::optional<std::vector<std::vector<DicomExtent>>> fragments_by_frame(const DicomFile& file,
                                                                         std::size_t frames) {
   const std::vector<DicomExtent>& fragments = *file.fragments();
@@ -302,7 +305,7 @@ std::optional<std::vector<std::vector<DicomExtent>>> fragments_by_frame(const Di
   return begun == frames ? std::optional(parts) : std::nullopt;
 }
 
-/// The bytes from `from` on, `length` of them, of raw pixels in pieces.
+/// The extents of `length` bytes of raw pixels, starting at byte `from` of the joined pieces.
 std::vector<DicomExtent> cut_out(const std::vector<DicomExtent>& pieces, std::size_t from,
                                  std::size_t length) {
   std::vector<DicomExtent> cut;
@@ -318,7 +321,7 @@ std::vector<DicomExtent> cut_out(const std::vector<DicomExtent>& pieces, std::si
   return cut;
 }
 
-/// The reason if nothing here decodes the pixels' transfer syntax.
+/// The reason if this program cannot decode the pixels' transfer syntax.
 std::optional<NoSlice> unknown_syntax(const DicomFile& file, const DicomPixels& pixels) {
   const std::string& syntax = pixels.transfer_syntax;
   constexpr std::array<std::string_view, 9> codecs = {
@@ -327,7 +330,8 @@ std::optional<NoSlice> unknown_syntax(const DicomFile& file, const DicomPixels& 
       "1.2.840.10008.1.2.4.90", "1.2.840.10008.1.2.4.91", "1.2.840.10008.1.2.5"};
   if (is_raw_syntax(syntax) || std::find(codecs.begin(), codecs.end(), syntax) != codecs.end())
     return std::nullopt;
-  // Raw pixels under DICOM's name for a compression were decompressed by a tool that left the name.
+  // If raw pixels have the transfer syntax of a compression, a tool decompressed them without changing the
+  // syntax.
   if (!pixels.is_compressed && file.raw_pixels() && syntax.starts_with("1.2.840.10008.1.2"))
     return std::nullopt;
   return NoSlice{"pixels in transfer syntax " + syntax +
@@ -335,7 +339,8 @@ std::optional<NoSlice> unknown_syntax(const DicomFile& file, const DicomPixels& 
                  NoSlice::Kind::Unusable};
 }
 
-/// Notes pixel data for more images than the header counts. An odd number of bytes ends in one more.
+/// Records that there are pixel data for more images than the header states. One surplus byte is allowed: an
+/// odd number of bytes is padded.
 void note_excess(std::size_t held, std::size_t needed, std::vector<DicomSlice>& slices) {
   const std::size_t excess = held - needed * slices.size();
   if (excess <= 1) return;
@@ -371,7 +376,8 @@ std::optional<NoSlice> take_pixels(const DicomFile& file, std::vector<DicomSlice
     const bool swaps = slices.front().pixels.are_bytes_swapped;
     if (frames > 1 && is_odd && (slices.front().pixels.allocated == 12 || swaps))
       return NoSlice{"packed frames that begin within a byte or a word", NoSlice::Kind::Unusable};
-    // The last word holds the last pixel of an odd number behind a byte of padding.
+    // In a swapped file with an odd number of bytes, the last word holds a byte of padding before the last
+    // pixel.
     const std::size_t taken = std::min(held, needed + (swaps && is_odd ? 1 : 0));
     for (std::size_t i = 0; i < frames; ++i) slices[i].pixels.parts = cut_out(pieces, i * needed, taken);
     return std::nullopt;
@@ -385,7 +391,8 @@ std::optional<NoSlice> take_pixels(const DicomFile& file, std::vector<DicomSlice
     return NoSlice{"a multi-frame image without the offsets of its frames; decompress it first",
                    NoSlice::Kind::Unusable};
   for (std::size_t i = 0; i < frames; ++i) {
-    // Blank pixels compress to almost nothing: any file may hold 4096 x 4096 pixels of two bytes.
+    // Blank pixels compress to almost nothing, so a file of any size may hold 4096 x 4096 pixels of two
+    // bytes.
     std::size_t held = 0;
     for (const DicomExtent& fragment : (*parts)[i]) held += fragment.length;
     if (needed > std::max(std::size_t{4096} * 4096 * 2, 1100 * held))
@@ -396,7 +403,7 @@ std::optional<NoSlice> take_pixels(const DicomFile& file, std::vector<DicomSlice
   return std::nullopt;
 }
 
-/// PixelPaddingValue, to PixelPaddingRangeLimit if that is there.
+/// The range from PixelPaddingValue to PixelPaddingRangeLimit, or the single value if there is no limit.
 std::optional<DicomPadding> padding_of(const DicomFile& file, const DicomPixels& pixels) {
   const auto stored = [&](DicomTag tag) -> std::optional<double> {
     const auto word = file.unsigned_short(tag);
@@ -441,7 +448,7 @@ std::optional<NoSlice> take_lut(const DicomFile& file, DicomSlice& slice) {
   return std::nullopt;
 }
 
-/// The frame's own mappings, else the shared ones, else the file's.
+/// The mappings of the frame, else the shared ones, else those of the file.
 std::vector<RealWorldMapping> real_world_of(const DicomFile& file, const DicomFile* own,
                                             const DicomFile* shared, bool is_signed) {
   std::vector<RealWorldMapping> found;
@@ -470,7 +477,7 @@ int stated_short(const DicomFile& file, DicomTag tag) {
   return file.unsigned_short(tag).value_or(0);
 }
 
-/// What a header says that makes its image no plain measurement of a person.
+/// The header's statements by which its image is not a plain measurement of a person.
 std::string doubts_of(const DicomFile& file) {
   std::string doubts;
   const auto add = [&](const std::string& doubt) { doubts += (doubts.empty() ? "" : "; ") + doubt; };
@@ -576,9 +583,9 @@ std::optional<NoSlice> take_frame(const DicomFile& file, const Attributes& attri
   slice.rescale_type = attributes.text(0x00281054);
   slice.intercept = attributes.decimal(0x00281052);
   slice.slope = attributes.decimal(0x00281053);
-  // PET and nuclear medicine state their unit by an attribute of its own (PS3.3, C.8.9.1).
+  // PET and nuclear medicine have a separate attribute for their unit (PS3.3, C.8.9.1).
   if (slice.rescale_type.empty()) slice.rescale_type = file.text(0x00541001);
-  // A dose states its scaling by an attribute of its own, and its unit as GY or RELATIVE.
+  // A dose has separate attributes for its scaling and its unit (GY or RELATIVE).
   if (const auto scaling = file.decimal(0x3004000e); scaling && !slice.slope && !slice.intercept) {
     slice.slope = scaling;
     slice.intercept = 0.0;
@@ -593,7 +600,8 @@ std::optional<NoSlice> take_frame(const DicomFile& file, const Attributes& attri
   return std::nullopt;
 }
 
-/// How many frames the pixels can hold: a fragment or their bytes each.
+/// The largest number of frames that the pixels can hold: one per fragment, or as many as their bytes suffice
+/// for.
 std::size_t most_frames(const DicomFile& file, const DicomSlice& slice) {
   if (file.fragments() && slice.pixels.is_compressed) return file.fragments()->size();
   std::size_t held = file.raw_pixels() ? file.raw_pixels()->length : 0;
@@ -609,8 +617,8 @@ bool is_nuclear(const std::string& class_uid) {
   return class_uid == "1.2.840.10008.5.1.4.1.1.20";
 }
 
-/// Numbers from 1 on, one for each frame, of a nuclear medicine image (DICOM PS3.3, C.8.4.8); none if the
-/// file has not one for each.
+/// For a nuclear medicine image, the number of each frame in a frame vector, counted from 1 (DICOM PS3.3,
+/// C.8.4.8). None unless the file has exactly one for each frame.
 std::optional<std::vector<std::uint16_t>> numbers_of_frames(const DicomFile& file, DicomTag vector,
                                                             std::size_t frames) {
   std::vector<std::uint16_t> numbers = file.unsigned_shorts(vector);
@@ -619,7 +627,8 @@ std::optional<std::vector<std::uint16_t>> numbers_of_frames(const DicomFile& fil
   return numbers;
 }
 
-/// The detector's item of each frame of a nuclear medicine image, which places it; empty if there is none.
+/// For each frame of a nuclear medicine image, the item of its detector, which holds its position; empty if
+/// there is none.
 std::vector<DicomFile> detectors_of_frames(const DicomFile& file, std::size_t frames) {
   const std::vector<DicomFile> detectors = file.items(0x00540022);
   std::vector<DicomFile> found;
@@ -653,8 +662,8 @@ std::optional<NoSlice> not_reconstructed(const DicomFile& file, std::size_t fram
       NoSlice::Kind::Unusable};
 }
 
-/// What orders the frames of a nuclear medicine image besides their places, as traits, which part them into
-/// stacks: its time slots, energy windows and the like.
+/// Stores time slots, energy windows and similar numbers of a nuclear medicine image's frames as traits, by
+/// which frames at one position are separated into stacks.
 void take_frame_vectors(const DicomFile& file, std::vector<DicomSlice>& slices) {
   struct Vector {
     DicomTag tag;
@@ -692,7 +701,7 @@ std::string time_between_frames(const DicomFile& file) {
   return {};
 }
 
-/// Places frames that have no positions of their own along the normal, from the first one's on. Returns the
+/// Computes positions for frames that have none: along the normal, starting at the first frame. Returns the
 /// reason if the header states no distances.
 std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlice>& slices) {
   const std::size_t frames = slices.size();
@@ -723,7 +732,7 @@ std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlic
     const double step_mm =
         named.tag == 0x00180088 ? first.spacing_tag_mm.value_or(0.0) : first.thickness_mm.value_or(0.0);
     if (!how.empty() || step_mm == 0.0 || !(std::abs(step_mm) < 1e6)) continue;
-    // A film of one slice has a thickness, but no distance of slices.
+    // A time series of one slice has a slice thickness, but no distance between slices.
     if (!time.empty() && named.tag == 0x00180050)
       return NoSlice{
           "a multi-frame image whose frames follow each other in time (FrameIncrementPointer names " + time +
@@ -752,7 +761,7 @@ std::variant<std::vector<DicomSlice>, NoSlice> slices_of(const DicomFile& file,
   std::variant<DicomSlice, NoSlice> common = common_of(file, path);
   if (NoSlice* flaw = std::get_if<NoSlice>(&common)) return std::move(*flaw);
   const double claimed = std::max(file.decimal(0x00280008).value_or(1.0), 1.0);
-  // The items, each of at least eight bytes, bound the number of frames that a damaged count can claim.
+  // A damaged frame count is bounded by the number of items, each of which takes at least eight bytes.
   const std::vector<DicomFile> own = file.items(frame_groups_tag);
   const std::vector<DicomFile> shared = file.items(shared_groups_tag);
   if (!own.empty() && static_cast<double>(own.size()) != claimed)
@@ -798,7 +807,7 @@ std::variant<std::vector<DicomSlice>, NoSlice> slices_of(const DicomFile& file,
   return slices;
 }
 
-/// The slices of a file, or the reason with the file's series.
+/// The slices of a file, or the reason why it has none, with the file's series.
 std::variant<std::vector<DicomSlice>, NoSlice> slices_or_reason(const DicomFile& file,
                                                                 const std::filesystem::path& path) {
   auto found = slices_of(file, path);
@@ -870,7 +879,7 @@ std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::file
   } catch (const DicomFile::NeedsMore&) {
     return NoSlice{"changed while it was read"};
   } catch (const Error& error) {
-    // Without DICOM's prefix, a file that cannot be walked through may be of any kind.
+    // Without DICOM's prefix, a file that cannot be parsed may be of any kind.
     const bool has_prefix = bytes.size() >= 132 && bytes.compare(128, 4, "DICM") == 0;
     return NoSlice{error.what(), has_prefix ? NoSlice::Kind::Damaged : NoSlice::Kind::Stray};
   }

@@ -20,7 +20,7 @@ struct SharedAttribute {
   const char* vr;
 };
 /// The attributes that images of one patient, study and frame of reference share (DICOM PS3.3, C.7.1 to
-/// C.7.4), and those that an MR image must state of its acquisition (C.8.3.1).
+/// C.7.4), and those of the acquisition that an MR image must state (C.8.3.1).
 constexpr std::array<SharedAttribute, 28> shared_attributes{
     {{0x00080005, "CS"}, {0x00080020, "DA"}, {0x00080030, "TM"}, {0x00080050, "SH"}, {0x00080090, "PN"},
      {0x00081030, "LO"}, {0x00100010, "PN"}, {0x00100020, "LO"}, {0x00100030, "DA"}, {0x00100040, "CS"},
@@ -29,12 +29,12 @@ constexpr std::array<SharedAttribute, 28> shared_attributes{
      {0x00180083, "DS"}, {0x00180091, "IS"}, {0x00185100, "CS"}, {0x0020000d, "UI"}, {0x00200010, "SH"},
      {0x00200052, "UI"}, {0x00200060, "CS"}, {0x00201040, "LO"}}};
 
-/// Files give positions to a hundredth of a millimetre or better; nearer planes are the same.
+/// Files state positions to a hundredth of a millimetre or better. Planes closer than this are the same.
 constexpr double same_plane_mm() {
   return 0.01;
 }
 
-/// A frame's identifier is its file's, '#' and its number.
+/// A frame's identifier consists of its file's identifier, '#' and the frame's number.
 std::string file_uid(const std::string& instance_uid) {
   return instance_uid.substr(0, instance_uid.find('#'));
 }

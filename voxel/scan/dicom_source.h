@@ -14,7 +14,7 @@
 
 namespace octotomy::voxel {
 
-/// The patient, study and images of a DICOM series, for files derived from it to take over and refer to.
+/// The patient, study and images of a DICOM series, which files derived from it copy and refer to.
 struct DicomSource {
   struct Text {
     std::string vr;  ///< its value representation
@@ -35,17 +35,18 @@ struct DicomSource {
   std::string modality;
   std::vector<Image> images;  ///< in order along the normal; each frame of a file is an image
   glm::dvec3 normal{0, 0, 1};
-  std::optional<Lattice> lattice = {};  ///< of the images as they lie; none if they form no lattice
+  std::optional<Lattice> lattice = {};  ///< lattice of the images at their stated positions; none if they
+                                        ///< form no lattice
   Lattice around = {};  ///< the lattice that read_scene() makes of the images, which holds all of them
-  /// What the headers say: which series was taken, whose images were left out, how they lie. read_scene()'s
-  /// audit without the lines on samples.
+  /// The part of read_scene()'s audit that comes from headers: the chosen series, the images left out, and
+  /// their positions. Lines on samples are absent.
   std::vector<Finding> audit = {};
 };
 
-/// The series that read_scene() reads with these options. Throws as read_scene().
+/// The series that read_scene() reads with these options. Throws as read_scene() does.
 DicomSource dicom_source(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// The images from which slice k of a lattice can have been interpolated: all between the slice's lowest and
+/// The images from which slice k of a lattice may have been interpolated: all between the slice's lowest and
 /// highest corner along the source's normal, and the next image beyond a corner that lies between two images.
 /// Frames of one file count as one image.
 std::vector<DicomSource::Image> images_behind(const DicomSource& source, const Lattice& lattice, int k);

@@ -14,24 +14,26 @@ namespace octotomy::voxel {
 
 namespace {
 
-/// Files give positions to a hundredth of a millimetre or better; nearer images lie at one place.
+/// Files state positions to a hundredth of a millimetre or better. Images closer than this are at one
+/// position.
 constexpr double same_place_mm() {
   return 0.01;
 }
 
-/// Spacings and directions that shift no pixel of an image by more than half its width are one: their mean
-/// shifts none by more than a quarter. Tags that hold decimals, or writers that compute each slice's anew,
-/// differ by less.
+/// Two spacings or directions count as equal if they shift no pixel by more than half its width: their mean
+/// then shifts none by more than a quarter. Rounding of decimals, and writers that recompute the values for
+/// each slice, cause smaller differences.
 constexpr double same_pixel_px() {
   return 0.5;
 }
 
-/// Directions given with three decimals differ by no more; a larger angle was meant, however small the image.
+/// Rounding to three decimals changes directions by at most this. A larger angle is real, however small the
+/// image.
 constexpr double cosine_tolerance() {
   return 2e-3;
 }
 
-/// Pairs of different images at one place, in the order of their heights.
+/// Pairs of different images at one position, in the order of their heights.
 std::vector<std::pair<std::size_t, std::size_t>> rivals_of(const std::vector<DicomSlice>& slices) {
   if (slices.empty()) return {};
   const glm::dvec3 normal = glm::cross(slices.front().along_row, slices.front().along_column);
@@ -49,7 +51,7 @@ std::vector<std::pair<std::size_t, std::size_t>> rivals_of(const std::vector<Dic
   return rivals;
 }
 
-/// The attribute that tells most rivals apart, if it does so for half of them.
+/// The attribute in which most of these pairs differ, if at least half of them do.
 std::optional<std::size_t> parting_trait(const std::vector<DicomSlice>& slices,
                                          const std::vector<std::pair<std::size_t, std::size_t>>& rivals) {
   std::size_t most = 0;
@@ -68,15 +70,15 @@ std::optional<std::size_t> parting_trait(const std::vector<DicomSlice>& slices,
   return 2 * most >= rivals.size() ? best : std::nullopt;
 }
 
-/// The place of the trait that orders images in time.
+/// The index of the trait that orders images in time.
 std::size_t time_trait() {
   std::size_t trait = 0;
   while (dicom_traits[trait].role != TraitRole::Order) ++trait;
   return trait;
 }
 
-/// Parts images of which several lie at nearly each place: the first of each place, the second, and so on, by
-/// time, or by number where times do not tell. Leaves them together if neither tells.
+/// Splits images if nearly every position has several: into the first image of each position, the second, and
+/// so on, in order of time or, if times do not differ, of number. Does not split if neither differs.
 std::vector<std::vector<DicomSlice>> parted_by_order(std::vector<DicomSlice> slices) {
   const glm::dvec3 normal = glm::cross(slices.front().along_row, slices.front().along_column);
   const std::size_t time = time_trait();
@@ -133,7 +135,8 @@ void part(std::vector<DicomSlice> slices, std::vector<std::vector<DicomSlice>>& 
   }
   std::set<std::string> values;
   for (const DicomSlice& slice : slices) values.insert(slice.traits[*trait]);
-  // A value for nearly each image counts on: it orders the images of a place and names no stack.
+  // If nearly every image has its own value, the value is a counter: it orders the images at one position and
+  // identifies no stack.
   if (2 * values.size() > slices.size() && values.size() > 2) {
     std::vector<std::vector<DicomSlice>> ordered = parted_by_order(std::move(slices));
     std::move(ordered.begin(), ordered.end(), std::back_inserter(parts));
@@ -151,8 +154,8 @@ const char* plane_of(const DicomSlice& slice) {
                                                       : "sagittal";
 }
 
-/// What tells parts from each other. Identities are not shown: a report may leave the hospital. Linear: what
-/// all parts share is found once.
+/// Describes how the parts differ. Does not show identities, because a report may leave the hospital. Linear
+/// cost: what all parts share is computed once.
 class Words {
  public:
   explicit Words(const std::vector<std::vector<DicomSlice>>& parts) {
@@ -165,7 +168,7 @@ class Words {
       plane_differs_ |= std::string(plane_of(slice)) != plane_of(first);
       size_differs_ |= slice.size_px != first.size_px;
     }
-    // A spacing differs most from the least or the largest.
+    // The largest difference of a spacing is to the least or the largest one.
     for (int axis = 0; axis < 2; ++axis) {
       const auto [least, largest] =
           std::minmax_element(parts.begin(), parts.end(), [&](const auto& a, const auto& b) {
@@ -183,7 +186,7 @@ class Words {
       const TraitRole role = dicom_traits[trait].role;
       const std::string& value = slice.traits[trait];
       if (role == TraitRole::Uniformity || !trait_differs_[trait]) continue;
-      // A time tells stacks apart only where they were parted by it.
+      // A time is shown only if the stacks were split by it.
       if (role == TraitRole::Order && value.find(" of ") == std::string::npos) continue;
       const bool is_shown = role == TraitRole::Stack || role == TraitRole::Order || value.size() == 2;
       if (is_shown && value.empty())
@@ -244,7 +247,7 @@ std::vector<std::vector<DicomSlice>> grouped(
 
 bool same_grid(const DicomSlice& a, const DicomSlice& b) {
   const glm::dvec2 shift_px = glm::abs(a.spacing_mm / b.spacing_mm - 1.0) * glm::dvec2(a.size_px);
-  // A hundredth is more than decimals round, however small the image.
+  // Rounding of decimals changes a spacing by less than a hundredth, however small the image.
   return a.size_px == b.size_px && glm::all(glm::lessThanEqual(shift_px, glm::dvec2(same_pixel_px()))) &&
          glm::all(glm::lessThan(glm::abs(a.spacing_mm - b.spacing_mm), 1e-2 * a.spacing_mm));
 }

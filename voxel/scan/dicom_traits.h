@@ -8,23 +8,23 @@
 
 namespace octotomy::voxel {
 
-/// The part that an attribute plays in telling the images of one series apart.
+/// How an attribute separates the images of one series.
 enum class TraitRole {
-  Identity,    ///< images that differ never belong together: the commonest stay
-  Origin,      ///< images that differ belong together only if the caller asks to join them
-  Stack,       ///< images at one place are parted by it into stacks
-  Order,       ///< images at one place are parted by their order in it, if nothing else parts them
-  Uniformity,  ///< images that differ stay together; the audit names the fewer
+  Identity,    ///< images that differ never belong together: the commonest value is kept
+  Origin,      ///< images that differ belong together only if the caller requests a join
+  Stack,       ///< splits images at one position into stacks
+  Order,       ///< splits images at one position by their order, if nothing else does
+  Uniformity,  ///< images that differ stay together; the audit lists the minority
 };
 
-/// A DICOM attribute in which the images of one stack agree. Its value is the first of the tags that a file
-/// has.
+/// A DICOM attribute that is equal in all images of a stack. Its value is that of the first of these tags
+/// that a file has.
 struct DicomTrait {
-  const char* check;  ///< its line in the audit
-  const char* words;  ///< for people
+  const char* check;  ///< name of its line in the audit
+  const char* words;  ///< its name in messages
   TraitRole role;
   std::array<DicomTag, 5> tags;  ///< 0: none
-  const char* effect;            ///< of images that differ
+  const char* effect;            ///< consequence if images differ
 };
 
 constexpr std::array<DicomTrait, 21> dicom_traits{{

@@ -9,7 +9,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A person's name without what programs write differently: case and empty components at its end.
+/// A person's name, normalised for comparison: lower case, without empty components at the end.
 std::string plain_name(const std::string& name) {
   std::string plain = lower_case(trimmed(name));
   plain.resize(plain.find_last_not_of("^= ") + 1);

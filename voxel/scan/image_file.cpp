@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 using Encode = decltype(&octotomy_encode_image);
 using Read = decltype(&octotomy_read_images);
 
-/// Loads the library, which stays until the program ends because OpenImageIO's threads do.
+/// Loads the library. It is never unloaded, because OpenImageIO's threads run until the program ends.
 void* symbol_of_library(const char* name) {
   const fs::path path = helper_file("octotomy_image_io.so");
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -66,11 +66,12 @@ std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ive
 
 std::vector<StoredImage> read_images(const fs::path& path) {
   static const Read read = reinterpret_cast<Read>(symbol_of_library("octotomy_read_images"));
-  // Blank pixels compress to almost nothing: any file may hold 4096 x 4096 pixels of four bytes.
+  // Blank pixels compress to almost nothing, so a file of any size may hold 4096 x 4096 pixels of four bytes.
   const std::size_t most_bytes =
       std::max(std::size_t{4096} * 4096 * 4, 1100 * static_cast<std::size_t>(fs::file_size(path)));
   PictureHeader header;
-  // OpenImageIO multiplies samples by 65535 in 32 bits with a sign, which those above 32768 overflow.
+  // OpenImageIO multiplies samples by 65535 in signed 32-bit numbers, which overflows for samples above
+  // 32768.
   constexpr std::uint32_t largest_of_library = 32767;
   try {
     header = read_picture_header(picture_header_bytes(path), most_bytes);

@@ -12,13 +12,13 @@
 
 namespace octotomy::voxel {
 
-/// ASCII, in pictures of formats that take it.
+/// An ASCII text, stored in pictures of formats that support it.
 struct ImageText {
   std::string keyword, text;
 };
 
 /// Encodes 8-bit sRGB pixels, row by row from the top left, as `format` ("png", "jpeg", "webp"). JPEG and
-/// WebP are lossy, at quality 92 of 100. A PNG also takes a text (png_chunk.h). OpenImageIO is in
+/// WebP are lossy, at quality 92 of 100. A PNG also stores `text` (png_chunk.h). OpenImageIO is in
 /// octotomy_image_io.so, loaded on first use: linked in, it would add 0.2 s to every start of the program.
 /// Throws std::invalid_argument if the size is not positive or not that of the pixels; Error, Input, if the
 /// format is another; Error, Resource, if the library cannot be loaded. Safe from several threads.
@@ -27,15 +27,15 @@ std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ive
                                        const std::optional<ImageText>& text = std::nullopt);
 
 /// Writes a picture in the format of the extension (.png, .jpg, .jpeg, .webp); written beside and renamed
-/// into place. Throws as encode_image(), with the path; Error,
-/// Resource, if the disk gives out.
+/// into place. Throws as encode_image() does, with the path, and Error, Resource, if the disk is full or
+/// fails.
 void write_image(const std::filesystem::path& path, const glm::ivec2& size_px,
                  const std::vector<std::uint8_t>& rgb, const std::optional<ImageText>& text = std::nullopt);
 
-/// Reads the pages of a file, as grey images. The first bytes tell the format: PNG, TIFF, JPEG, WebP, BMP,
-/// PNM, EXR or JPEG 2000. Throws Error with path and reason: Input, or Resource if the library cannot be
-/// loaded. Memory: pages of at most 64 MiB, or of 1100 times the file if that is more, and what the format's
-/// reader takes beside them, two or three times as much.
+/// Reads the pages of a file, as grey images. The format is recognised by the first bytes: PNG, TIFF, JPEG,
+/// WebP, BMP, PNM, EXR or JPEG 2000. Throws Error with path and reason: Input, or Resource if the library
+/// cannot be loaded. Memory: pages of at most 64 MiB, or of 1100 times the file if that is more, plus the
+/// memory of the format's reader, two or three times as much.
 std::vector<StoredImage> read_images(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

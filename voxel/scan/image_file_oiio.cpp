@@ -42,12 +42,12 @@ namespace {
 
 using octotomy::voxel::StoredImage;
 
-/// Between the channels of a grey picture that was coded as brightness and two colours, of 255: each channel
-/// is rounded by itself when it is decoded.
+/// Largest difference, of 255, between the channels of a grey picture coded as brightness and two colours:
+/// decoding rounds each channel separately.
 constexpr int lossy_shades_apart = 1;
 
-/// A stretched sample's own value. Stretching multiplies by the type's largest over the picture's and rounds
-/// down, or repeats the highest bits below the lowest.
+/// The original value of a stretched sample. Readers stretch by multiplying with the ratio of the type's and
+/// the picture's largest value and rounding down, or by repeating the highest bits below the lowest.
 template <typename Sample>
 Sample unstretched(Sample sample, std::uint32_t largest) {
   constexpr std::uint64_t whole = std::numeric_limits<Sample>::max();
@@ -56,7 +56,7 @@ Sample unstretched(Sample sample, std::uint32_t largest) {
   return static_cast<Sample>((std::uint64_t{sample} * largest + whole - 1) / whole);
 }
 
-/// The first of each pixel's channels as another type that holds its values.
+/// The first channel of each pixel, converted to another type that can hold its values.
 template <typename Read, typename Stored>
 std::vector<char> first_channel(const std::vector<char>& pixels, std::size_t channels,
                                 std::uint32_t largest) {
@@ -72,8 +72,8 @@ std::vector<char> first_channel(const std::vector<char>& pixels, std::size_t cha
   return bytes;
 }
 
-/// How samples are read and stored. OpenImageIO would stretch whole numbers if it were asked for another
-/// type.
+/// The types in which samples are read and stored. OpenImageIO would stretch integers if another type were
+/// requested.
 struct Reading {
   OIIO::TypeDesc read_as;
   StoredImage::Type stored_as;
@@ -104,15 +104,16 @@ Reading reading_of(const OIIO::TypeDesc& type) {
   }
 }
 
-/// The largest sample that a page's reader tells by its bits, as TIFF's does; else 0. Pixels that a palette
-/// has coloured have no such bits any more.
+/// The largest sample of a page, if its reader reports the bits per sample, as that of TIFF does; else 0.
+/// Pixels expanded from a palette no longer have these bits.
 std::uint32_t largest_sample_of(const OIIO::ImageSpec& spec) {
   const int bits = spec.get_int_attribute("oiio:BitsPerSample", 0);
   const bool may_be_coloured = spec.nchannels >= 3 && spec.format == OIIO::TypeDesc::UINT8;
   return bits > 0 && bits < 32 && !may_be_coloured ? (1u << bits) - 1 : 0;
 }
 
-/// Whether the first three channels are the same at every pixel; of single bytes, up to `most_apart`.
+/// Whether the first three channels are the same at every pixel; for one-byte samples, up to a difference of
+/// `most_apart`.
 bool is_grey(const std::vector<char>& pixels, std::size_t channels, std::size_t width, int most_apart) {
   const std::size_t step = channels * width;
   const auto differ = [&](std::size_t a, std::size_t b) {
@@ -150,7 +151,7 @@ void turn_upright(StoredImage& image) {
   image.height = static_cast<int>(rows);
 }
 
-/// Takes what a page states about its pixels.
+/// Copies a page's statements about its pixels.
 void take_statements(const OIIO::ImageSpec& spec, std::string_view format, StoredImage& image) {
   image.pixels_per_unit = static_cast<double>(spec.get_float_attribute("XResolution", 0.0f));
   image.pixels_per_unit_across = static_cast<double>(spec.get_float_attribute("YResolution", 0.0f));
@@ -175,7 +176,7 @@ std::string read_page(OIIO::ImageInput& in, int page, std::uint32_t largest_samp
   const OIIO::TypeDesc type = reading.read_as;
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || channels < 1) return "a page that is no image";
-  // TIFF's reader would step by a tile's height for ever.
+  // With such a tile size, TIFF's reader would loop forever.
   const bool has_tiles = spec.tile_width != 0 || spec.tile_height != 0;
   if (has_tiles && (spec.tile_width < 1 || spec.tile_height < 1 || spec.tile_depth > 1))
     return "tiles of no size that a picture may have";
@@ -188,7 +189,7 @@ std::string read_page(OIIO::ImageInput& in, int page, std::uint32_t largest_samp
   std::vector<char> pixels(static_cast<std::size_t>(bytes));
   if (!in.read_image(page, 0, 0, spec.nchannels, type, pixels.data())) {
     const std::string error = in.geterror();
-    return error.empty() ? "its pixels end early or are damaged" : error;  // some readers say nothing
+    return error.empty() ? "its pixels end early or are damaged" : error;  // some readers report no reason
   }
   const std::string_view format = in.format_name();
   const int most_apart = format == "webp" || format == "jpeg" ? lossy_shades_apart : 0;
@@ -210,7 +211,7 @@ extern "C" bool octotomy_read_images(const char* path, const char* format, std::
     // open() would try every reader that OpenImageIO has.
     const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create(format);
     OIIO::ImageSpec first, wishes;
-    wishes.attribute("oiio:UnassociatedAlpha", 1);  // else samples are multiplied by what covers them
+    wishes.attribute("oiio:UnassociatedAlpha", 1);  // otherwise samples are multiplied by their alpha
     if (!in || !in->open(path, first, wishes)) {
       *error = in ? in->geterror() : OIIO::geterror();
       return false;

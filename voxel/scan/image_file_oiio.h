@@ -19,22 +19,22 @@ struct StoredImage {
   int height = 0;
   Type type = Type::UInt8;
   std::vector<char> bytes;  ///< in this machine's order, upright
-  /// As the file states where its rows begin and how they run (TIFF's and EXIF's 1 to 8); 1: as stored.
+  /// Orientation of rows and columns as the file states it (1 to 8 of TIFF and EXIF); 1: as stored.
   int orientation = 1;
   double pixels_per_unit = 0.0;         ///< along rows, as the file states; 0: not stated
   double pixels_per_unit_across = 0.0;  ///< across rows
   double mm_per_unit = 0.0;             ///< 0: the unit of resolution is not stated, or no length
   bool is_white_zero = false;           ///< TIFF's WhiteIsZero: large samples are dark
   bool is_lossy = false;
-  std::string description;  ///< free text, in which ImageJ and OME state what the file is
+  std::string description;  ///< free text, in which ImageJ and OME describe the file
 };
 }  // namespace octotomy::voxel
 
 /// Exported by octotomy_image_io.so. Fills `images` with the pages of a file of a format, or fills `error`
-/// with the reason and returns false. Samples have the values of the file: where the reader stretches them
-/// over all values of their type, `largest_sample` is the largest that one may have (PictureHeader). Refuses
-/// colour: channels that differ, in JPEG and WebP by more than a shade. The pages take at most `most_bytes`
-/// in all, and a tile of one takes no more.
+/// with the reason and returns false. Samples have the values of the file: stretching by the reader is undone
+/// by means of `largest_sample`, the largest value that a sample may have (PictureHeader). Refuses colour:
+/// channels that differ, in JPEG and WebP by more than one of 255. All pages together take at most
+/// `most_bytes`, and so does a single tile.
 extern "C" bool octotomy_read_images(const char* path, const char* format, std::uint32_t largest_sample,
                                      std::size_t most_bytes,
                                      std::vector<octotomy::voxel::StoredImage>* images, std::string* error);

@@ -75,7 +75,7 @@ std::vector<SlicerSegment> slicer_segments(const fs::path& path) {
     segments.push_back(std::move(segment));
   }
   std::set<int> taken;
-  std::map<std::pair<int, int>, int> number_of;  // of a layer and a value in it
+  std::map<std::pair<int, int>, int> number_of;  // number of each pair of layer and value
   for (SlicerSegment& segment : segments) {
     const auto [known, is_new] = number_of.try_emplace({segment.layer, segment.value}, segment.value);
     if (is_new && taken.contains(segment.value)) known->second = ++largest;

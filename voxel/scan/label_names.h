@@ -8,23 +8,25 @@
 
 namespace octotomy::voxel {
 
-/// A segment of 3D Slicer's .seg.nrrd. Segments that overlap stand in layers, which number theirs anew.
+/// A segment of 3D Slicer's .seg.nrrd. Segments that overlap are in different layers, and each layer has
+/// values of its own.
 struct SlicerSegment {
   std::string name;
   int layer = 0;
-  int value = 0;  ///< its samples in its layer
-  /// Its label here: the value, or where a segment of another layer has that, the next one free. Segments
-  /// of one layer and value have one number, as nothing tells their samples apart.
+  int value = 0;  ///< value of its samples in its layer
+  /// Its label in the label map: `value`, or the next free number if a segment of another layer has that
+  /// value. Segments with the same layer and value have the same number, because their samples cannot be
+  /// distinguished.
   int number = 0;
 };
-/// The segments that a NRRD's header lists, in its order; none of other files. Cost: the header.
+/// The segments that a NRRD's header lists, in its order; empty for other files. Cost: reads the header.
 std::vector<SlicerSegment> slicer_segments(const std::filesystem::path& path);
 
 /// The names that a label map's own file has for its labels, in UTF-8: those of a DICOM segmentation's
 /// segments, and of 3D Slicer's (Segment0_Name with Segment0_LabelValue in the header of .seg.nrrd). Segments
-/// that share a number have one name, "Mandible + Maxilla". Empty where the file has none or is of another
-/// kind. Throws Error, Input, with path and reason, where a DICOM segmentation is damaged. Cost: the header;
-/// of DICOM the file.
+/// that share a number have one name, "Mandible + Maxilla". Empty if the file has none or is of another kind.
+/// Throws Error, Input, with path and reason, if a DICOM segmentation is damaged. Cost: reads the header, or
+/// the whole file for DICOM.
 std::map<int, std::string> label_names(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

@@ -11,17 +11,17 @@
 
 namespace octotomy::voxel {
 
-/// The largest number of a label or of several: single precision holds every whole number up to here, and the
-/// next one is what larger ones round to.
+/// The largest number of a label or an overlap. Single precision holds every integer up to here; 2^24 is
+/// excluded because larger integers round to it.
 constexpr int most_number = (1 << 24) - 1;
 
-/// Numbers for samples that lie in several labels, beyond the labels' own: see Scene::overlaps.
+/// Assigns numbers above all labels to samples that lie in several labels: see Scene::overlaps.
 class LabelOverlaps {
  public:
   /// `largest_label` is the largest number that any label or sample has.
   explicit LabelOverlaps(int largest_label) : next_(largest_label + 1) {}
 
-  /// The number of a sample that gets a label beside what its number stands for; 0 stands for none.
+  /// The number of a sample to which a label is added; 0 stands for no label.
   int joined(int number, int label) {
     if (number == 0 || number == label) return label;
     const auto [known, is_new] = joined_.try_emplace({number, label}, 0);
@@ -47,12 +47,12 @@ class LabelOverlaps {
   std::map<int, std::vector<int>> overlaps_;
 };
 
-/// "500 samples lie in 1 'Mandible' and 2 'Teeth', as number 3; ...", and what that means, for the audit.
-/// `counts` has the samples of each number.
+/// Text for the audit: "500 samples lie in 1 'Mandible' and 2 'Teeth', as number 3; ...", and its
+/// consequence. `counts` has the number of samples of each number.
 std::string described(const std::map<int, std::vector<int>>& overlaps,
                       const std::map<int, std::size_t>& counts, const std::map<int, std::string>& names);
 
-/// The scene with the lowest label where several overlap, as a file of one layer holds it.
+/// The scene with only the lowest label where several overlap, for files of one layer.
 Scene with_lowest_labels(const Scene& scene);
 
 }  // namespace octotomy::voxel

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Slices against their neighbours:
-//   1  reduce every slice to a small image of means
-//   2  correlate neighbours as they are, mirrored both ways and turned by 180 degrees
-//   3  name single slices that are mirrored or agree with nothing, then blocks of mirrored slices
-// A ratio of disagreements (one less the correlation) decides, not a correlation: thick slices agree less
-// than thin ones, but right and wrong ones of a stack suffer alike.
+// Compares slices with their neighbours:
+//   1 reduce every slice to a small image of means 2 correlate neighbours unchanged, mirrored along rows or
+//   columns, and turned by 180 degrees 3 report single slices that are mirrored or agree with no neighbour,
+//   then blocks of mirrored slices Decides by ratios of disagreement (1 - correlation), not by correlation:
+//   thick slices agree less than thin ones, but this affects correct and wrong slices of a stack alike.
 #include "voxel/scan/neighbour_audit.h"
 
 #include <algorithm>
@@ -24,10 +23,10 @@ namespace octotomy::voxel {
 namespace {
 
 constexpr int largest_side = 64;
-/// Images with fewer pixels a side have too little shape to be compared.
+/// Images with fewer pixels a side have too little detail to be compared.
 constexpr int smallest_side = 8;
 
-/// Flips are a group: as bits, mirrored along rows and along columns.
+/// Flips are bits: 1 mirrored along rows, 2 mirrored along columns; exclusive-or combines two flips.
 constexpr int flip_count = 4;
 constexpr std::array<const char*, flip_count> flip_words = {
     "", "mirrored along its rows", "mirrored along its columns", "turned by 180 degrees"};
@@ -55,7 +54,8 @@ Thumbnail thumbnail_of(const Sample* pixels, const glm::ivec2& size_px, double f
   Thumbnail small;
   small.width = size_px.x / block;
   small.height = size_px.y / block;
-  // A rest that fills no block is left out on both sides alike, so that flips meet the same pixels.
+  // Pixels that do not fill a block are left out equally on both sides, so that a flipped image has the same
+  // blocks.
   const glm::ivec2 start = (size_px - block * glm::ivec2(small.width, small.height)) / 2;
   double mean = 0.0;
   const auto width = static_cast<std::size_t>(size_px.x);
@@ -83,7 +83,7 @@ Thumbnail thumbnail_of(const Sample* pixels, const glm::ivec2& size_px, double f
   return small;
 }
 
-/// Correlation of an image with another one that is flipped; 0 where one of them is blank.
+/// Correlation of image `a` with image `b` flipped; 0 if one of them is blank.
 double correlation(const Thumbnail& a, const Thumbnail& b, int flip) {
   if (!(a.length > 0.0 && b.length > 0.0)) return 0.0;
   double product = 0.0;
@@ -97,8 +97,9 @@ double correlation(const Thumbnail& a, const Thumbnail& b, int flip) {
   return product / (a.length * b.length);
 }
 
-/// A flip is believed if the disagreement is a third larger without it, and if what then agrees is a shape
-/// and no noise. Sound scans of heads, necks and phantoms, of CT and MR, reach 1.01 where they agree by 0.7.
+/// Accepts a flip if the disagreement without it is more than a third larger, and if the flipped images agree
+/// in shape, not only in noise. Correct scans of heads, necks and phantoms, in CT and MR, reach a ratio of
+/// 1.01 at a correlation of 0.7.
 bool is_better(double as_is, double flipped) {
   return flipped > 0.7 && 1.0 - as_is > 1.35 * (1.0 - flipped);
 }
@@ -139,14 +140,15 @@ class NeighbourAudit {
     return pairs;
   }
 
-  /// How well the slices beside one agree, which shows what it should reach; one at an end has the next pair.
+  /// The agreement of the slices on both sides of a slice, as a reference for the slice itself. For a slice
+  /// at an end, the agreement of the next pair.
   double reference_of(std::size_t slice) const {
     if (slice == 0) return pairs_[1][0];
     if (slice == pairs_.size()) return pairs_[pairs_.size() - 2][0];
     return across_[slice - 1];
   }
 
-  /// The flip that all pairs of a slice ask for; 0: none.
+  /// The flip that improves all pairs of a slice; 0: none.
   int flip_of(std::size_t slice) const {
     int best = 0;
     double most = 0.0;
@@ -157,7 +159,8 @@ class NeighbourAudit {
         as_is += pairs_[pair][0] / static_cast<double>(pairs.size());
         flipped += pairs_[pair][static_cast<std::size_t>(flip)] / static_cast<double>(pairs.size());
       }
-      // Slices of one noiseless shape agree to the last bits, which compare nothing.
+      // Slices of one noiseless shape agree up to rounding errors, whose ratio is meaningless. Hence the
+      // lower bound.
       const bool is_unusual = 1.0 - as_is > std::max(1e-3, 1.2 * usual_disagreement_);
       if (is_better(as_is, flipped) && is_unusual && flipped > most) {
         most = flipped;
@@ -167,7 +170,8 @@ class NeighbourAudit {
     return best;
   }
 
-  /// Whether a slice with as much contrast as its neighbours agrees with none of them, though they agree.
+  /// Whether a slice has about the contrast of its neighbours and agrees with none of them, although they
+  /// agree with each other.
   bool is_unlike(std::size_t slice) const {
     double most = -1.0, contrast = 0.0;
     for (const std::size_t pair : pairs_of(slice)) {
@@ -176,13 +180,13 @@ class NeighbourAudit {
     }
     const bool is_end = slice == 0 || slice == pairs_.size();
     const double reference = reference_of(slice);
-    // Beyond the head a slice at an end may show air alone: it has little contrast.
+    // A slice at an end may lie beyond the head and show only air; it has little contrast.
     return most < (is_end ? 0.3 : 0.5) && 1.0 - most > 4.0 * (1.0 - reference) &&
            slices_[slice].length > (is_end ? 0.5 : 0.25) * contrast;
   }
 
   void find_single() {
-    // The worst slice first: a wrong one spoils the agreement of its neighbours as well.
+    // Starts with the worst slice, because a wrong slice also lowers the agreement of its neighbours.
     std::vector<std::size_t> order(slices_.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     const auto agreement = [&](std::size_t slice) {
@@ -210,7 +214,7 @@ class NeighbourAudit {
     std::sort(unlike_.begin(), unlike_.end());
   }
 
-  /// Where neither of two neighbours is judged alone, a flip between them starts or ends a block.
+  /// If neither of two neighbours was reported as a single slice, a flip between them starts or ends a block.
   void find_blocks() {
     std::vector<int> states(slices_.size(), 0);
     std::array<std::size_t, flip_count> sizes{};
@@ -303,7 +307,7 @@ void audit_rows(const Samples& samples, const glm::ivec2& size_px, double floor,
   const double declared = difference_at(samples, area, static_cast<std::size_t>(size_px.x), floor);
   const double exchanged = difference_at(samples, area, static_cast<std::size_t>(size_px.y), floor);
   const double along_row = difference_at(samples, area, 1, floor);
-  // Rows of the right length differ about as much as columns do.
+  // With the correct row length, rows differ about as much as columns do.
   if (declared > 2.0 * exchanged && declared > 2.0 * along_row)
     audit.push_back(
         {"rows_columns", Verdict::Fail,

@@ -22,7 +22,7 @@ using namespace std::string_view_literals;
 constexpr std::string_view jpeg_begin = "\xff\xd8"sv;
 constexpr std::string_view codestream_begin = "\xff\x4f\xff\x51"sv;  // start, image and tile size
 constexpr std::string_view jp2_begin = "\0\0\0\x0cjP  "sv;
-/// Of those that lie at the beginning; PNM takes comments.
+/// Upper bound on headers at the beginning of a file. A PNM header may contain comments.
 constexpr std::size_t longest_header = 1 << 16;
 
 [[noreturn]] void refuse_claim() {
@@ -86,7 +86,7 @@ std::string_view codestream_of(std::string_view bytes) {
 }
 
 /// The first frame's header. Markers are FF and a byte that is neither 00 nor FF; most have a length that
-/// counts itself. Where a picture takes several scans, libjpeg keeps all of it.
+/// counts itself. For a picture in several scans, libjpeg keeps the whole picture in memory.
 void check_jpeg(std::string_view bytes, std::size_t most_bytes) {
   for (std::size_t at = jpeg_begin.size(); at + 4 <= bytes.size();) {
     const auto code = static_cast<std::uint8_t>(bytes[at + 1]);

@@ -14,30 +14,32 @@
 
 namespace octotomy::voxel {
 
-/// What one picture states: ImageJ's and OME's descriptions, and the format's own tags.
+/// Statements of one picture, from ImageJ's or OME's description and the format's own tags.
 struct StatedPicture {
-  std::string program;                             ///< "ImageJ" or "OME"; empty where neither is the writer
-  std::array<std::optional<double>, 3> size_mm{};  ///< by the program: a pixel's, and from slice to slice
-  std::string unit;                                ///< in the program's word
-  std::string not_sizes;              ///< why the program's numbers are no lengths; empty where they are
-  std::optional<glm::dvec2> page_mm;  ///< a pixel's size by the resolution of a page; none of print defaults
+  std::string program;                             ///< "ImageJ" or "OME"; empty if neither is the writer
+  std::array<std::optional<double>, 3> size_mm{};  ///< stated by the program: a pixel's sizes and the
+                                                   ///< distance between slices
+  std::string unit;                                ///< as the program writes it
+  std::string not_sizes;              ///< why the program's numbers are not lengths; empty if they are
+  std::optional<glm::dvec2> page_mm;  ///< a pixel's size from the resolution of a page; none for default
+                                      ///< print resolutions
   std::string further_axis;           ///< "7 times"
   std::string calibration;            ///< of grey values, as ImageJ states it: "-1024 + 1 g, HU"
   bool has_origin = false;
-  double images = 1.0;  ///< in the file
+  double images = 1.0;  ///< number of images in the file
 };
-/// Source: ImageJ's FileSaver and TiffEncoder: pixels a unit are the resolution tags, `spacing` is left out
-/// where it is 1 unit. The OME model: a size without a unit is in micrometres.
+/// Source: ImageJ's FileSaver and TiffEncoder: the resolution tags are in pixels per unit, and `spacing` is
+/// omitted if it is 1 unit. The OME model: a size without a unit is in micrometres.
 StatedPicture stated_by(const StoredImage& image);
 
-/// Holds what the pictures of a stack state about themselves against how they are read.
+/// Compares the statements of a stack's pictures with how they are read.
 class PictureStatements {
  public:
-  /// Of a file's further pages only what they state themselves counts.
+  /// For further pages of a file, uses only their own statements.
   void add(const StoredImage& image, bool is_first_of_file);
 
-  /// The spacing that ImageJ or OME state. Throws Error, Input, naming `path` and what is missing. The
-  /// resolution of a page is no spacing of a patient: programs write 72 dpi into anything.
+  /// The spacing that ImageJ or OME states. Throws Error, Input, naming `path` and what is missing. Does not
+  /// use the resolution of a page, because programs write 72 dpi into any picture.
   KnownSpacing spacing(const std::filesystem::path& path) const;
 
   /// Adds the audit's lines; `is_stated`: the scene's spacing is spacing().

@@ -17,7 +17,7 @@ bool is_between(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
 }
 
-/// The number at `at`, behind blanks and comments; `at` is moved behind it.
+/// Skips blanks and comments, then reads the number at `at` and moves `at` past it.
 std::uint32_t number_at(std::string_view bytes, std::size_t& at) {
   while (at < bytes.size() && (is_between(bytes[at]) || bytes[at] == '#'))
     at = bytes[at] == '#' ? std::min(bytes.find('\n', at), bytes.size()) : at + 1;
@@ -38,7 +38,7 @@ StoredImage read_portable_map(std::string_view bytes, std::size_t most_bytes) {
   const std::uint32_t width = number_at(bytes, at), height = number_at(bytes, at),
                       largest = number_at(bytes, at);
   ++at;  // one blank before the samples
-  // In text a sample takes a digit and a blank; the last may stand without one.
+  // In text a sample takes at least a digit and a blank; the last needs no blank.
   const double samples = static_cast<double>(width) * height * static_cast<double>(channels);
   const double left = at < bytes.size() ? static_cast<double>(bytes.size() - at) : 0.0;
   if (width < 1 || height < 1 || 2.0 * samples > static_cast<double>(most_bytes))

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// A stack of slices to a lattice:
-//   1  lay a lattice through the slices (slice_plan.h)
-//   2  decode the slices, rescaled
-//   3  interpolate linearly if slices leave the lattice: gantry tilt, uneven or missing slices
-//   4  judge by the air if the values are Hounsfield
-// Geometry comes from ImagePositionPatient and ImageOrientationPatient. The scanner's tags for tilt and
-// spacing are only compared with them, because vendors disagree on the sign of the tilt and on the meaning of
-// the spacing.
+// Turns a stack of slices into a lattice:
+//   1 lay a lattice through the slices (slice_plan.h) 2 decode the slices, rescaled 3 interpolate linearly if
+//   slices leave the lattice: gantry tilt, uneven or missing slices 4 decide from the air whether values are
+//   Hounsfield units Geometry comes from ImagePositionPatient and ImageOrientationPatient. The scanner's tags
+//   for tilt and spacing are only compared with them, because vendors disagree on the sign of the tilt and on
+//   the meaning of the spacing.
 #include "voxel/scan/read_dicom.h"
 
 #include <algorithm>
@@ -78,7 +76,8 @@ class SeriesReader {
     audit_steps();
     if (scene_.modality == "CT") {
       AirLevel air = air_level_of_ct(scene_);
-      // The header declares another unit, or an unspecified one that no air contradicts: not Hounsfield.
+      // Not Hounsfield units if the header declares another unit, or an unspecified one and the air does not
+      // contradict it.
       const std::string& unit = stack.first().rescale_type;
       const bool is_other = !unit.empty() && unit != "HU" && unit != "HU_MOD" && unit != "US";
       if (is_other ||
@@ -119,7 +118,7 @@ class SeriesReader {
     return true;
   }
 
-  /// A mark of padding in single precision: sixteen times the largest value that any slice can hold, below 0.
+  /// A mark of padding in single precision: minus sixteen times the largest value that any slice can hold.
   static double far_below(const Stack& stack) {
     double largest = 65535.0;
     for (const DicomSlice& slice : stack.slices)
@@ -130,7 +129,7 @@ class SeriesReader {
     return static_cast<double>(static_cast<float>(std::max(-16.0 * largest, least)));
   }
 
-  /// Bits that BitsStored leaves out: of an overlay if the header says so, else values that are wrapped.
+  /// Reports bits outside BitsStored: an overlay if the header says so, else values that have wrapped around.
   void audit_stored_bits(const Stack& stack, const std::vector<DecodedSlice>& decoded) {
     std::vector<std::string> names;
     std::size_t count = 0;
@@ -248,8 +247,8 @@ class SeriesReader {
                     : "; their unit is declared '" + first.rescale_type + "'"));
   }
 
-  /// Takes the marks off blank slices at the stack's ends that hold the least sample of the slice beside
-  /// them: air beyond the head.
+  /// Unmarks blank slices at the stack's ends whose value is the lowest sample of the neighbouring slice:
+  /// they show air beyond the head.
   template <typename Samples>
   static void pass_over_air(const Samples& samples, std::size_t area, std::vector<char>& blank,
                             std::vector<char>& repeated) {
@@ -269,7 +268,7 @@ class SeriesReader {
     pass(blank.size() - high, high, blank.size() - high - 1);
   }
 
-  /// Slices without any contrast, and slices that repeat the one below pixel by pixel.
+  /// Reports slices without any contrast, and slices that repeat the one below pixel by pixel.
   void audit_contents(const Stack& stack) {
     const std::size_t area =
         static_cast<std::size_t>(stack.first().size_px.x) * static_cast<std::size_t>(stack.first().size_px.y);
@@ -315,7 +314,7 @@ class SeriesReader {
     int step = 0;
     for (const std::int16_t sample : *samples)
       if ((step = std::gcd(step, is_padding(sample) ? 0 : sample - origin)) == 1) break;
-    // Scanners measure to about a unit; four units are below the noise of any head protocol.
+    // Scanners measure to about one unit; steps of four units are below the noise of any head protocol.
     if (step > 4)
       find("sample_steps", Verdict::Warn,
            print("samples come in steps of %d: finer differences were lost before this file was written",
@@ -324,7 +323,7 @@ class SeriesReader {
 
   bool is_padding(double sample) const { return scene_.padding && sample == *scene_.padding; }
 
-  /// Of the measured samples, on the stack's slices.
+  /// The range of the measured samples on the stack's slices.
   Range range_of_slices() const {
     Range found{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     std::visit(
@@ -340,7 +339,7 @@ class SeriesReader {
     return found;
   }
 
-  /// The values that a stored padding is read as by a slice's rescale.
+  /// The range of a stored padding after a slice's rescale.
   static Range read_as(const DicomPadding& padding, const DicomSlice& slice) {
     const double slope = slice.slope.value_or(1.0) == 0.0 ? 1.0 : slice.slope.value_or(1.0);
     const double a = slope * padding.low + slice.intercept.value_or(0.0),
@@ -348,7 +347,7 @@ class SeriesReader {
     return {std::min(a, b), std::max(a, b)};
   }
 
-  /// The values that the header's padding would be read as: of all slices, without one that has a LUT.
+  /// The range of the headers' padding after rescale, over all slices without a LUT.
   static std::optional<Range> padding_values(const Stack& stack) {
     std::optional<Range> values;
     for (const DicomSlice& slice : stack.slices) {
@@ -391,7 +390,7 @@ class SeriesReader {
     return 2 * lonely > padded;
   }
 
-  /// The padding that most of the slices with one state. None: no slice states one.
+  /// The commonest stated padding; none if no slice states one.
   static std::optional<DicomPadding> usual_padding(const Stack& stack) {
     std::map<std::pair<double, double>, std::size_t> counts;
     for (const DicomSlice& slice : stack.slices)
@@ -402,8 +401,8 @@ class SeriesReader {
     return DicomPadding{most->first.first, most->first.second};
   }
 
-  /// Marks the samples of an image from `low` to `high` that reach its rim through others alike. Returns how
-  /// many.
+  /// Marks the samples of an image within `values` that are connected to its rim through such samples.
+  /// Returns their number.
   template <typename Sample>
   static std::size_t mark_from_rim(std::span<Sample> image, int width, const Range& values, Sample mark) {
     const auto columns = static_cast<std::size_t>(width), rows = image.size() / columns;
@@ -435,8 +434,9 @@ class SeriesReader {
     return count;
   }
 
-  /// Slices without PixelPaddingValue in a series whose others state one: what they hold of the others' usual
-  /// padding at their rims is assumed to be padding. Within the body the same value may be a measurement.
+  /// Handles slices without PixelPaddingValue in a series whose other slices state one. Samples with the
+  /// others' usual padding value that are connected to the rim are assumed to be padding. Inside the body the
+  /// same value may be a measurement.
   template <typename Samples>
   void assume_padding(Stack& stack, Samples& samples) {
     using Sample = typename Samples::value_type;
@@ -476,8 +476,9 @@ class SeriesReader {
     if (!scene_.padding) find("padding", Verdict::Pass, std::move(without));
   }
 
-  /// Pixels beyond the scanner's field of view hold a padding value, which is no measurement. They become one
-  /// value below all measured ones: the header's own where it is, else the mark that they were decoded to.
+  /// Pixels beyond the scanner's field of view hold a padding value, which is no measurement. They all get
+  /// one value below all measured ones: that of the header if it is below them, else the mark that they were
+  /// decoded to.
   template <typename Samples>
   void take_padding(Stack& stack, Samples& samples) {
     using Sample = typename Samples::value_type;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// A segmentation (DICOM PS3.3, A.51) to a label map:
-//   1  read the segments' numbers and labels, and each frame's segment and position
-//   2  order the positions along the normal and lay a lattice through them
-//   3  unpack each frame into its plane; where segments overlap, a number stands for all of them
+// Turns a segmentation (DICOM PS3.3, A.51) into a label map:
+//   1 read the segments' numbers and labels, and each frame's segment and position 2 order the positions
+//   along the normal and lay a lattice through them 3 unpack each frame into its plane; where segments
+//   overlap, a further number represents all of them
 #include "voxel/scan/read_dicom_seg.h"
 
 #include <algorithm>
@@ -26,19 +26,19 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* segmentation_storage = "1.2.840.10008.5.1.4.1.1.66.4";
-/// Of segmentations whose pixels are the numbers of segments.
+/// Storage class of segmentations whose pixels are the numbers of segments.
 constexpr const char* label_map_storage = "1.2.840.10008.5.1.4.1.1.66.7";
 
-/// The part of the planes' distance that positions may be off and still count as even, with a warning. Two
-/// planes that are off towards each other stay apart.
+/// Positions may deviate by this share of the planes' distance and still count as even, with a warning. Two
+/// planes that deviate towards each other still remain distinct.
 constexpr double jitter = 0.2;
-/// Positions within this are one, as decimal strings round.
+/// Positions closer than this are equal, because decimal strings are rounded.
 constexpr double same_position_mm = 1e-4;
 
 struct Frame {
   int segment = 0;
   double height_mm = 0.0;
-  std::size_t number = 0;  ///< in the file
+  std::size_t number = 0;  ///< number of the frame in the file
 };
 
 class SegReader {
@@ -85,7 +85,7 @@ class SegReader {
     std::string list;
     for (const DicomFile& segment : file_.items(0x00620002)) {
       const int number = segment.unsigned_short(0x00620004).value_or(0);
-      if (number < 1 && is_label_map_) continue;  // its background
+      if (number < 1 && is_label_map_) continue;  // zero is the background of a label map
       if (number < 1) refused("with a segment that has no number");
       names_[number] = trimmed(segment.readable_text(0x00620005));
       list += (list.empty() ? "" : ", ") + std::to_string(number) + " '" + names_[number] + "'";
@@ -94,7 +94,7 @@ class SegReader {
     scene_.audit.push_back({"segments", Verdict::Pass, list});
   }
 
-  /// A decimal attribute of a frame's own or the shared functional groups.
+  /// A decimal attribute from a frame's own functional groups, else from the shared ones.
   static std::optional<std::vector<double>> group_decimals(const DicomFile* own, const DicomFile* shared,
                                                            DicomTag group, DicomTag tag) {
     for (const DicomFile* groups : {own, shared}) {
@@ -160,13 +160,13 @@ class SegReader {
     frames_.push_back({segment, glm::dot(offset, normal_), number});
   }
 
-  /// How the frames lie on a lattice of this step.
+  /// How well the frames fit a lattice of this step.
   struct Fit {
     double step_mm = 0.0, low_mm = 0.0;
-    double off_mm = 0.0;  ///< of `worst`, the frame that lies farthest off
+    double off_mm = 0.0;  ///< deviation of `worst`, the frame farthest from its plane
     Frame worst = {};
-    bool is_distinct = true;  ///< no two planes become one
-    /// A single position errs by half of what the difference of two does.
+    bool is_distinct = true;  ///< no two planes coincide
+    /// The error of a single position is half that of a difference of two.
     bool is_exact() const { return is_distinct && off_mm <= 0.5 * position_tolerance_mm(step_mm); }
     bool holds() const { return is_distinct && off_mm <= jitter * step_mm; }
   };
@@ -196,8 +196,8 @@ class SegReader {
     return std::lround((frame.height_mm - fit.low_mm) / fit.step_mm);
   }
 
-  /// How far apart frames of one plane may lie: a part of the least distance of two frames of a segment, or
-  /// of the stated one.
+  /// The largest distance between frames of one plane: a share of the least distance of two frames of a
+  /// segment, or of the stated distance.
   double distance_in_plane_mm() const {
     double least_mm = std::numeric_limits<double>::infinity();
     std::map<int, double> last_mm;
@@ -221,8 +221,8 @@ class SegReader {
     return gaps;
   }
 
-  /// The planes' distance: the stated one if the frames lie on it, else the usual one of neighbours, else,
-  /// where none is stated, the least one.
+  /// The planes' distance: the stated one if the frames fit it, else the usual distance of neighbours, else,
+  /// if none is stated, the least distance.
   Fit chosen_fit() {
     const std::vector<double> gaps = gaps_mm();
     if (gaps.empty()) {
@@ -284,7 +284,7 @@ class SegReader {
     const double planes = std::round((frames_.back().height_mm - fit_.low_mm) / fit_.step_mm) + 1.0;
     if (planes > 4.0 * static_cast<double>(frames_.size()) + 64.0)
       refused("whose planes are scattered: " + print("%.0f for %zu frames", planes, frames_.size()));
-    // Headers give both to two decimals or better.
+    // Headers state both to two decimals or better.
     const double tolerance_mm = 0.02 + 0.01 * fit_.step_mm;
     if (planes > 1.0 && thickness_mm_ && *thickness_mm_ < fit_.step_mm - tolerance_mm)
       warn_spacing(
@@ -300,7 +300,7 @@ class SegReader {
                    glm::dvec4(normal_ * fit_.step_mm, 0.0), glm::dvec4(first, 1.0))};
   }
 
-  /// The segment of a pixel; 0 is none.
+  /// The segment of a pixel; 0: none.
   int segment_at(const Frame& frame, std::size_t pixel) const {
     if (!is_label_map_) return is_inside(pixel) ? frame.segment : 0;
     const std::size_t at = file_.raw_pixels()->at + pixel * bits_ / 8;
@@ -315,7 +315,7 @@ class SegReader {
     return ((bytes_[at + pixel / 8] >> (pixel % 8)) & 1) != 0;
   }
 
-  /// Counts the fractions of a frame between nothing and all.
+  /// Counts the fractions of a frame that are neither zero nor the maximum.
   void count_fractions(const Frame& frame, std::size_t area) {
     int& largest = largest_fractions_[frame.segment];
     for (const char pixel :
@@ -332,7 +332,7 @@ class SegReader {
     if (is_label_map_) largest = bits_ == 8 ? 255 : 65535;
     std::stable_sort(frames_.begin(), frames_.end(),
                      [](const Frame& a, const Frame& b) { return a.segment < b.segment; });
-    // Half of int16's numbers are left for overlaps.
+    // Reserves half of the numbers of int16 for overlaps.
     constexpr int most_of_int16 = 1 << 14;
     held_.resize(static_cast<std::size_t>(largest) + 1);
     LabelOverlaps overlaps(largest);
@@ -341,7 +341,8 @@ class SegReader {
     audit_segments();
   }
 
-  /// Reports samples of segments that the file does not describe, and what was cut at one half.
+  /// Reports samples of segments that the file does not describe, and fractional segments that were cut at
+  /// one half.
   void audit_segments() {
     std::vector<std::string> undescribed, below;
     for (std::size_t i = 1; i < held_.size(); ++i)
@@ -406,10 +407,10 @@ class SegReader {
   std::size_t bits_ = 1;
   bool is_label_map_ = false;
   int least_ = 128;
-  int most_fraction_ = 0;  ///< of a fractional segmentation; 0 in others
+  int most_fraction_ = 0;  ///< maximum of a fractional segmentation; 0 for others
   std::size_t rounded_down_ = 0, rounded_up_ = 0;
   std::map<int, int> largest_fractions_;  ///< by segment
-  std::vector<std::size_t> held_;         ///< samples by segment
+  std::vector<std::size_t> held_;         ///< number of samples by segment
   std::optional<double> stated_step_mm_, thickness_mm_;
   glm::dvec2 spacing_mm_{1.0};
   double same_plane_mm_ = 0.0;
@@ -420,7 +421,7 @@ class SegReader {
 }  // namespace
 
 bool is_dicom_seg(const fs::path& path) {
-  // The class stands among the first attributes.
+  // The class is one of the first attributes.
   std::string bytes(4096, '\0');
   std::ifstream in = opened(path);
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));

@@ -11,14 +11,14 @@ namespace octotomy::voxel {
 std::vector<std::filesystem::path> image_files(const std::filesystem::path& path);
 
 /// Reads images as the slices of a stack, the first at the feet; each page of a file is a slice. The spacing
-/// is the options', else what ImageJ or OME state in the pictures' descriptions, with a line in the audit;
-/// where they state a part of it, or only the resolution of a page, there is none. All must have the same
-/// size and type. Images hold no patient frame: the audit states the assumed one, and what their names leave
-/// open (slice_names). What pictures state of themselves is held against the options: sizes of pixels and
-/// slices (picture_spacing), times and channels (picture_axes), WhiteIsZero (polarity), JPEG's losses
-/// (compression). A folder whose names are those of several stacks ("ct_001.png", "mask_001.png") is refused;
-/// a pattern that takes several is a FAIL, and names that differ by numbers alone ("s1_001.png",
-/// "s2_001.png") are a WARN (stacks). Throws as read_scene().
+/// is that of the options, else that stated by ImageJ or OME in the pictures' descriptions, with a line in
+/// the audit. If they state only a part of it, or a page has only a resolution, there is no spacing. All
+/// images must have the same size and type. Images have no patient frame: the audit reports the assumed one,
+/// and any ambiguity in the names (slice_names). Statements of the pictures are compared with the options:
+/// sizes of pixels and slices (picture_spacing), times and channels (picture_axes), WhiteIsZero (polarity),
+/// JPEG's losses (compression). A folder whose names are those of several stacks ("ct_001.png",
+/// "mask_001.png") is refused; a pattern that matches several stacks is a FAIL, and names that differ only by
+/// numbers ("s1_001.png", "s2_001.png") are a WARN (stacks). Throws as read_scene() does.
 Scene read_image_stack(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace octotomy::voxel

@@ -28,9 +28,9 @@ std::string bytes_of_part(const fs::path& path, std::uint64_t offset, std::uint6
   return bytes;
 }
 
-/// How much samples beside one another along x differ, as a share of how much all do: of a volume a small
-/// part, of numbers by chance 1.4. Looks at a million samples of whole rows at most. Precondition: two bytes
-/// a sample.
+/// Mean difference between neighbours along x, divided by the mean deviation of all samples: small for a
+/// volume, about 1.4 for random numbers. Reads at most a million samples, in whole rows. Precondition: two
+/// bytes a sample.
 double roughness(std::string_view bytes, const glm::ivec3& dims, const StoredSamples& stored) {
   const auto value = [&](std::size_t i) {
     const auto first = static_cast<unsigned char>(bytes[2 * i]),
@@ -51,7 +51,7 @@ double roughness(std::string_view bytes, const glm::ivec3& dims, const StoredSam
   return apart > 0.0 ? steps / apart : 0.0;
 }
 
-/// Whether the other byte order gives by far the smoother volume.
+/// Whether the volume is much smoother in the other byte order.
 bool is_smoother_swapped(std::string_view bytes, const glm::ivec3& dims, const StoredSamples& stored) {
   if (bytes_of(stored.type) != 2 || dims.x < 8) return false;
   const double rough = roughness(bytes, dims, stored);

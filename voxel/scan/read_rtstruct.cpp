@@ -16,15 +16,16 @@ namespace fs = std::filesystem;
 
 constexpr const char* structure_set_storage = "1.2.840.10008.5.1.4.1.1.481.3";
 
-/// An integer string; 0 if it is absent, no integer, or beyond what any program numbers regions with.
+/// The value of an integer string; 0 if it is absent, not an integer, or larger than any program's region
+/// numbers.
 int number_of(const DicomFile& item, DicomTag tag) {
   const double number = item.decimal(tag).value_or(0.0);
   constexpr double most = 1e9;
   return number >= 1.0 && number <= most ? static_cast<int>(number) : 0;
 }
 
-/// Where a contour's plane lies beside its points (DICOM PS3.3, C.8.8.6); zero if the contour does not state
-/// it, none if it is no vector.
+/// The offset of a contour's plane from its points (DICOM PS3.3, C.8.8.6); zero if the contour states none,
+/// none if it is not a vector.
 std::optional<glm::dvec3> offset_of(const DicomFile& contour) {
   if (trimmed(contour.text(0x30060045)).empty()) return glm::dvec3(0.0);
   const auto numbers = contour.decimals(0x30060045);
@@ -81,7 +82,7 @@ void add_uid(std::vector<std::string>& uids, std::string uid) {
   if (!uid.empty() && std::find(uids.begin(), uids.end(), uid) == uids.end()) uids.push_back(std::move(uid));
 }
 
-/// The file's own, and the studies, series and frames of reference that it refers to.
+/// The file's own identity, and the studies, series and frames of reference that it refers to.
 Identity identity_of_set(const DicomFile& file) {
   Identity identity = identity_of(file);
   for (const DicomFile& frame : file.items(0x30060010)) {
@@ -98,7 +99,7 @@ Identity identity_of_set(const DicomFile& file) {
 }  // namespace
 
 bool is_rtstruct(const fs::path& path) {
-  // The class stands among the first attributes.
+  // The class is one of the first attributes.
   std::string bytes(4096, '\0');
   std::ifstream in = opened(path);
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));

@@ -18,31 +18,32 @@ struct Structure {
       contours_mm;             ///< closed and planar, LPS, at their offset; the closing edge is implied
   std::size_t others = 0;      ///< points and open lines, which enclose nothing
   std::size_t degenerate = 0;  ///< closed contours of one or two points, which enclose nothing
-  std::size_t miscounted = 0;  ///< contours that hold another number of points than NumberOfContourPoints
-  std::size_t stated_points = 0, held_points = 0;  ///< of the first of these
+  std::size_t miscounted = 0;  ///< contours whose number of points differs from NumberOfContourPoints
+  std::size_t stated_points = 0, held_points = 0;  ///< point counts of the first such contour
   std::size_t moved = 0;                           ///< contours whose points a ContourOffsetVector moved
   glm::dvec3 farthest_offset_mm{0.0};              ///< the longest of these vectors, LPS
   std::string flaw = {};                           ///< why the contours cannot be read; empty: they can
-  /// Whether the file states that the region goes on between neighbouring contours, however far apart: the
+  /// Whether the file states that the region continues between neighbouring contours at any distance: the
   /// type INTERPOLATED_PLANAR.
   bool is_interpolated = false;
-  double slab_mm = 0.0;                      ///< least ContourSlabThickness; 0 where a contour states none
+  double slab_mm = 0.0;                      ///< least ContourSlabThickness; 0 if any contour states none
   std::vector<std::string> frame_uids = {};  ///< the region's own frame of reference, or none
 };
 
-/// Regions, and whom and which frames and studies they refer to. A study or frame that the set refers to
-/// stands beside the file's own.
+/// Regions, and the patient, studies and frames of reference that they refer to. Includes both those of the
+/// file itself and those that it references.
 struct StructureSet {
   std::vector<Structure> structures;
   Identity identity;
 };
 
-/// Whether a file is a DICOM structure set, by its storage class. False also of files that cannot be read.
+/// Whether a file is a DICOM structure set, by its storage class. Returns false also for files that cannot be
+/// read.
 bool is_rtstruct(const std::filesystem::path& path);
 
-/// The regions of a structure set (PS3.3, A.19), in their order, those without contours too. Nothing is
-/// promised of how contours lie to each other. A region whose contours are damaged keeps its flaw, so that
-/// the others can be read. Throws Error, Input, with path and reason. Memory: the file and its points.
+/// The regions of a structure set (PS3.3, A.19), in their order, including those without contours. Contours
+/// may cross or contain each other. A region whose contours are damaged has its `flaw` set, so that the
+/// others can be read. Throws Error, Input, with path and reason. Memory: the file and its points.
 StructureSet read_rtstruct(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// DICOM states its frame, its unit and its spacing.
+/// Refuses options that override the frame, unit or spacing: DICOM states all of them.
 void need_no_override(const fs::path& path, const ReadOptions& options) {
   if (options.frame || options.unit)
     throw std::invalid_argument(
@@ -30,7 +30,7 @@ void need_no_override(const fs::path& path, const ReadOptions& options) {
     throw std::invalid_argument(path.string() + ": DICOM states its spacing: leave --spacing out");
 }
 
-/// A single file or stack has no series to choose from.
+/// Refuses options that choose a series: a single file or stack has none to choose from.
 void need_no_series(const fs::path& path, const ReadOptions& options) {
   if (!options.series.empty() || options.join || !options.slices.empty())
     throw std::invalid_argument(
@@ -71,7 +71,7 @@ Scene read_any(const fs::path& path, const ReadOptions& options) {
     need_no_series(path, options);
     return read_dicom_seg(path);
   }
-  // A folder of images may hold DICOM as well. DICOM comes first because it holds positions.
+  // A folder of images may also hold DICOM. DICOM is tried first because it has positions.
   if (image_files(path).empty()) {
     need_no_override(path, options);
     return read_dicom(path, options);
@@ -86,9 +86,9 @@ Scene read_any(const fs::path& path, const ReadOptions& options) {
   }
 }
 
-/// Refuses places that no scanner has, in which later sums overflow.
+/// Refuses positions that no scanner produces and for which later sums would overflow.
 void need_near_places(const fs::path& path, const Lattice& lattice) {
-  constexpr double farthest_mm = 1e9;  // doubles still part places by 1e-7 mm there
+  constexpr double farthest_mm = 1e9;  // up to here doubles resolve 1e-7 mm
   const glm::dvec3 last = glm::dvec3(lattice.dims - 1);
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 p_mm = glm::abs(
@@ -98,7 +98,7 @@ void need_near_places(const fs::path& path, const Lattice& lattice) {
   }
 }
 
-/// Findings name files, whose names may hold control characters: terminals obey them and lists break.
+/// File names in findings may contain control characters, which would control terminals and break lists.
 std::string on_one_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(),

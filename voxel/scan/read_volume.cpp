@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether the samples are the scene's as they stand in the file.
+/// Whether the file's samples can be copied into the scene unchanged.
 bool are_own(const SampleFiles& samples) {
   return samples.stored.type == SampleType::Int16 && !samples.stored.is_rescaled() &&
          samples.stored.big_endian == (std::endian::native == std::endian::big) &&
@@ -37,11 +37,12 @@ bool passes_check(const Scene& scene) {
     check(scene);
     return true;
   } catch (const std::invalid_argument&) {
-    return false;  // read_scene() says so when the samples are known to be sound
+    return false;  // read_scene() reports it after the samples have been checked
   }
 }
 
-/// Tells of slices while the scene's own samples are read. Returns the bytes behind the samples.
+/// Reads the scene's samples and calls `slices_final` on the way. Returns the number of bytes after the
+/// samples.
 std::uintmax_t read_slices(
     const Scene& scene, const SlicesFinal& slices_final,
     const std::function<std::uintmax_t(const std::function<void(std::uintmax_t)>&)>& read) {
@@ -87,8 +88,8 @@ SmallNumbers read_samples(const fs::path& path, const SampleFiles& from, const R
   return small;
 }
 
-/// A mask or label map whose header was copied from a CT says, or would be taken to say, that it holds
-/// Hounsfield units: of masks the stored numbers are few and small, 0 among them.
+/// A mask or label map with a header copied from a CT seems to hold Hounsfield units. It is recognised by its
+/// stored numbers, which are few and small and include 0.
 bool is_mask(const SmallNumbers& small) {
   return small && small->test(0) && small->count() <= 64;
 }
@@ -113,8 +114,8 @@ Finding undescribed(const std::vector<std::string>& values) {
               ": they have a number and no name"};
 }
 
-/// The layers of a segmentation of 3D Slicer as one label map, in which a number stands for several labels
-/// where segments overlap.
+/// The layers of a segmentation of 3D Slicer as one label map, in which a further number represents several
+/// labels where segments overlap.
 class LayerReader {
  public:
   LayerReader(const fs::path& path, const VolumeHeader& header, const std::vector<SlicerSegment>& segments)
@@ -135,7 +136,7 @@ class LayerReader {
     scene.audit.insert(scene.audit.end(), wide_.audit.begin(), wide_.audit.end());
     number_unlisted(scene);
     LabelOverlaps overlaps(largest_);
-    // Half of int16's numbers are left for overlaps.
+    // Reserves half of the numbers of int16 for overlaps.
     constexpr int most_of_int16 = 1 << 14;
     largest_ <= most_of_int16 ? fill_as<std::int16_t>(overlaps, 2 * most_of_int16 - 1, scene)
                               : fill_as<float>(overlaps, most_number, scene);
@@ -155,7 +156,7 @@ class LayerReader {
         wide_.samples);
   }
 
-  /// Gives numbers beyond the listed ones to values that no segment has, and reports them.
+  /// Assigns numbers above the listed ones to values that no segment has, and reports them.
   void number_unlisted(Scene& scene) {
     std::vector<std::string> unlisted;
     for (std::size_t i = 0; i < wide_.lattice.sample_count(); ++i)
@@ -192,7 +193,7 @@ class LayerReader {
   const fs::path& path_;
   std::size_t layers_;
   Scene wide_;
-  std::map<std::pair<int, int>, int> number_of_;  ///< of a layer and a value in it
+  std::map<std::pair<int, int>, int> number_of_;  ///< number of each pair of layer and value
   std::map<int, std::string> names_;
   int largest_ = 0;
 };
@@ -223,7 +224,8 @@ void audit_undescribed(const std::vector<SlicerSegment>& segments, Scene& scene)
   if (!values.empty()) scene.audit.push_back(undescribed(values));
 }
 
-/// Whether the file lists 3D Slicer's segments, whose labels its samples are; lists them in the audit.
+/// Whether the file lists segments of 3D Slicer, so that its samples are their labels. Lists them in the
+/// audit.
 bool take_segments(const std::vector<SlicerSegment>& segments, Scene& scene) {
   std::string list;
   for (const SlicerSegment& segment : segments)
@@ -272,11 +274,12 @@ void take_meaning(const VolumeHeader& header, const SmallNumbers& small, Scene& 
   if (auto sign = lost_sign_finding(scene, is_ct)) scene.audit.push_back(std::move(*sign));
 }
 
-/// Takes the padding that the file states where it is the least sample, as padding is below every measured
-/// one.
+/// Accepts the padding that the file states only if it is the lowest sample, because padding is below every
+/// measured one.
 void take_padding_below_all(std::optional<double> stated, Scene& scene) {
   if (!stated) return;
-  // Samples that are no numbers are padding already, below all others: the stated one joins them.
+  // Samples that are not numbers are already padding, below all others. Samples with the stated value get the
+  // same value.
   if (scene.padding && range(scene).low == *stated)
     std::visit(
         [&](auto& samples) {
@@ -303,7 +306,7 @@ void take_padding_below_all(std::optional<double> stated, Scene& scene) {
   }
 }
 
-/// Holds a CT's slices against their neighbours, as those of a DICOM series are.
+/// Compares a CT's slices with their neighbours, as for a DICOM series.
 void audit_slices(Scene& scene) {
   const glm::ivec3& dims = scene.lattice.dims;
   std::vector<std::string> names;

@@ -14,7 +14,7 @@ namespace {
 
 // Lengths in mm. Scanners: the widest bore in use is 900 mm and reconstructs 820; a whole body is two metres
 // long. Pixels of CT: 1000 mm over 256 at the coarsest. Organs: an inner ear is reconstructed to 40 mm and
-// more, over 256 pixels and more; halved twice it has 64. Heads: a newborn's is 90 mm wide.
+// more, over 256 pixels and more; halved twice it has 64. The head of a newborn is 90 mm wide.
 constexpr double widest_field_mm = 1000.0, longest_field_mm = 2500.0;
 constexpr double coarsest_ct_mm = 5.0, finest_pixel_mm = 0.05;
 constexpr double smallest_field_mm = 10.0, smallest_fine_field_mm = 36.0;
@@ -23,11 +23,11 @@ constexpr double smallest_scan_mm = 1.0;
 constexpr double smallest_body_mm = 70.0;
 constexpr int fine_body_px = 60;
 
-/// The width that a field should have, by which a factor is chosen: of a head.
+/// The usual width of a field that shows a head, by which a factor is chosen.
 constexpr double usual_field_mm = 250.0;
 
-/// The body's extent along the image's axes, in pixels, if it lies in the middle of air: of samples at or
-/// above -300 HU in the middle slice. None if it touches a side.
+/// The extent, in pixels along the image's axes, of the samples at or above -300 HU in the middle slice, if
+/// air surrounds them. None if it touches a side.
 std::optional<glm::ivec2> body_px(const Scene& scene) {
   if (scene.meaning != Meaning::Hounsfield) return std::nullopt;
   const glm::ivec3 dims = scene.lattice.dims;
@@ -53,8 +53,8 @@ std::optional<glm::ivec2> body_px(const Scene& scene) {
       scene.samples);
 }
 
-/// The ratio of two units, millimetres, centimetres, inches, metres or micrometres, that brings a width
-/// nearest to that of a head, of those that make a scanner's pixel.
+/// The ratio of two units (millimetres, centimetres, inches, metres, micrometres) that brings a width nearest
+/// to that of a head, among the ratios that produce a pixel size of a scanner.
 double factor_to(double width_mm, double pixel_mm) {
   constexpr std::array<double, 12> factors = {1e-4, 1e-3,       1e-2, 1e-1,     10.0, 100.0,
                                               1e3,  1.0 / 25.4, 25.4, 1 / 2.54, 2.54, 1e4};
@@ -74,8 +74,8 @@ std::optional<Finding> size_finding(const Scene& scene) {
   const glm::ivec3 dims = scene.lattice.dims;
   const glm::dvec3 field_mm = spacing_mm * glm::dvec3(dims);
   const double wide_mm = std::max(field_mm.x, field_mm.y), narrow_mm = std::min(field_mm.x, field_mm.y);
-  // What nothing is said of may be of any kind: only what no scanner makes is doubted. Labels may be of a
-  // part.
+  // A scan without a stated modality may show anything, so only sizes that no scanner produces are doubted.
+  // Labels may cover only a part of a scan.
   const bool is_known = scene.meaning != Meaning::Label && (!scene.modality.empty() || is_ct);
   const std::optional<glm::ivec2> body = is_known ? body_px(scene) : std::nullopt;
   std::string doubt;
@@ -91,7 +91,7 @@ std::optional<Finding> size_finding(const Scene& scene) {
     doubt = print("the scan is %.3g x %.3g x %.3g mm, smaller than what scanners show of a person",
                   field_mm.x, field_mm.y, field_mm.z);
   } else if (scene.meaning != Meaning::Label && !is_known) {
-    // Finer than any whole field of a person; a part that was cut out may be as small.
+    // Such a field is smaller than any whole field of a person. A cropped part may be as small.
     if (std::max(wide_mm, field_mm.z) >= smallest_fine_field_mm || std::min(dims.x, dims.y) < fine_side_px)
       return std::nullopt;
     doubt = print(

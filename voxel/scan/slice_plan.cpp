@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// A lattice through a stack of slices:
-//   1  choose the step from the distances of neighbours
-//   2  fit even distances to positions that are rounded or noisy
-//   3  tell holes from a protocol's second distance
-//   4  find for every slice of the lattice the slices that it is made from
-//   5  fit the stack's lean, name slices off it, widen the lattice by it
+// Fits a lattice to a stack of slices:
+//   1 choose the step from the distances of neighbours 2 fit even distances to positions that are rounded or
+//   noisy 3 distinguish holes from a protocol's second slice distance 4 find the source slices of every slice
+//   of the lattice 5 fit the stack's sideways lean, report slices that deviate from it, widen the lattice by
+//   it
 #include "voxel/scan/slice_plan.h"
 
 #include <algorithm>
@@ -26,13 +25,14 @@ constexpr double aside_tolerance_px() {
   return 0.1;
 }
 
-/// Places that err by a tenth of the slices' distance blur less when they are believed even than the linear
-/// interpolation between two slices would: that mixes in up to half of the neighbour.
+/// If positions err by up to a tenth of the slices' distance, treating them as even blurs less than linear
+/// interpolation between two slices, which mixes in up to half of the neighbour.
 constexpr double noise_share() {
   return 0.1;
 }
 
-/// Half a pixel to the side is the most that noisy positions may hide; more is a slice that moved.
+/// A sideways shift of up to half a pixel counts as noise of the positions; a larger one means that the slice
+/// moved.
 constexpr double most_noise_px() {
   return 0.5;
 }
@@ -113,7 +113,8 @@ class Layer {
   double most_mm() const { return *std::max_element(gaps_mm_.begin(), gaps_mm_.end()); }
 
   void choose_step() {
-    // The finest distance with company; an only slice squeezed between two others sets no step.
+    // The finest distance that occurs often enough: a single slice squeezed between two others must not set
+    // the step.
     std::vector<double> sorted = gaps_mm_;
     std::sort(sorted.begin(), sorted.end());
     const std::size_t needed = (gaps_mm_.size() + 4) / 5;
@@ -149,7 +150,7 @@ class Layer {
     double height_mm(std::size_t i) const { return low_mm + step_mm * static_cast<double>(numbers[i]); }
   };
 
-  /// The lattice of least squares.
+  /// The even lattice that fits these numbers by least squares.
   Even fitted(std::vector<long> numbers) const {
     const auto count = static_cast<double>(numbers.size());
     double mean_number = 0.0, mean_mm = 0.0, square = 0.0, product = 0.0;
@@ -169,10 +170,10 @@ class Layer {
     return even;
   }
 
-  /// By how much the decimals of the positions round a height.
+  /// The largest rounding error of a height, from the decimals of the positions.
   double height_rounding_mm() const { return 0.5 * glm::dot(rounding_mm_, glm::abs(stack_.normal)); }
 
-  /// Whether the images' numbers run on without a break: none is missing between them.
+  /// Whether the images are numbered without a gap, so that none is missing between them.
   bool numbers_run_on() const {
     const int step = stack_.slices[1].instance_number - stack_.slices[0].instance_number;
     for (std::size_t i = 1; i < stack_.slices.size(); ++i)
@@ -180,13 +181,13 @@ class Layer {
     return std::abs(step) == 1;
   }
 
-  /// Whether positions that err by rounding or noise explain a lattice's deviations. Beyond a quarter of a
-  /// step, rounding looks like missing slices: the images' numbers must show that there are none, and the
-  /// long gaps must be as frequent as rounding makes them.
+  /// Whether rounding or noise of the positions explains the deviations from an even lattice. Rounding by
+  /// more than a quarter of a step resembles missing slices. Then the images' numbers must show that none is
+  /// missing, and long gaps must be as frequent as rounding makes them.
   bool is_explained(const Even& even) const {
     if (!(even.step_mm > 0.0)) return false;
     if (even.worst_mm <= noise_share() * even.step_mm) return true;
-    // Least squares leave some more than the half step of rounding.
+    // A least-squares fit deviates slightly more than the half step of rounding.
     if (even.worst_mm > 1.1 * height_rounding_mm()) return false;
     const double tag_mm = std::abs(stack_.first().spacing_tag_mm.value_or(0.0));
     const bool tag_agrees = tag_mm == 0.0 || std::abs(tag_mm - even.step_mm) <= 0.05 * even.step_mm;
@@ -195,7 +196,7 @@ class Layer {
     return even.worst_mm <= 0.25 * even.step_mm || (numbers_run_on() && tag_agrees && long_gaps > 2);
   }
 
-  /// Takes an even lattice if the slices are not on the chosen one and only the tags' errors keep them off.
+  /// Uses an even lattice if the slices do not fit the chosen one only because of errors in the tags.
   void even_out() {
     const double tolerance_mm = position_tolerance_mm(plan_.step_mm);
     std::vector<long> counted(heights_mm_.size(), 0), spaced(heights_mm_.size(), 0);
@@ -250,7 +251,7 @@ class Layer {
         is_rounding && is_small ? std::vector<std::string>() : off);
   }
 
-  /// Whether two gaps have one length, as far as positions tell.
+  /// Whether two gaps have the same length within the accuracy of the positions.
   bool are_alike(std::size_t a, std::size_t b) const {
     if (!even_) return are_equal(gaps_mm_[a], gaps_mm_[b]);
     return even_->numbers[a + 1] - even_->numbers[a] == even_->numbers[b + 1] - even_->numbers[b];
@@ -268,7 +269,7 @@ class Layer {
     return even_ ? even_->numbers[gap + 1] - even_->numbers[gap] > 1 : gaps_mm_[gap] > 1.5 * plan_.step_mm;
   }
 
-  /// Whether the scanner's numbers skip as many images as the gap has room for.
+  /// Whether the scanner's numbers skip as many images as fit into the gap.
   bool skips_numbers(std::size_t gap) const {
     const int skipped = std::abs(stack_.slices[gap + 1].instance_number - stack_.slices[gap].instance_number);
     return skipped > 1 && std::lround(gaps_mm_[gap] / plan_.step_mm) == skipped;
@@ -368,7 +369,8 @@ class Layer {
   }
 
   /// Shift aside per millimetre of height, in pixels: the median over pairs of slices that lie half a stack
-  /// apart (after Theil and Sen), so that neither a slice out of line nor noise of the positions bends it.
+  /// apart (after Theil and Sen), so that neither a single displaced slice nor noise of the positions affects
+  /// it.
   glm::dvec2 lean_px_per_mm() const {
     const std::size_t count = stack_.slices.size(), half = count / 2;
     glm::dvec2 lean;
@@ -395,7 +397,7 @@ class Layer {
     return medians;
   }
 
-  /// Distances of the slices from a line through the stack, and where the line starts.
+  /// A line through the stack, and the distances of the slices from it.
   struct Line {
     glm::dvec2 lean_px_per_mm{0.0}, start_px{0.0}, scatter_px{0.0};
     std::vector<glm::dvec2> off_px;
@@ -408,13 +410,14 @@ class Layer {
     line.start_px = medians_of(line.off_px);
     std::vector<glm::dvec2> sizes;
     for (glm::dvec2& off : line.off_px) sizes.push_back(glm::abs(off -= line.start_px));
-    line.scatter_px = 1.48 * medians_of(sizes);  // the deviation of normal noise
+    line.scatter_px = 1.48 * medians_of(sizes);  // the standard deviation of normally distributed noise
     return line;
   }
 
-  /// The stack's line: leaning if that is more than the scatter of the positions can feign. The shift over
-  /// the stack, from half as many pairs as slices, errs by about 5 / sqrt(slices) times their scatter; six
-  /// times that is allowed, because the scatter of a dozen slices is itself known to a factor of two.
+  /// The stack's line. It leans only if the lean is larger than scatter of the positions can produce. The
+  /// shift over the stack, from half as many pairs as slices, errs by about 5 / sqrt(slices) times their
+  /// scatter; six times that is allowed, because the scatter of a dozen slices is itself known to a factor of
+  /// two.
   Line line() const {
     Line leaning = line_along(lean_px_per_mm());
     const glm::dvec2 scatter_px = leaning.scatter_px;
@@ -427,7 +430,8 @@ class Layer {
 
   static double size_of(const glm::dvec2& off) { return std::max(std::abs(off.x), std::abs(off.y)); }
 
-  /// Names the slices that stand aside of the line, and places all: those that scatter by noise stay in line.
+  /// Reports the slices that deviate from the line and sets the sideways position of all: slices within the
+  /// noise stay on the line.
   void place_aside(const Line& line, bool is_tilted) {
     std::vector<std::string> names;
     double most_px = 0.0, most_mm = 0.0;
@@ -437,7 +441,7 @@ class Layer {
       most_mm = std::max(most_mm, glm::length(line.off_px[i] * stack_.first().spacing_mm));
       names.push_back(stack_.slices[i].name);
     }
-    // One slice that moved is a fact of its own; many that stand a little aside are noise of the tags.
+    // A single displaced slice is reported. Small displacements of many slices are noise of the tags.
     const bool is_common =
         5 * names.size() >= line.off_px.size() || most_px <= 5.0 * size_of(line.scatter_px);
     const bool is_noise = !names.empty() && most_px <= most_noise_px() && is_common;
@@ -476,7 +480,7 @@ class Layer {
       const DicomSlice& slice = stack_.slices[i];
       const double aside_mm = glm::length((stack_.aside_px(slice) - stack_.aside_px(stack_.slices[i - 1])) *
                                           stack_.first().spacing_mm);
-      // Slices that nearly touch may be noisy by more than their distance.
+      // The noise of slices that nearly touch may exceed their distance.
       if (aside_mm > std::max(gaps_mm_[i - 1], most_noise_px() * stack_.first().spacing_mm.x))
         refuse(slice.path,
                print("lies %.4g mm to the side of the slice before it, more than any gantry tilt explains; "
@@ -518,7 +522,7 @@ class Layer {
                  "lowest value",
                  tilt_deg, lean_mm, stack_.first().size_px.x, stack_.first().size_px.y, plan_.size_px.x,
                  plan_.size_px.y));
-    else if (tag_deg > 0.5)  // files give the tag to half a degree or better
+    else if (tag_deg > 0.5)  // files state the tag to half a degree or better
       find("gantry_tilt", Verdict::Warn,
            print("the header names a tilt of %.3g degrees, but by their positions the slices stand straight "
                  "above each other: the tilt is ignored",

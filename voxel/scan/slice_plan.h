@@ -9,7 +9,7 @@
 
 namespace octotomy::voxel {
 
-/// The place of a lattice in a stack of slices, and what each of its slices is made from.
+/// The position of a lattice in a stack of slices, and the source slices of each of its slices.
 struct SlicePlan {
   /// Two slices of the stack, interpolated linearly; below == above: a copy.
   struct Source {
@@ -17,11 +17,12 @@ struct SlicePlan {
     std::size_t above = 0;
     double share_above = 0.0;
   };
-  std::vector<Source> sources;  ///< of each slice of the lattice
+  std::vector<Source> sources;  ///< sources of each slice of the lattice
   double step_mm = 1.0;
   double low_mm = 0.0;               ///< height of the lattice's first slice above the stack's first
-  bool leans = false;                ///< slices are shifted aside against each other
-  std::vector<glm::dvec2> aside_px;  ///< of each slice of the stack, from `origin_px`; empty: none leans
+  bool leans = false;                ///< slices are shifted sideways against each other
+  std::vector<glm::dvec2> aside_px;  ///< sideways shift of each slice of the stack, from `origin_px`; empty:
+                                     ///< none is shifted
   glm::dvec2 origin_px{0.0};         ///< in pixels of the first slice, whose own place may be noisy
   glm::ivec2 low_px{0};              ///< first pixel of the lattice, from `origin_px`
   glm::ivec2 size_px{0};
@@ -35,8 +36,8 @@ struct SlicePlan {
 /// The lattice of a plan.
 Lattice lattice_of(const DicomStack& stack, const SlicePlan& plan);
 
-/// Tissue that no slice measured is a failure from this length on, in mm: half the height of an orbit's floor
-/// or of a lower canine's crown, either of which would vanish without a trace.
+/// A length without measured slices, in mm, from which the audit fails: half the height of the floor of an
+/// orbit or of the crown of a lower canine, which could otherwise be missing completely.
 constexpr double longest_unmeasured_mm() {
   return 5.0;
 }
@@ -48,11 +49,11 @@ inline double position_tolerance_mm(double step_mm) {
 }
 
 /// Lays a lattice through an ordered stack. Its step is the finest distance that at least a fifth of the
-/// neighbours have. Slices whose positions scatter around an even distance, by a tenth of it or by what the
-/// positions' decimals round, are copied: the tags err there, not the scanner. So are slices that scatter
-/// sideways by up to half a pixel. A gap of more than one and a half steps is a hole, unless at least three
-/// like it follow each other and the slices are numbered without a break: then the protocol has two
-/// distances. Findings: slice_spacing, missing_slices, gantry_tilt, sideways. Throws Error, Input, if the
+/// neighbours have. Slices whose positions scatter around an even distance, by up to a tenth of it or by the
+/// rounding of the positions' decimals, are copied: the error is in the tags, not in the scan. So are slices
+/// that scatter sideways by up to half a pixel. A gap of more than one and a half steps is a hole, unless at
+/// least three such gaps follow each other and the slices are numbered without a break: then the protocol has
+/// two distances. Findings: slice_spacing, missing_slices, gantry_tilt, sideways. Throws Error, Input, if the
 /// lattice would have more than four times as many slices as the stack, or a slice lies beside the others.
 SlicePlan slice_plan(const DicomStack& stack, const std::filesystem::path& path, std::vector<Finding>& audit);
 

@@ -107,7 +107,8 @@ class StackAudit {
       const bool is_type = kind.check == std::string("image_type");
       const Values values = values_of([&](const DicomSlice& slice) {
         const std::string& value = slice.traits[trait];
-        // The first two of an image type's values say whether it was measured; others count orders.
+        // The first two values of ImageType state whether the image was measured; later values often count
+        // reconstruction orders.
         return is_type ? value.substr(0, value.find('\\', value.find('\\') + 1)) : value;
       });
       if (values.size() == 1) {
@@ -115,12 +116,13 @@ class StackAudit {
           same += (same.empty() ? "" : ", ") + std::string(kind.words) + " " + values.begin()->first;
         continue;
       }
-      // Axial scanners count an acquisition a turn, and times run on: a value of nearly each slice's own.
+      // Axial scanners count one acquisition per rotation, and times increase, so nearly each slice has its
+      // own value.
       const bool counts_on = 4 * values.size() > stack_.slices.size() && values.size() > 2 &&
                              (kind.check == std::string("acquisition") || kind.check == std::string("phase"));
       if (counts_on) continue;
       if (kind.check == std::string("acquisition_date") && !are_days_apart(values)) continue;
-      // An audit goes where names and birth dates may not.
+      // An audit may be passed on; names and birth dates may not.
       const bool is_of_person =
           std::string(kind.check).starts_with("patient_") && kind.check != std::string("patient_position");
       find(kind.check, Verdict::Warn,
@@ -196,9 +198,9 @@ class StackAudit {
     const std::optional<double> thickness_mm = stack_.first().thickness_mm;
     if (stack_.slices.size() < 2 || !thickness_mm || *thickness_mm <= 0.0) return;
     double gap_mm = usual_gap_mm();
-    // Headers give both to two decimals or better.
+    // Headers state both to two decimals or better.
     const double tolerance_mm = 0.02 + 0.01 * gap_mm;
-    // Of positions that are rounded to more, the mean is exact.
+    // If positions are rounded more coarsely, only the mean is exact.
     const double mean_mm =
         stack_.height_mm(stack_.slices.back()) / static_cast<double>(stack_.slices.size() - 1);
     if (std::abs(*thickness_mm - mean_mm) <= tolerance_mm) gap_mm = mean_mm;
@@ -222,7 +224,7 @@ class StackAudit {
                                                     static_cast<double>(stack_.slices.size() - 1);
     const double cosine = std::cos(stack_.first().tilt_deg.value_or(0.0) * 3.14159265358979323846 / 180.0);
     const auto is_near = [&](double mm) { return std::abs(std::abs(*tag_mm) - mm) <= 0.02 + 0.01 * mm; };
-    // Of positions that are rounded, the mean is exact.
+    // If positions are rounded, only the mean is exact.
     if (!is_near(gap_mm) && !is_near(gap_mm / cosine) && !is_near(mean_mm))
       find("spacing_tag", Verdict::Warn,
            print("SpacingBetweenSlices is %.4g mm, but by their positions the slices lie %.4g mm apart: the "
@@ -230,7 +232,7 @@ class StackAudit {
                  *tag_mm, gap_mm));
   }
 
-  /// Numbers that run against the positions of most slices: positions may be exchanged.
+  /// Reports image numbers that run opposite to the positions of most slices: positions may be exchanged.
   void audit_instance_order() {
     std::vector<std::string> up, down;
     for (std::size_t i = 1; i < stack_.slices.size(); ++i) {
@@ -252,7 +254,7 @@ class StackAudit {
            "check that left and right are not exchanged");
   }
 
-  /// "a.dcm, b.dcm" of the slices whose header has a text, and the first text.
+  /// The names of the slices whose header has a text, such as "a.dcm, b.dcm", and the first such text.
   struct Noted {
     std::vector<std::string> names;
     std::string text;
@@ -281,11 +283,11 @@ class StackAudit {
     return type == "US" || type.empty() ? (slice.modality == "CT" ? "HU" : "") : type;
   }
 
-  /// Whether a mapping makes of stored values the numbers that the rescale makes, in no other unit.
+  /// Whether a mapping produces the same numbers as the rescale, in the same unit.
   static bool agrees_with(const RealWorldMapping& mapping, const DicomSlice& slice) {
     if (slice.lut || !mapping.slope || !mapping.intercept) return false;
     const double slope = slice.slope.value_or(1.0), intercept = slice.intercept.value_or(0.0);
-    // Decimal strings of 16 letters hold ten digits beside sign and exponent.
+    // A decimal string of 16 characters has room for ten digits besides sign and exponent.
     const auto are_one = [](double a, double b) {
       return std::abs(a - b) <= 1e-9 * std::max({std::abs(a), std::abs(b), 1e-300});
     };
@@ -300,7 +302,7 @@ class StackAudit {
            (unit.empty() ? "without a unit" : unit);
   }
 
-  /// Holds Real World Value Mappings against the rescale, which alone is applied.
+  /// Compares Real World Value Mappings with the rescale. Only the rescale is applied.
   void audit_real_world() {
     std::vector<std::string> differing;
     std::size_t with = 0;
@@ -355,7 +357,7 @@ class StackAudit {
     std::string told;
     for (const DicomSlice& slice : stack_.slices) {
       const double spacing_ratio = slice.spacing_mm.y / slice.spacing_mm.x;
-      // Both are given with few digits; a hundredth distorts a head by two millimetres.
+      // Both are stated with few digits. An error of a hundredth distorts a head by two millimetres.
       if (!slice.aspect_ratio || std::abs(*slice.aspect_ratio / spacing_ratio - 1.0) < 0.01) continue;
       if (names.empty())
         told = print("PixelAspectRatio makes pixels %.4g times as high as wide, PixelSpacing %.4g times",
@@ -388,7 +390,7 @@ class StackAudit {
            coding.names);
   }
 
-  /// Holds PatientOrientation, the patient's directions along rows and columns, against
+  /// Compares PatientOrientation, the patient's directions along rows and columns, with
   /// ImageOrientationPatient.
   void audit_patient_orientation() {
     std::vector<std::string> names;
@@ -409,14 +411,14 @@ class StackAudit {
            names);
   }
 
-  /// Whether a direction leads to where its first letter says: L, R, P, A, H or F. Other letters are those of
-  /// animals and agree with all.
+  /// Whether a direction agrees with its first letter: L, R, P, A, H or F. Other letters are for animals and
+  /// agree with any direction.
   static bool agrees(std::string_view letters, const glm::dvec3& along) {
     constexpr std::string_view known = "LRPAHF";
     const std::size_t at = letters.empty() ? std::string_view::npos : known.find(letters.front());
     if (at == std::string_view::npos) return true;
     const double towards = along[static_cast<int>(at / 2)] * (at % 2 == 0 ? 1.0 : -1.0);
-    // The first letter is that of the largest of three components.
+    // The first letter names the largest of three components.
     return towards >= 0.5;
   }
 

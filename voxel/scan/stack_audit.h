@@ -5,16 +5,15 @@
 
 namespace octotomy::voxel {
 
-/// Judges by their headers what the slices of a stack have in common; each line of the audit names the slices
-/// that differ from most others: the attributes of dicom_traits, uniform, compression, photometric,
-/// pixel_format, slice_thickness, instance_order, spacing_tag, acr_nema, decimal_commas, real_world_values,
-/// pixel_aspect, frame_positions, pixel_data, image_kind, coding, patient_orientation. Those from
-/// instance_order on only if there is a doubt.
-/// Precondition: the stack is ordered and not empty.
+/// Checks whether the headers of a stack's slices agree. Each line of the audit lists the slices that differ
+/// from most others: the attributes of dicom_traits, uniform, compression, photometric, pixel_format,
+/// slice_thickness, instance_order, spacing_tag, acr_nema, decimal_commas, real_world_values, pixel_aspect,
+/// frame_positions, pixel_data, image_kind, coding, patient_orientation. The lines from instance_order on
+/// appear only if there is a doubt. Precondition: the stack is ordered and not empty.
 void audit_stack(const DicomStack& stack, std::vector<Finding>& audit);
 
-/// The line "join", a Fail: what the images of a joined stack do not share, and how far apart they lie.
-/// Precondition: as audit_stack().
+/// The line "join", a Fail: the attributes in which the images of a joined stack differ, and the distances
+/// between them. Precondition: that of audit_stack().
 void audit_join(const DicomStack& stack, std::vector<Finding>& audit);
 
 /// The lines image_count and concatenation, if there are fewer images or parts than the headers state.

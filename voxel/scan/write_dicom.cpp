@@ -30,17 +30,18 @@ struct Rescale {
   double intercept = 0.0;
 };
 
-/// A number as a decimal string of 16 characters holds it.
+/// A number as rounded by a decimal string of 16 characters.
 double as_written(double number) {
   return std::strtod(dicom_decimal(number).c_str(), nullptr);
 }
 
-/// Scene::padding as it is stored: no measured sample has this number, since padding lies below all.
+/// The stored value of Scene::padding. No measured sample is stored as this number, because padding lies
+/// below all.
 constexpr std::int16_t stored_padding = std::numeric_limits<std::int16_t>::min();
 
 /// Slope 1 and intercept 0 for integers in int16's range, else the finest power of two for which the range of
-/// samples fits 16 bits. Samples that are multiples of the slope, as halves are, then keep their values;
-/// others change by half a slope at most.
+/// samples fits 16 bits. Samples that are multiples of the slope, such as halves, then keep their values;
+/// others change by at most half a slope.
 Rescale rescale_of(const Scene& scene) {
   const auto is_exact = [&](double value) {
     return value >= stored_padding + (scene.padding ? 1 : 0) &&
@@ -55,7 +56,7 @@ Rescale rescale_of(const Scene& scene) {
   if (!std::all_of(samples.begin(), samples.end(), [](float value) { return std::isfinite(value); }))
     throw std::invalid_argument("a sample is not finite: DICOM stores numbers only");
   const Range values = range(scene);
-  // One step is kept at either end for the rounding of the intercept.
+  // One step is reserved at either end for the rounding of the intercept.
   double slope = std::exp2(std::ceil(std::log2(std::max(values.high - values.low, 1e-6) / 65533.0)));
   slope = as_written(slope);
   return {slope, as_written(std::round(0.5 * (values.low + values.high) / slope) * slope)};
@@ -100,7 +101,7 @@ class SeriesWriter {
     if (options.source) digest_.add(options.source->series_uid);
     is_secondary_ = is_written_as_secondary_capture(scene);
     is_mr_ = scene.modality == "MR";
-    // Identifiers come from all that the files hold.
+    // Identifiers are computed from everything that the files contain.
     if (!scene.declared_unit.empty()) digest_.add(scene.declared_unit);
     if (is_secondary_) digest_.add(scene.modality);
     rescale_ = rescale_of(scene);
@@ -109,7 +110,7 @@ class SeriesWriter {
         options.source && !(options.source->lattice && lies_on(scene.lattice, *options.source->lattice));
   }
 
-  /// Writes slice k to `path`; errors call the file `name`.
+  /// Writes slice k to `path`; error messages refer to the file as `name`.
   void write(int k, const fs::path& path, const fs::path& name) const {
     const Int16Samples samples = samples_of(k);
     DicomAttributes slice;
@@ -143,7 +144,7 @@ class SeriesWriter {
   const char* storage() const {
     return is_secondary_ ? secondary_capture_storage : is_mr_ ? mr_image_storage : ct_image_storage;
   }
-  /// Only what was declared: a unit that this program found by the samples' values is none of the file's.
+  /// Only a declared unit: one that this program derived from the samples' values was not stated by the file.
   std::string rescale_type() const {
     if (!scene_.declared_unit.empty()) return scene_.declared_unit;
     return scene_.meaning == Meaning::Hounsfield ? "HU" : "US";
@@ -166,16 +167,16 @@ class SeriesWriter {
       slice.put(tag, vr, "");
   }
 
-  /// Takes over the source's acquisition and refers to the images behind the slice.
+  /// Copies the source's acquisition and refers to the images from which the slice was made.
   void put_source(DicomAttributes& slice, const DicomSource& source, int k) const {
     const auto is_scanners = [](DicomTag tag) { return tag >= 0x00180020 && tag <= 0x00180fff; };
     for (const auto& [tag, text] : source.attributes)
       if (tag == 0x00200060 || (tag >> 16 == 0x0018 && (is_mr_ || !is_scanners(tag))))
         slice.put(tag, text.vr.c_str(), text.value);
-    // Beside a body part, an empty laterality would mean that the side is unknown (PS3.3, C.7.3.1).
+    // If a body part is stated, an empty laterality would mean that the side is unknown (PS3.3, C.7.3.1).
     if (source.attributes.contains(0x00180015) && !source.attributes.contains(0x00200060))
       slice.remove(0x00200060);
-    // Far from the scanner's own numbers, so that viewers list the series apart.
+    // Adds 1000, so that the number differs from those of the scanner and viewers list the series separately.
     slice.put(0x00200011, "IS", std::to_string(source.series_number + 1000));
     const std::vector<DicomSource::Image> images = images_behind(source, scene_.lattice, k);
     if (images.empty()) return;
@@ -205,7 +206,7 @@ class SeriesWriter {
     slice.put(0x00281054, "LO", rescale_type());
   }
 
-  /// Black and white for viewers: bone and soft tissue, or all values.
+  /// The window for viewers: bone and soft tissue, or all values.
   void put_window(DicomAttributes& slice) const {
     const bool is_hounsfield = scene_.meaning == Meaning::Hounsfield;
     const double centre = is_hounsfield ? 500.0 : 0.5 * (values_.low + values_.high);
@@ -248,13 +249,13 @@ std::string slice_name(int k) {
   return name;
 }
 
-/// Whether write_dicom_series() gives a file such a name.
+/// Whether write_dicom_series() may have written a file of this name.
 bool is_slice_name(const std::string& name) {
   return name.starts_with("slice_") && name.ends_with(".dcm");
 }
 
-/// A folder of slices that takes its name when all are written. Slices for a folder that is there are staged
-/// in it instead: another program may stand in that folder, or a disk be mounted there.
+/// A folder of slices that is renamed into place when all are written. If the target folder exists, slices
+/// are staged inside it instead, because it may be another program's working directory or a mount point.
 class StagedSeries {
  public:
   explicit StagedSeries(const fs::path& folder)

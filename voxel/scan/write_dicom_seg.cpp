@@ -93,7 +93,7 @@ std::string packed_pixels(Segments segments, const Extent& extent, const Progres
   return pixels;
 }
 
-/// One item with one attribute or more, as most sequences of a segmentation have it.
+/// One item with one or more attributes, as most sequences of a segmentation have.
 template <typename Fill>
 Items item(Fill fill) {
   Items items(1);
@@ -102,7 +102,7 @@ Items item(Fill fill) {
 }
 
 void put_segments(DicomAttributes& file, Segments segments, const std::string& label) {
-  // The object's anatomy is unknown; SNOMED's tissue holds for every object.
+  // The object's anatomy is unknown. SNOMED's "Tissue" applies to every object.
   const Items tissue{dicom_code("85756007", "SCT", "Tissue")};
   file.put(0x00620001, "CS", "BINARY");
   Items items;
@@ -151,7 +151,8 @@ void put_shared_groups(DicomAttributes& file, const glm::dmat3& axes, const glm:
   file.put_sequence(0x52009229, {shared});
 }
 
-/// The groups of one frame of a segment, at a place among its universe's planes with frames; both from 1.
+/// The functional groups of one frame: its segment and its place among the planes that have frames, both
+/// counted from 1.
 DicomAttributes frame_groups(std::uint16_t segment, std::uint32_t place, const glm::dvec3& first_mm,
                              const std::vector<DicomSource::Image>& images) {
   DicomAttributes frame;
@@ -223,7 +224,8 @@ DicomAttributes segmentation(Segments segments, const DicomSegOptions& options) 
   const glm::dvec3 edge_mm = lattice.spacing_mm();
   glm::dmat3 axes(universe.lps_from_voxel);
   for (int i = 0; i < 3; ++i) axes[i] /= edge_mm[i];
-  // Decimal strings keep 13 digits at worst; single precision rounds a right angle by less than this.
+  // Decimal strings keep at least 13 digits. Rounding to single precision changes a right angle by less than
+  // this.
   for (int i = 0; i < 3; ++i)
     if (std::abs(glm::dot(axes[i], axes[(i + 1) % 3])) > 1e-6)
       throw std::invalid_argument(

@@ -15,7 +15,7 @@ std::uint64_t bytes_of_sample(const Scene& scene) {
   return std::visit([](const auto& samples) { return sizeof(samples[0]); }, scene.samples);
 }
 
-/// The file that holds packed samples; none where they stand in the header's own file.
+/// The data file of packed samples; none for formats whose samples are in the header's own file.
 std::optional<std::filesystem::path> data_file_beside(std::filesystem::path header) {
   const std::string extension = extension_of(header);
   if (extension == ".nhdr") return header.replace_extension(".raw.gz");
@@ -23,14 +23,14 @@ std::optional<std::filesystem::path> data_file_beside(std::filesystem::path head
   return std::nullopt;
 }
 
-/// The header whose data file has the name that is tried as the `count`-th.
+/// The header path from which the `count`-th candidate for the data file's name is derived.
 std::filesystem::path header_of_try(const std::filesystem::path& path, int count) {
   if (count == 1) return path;
   return path.parent_path() /
          (path.stem().string() + ".samples-" + std::to_string(count) + path.extension().string());
 }
 
-/// Whether a data file has one of the names that are tried for the header.
+/// Whether a data file has one of the candidate names for this header.
 bool has_own_name(const std::filesystem::path& data, const std::filesystem::path& header) {
   const std::string name = data.filename().string();
   const std::string first = data_file_beside(header)->filename().string(), stem = header.stem().string();
@@ -60,7 +60,7 @@ std::optional<std::filesystem::path> own_data_file(const std::filesystem::path& 
     const std::filesystem::path own = std::filesystem::absolute(path).parent_path() / named.filename();
     std::error_code is_none;
     if (has_own_name(named, path) && std::filesystem::equivalent(named, own, is_none)) return own;
-  } catch (const std::runtime_error&) {  // a damaged header names nothing
+  } catch (const std::runtime_error&) {  // a damaged header names no data file
   }
   return std::nullopt;
 }

@@ -23,7 +23,7 @@ std::string number_text(double value) {
   return text;
 }
 
-/// A picture with sizes and inks to suit it.
+/// A picture with the letter sizes and ink colours that fit it.
 class Sheet {
  public:
   Sheet(const Canvas& canvas)
@@ -93,7 +93,7 @@ void draw_scale(const Sheet& sheet, double pixel_mm) {
 void write_legend(const Sheet& sheet, const std::vector<LegendEntry>& legend) {
   const double cap = sheet.cap_px();
   const double line_px = 1.9 * cap;
-  // Ends before the letter at the middle of the lower edge.
+  // The legend ends before the letter at the middle of the lower edge.
   const double room_px = 0.5 * sheet.size_px().x - 5.0 * cap;
   double baseline = sheet.size_px().y - cap - line_px * (static_cast<double>(legend.size()) - 1.0);
   for (const LegendEntry& entry : legend) {
@@ -110,7 +110,7 @@ void write_legend(const Sheet& sheet, const std::vector<LegendEntry>& legend) {
 void draw_bar(const Sheet& sheet, const ColourBar& bar) {
   const double cap = sheet.cap_px();
   const glm::dvec2 size = sheet.size_px();
-  // Lies above the letter at the middle of the right edge, and below the title.
+  // The bar lies above the letter at the middle of the right edge and below the title.
   const int top = static_cast<int>(std::lround(4.5 * cap));
   const int bottom = std::max(top + 1, static_cast<int>(std::lround(0.5 * size.y - 2.5 * cap)));
   const int right = static_cast<int>(std::lround(size.x - cap));
@@ -155,7 +155,7 @@ EdgeLetters edge_letters(const View& view) {
 
 double round_length(double most) {
   const double power = std::pow(10.0, std::floor(std::log10(most)));
-  // Powers of ten below one are rounded: allow for that, so that 5 divided by one stays 5.
+  // Powers of ten below one are inexact. The factor keeps 0.005 / 0.001 from falling below 5.
   const double digits = most / power * (1.0 + 1e-12);
   if (digits >= 10.0) return 10.0 * power;
   return (digits >= 5.0 ? 5.0 : digits >= 2.0 ? 2.0 : 1.0) * power;
@@ -171,7 +171,7 @@ void annotate(std::vector<std::uint8_t>& rgb, const ImagePlane& plane, const Ann
   if (annotation.scale && !plane.eye) draw_scale(sheet, plane.pixel_mm);
   if (annotation.bar) draw_bar(sheet, *annotation.bar);
   write_legend(sheet, annotation.legend);
-  // Ends before the letter at the middle of the upper edge, or before the bar's title.
+  // The title ends before the letter at the middle of the upper edge, or before the bar's title.
   const double share = annotation.sides || annotation.bar ? 0.5 : 1.0;
   sheet.write(shortened(annotation.title, share * sheet.size_px().x - 4.0 * cap, cap), {cap, 2.0 * cap},
               Align::Left);

@@ -16,7 +16,8 @@
 
 namespace octotomy::voxel {
 
-/// The number of voxels before the object's first, by column i + side j as in ColumnMap; -1: an empty column.
+/// For column i + side j (as in ColumnMap), the number of voxels before the object's first; -1: an empty
+/// column.
 using ColumnDepths = std::vector<std::int32_t>;
 
 class AxisFrame {
@@ -37,7 +38,7 @@ class AxisFrame {
     return ((quadtree_child & 1) << axes_.axis[0]) | ((quadtree_child >> 1) << axes_.axis[1]) |
            (static_cast<int>(far_half) << axes_.axis[2]);
   }
-  /// The child, in a node of a level, that holds column (p, q) at a depth of d voxels.
+  /// The child of a node at `level` that holds column (p, q) at a depth of d voxels.
   int child_at(int level, int p, int q, int d) const {
     const int bit = depth_ - 1 - level;
     return child(((p >> bit) & 1) | (((q >> bit) & 1) << 1), ((d >> bit) & 1) != 0);

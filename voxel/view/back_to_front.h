@@ -11,8 +11,8 @@ namespace octotomy::voxel {
 
 /// Draws the objects back to front along an axis (thesis 4.4.3.1, A.2): visits every node once and paints
 /// Full nodes over those behind. The same map as node_trace(). Adds visits to `visits` if given.
-/// Precondition: all objects are of one universe, for which axis_view() gave the axes. Cost: every node, and
-/// every column as often as it is painted.
+/// Precondition: all objects are of one universe, for which axis_view() gave the axes. Cost: one visit per
+/// node and one write each time a column is painted.
 ColumnMap back_to_front(const std::vector<DrawnObject>& objects, const AxisView& axes,
                         Visits* visits = nullptr);
 

@@ -19,7 +19,7 @@ struct Frame {
 
 /// The frame of a picture of the given size around the objects' extents in the view, with a margin of a
 /// twentieth; around the universe if all objects are empty. Precondition: at least one object, all of one
-/// universe. Cost: the boundary of the extents.
+/// universe. Cost: only nodes on the boundary of the extents are visited.
 Frame frame_about(const std::vector<DrawnObject>& objects, const View& view, const glm::ivec2& size_px);
 
 /// An observer at a finite distance. One plane across the scene has the scale of an orthographic picture;
@@ -59,13 +59,12 @@ struct ImagePlane {
 };
 ImagePlane image_plane(const Universe& universe, const View& view, const glm::ivec2& size_px,
                        const Frame& frame);
-/// The plane with an eye at that distance from the middle of the universe.
+/// The same plane with an eye at `eye_distance_mm` from the middle of the universe.
 ImagePlane seen_from(ImagePlane plane, double eye_distance_mm);
 
 /// The rays of an image plane in the universe's index space. The point of pixel position p at a depth is
 /// start(p) + depth * direction(p), both linear in p; on an orthographic plane all directions are per_mm.
-/// Components of per_mm that move a ray by less than a small part of a voxel on its way through the universe
-/// are exactly zero.
+/// Components of per_mm that would move a ray by less than 1/64 voxel across the universe are exactly zero.
 struct VoxelRays {
   glm::dvec3 first{0.0};
   glm::dvec3 per_px_x{0.0};

@@ -13,7 +13,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The map's columns, along one axis, beside a row or column of pixels.
+/// The columns of the map that a row or column of pixels lies between, along one axis.
 struct Place {
   int nearest = -1;  ///< -1: outside
   int low = 0, high = 0;

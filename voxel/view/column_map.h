@@ -45,9 +45,9 @@ class ColumnSurface {
 
   /// The surface in a column whose first voxel lies `before` voxels behind the universe's front face. With
   /// DrawnObject::grey its depth is the crossing of the threshold between the centres of the last voxel
-  /// outside and the first inside (thesis 5.2.2.2). Departure: the voxel before counts, not the node before.
-  /// Samples that do not cross the threshold mean that the object was cut there; then the depth is the
-  /// voxel's face.
+  /// outside and the first inside (thesis 5.2.2.2). Departure from the thesis: uses the voxel before the
+  /// first, not the node before it. If these samples do not cross the threshold, the object was cut there,
+  /// and the depth is that of the voxel's face.
   Seen seen(const glm::ivec2& column, int before) const;
 
  private:
@@ -57,10 +57,10 @@ class ColumnSurface {
   const DrawnObject& object_;
   AxisView axes_;
   double spacing_mm_ = 1.0;           ///< along the look axis
-  std::optional<GreySurface> moved_;  ///< of an object away from its samples
+  std::optional<GreySurface> moved_;  ///< only for an object that was moved away from its samples
 };
 
-/// The map of several objects' columns: the nearest surface wins, among equals the first object's.
+/// The map of several objects' columns: the nearest surface wins; at equal depth, that of the first object.
 /// `before[o]` holds, by column, the number of voxels before the first of object o, or -1. Parallel over
 /// rows.
 ColumnMap column_map(const std::vector<DrawnObject>& objects, const AxisView& axes,

@@ -18,7 +18,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// This share of the light from behind changes 8-bit sRGB by less than half a step at its darkest.
+/// A ray ends below this share: it changes 8-bit sRGB by less than half a step, even at black.
 constexpr float unseen_share = 1.0f / 1024.0f;
 
 /// The cubes of cells that may be visible. A cell lies between the centres of eight voxels.
@@ -95,7 +95,7 @@ class VisibleCells {
   std::vector<Level> levels_;
 };
 
-/// Trilinear samples and differences. Keeps those of the last cell, in which a ray takes several steps.
+/// Trilinear samples and differences. Caches those of the last cell, because a ray takes several steps in it.
 class CellSamples {
  public:
   explicit CellSamples(const GreyOctree& grey) : grey_(grey) {}
@@ -105,7 +105,7 @@ class CellSamples {
     return trilinear(corners_, p - glm::dvec3(cell_));
   }
 
-  /// As grey_normal(): central differences, positive towards lower samples.
+  /// Central differences as in grey_normal(), positive towards lower samples.
   glm::dvec3 outward(const glm::dvec3& p) {
     enter(p);
     if (!differences_known_) {
@@ -165,7 +165,7 @@ struct Ray {
   glm::dvec3 at(double depth_mm) const { return start + depth_mm * per_mm; }
 };
 
-/// Depth at which a ray leaves the aligned cube of cells, of an edge, that holds its position at a depth.
+/// Depth at which a ray leaves the aligned cube of `edge` cells a side that holds `cell`.
 double leaving_mm(const Ray& ray, double depth_mm, const glm::ivec3& cell, int edge) {
   double least_mm = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -216,7 +216,7 @@ class March {
  private:
   static constexpr float nothing = std::numeric_limits<float>::infinity();
 
-  /// The samples of the function's points as those of the octree count.
+  /// Converts the samples of the function's points to steps of the octree.
   static TransferFunction in_steps(TransferFunction transfer, const GreyOctree& grey) {
     for (TransferPoint& point : transfer.points) point.sample /= grey.step();
     return transfer;
@@ -263,7 +263,7 @@ class March {
     return {glm::vec4(light, 1.0f - behind), half_mm};
   }
 
-  /// Whether a place belongs to no sample of the scan. Asked only where such places would be seen.
+  /// Whether no sample of the scan lies at this position. Evaluated only if the background would be visible.
   bool beyond_scan(const glm::dvec3& p) const {
     return background_shows_ && !grey_.scan().contains(glm::ivec3(glm::floor(p + 0.5)));
   }

@@ -29,10 +29,9 @@ struct Composite {
 /// (Levoy, ACM ToG 9, 1990) by the midpoint rule at steps of half a voxel's shortest edge. Matter whose
 /// samples change is lit as a two-sided surface across their gradient (equation 5.3); matter within a voxel
 /// behind a cut is lit as the cut's face. A ray ends once less than 1/1024 of the light from behind would
-/// come through. Blocks, down to leaves, without visible samples are skipped, and
-/// nothing is seen beyond the scan. Precondition: the plane is of
-/// the grey octree's universe. Throws as check(TransferFunction); Stopped. Parallel over rows; same bits on
-/// any thread count.
+/// come through. Blocks and leaves without visible samples are skipped. Nothing is drawn beyond the scan.
+/// Precondition: the plane is of the grey octree's universe. Throws as check(TransferFunction) does, and
+/// Stopped. Parallel over rows; same bits on any thread count.
 Composite composite(const GreyOctree& grey, const ImagePlane& plane, const CompositeOptions& options,
                     const Progress& progress = {});
 

@@ -11,7 +11,7 @@
 
 namespace octotomy::voxel {
 
-/// A node, as the thesis counts it, of an object digitised by partial volume.
+/// A node of an object digitised by partial volume, as the thesis counts it.
 class PartialVolumeNode {
  public:
   PartialVolumeNode() = default;
@@ -32,7 +32,7 @@ class PartialVolumeNode {
 };
 
 /// Calls `walk(root, counter)` for an object. Without `visits` the counter compiles to nothing; otherwise its
-/// counts are added to `visits`, and root is that of the tree in which the object's visits are counted.
+/// counts are added to `visits`, and `root` is the root of the tree in which the object's visits are counted.
 template <typename Walk>
 void walk_object(const DrawnObject& object, std::uint64_t pixel_count, Visits* visits, const Walk& walk) {
   if (visits == nullptr) {

@@ -62,7 +62,7 @@ double half_voxel_mm(const glm::dmat3& lps_from_voxel, const glm::dvec3& normal)
 /// The cut whose face a pixel shows; among several the nearest in depth.
 std::optional<TakenSpan> face_at(const Sight& sight, double depth_mm, const glm::dmat3& lps_from_voxel,
                                  const std::vector<Cutaway>& cuts) {
-  // The rounding of depths, which are floats of a few hundred millimetres, as a share of a voxel.
+  // Margin for the rounding of depths, which are floats of a few hundred millimetres.
   constexpr double rounding = 1.0 + 1e-3;
   std::optional<TakenSpan> nearest;
   for (const Cutaway& cut : cuts) {

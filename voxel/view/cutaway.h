@@ -11,7 +11,7 @@
 
 namespace octotomy::voxel {
 
-/// A part to leave out of a picture, for a view inside: everything outside a half-space, or inside a box.
+/// A part to leave out of a picture, to show the inside: everything outside a half-space, or inside a box.
 using Cutaway = std::variant<HalfSpace, Box>;
 
 /// The part of a line of sight that a cut removes: its first and last depth, which may be infinite, and the
@@ -28,15 +28,15 @@ std::optional<TakenSpan> taken_span(const Cutaway& cut, const glm::dvec3& start_
 /// have unit length.
 Expression without(const Expression& object, const std::vector<Cutaway>& cuts);
 
-/// The objects without the parts that the cuts remove, unbuilt. They keep their samples; visits to them are
-/// counted in binary octrees.
+/// The objects without the parts that the cuts remove, as expressions (DrawnObject::unbuilt). They keep their
+/// samples. Visits to them are counted in binary octrees.
 std::vector<DrawnObject> without(const std::vector<DrawnObject>& objects, const std::vector<Cutaway>& cuts);
 
-/// Moves pixels on the voxel faces that a cut made onto the cut itself, so that a cut face is flat instead of
-/// stepped. A pixel shows a cut's face if its depth is a voxel's face and is off the cut by at most half a
-/// voxel's extent along the cut's normal, the farthest that a face between a kept and a removed voxel can be.
-/// Faces seen at more than 76 degrees (surface_break.h) stay, because there a pixel shows the voxels' sides.
-/// Returns the outward normals (right, up, look) of the moved pixels and zero elsewhere; empty without cuts.
+/// Moves pixels from the voxel faces that a cut made onto the cut itself. The cut face is then flat, not
+/// stepped. A pixel shows a cut's face if its depth is a voxel's face and at most half a voxel's extent along
+/// the cut's normal away from the cut. No face between a kept and a removed voxel is farther. Faces seen at
+/// more than 76 degrees (surface_break.h) stay, because there a pixel shows the voxels' sides. Returns the
+/// outward normals (right, up, look) of the moved pixels and zero elsewhere; empty without cuts.
 /// Precondition: the image is of objects of this universe, drawn without the parts that the cuts remove.
 /// Parallel over rows.
 std::vector<glm::vec3> flatten_cuts(DepthImage& image, const ImagePlane& plane, const Universe& universe,

@@ -22,8 +22,9 @@ struct Seen {
   bool lit() const { return object >= 0; }
 };
 
-/// Leaves pixels made without a value unset, so that only the threads that find them write them. Their memory
-/// needs no constructor, because a Seen is an aggregate that may be copied bytewise.
+/// Does not initialise pixels that are constructed without a value, so that only the threads that compute
+/// them write them. Their memory needs no constructor, because a Seen is an aggregate that may be copied
+/// bytewise.
 struct PixelAllocator : LargeAllocator<Seen> {
   template <typename Other>
   struct rebind {  // NOLINT(readability-identifier-naming): allocators are asked for the name
@@ -41,7 +42,7 @@ struct DepthImage {
   const Seen& at(int x, int y) const { return pixels[pixel_index(size_px, x, y)]; }
 };
 
-/// An image whose pixels are not set until somebody does.
+/// An image whose pixels are uninitialised.
 inline DepthImage unset(const glm::ivec2& size_px) {
   DepthImage image{size_px, {}};
   image.pixels.resize(pixel_count(size_px));

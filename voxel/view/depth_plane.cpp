@@ -19,8 +19,8 @@ constexpr int smoothing_taps = 4;
 /// both sides that continue the surface.
 struct Smoothing {
   std::ptrdiff_t tap = 1;  ///< values between taps
-  float limit_mm = 1.0f;   ///< on the difference to the first tap, in proportion for the others
-  float band_mm = 0.5f;    ///< on the shift of a depth
+  float limit_mm = 1.0f;   ///< largest difference to the first tap; grows in proportion for the others
+  float band_mm = 0.5f;    ///< largest shift of a depth
 };
 
 /// Smooths `count` values of `from` into `to`, within the band around the original depths `found`.
@@ -48,7 +48,8 @@ OCTOTOMY_VECTOR_CLONES void smooth_row(const float* __restrict from, const float
   }
 }
 
-/// Copies depths into the plane, and finds the lit part of each row and its part with voxels' faces.
+/// Copies depths into the plane. Finds the lit part of each row and, within it, the part that shows voxels'
+/// faces.
 struct RowFacts {
   float nearest_mm = beyond_mm;
   glm::ivec2 stepped{0};  ///< the first and one past the last; empty if equal
@@ -91,7 +92,7 @@ DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery) {
       facts[number] = copy_row(image, y, row, lit);
       plane.lit[number] = lit;
     }
-    // Smoothing writes the lit part.
+    // Fills only what smoothing does not write: it writes the lit part.
     for (Plane* const other : {&between, &plane.depth}) {
       std::fill(other->row(y) - margin, other->row(y) + lit.x, beyond_mm);
       std::fill(other->row(y) + lit.y, other->row(y) - margin + other->width, beyond_mm);
@@ -117,7 +118,7 @@ DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery) {
       };
       const glm::ivec2& lit = plane.lit[static_cast<std::size_t>(y)];
       if (pass < 2) return smooth(lit);
-      // Smooth voxels' faces again.
+      // Smooths depths of voxels' faces a second time.
       std::copy(from.row(y) + lit.x, from.row(y) + lit.y, to.row(y) + lit.x);
       const glm::ivec2& stepped = facts[static_cast<std::size_t>(y)].stepped;
       smooth(stepped);

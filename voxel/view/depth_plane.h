@@ -15,7 +15,7 @@ namespace octotomy::voxel {
 inline constexpr float beyond_mm = 1e9f;
 inline constexpr float surely_lit_mm = 0.5f * beyond_mm;
 
-/// A plane of values with a margin on all sides. Its values are not set until somebody does.
+/// A plane of values with a margin on all sides. Its values are uninitialised.
 struct Plane {
   Plane(const glm::ivec2& size, int margin_px)
       : width(size.x + 2 * margin_px),
@@ -32,8 +32,8 @@ struct Plane {
   std::unique_ptr<float[]> values;
 };
 
-/// The distance in pixels between the points of a difference: one voxel, and at least one pixel. A closer
-/// difference would show single facets of the interpolation.
+/// The distance in pixels between the points of a difference: one voxel, and at least one pixel. Over a
+/// shorter distance, single facets of the interpolation would show.
 int stride_px(const Scenery& scenery);
 
 /// Smoothed depths of a picture, in a plane whose margin is background, and the extent of its objects.

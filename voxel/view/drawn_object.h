@@ -15,8 +15,8 @@
 namespace octotomy::voxel {
 
 /// An object to draw. With `grey`, depth is interpolated by partial volume at `threshold`, the sample at
-/// which the object begins (thesis 5.2.2.2). Without it, and on cut faces, the surface is the voxels'.
-/// Precondition: `grey` is of the octree's universe, or there is a motion.
+/// which the object begins (thesis 5.2.2.2). Without `grey`, and on cut faces, the surface consists of
+/// voxels' faces. Precondition: `grey` is of the octree's universe, or `moved_from_still` is set.
 struct DrawnObject {
   std::string name;
   Octree octree;
@@ -26,17 +26,17 @@ struct DrawnObject {
   /// The rigid motion, LPS to LPS, from the object's place in its samples to its place in the picture.
   std::optional<glm::dmat4> moved_from_still{};
   float opacity = 1.0f;  ///< 0: hidden, 1: opaque
-  /// Counts visits in the min-max octree of `grey`, in its window from the threshold up, instead of in the
-  /// binary octree. Precondition if set: `octree` is the object of that window.
+  /// Counts visits in the min-max octree of `grey` (samples from the threshold up) instead of in the binary
+  /// octree. Precondition if set: `octree` is the object of these samples.
   bool counted_in_grey = false;
-  /// The voxels wholly inside an object digitised by partial volume, whose `octree` holds all voxels that it
-  /// touches. Visits are then counted in the thesis's tree of it (table 3.1): a node is Full only if wholly
-  /// inside, and boundary voxels are Full without being merged.
+  /// For an object digitised by partial volume: the voxels wholly inside it, while `octree` holds all voxels
+  /// that it touches. Visits are then counted in the thesis's tree for such objects (table 3.1): a node is
+  /// Full only if wholly inside, and boundary voxels are Full without being merged.
   std::optional<Octree> inside{};
-  /// Colours the surface instead of `colour`, in shadings with paint (shade.h).
+  /// Colours the surface instead of `colour` in shadings that use Paint (shade.h).
   std::shared_ptr<const SurfaceScalar> scalar{};
-  /// Draws the voxels of this expression, of which no octree is made: node tracing evaluates it where it is
-  /// seen. `octree` is then empty, and of the universe to draw in.
+  /// Draws the voxels of this expression without building their octree: node tracing evaluates the expression
+  /// only where it is visible. `octree` is then empty and of the universe to draw in.
   std::optional<Expression> unbuilt{};
 
   /// Maps the octree's voxel indices to those of the object's samples; none if both are the same.
@@ -48,7 +48,7 @@ struct DrawnObject {
   }
 };
 
-/// The objects with octrees of those that were unbuilt. Cost: combine() for each of them.
+/// The objects, with an octree built for each unbuilt one. Cost: combine() for each of these.
 std::vector<DrawnObject> built(std::vector<DrawnObject> objects);
 
 }  // namespace octotomy::voxel

@@ -16,8 +16,8 @@ ColumnMap front_to_back(const std::vector<DrawnObject>& objects, const AxisView&
                         Visits* visits = nullptr);
 
 /// Draws front to back in any orthographic view: at most four quadtree nodes of its level hold the projection
-/// of a node (theorems 4.1 and 4.2), and the node is visited if one of these is not covered yet. The same
-/// depths as back_to_front(). Precondition: all objects are of the plane's universe.
+/// of a node (theorems 4.1 and 4.2), and the node is visited if one of these is not covered yet. Returns the
+/// same depths as back_to_front(). Precondition: all objects are of the plane's universe.
 DepthImage front_to_back(const std::vector<DrawnObject>& objects, const ImagePlane& plane,
                          Visits* visits = nullptr);
 

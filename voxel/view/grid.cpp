@@ -17,7 +17,7 @@ constexpr double nearest_lines_px = 4.0;
 const glm::vec3 ink(0.05f, 0.40f, 0.85f);
 constexpr float line_strength = 0.32f, labelled_strength = 0.62f;
 
-/// Letters as high as annotations' on pictures of this size.
+/// Height of letters, the same as that of annotations on pictures of this size.
 double cap_px(const glm::ivec2& size_px) {
   return std::max(7.0, std::min(size_px.x, size_px.y) / 50.0);
 }
@@ -49,7 +49,7 @@ std::string text_of(double mm) {
   return text;
 }
 
-/// Every how many-th line bears a label, so that labels keep a letter's width between them.
+/// Every n-th line has a label. Returns the n that leaves at least a letter's width between labels.
 int labelled_every(const std::vector<Line>& lines, const Grid& grid, double cap, int axis) {
   double room_px = 1.8 * cap;
   if (axis == 0)
@@ -126,7 +126,7 @@ glm::ivec2 add_grid_margin(std::vector<std::uint8_t>& rgb, const glm::ivec2& siz
       const std::string text = text_of(column.at_mm);
       const double half = 0.5 * text_width_px(text, cap), x = column.pixel + 0.5;
       draw_lines(canvas, {{{x, below}, {x, below + 0.5 * cap}}}, tick);
-      // A label at an edge would be cut, or meet the unit.
+      // Skips a label at an edge, where it would be cut off or overlap the unit.
       if (x >= half && x + half + 0.3 * cap <= right) write(text, {x - half, below + 2.0 * cap});
     }
   for (const Line& row : rows)

@@ -40,13 +40,13 @@ DepthSpan span_about(const DepthImage& image, const glm::ivec2& pixel, double re
 }
 
 /// Blends four parts of each edge pixel. Traces a part only between the depths of the surrounding pixels,
-/// because a surface elsewhere has no shaded pixel to take its colour from.
+/// because no shaded pixel has the colour of a surface elsewhere.
 template <typename At>
 void antialias(const DepthImage& image, const Scenery& scenery, const At& seen_at,
                std::vector<std::uint8_t>& rgb) {
   const double reach_mm = break_mm(std::max(scenery.pixel_mm, scenery.voxel_mm));
   const std::vector<std::uint32_t> edges = edge_pixels(image, scenery);
-  // All from the unblended picture, so that the order of pixels does not matter.
+  // Reads only the unblended picture, so that the order of pixels does not matter.
   std::vector<std::array<std::uint8_t, 3>> blended(edges.size());
   tbb::parallel_for(std::size_t{0}, edges.size(), [&](std::size_t i) {
     const auto width = static_cast<std::uint32_t>(image.size_px.x);
@@ -79,7 +79,7 @@ Drawing drawing_of_columns(ColumnMap columns, const AxisView& axes, const VoxelR
   return {picture_of(*map, axes, rays, size_px), seen_at};
 }
 
-/// Replaces voxels' faces by the surface in the samples.
+/// Replaces depths of voxels' faces by those of the surface in the samples.
 DepthImage refined(DepthImage image, const RayCast& cast) {
   tbb::parallel_for(0, image.size_px.y, [&](int y) {
     for (int x = 0; x < image.size_px.x; ++x) {
@@ -175,7 +175,7 @@ Paint paint_of(const DepthImage& image, const std::vector<DrawnObject>& objects,
   return paint;
 }
 
-/// Whether the shading reads voxels around those that are seen.
+/// Whether the shading reads voxels around the visible ones.
 bool reads_voxels(Shading shading) {
   return shading == Shading::Context || shading == Shading::GreyGradient;
 }
@@ -226,7 +226,7 @@ DrawnObject as_shaded(const DrawnObject& object, Shading shading) {
 }
 
 void number_objects(DepthImage& image, const std::vector<std::int16_t>& numbers) {
-  // Most often each object has its own number already.
+  // In most pictures each object already has its own number.
   std::vector<std::int16_t> same(numbers.size());
   std::iota(same.begin(), same.end(), std::int16_t{0});
   if (numbers == same) return;

@@ -13,7 +13,7 @@
 namespace octotomy::voxel {
 
 // A picture consists of layers: one of the opaque objects, and one of each translucent object. Tracing a
-// layer takes most of the time and knows no colours. Shading it knows no octrees.
+// layer takes most of the time and does not depend on colours. Shading it does not read octrees.
 
 /// A range of depths along a ray.
 struct DepthSpan {
@@ -50,8 +50,8 @@ struct Layer {
   SeenAt seen_at;                      ///< owns its data; any number of threads may call it
 };
 
-/// The objects without the parts that the options' cuts remove, built unless node tracing alone looks at
-/// them.
+/// The objects without the parts that the options' cuts remove. Builds their octrees unless node tracing
+/// alone reads them.
 std::vector<DrawnObject> to_trace(const std::vector<DrawnObject>& objects, const RenderOptions& options,
                                   Algorithm algorithm);
 
@@ -61,14 +61,14 @@ Layer draw_layer(const std::vector<DrawnObject>& objects, const ImagePlane& plan
                  const std::vector<Cutaway>& cuts, Algorithm algorithm, Visits* visits = nullptr);
 
 /// Shades a layer's pixels with the objects' colours and the options' shading, lights and background. Ignores
-/// the options' size, view, algorithm and cuts, which are those that the layer was traced with.
+/// the options' size, view, algorithm and cuts: those that the layer was traced with apply.
 std::vector<std::uint8_t> shade_layer(const Layer& layer, const std::vector<DrawnObject>& objects,
                                       const ImagePlane& plane, const RenderOptions& options);
 
 /// A layer of background.
 Layer empty_layer(const glm::ivec2& size_px);
 
-/// The object as it is traced for a shading: without samples if the shading uses voxels' faces alone.
+/// The object to trace for a shading: without samples if the shading uses only voxels' faces.
 DrawnObject as_shaded(const DrawnObject& object, Shading shading);
 
 /// Replaces each object's number i by numbers[i].
@@ -86,12 +86,12 @@ struct Translucent {
   float opacity = 0.5f;
 };
 
-/// Fills the pixels, depths and objects of a picture: the colours of its opaque layer, whose objects are
-/// numbered as in the scene, under the translucent objects, back to front.
+/// Fills the pixels, depths and objects of a picture: the translucent objects, back to front, over the
+/// colours of its opaque layer. Objects of the opaque layer are numbered as in the scene.
 void lay_together(DepthImage opaque, std::vector<std::uint8_t> rgb, std::vector<Translucent> translucent,
                   Picture& picture);
 
-/// A picture without pixels: its size, view, frame and algorithm. Throws as render().
+/// A picture without pixels: its size, view, frame and algorithm. Throws as render() does.
 Picture blank_picture(const std::vector<DrawnObject>& objects, const RenderOptions& options);
 
 /// The plane of a blank picture.

@@ -11,7 +11,8 @@
 // The search of ray_surface.cpp on vectors of rays:
 // 1 copy the samples about the leaf in fours; 2 interpolate them at the entries; 3 take the voxel's face
 // where the object was cut; 4 probe along the other rays until their sample crosses the threshold; 5
-// interpolate the crossing. Every ray takes the steps of all; those that it does not need have no effect.
+// interpolate the crossing. All rays execute the same steps; a step that a ray does not need has no effect on
+// it.
 
 // Vectors are passed between functions of this file alone, all of them inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -23,7 +24,7 @@ constexpr int lanes = 8;
 constexpr int row = LeafSurface::side;
 constexpr int layer = row * row;
 
-/// The sample of voxels beyond the universe: one that was cut away, if it is looked at at all.
+/// The sample of voxels beyond the universe. Where it is read, it acts as a voxel that was cut away.
 constexpr std::int16_t beyond = std::numeric_limits<std::int16_t>::max();
 
 // Vectors of rays. A comparison gives -1 where it holds.
@@ -61,7 +62,7 @@ template <typename Whole, typename Half>
   return ((longs[0] | longs[1]) | (longs[2] | longs[3])) != 0;
 }
 
-/// What is the same for all rays.
+/// The values that all rays share.
 struct Way {
   double per_mm[3];
   float half_voxel_mm = 0.0f;
@@ -72,7 +73,7 @@ struct Way {
 struct Leaf {
   const std::uint64_t* fours = nullptr;
   Int first[3];                   ///< voxel of the first four
-  Int low_cell[3], high_cell[3];  ///< that fours are there for
+  Int low_cell[3], high_cell[3];  ///< range of cells whose fours are in memory
   std::int32_t corner = 0;        ///< number of the leaf's first voxel in the mirrored frame
   std::int32_t stride[3];         ///< from there to the next voxel along an axis
 };
@@ -168,7 +169,7 @@ struct Fours {
                               {along(cell.y) << 2, along(cell.y + 1) << 2},
                               {along(cell.z) << 4, along(cell.z + 1) << 4}};
     const std::int16_t* const near = samples.grey->brick(cell >> 4).samples.front().data();
-    // Five cells in six lie within one brick.
+    // The common case: five cells in six lie within one brick.
     const bool within = ((cell ^ (cell + 1)) & ~15) == glm::ivec3(0);
     for (int corner = 0; corner < 8; ++corner) {
       const int x = corner & 1, y = (corner >> 1) & 1, z = corner >> 2;
@@ -191,7 +192,7 @@ struct Fours {
     Double4 first[2], p[2];
     for (int half = 0; half < 2; ++half) {
       p[half] = start[axis][half] + load<Double4>(batch.enter_mm.data() + from + 4 * half) * way.per_mm[axis];
-      // The floor: down by one where the conversion went up.
+      // Computes the floor: subtracts one where the conversion rounded up.
       const Double4 whole = __builtin_convertvector(__builtin_convertvector(p[half], Int4), Double4);
       constexpr double reach = 8.0;
       first[half] = (whole > p[half] ? whole - 1.0 : whole) - reach;
@@ -207,7 +208,7 @@ struct Fours {
 struct Search {
   Origins origins;
   Int outside;            ///< at the entry
-  Int faces;              ///< that see their voxel's face
+  Int faces;              ///< rays that meet their voxel's face
   Int crossed;            ///< with a crossing between the last two probes, of which the entry is the first
   Float near_mm, far_mm;  ///< from the entry to these two
   Float near_value, far_value;  ///< there
@@ -245,7 +246,7 @@ struct Search {
       Double4 p[3];
       for (int of = 0; of < 3; ++of)
         p[of] = load<Double4>(batch.start[static_cast<std::size_t>(of)].data() + from + 4 * half);
-      // In the order of GLM's product.
+      // Adds in the order of GLM's product, for the same rounding.
       start[axis][half] =
           (still[0][axis] * p[0] + still[1][axis] * p[1]) + (still[2][axis] * p[2] + still[3][axis]);
     }
@@ -288,7 +289,7 @@ template <typename Samples>
   search.far_value = far_value;
 }
 
-/// Step 5. Gives back how far behind its entry each ray meets the surface.
+/// Step 5. Returns the distance from each ray's entry to the surface.
 template <typename Samples>
 [[gnu::always_inline]] inline Float crossing_mm(const Way& way, const Samples& samples,
                                                 const Search& search) {
@@ -314,7 +315,7 @@ template <typename Samples>
   return search.crossed ? crossing_mm : Float{};
 }
 
-constexpr std::int32_t nothing = 0, smooth = 1, face = 2;  // what a ray finds
+constexpr std::int32_t nothing = 0, smooth = 1, face = 2;  // what a ray meets
 
 /// Steps 2 to 5 for a batch, each for all vectors of rays before the next, so that the processor need not
 /// wait for one vector to begin with another.
@@ -353,23 +354,23 @@ std::uint64_t row_of(const std::int16_t* leaf, int y, int z) {
   return four;
 }
 
-/// The voxels in front of a leaf, along an axis, that a surface in the leaf may depend on. A ray enters a
-/// voxel up to half a voxel in front of its centre and is searched over two voxels' length back, of which
-/// `share` is along the axis. The margin is far beyond the rounding of positions.
+/// The number of voxels in front of a leaf, along an axis, that a surface in the leaf may depend on. A ray
+/// enters a voxel up to half a voxel in front of its centre and is searched over two voxels' length back, of
+/// which `share` is along the axis. The margin is far beyond the rounding of positions.
 int in_front(double share) {
   constexpr double margin = 1.0 / 64.0;
   return std::min(row - 5, static_cast<int>(std::ceil(0.5 + 2.0 * std::abs(share) + margin)));
 }
 
-/// The samples of a row of `row` voxels, lowest first, and the next of each along x. The last, which has
-/// none, gets itself.
+/// The samples of a row of `row` voxels, lowest first, and the next of each along x. The last voxel has no
+/// next one and is paired with itself.
 struct RowOfPairs {
   using Short8 = std::int16_t __attribute__((vector_size(16)));
   Short8 low, high;  ///< four pairs each
 
   RowOfPairs(std::uint64_t first, std::uint64_t last) {
     using Long2 = std::uint64_t __attribute__((vector_size(16)));
-    // Not through memory, where two writes of eight bytes delay a read of sixteen.
+    // Combines them in registers, because two writes of eight bytes delay a read of sixteen.
     const auto left = reinterpret_cast<Short8>(Long2{first, last});
     const Short8 right = __builtin_shufflevector(left, left, 1, 2, 3, 4, 5, 6, 7, 7);
     low = __builtin_shufflevector(left, right, 0, 8, 1, 9, 2, 10, 3, 11);
@@ -387,8 +388,8 @@ void write_fours(const RowOfPairs& near, const RowOfPairs& far, std::uint64_t* f
 }
 
 /// Writes the fours of a cube of `row` voxels a side, those from `from` up to, not including, `until` along y
-/// and z, with the rows of samples that `row_at` gives for y and z. In the last rows the next along y, which
-/// is not there, is the row itself.
+/// and z, with the rows of samples that `row_at` returns for y and z. The last row along y has no next one
+/// and is paired with itself.
 template <typename RowAt>
 void write_cube(const glm::ivec3& from, const glm::ivec3& until, const RowAt& row_at, std::uint64_t* fours) {
   for (int z = from.z; z < until.z; ++z) {
@@ -447,7 +448,7 @@ LeafSurface::LeafSurface(const DrawnObject& object, const glm::dvec3& per_mm, co
       half_voxel_mm_(static_cast<float>(0.5 / glm::length(per_mm_))),
       threshold_(static_cast<float>(object.grey->in_steps(object.threshold))),
       universe_side_(object.grey->universe().side()) {
-  // In front of the leaf is above it along a flipped axis.
+  // Along a flipped axis, voxels in front of the leaf have larger indices.
   for (int axis = 0; axis < 3; ++axis) {
     const int unused = side - 5 - in_front(per_mm_[axis] / glm::length(per_mm_));
     (mirror.flipped[axis] != 0 ? until_ : from_)[axis] += mirror.flipped[axis] != 0 ? -unused : unused;

@@ -13,8 +13,9 @@
 
 namespace octotomy::voxel {
 
-/// Finds an object's surface near the voxels of a leaf that parallel rays pass, for many rays at once: bit
-/// for bit what GreySurface::seen() finds for each. Keeps the samples about the last leaf. For one thread.
+/// Finds an object's surface near the voxels of a leaf that parallel rays pass, for many rays at once: the
+/// result for each is bit for bit that of GreySurface::seen(). Keeps the samples about the last leaf. For one
+/// thread.
 class LeafSurface {
  public:
   /// For rays of `per_mm` voxels per millimetre of depth. Preconditions: the object has its samples; the
@@ -27,8 +28,9 @@ class LeafSurface {
     RayBatch::Rays stepped = 0;  ///< at the voxel's face
     RayBatch::ByRay<float> depth_mm;
   };
-  /// Finds the surface of every ray in the batch. Precondition: all of them pass their voxels. The voxels of
-  /// a moved object need not be of one leaf, and only the rays' starts and the depths of their voxels count.
+  /// Finds the surface of every ray in the batch. Precondition: all of them pass their voxels. For a moved
+  /// object, only the rays' starts and the depths of their voxels are used, and the voxels need not be of one
+  /// leaf.
   void find(const RayBatch& batch, Found& found);
 
   /// Samples that the surface in a leaf may depend on: from three voxels in front of the leaf to one behind,
@@ -49,8 +51,8 @@ class LeafSurface {
   glm::ivec3 native_{0};              ///< the leaf's first voxel
   glm::ivec3 first_{0};               ///< the voxel of the first sample
   glm::ivec3 from_{0}, until_{side};  ///< the samples that these rays need, counted from `first_`
-  /// By x + 8y + 64z from `first_`: the samples of a voxel, of the next along x, and of those two's next
-  /// along y, 16 bits each from the lowest.
+  /// Entry x + 8y + 64z, counted from `first_`: the samples of that voxel, of the next along x, and of the
+  /// next along y of both; 16 bits each, lowest first.
   alignas(64) std::array<std::uint64_t, side * side * side> fours_;
 };
 

@@ -14,8 +14,8 @@ struct SightLine {
   glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit, away from the observer
 };
 
-/// The line of sight through a pixel position, from the plane of depth 0 on; (0, 0) is the picture's top left
-/// corner.
+/// The line of sight through a pixel position. It starts on the plane of depth 0; (0, 0) is the picture's top
+/// left corner.
 SightLine sight_line(const ImagePlane& plane, const glm::dvec2& p_px);
 /// The line of sight through a position in the view's millimetres.
 SightLine sight_line(const View& view, const glm::dvec2& p_mm);
@@ -30,8 +30,8 @@ struct SpaceMark {
   double miss_mm = 0.0;
 };
 
-/// Throws std::invalid_argument if the angle between the lines is under 5.7 degrees: an error of the marks
-/// would be more than ten times as large along the lines.
+/// Throws std::invalid_argument if the angle between the lines is under 5.7 degrees, because an error of the
+/// marks would grow more than tenfold along the lines.
 SpaceMark mark_between(const SightLine& a, const SightLine& b);
 
 }  // namespace octotomy::voxel

@@ -20,12 +20,12 @@
 // root, the descent itself goes front to back and visits the same nodes; all objects are traced at once.
 //
 // In the *traced frame* a block's digits are p, q (in the image) and r (along the look axis), so that child
-// number p + 4q + 16r makes every layer of children across the look axis 16 adjacent bits of a mask.
-// Exchanging digits of bit numbers transforms words into it. A reversed look only reverses the order of
-// layers.
+// number p + 4q + 16r makes every layer of children across the look axis 16 adjacent bits of a mask. Words
+// are transformed into this frame by exchanging digits of their bit numbers. A reversed look only reverses
+// the order of layers.
 //
-// Of an object that is not built, blocks are evaluated where the descent goes into them: those taller than a
-// tile once for all tiles, the others by the one tile that sees them.
+// For an object that is not built, a block is evaluated when the descent enters it. A block taller than a
+// tile is evaluated once for all tiles, a smaller one by the only tile that shows it.
 //
 // Passes, for each tile of 64 x 64 columns: 1 descend front to back, paint open columns and skip quadtree
 // nodes whose columns are all closed; 2 turn the voxel found in each column into a depth.
@@ -87,7 +87,7 @@ struct TracedFrame {
 using EnteredBlock = ExpressionBlocks::EnteredBlock;
 using TopBlock = TopBlocks::TopBlock;
 
-/// By object; null if it is built.
+/// One entry per object; null if the object is built.
 using UnbuiltObjects = std::vector<std::unique_ptr<const TopBlocks>>;
 
 UnbuiltObjects unbuilt_of(const std::vector<DrawnObject>& objects) {
@@ -101,12 +101,12 @@ UnbuiltObjects unbuilt_of(const std::vector<DrawnObject>& objects) {
 
 /// An object's part of the current block. A block of height 1 is a leaf's word.
 struct Part {
-  BlockRef block;             ///< unless it is entered
+  BlockRef block;             ///< unset if `entered` is set
   std::uint64_t full = 0;     ///< in the traced frame; of a leaf, its voxels
   std::uint64_t partial = 0;  ///< in the traced frame
   std::int16_t object = 0;
   EnteredBlock* entered = nullptr;  ///< of an object that is not built
-  const TopBlock* top = nullptr;    ///< the same, shared by all tiles
+  const TopBlock* top = nullptr;    ///< the same for a block that all tiles share
 };
 
 /// Pass 1 for one tile. Depths are in voxels behind the universe's front face.
@@ -293,7 +293,7 @@ class TileTrace {
         const int at_q = q + (column >> 2) * edge;
         const int at_d = d + layer * edge;
         const std::uint64_t child = std::uint64_t{1} << (shift + column);
-        // A Full child of the first object present fills the whole front layer.
+        // If the child is Full in the first object that is present, that object fills the whole front layer.
         const auto first = std::find_if(parts.begin(), parts.end(), [&](const Part& part) {
           return ((part.full | part.partial) & child) != 0;
         });
@@ -329,7 +329,7 @@ class TileTrace {
   std::vector<std::unique_ptr<EnteredBlocks>> entered_;  ///< of each object that is not built
 };
 
-/// Reads samples of a grey octree column by column along the look axis. Keeps the last brick.
+/// Reads samples of a grey octree column by column along the look axis. Caches the last brick.
 class ColumnSamples {
  public:
   ColumnSamples(const GreyOctree& grey, const TracedFrame& frame) : grey_(&grey), frame_(&frame) {}
@@ -372,7 +372,8 @@ class MovedColumns {
         mirror_(per_mm(), 1 << (2 * object.octree.root_height())),
         surface_(object, per_mm(), mirror_) {}
 
-  /// Sets `seen`, whose depth is a number of voxels, now or when the batch is full.
+  /// Queues `seen`, whose depth is a number of voxels, and sets its depth in millimetres at once or later,
+  /// when the batch is full.
   void add(Seen& seen, int p, int q) {
     const auto ray = static_cast<std::size_t>(batch_.count);
     const double d = static_cast<double>(seen.depth_mm);
@@ -385,7 +386,7 @@ class MovedColumns {
     batch_.leave_mm[ray] = (d + 1.0) * spacing_mm_;
     if (++batch_.count == RayBatch::most) find();
   }
-  /// Sets all that were added. A column that stays outside the surface keeps the voxel's face.
+  /// Sets the depths of all queued columns. A column that stays outside the surface keeps the voxel's face.
   void find() {
     surface_.find(batch_, found_);
     for (std::size_t ray = 0; ray < static_cast<std::size_t>(batch_.count); ++ray) {
@@ -421,7 +422,7 @@ class Depths {
                                      : std::nullopt);
   }
 
-  /// Those of moved objects are known after finish().
+  /// Depths of moved objects are set only after finish().
   void interpolate(Seen& seen, int p, int q) {
     const auto object = static_cast<std::size_t>(seen.object);
     if (readers_[object] && objects_[object].moved_from_still) {
@@ -455,7 +456,7 @@ class Depths {
   const TracedFrame& frame_;
   double spacing_mm_;
   std::vector<std::optional<ColumnSamples>> readers_;
-  std::vector<std::unique_ptr<MovedColumns>> moved_;  ///< of objects seen away from their samples
+  std::vector<std::unique_ptr<MovedColumns>> moved_;  ///< for objects that were moved away from their samples
 };
 
 }  // namespace

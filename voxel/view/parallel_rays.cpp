@@ -9,8 +9,8 @@
 #include <tbb/parallel_for.h>
 #include <utility>
 
-// All in the mirrored frame, in which rays rise along all axes, so that the order of children's and voxels'
-// numbers is front to back for every ray.
+// All computations use the mirrored frame, in which rays rise along all axes. There, ascending numbers of
+// children and voxels run front to back for every ray.
 //
 // The table holds, for each cell of positions relative to the leaf's projection, the voxels of a leaf that
 // rays in the cell may pass. The projection of a voxel and the cell are convex; they overlap unless the
@@ -20,7 +20,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Bound on the rounding of a block's projection after the additions along a path from the root, as a share
+/// Bound on the rounding error of a block's projection, which adds up along a path from the root, as a share
 /// of the universe's extent in pixels.
 constexpr double rounding_share = 8.0 * std::numeric_limits<float>::epsilon();
 
@@ -123,7 +123,8 @@ class ParallelRays::Square {
     Rectangle pixels{0, 0, 0, 0};
   };
 
-  /// Announces the leaves of a block of height 2, and offers each one a few leaves later.
+  /// Announces each leaf of a block of height 2, and casts it a few leaves later, when its data has been
+  /// prefetched.
   void cast_leaves(BlockRef block, std::uint64_t present, const glm::ivec3& corner, const glm::vec2& centre) {
     constexpr std::size_t ahead = 4;
     std::array<Leaf, 64> leaves;
@@ -146,7 +147,7 @@ class ParallelRays::Square {
     while (offered < count) offer_next();
   }
 
-  /// Offers a leaf's voxels to the open rays that pass them.
+  /// Passes a leaf's voxels to the open rays that meet them.
   void cast_leaf(std::uint64_t word, const glm::ivec3& corner, const Leaf& leaf) {
     const Rectangle& pixels = leaf.pixels;
     const glm::vec2& centre = leaf.centre;
@@ -184,13 +185,13 @@ class ParallelRays::Square {
     voxels_[ray] = voxels;
   }
 
-  /// Offers the batch's rays their voxels, front to back, until each has ended or left the leaf.
+  /// Passes the batch's voxels to `accept_`, front to back, until each ray has ended or left the leaf.
   void offer() {
     for (drop_missed(); batch_.count > 0; drop_missed()) move_on(0, accept_(batch_));
   }
 
-  /// Moves rays on to the first of their voxels that they do pass, and drops those that pass none, so that
-  /// full vectors of rays are offered.
+  /// Moves each ray to the first of its voxels that it does pass, and removes rays that pass none, so that
+  /// vectors of rays stay full.
   void drop_missed() {
     for (int done = 0; done < batch_.count;) {
       const RayBatch::Rays passing = find_passages(rays_.rays_, rays_.mirror_, voxels_, done, batch_);
@@ -218,8 +219,8 @@ class ParallelRays::Square {
     return end;
   }
 
-  /// Moves rays from number `first` on to the next voxel that each may pass, and drops those that have none
-  /// or ended.
+  /// Moves rays from number `first` on to the next voxel that each may pass, and removes those that have none
+  /// or have ended.
   void move_on(int first, RayBatch::Rays ended) {
     const int count = std::exchange(batch_.count, first);
     for (int i = first; i < count; ++i) {
@@ -236,12 +237,12 @@ class ParallelRays::Square {
 
   const ParallelRays& rays_;
   glm::ivec2 first_px_;
-  glm::ivec2 last_;  ///< pixel of the square
+  glm::ivec2 last_;  ///< pixel last pixel of the square
   const Accept& accept_;
   const Announce& announce_;
   std::array<std::uint64_t, square_px> open_{};  ///< by row
   RayBatch batch_;
-  RayBatch::ByRay<std::uint64_t> voxels_{};  ///< that each ray of the batch may pass
+  RayBatch::ByRay<std::uint64_t> voxels_{};  ///< voxels that each ray of the batch may pass, one bit each
 };
 
 ParallelRays::ParallelRays(const Octree& octree, const VoxelRays& rays)

@@ -16,9 +16,9 @@ namespace octotomy::voxel {
 
 /// The parallel rays of a picture through one octree, a square of pixels at a time. One walk of the octree,
 /// front to back (thesis 4.4, theorem 4.1), serves all rays of the square, and skips nodes behind rays that
-/// have ended. Rays differ in a leaf only by their position, so that a table holds the voxels that they pass
-/// there, 64 to a word. Rays that meet the same leaf are offered its voxels together, as vectors. The result
-/// is that of Walk (ray_walk.h) ray by ray. Any number of threads may cast.
+/// have ended. Within a leaf, rays differ only by their position, so a table holds the voxels that a ray may
+/// pass, 64 to a word. Rays that meet the same leaf are processed together, as vectors. The result for each
+/// ray is that of Walk (ray_walk.h). Any number of threads may cast.
 class ParallelRays {
  public:
   static constexpr int square_px = 64;  ///< edge of a square
@@ -29,9 +29,9 @@ class ParallelRays {
   /// Receives a leaf's first voxel a little before its voxels go to Accept, to prefetch data.
   using Announce = std::function<void(const glm::ivec3& leaf)>;
 
-  /// Precondition: rays of an orthographic plane of the octree's universe. Keeps the octree.
+  /// Precondition: rays of an orthographic plane of the octree's universe. Shares the octree.
   ParallelRays(const Octree& octree, const VoxelRays& rays);
-  /// These rays through another octree of the same universe.
+  /// The same rays through another octree of the same universe.
   ParallelRays through(const Octree& octree) const;
 
   /// Calls `accept` with the voxels that the rays of a square of pixels pass, each ray's from front to back.

@@ -16,9 +16,9 @@ struct RayImage {
   std::vector<float> values;
 };
 
-/// The largest trilinear sample along every pixel's ray, at steps of half a voxel; the background's value if
-/// a ray misses the universe. Skips blocks whose range cannot raise the maximum. Precondition: an
-/// orthographic plane of the grey octree's universe. Throws Stopped. Parallel over rows; same bits on any
+/// The largest trilinear sample along every pixel's ray, at steps of half a voxel; the value of the
+/// background if a ray misses the universe. Skips blocks whose range cannot raise the maximum. Precondition:
+/// an orthographic plane of the grey octree's universe. Throws Stopped. Parallel over rows; same bits on any
 /// thread count.
 RayImage maximum_intensity(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress = {});
 
@@ -26,7 +26,7 @@ RayImage maximum_intensity(const GreyOctree& grey, const ImagePlane& plane, cons
 /// coefficient of samples in Hounsfield units, by the trapezoidal rule at steps of half a voxel. Rays are
 /// parallel, so that the picture is in true scale: from the side, a cephalogram without its enlargement.
 /// Water attenuates by 0.0206 / mm, as at 60 keV (NIST XCOM). Samples of at most -1000 attenuate nothing.
-/// Preconditions, throws and threads as for maximum_intensity().
+/// Preconditions, exceptions and threads are those of maximum_intensity().
 RayImage radiograph(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress = {});
 
 /// Values from `black` to `white` as grey tones, three bytes per pixel; white may be the lower value.

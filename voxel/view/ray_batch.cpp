@@ -43,7 +43,7 @@ struct Axis {
 };
 
 /// The passages of a batch's rays, from a vector's first ray on, through the voxels of the leaf with the
-/// given numbers. Returns the rays that pass; those beyond the batch mean nothing.
+/// given numbers. Returns the rays that pass; bits beyond the batch are meaningless.
 OCTOTOMY_VECTOR_CLONES RayBatch::Rays pass(const Axis* axes, const std::int32_t* voxels, int first,
                                            RayBatch& batch) {
   const Long ray{1, 2, 4, 8};
@@ -93,12 +93,12 @@ RayBatch::Rays find_passages(const VoxelRays& rays, const Mirror& mirror,
     axes[axis] = {rays.first[axis],          rays.per_px_x[axis],      rays.per_px_y[axis],
                   double(mirror.side),       double(batch.leaf[axis]), mirror.mm_per_voxel[axis],
                   mirror.flipped[axis] != 0, mirror.still[axis]};
-  // Rays of the same vector before the first find again what they have.
+  // Recomputes, with the same result, the rays before `first` that are in the same vector.
   const int aligned = first - first % lanes;
   RayBatch::ByRay<std::int32_t> numbers;
   for (int ray = aligned; ray < batch.count; ++ray)
     numbers[static_cast<std::size_t>(ray)] = std::countr_zero(voxels[static_cast<std::size_t>(ray)]);
-  // The last vector's other rays pass some voxel of the leaf.
+  // Unused rays of the last vector need a valid voxel number.
   std::fill_n(numbers.begin() + batch.count, std::min(lanes, RayBatch::most - batch.count), 0);
   return pass(axes, numbers.data(), aligned, batch) & RayBatch::all(batch.count) & RayBatch::from(first);
 }

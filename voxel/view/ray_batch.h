@@ -10,8 +10,8 @@
 
 namespace octotomy::voxel {
 
-/// Parallel rays that pass voxels of one leaf, each its own. A number of an array is a ray's, so that loops
-/// over rays become vectors.
+/// Parallel rays, each with one voxel of the same leaf. Entry i of every array belongs to ray i, so that
+/// loops over rays become vectors.
 struct RayBatch {
   static constexpr int most = 64;
   template <typename Value>
@@ -37,7 +37,7 @@ struct RayBatch {
   /// The rays from number `first` on. Precondition: less than `most`.
   static Rays from(int first) { return ~Rays{0} << first; }
 
-  /// Puts one ray and its passage in the place of another.
+  /// Copies ray `ray` and its passage over ray `place`.
   void put(std::size_t ray, std::size_t place) {
     for (auto* by_ray : {&x, &y, &at[0], &at[1], &at[2], &entered_through}) (*by_ray)[place] = (*by_ray)[ray];
     for (auto* by_ray : {&start[0], &start[1], &start[2], &enter_mm, &leave_mm})
@@ -45,9 +45,9 @@ struct RayBatch {
   }
 };
 
-/// Finds the passages of a batch's rays, those from number `first` on, through the first of the voxels of the
-/// leaf that each may pass, one bit a voxel, bit for bit as passage_of(). Returns those of them that do pass
-/// it. Precondition: `first` is a ray of the batch.
+/// For each ray of a batch from number `first` on, computes its passage through the lowest-numbered voxel set
+/// in `voxels` (one bit a voxel of the leaf), bit for bit as passage_of() does. Returns the rays that do pass
+/// their voxel. Precondition: `first` is a ray of the batch.
 RayBatch::Rays find_passages(const VoxelRays& rays, const Mirror& mirror,
                              const RayBatch::ByRay<std::uint64_t>& voxels, int first, RayBatch& batch);
 

@@ -17,7 +17,7 @@
 
 // Pictures are cast square by square, all rays of a square together (parallel_rays.h); single rays walk one
 // by one (ray_walk.h). Both visit the objects' voxels in their order along a ray. If an object has samples,
-// its surface is sought near the voxel; otherwise it is the voxel's face.
+// its surface is searched near the voxel; otherwise the surface is the voxel's face.
 
 namespace octotomy::voxel {
 namespace {
@@ -46,12 +46,13 @@ struct RayCast::Prepared {
   std::vector<DrawnObject> objects;
   VoxelRays rays;
   std::optional<Eye> eye;
-  Mirror mirror;                                     ///< of parallel rays
+  Mirror mirror;                                     ///< used for parallel rays
   std::vector<ParallelRays> bundles;                 ///< by object
-  std::vector<std::optional<GreySurface>> surfaces;  ///< by object, of those that have their samples
+  std::vector<std::optional<GreySurface>> surfaces;  ///< one entry per object; set if the object has samples
   glm::ivec2 size_px{0};
 
-  /// The depth by which a surface may lie in front of the voxel that led to it.
+  /// The largest distance in depth by which a surface may lie in front of the voxel through which it was
+  /// found.
   static double reach_mm(const DrawnObject& object, const glm::dvec3& per_mm) {
     return object.grey ? 2.0 / glm::length(per_mm) : 0.0;
   }
@@ -63,7 +64,7 @@ struct RayCast::Prepared {
     return surfaces[i]->seen(ray, frame, passage);
   }
 
-  /// Whether a voxel lies behind the nearest surface by more than its own surface can lie in front of it.
+  /// Whether a voxel is so far behind the nearest surface that its own surface cannot be nearer.
   static bool is_behind(double enter_mm, double reach_mm, const Seen& nearest) {
     return nearest.lit() && enter_mm > nearest.depth_mm + reach_mm;
   }
@@ -94,8 +95,8 @@ RayCast::RayCast(const std::vector<DrawnObject>& objects, const ImagePlane& plan
   prepared_ = std::move(prepared);
 }
 
-/// Updates a square by the surfaces of object `i` that were found near the voxels of a batch. Returns the
-/// rays that end there: at a surface, or behind the nearest one by more than the reach.
+/// Enters the surfaces of object `i`, found near the voxels of a batch, into a square. Returns the rays that
+/// end: at a surface, or more than the reach behind the nearest one.
 RayBatch::Rays RayCast::Prepared::take(std::size_t i, const RayBatch& batch, const LeafSurface::Found& found,
                                        const glm::ivec2& first, Square& square) const {
   const auto pixel_of = [&](int ray) -> Seen& {
@@ -151,12 +152,12 @@ Seen RayCast::seen(const glm::dvec2& p_px, double near_mm, double far_mm) const 
   const VoxelRay ray{the.rays.start(p_px), the.rays.direction(p_px)};
   const Mirror frame = the.eye ? Mirror(ray.per_mm, the.mirror.side) : the.mirror;
   const glm::dvec3 mirrored = frame.mirrored(ray.start);
-  // The eye sees nothing behind itself.
+  // Nothing behind the eye is visible.
   if (the.eye) near_mm = std::max(near_mm, the.eye->depth_mm());
   Seen nearest;
   for (std::size_t i = 0; i < the.objects.size(); ++i) {
     const DrawnObject& object = the.objects[i];
-    // A voxel behind the nearest surface may have its own surface in front of it.
+    // The surface of a voxel behind the nearest one may still be nearer.
     const double reach_mm = the.reach_mm(object, ray.per_mm);
     const double until_mm = std::min(far_mm, static_cast<double>(nearest.depth_mm)) + reach_mm;
     Walk(object.octree.root(), object.octree.root_height(), frame)

@@ -18,11 +18,11 @@ class RayCast {
   /// Cost: a table of a thousand words.
   RayCast(const std::vector<DrawnObject>& objects, const ImagePlane& plane);
 
-  /// The nearest surface of any object on the ray through a pixel position, among equals the first object's.
-  /// With DrawnObject::grey the surface is the crossing of the threshold by trilinear samples near a voxel of
-  /// the object; a ray that clips voxels only outside this surface continues. Beside a voxel that was cut
-  /// away the surface is the voxel's face. A ray through voxel centres along an axis meets the surface that
-  /// node_trace() finds in that column. Cost: one step for every homogeneous block on the ray.
+  /// The nearest surface of any object on the ray through a pixel position; at equal depth, that of the first
+  /// object. With DrawnObject::grey the surface is the crossing of the threshold by trilinear samples near a
+  /// voxel of the object; a ray that passes voxels only outside this surface continues. Next to a voxel that
+  /// was cut away, the surface is the voxel's face. A ray through voxel centres along an axis meets the
+  /// surface that node_trace() finds in that column. Cost: one step for every homogeneous block on the ray.
   Seen seen(const glm::dvec2& p_px) const;
   /// The nearest surface between two depths; skips those before and behind.
   Seen seen(const glm::dvec2& p_px, double near_mm, double far_mm) const;

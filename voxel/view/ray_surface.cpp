@@ -23,9 +23,9 @@ Vector clamped(Vector v, Vector low, Vector high) {
   return v > high ? high : v;
 }
 
-/// Trilinear samples along a ray near one of its points. Keeps the eight corners of the last cell. In float:
-/// it rounds a 16-bit sample by under a thousandth of its unit, and a position, counted from a voxel nearby,
-/// by under a millionth of a voxel.
+/// Trilinear samples along a ray near one of its points. Caches the eight corners of the last cell. Single
+/// precision suffices: a 16-bit sample is rounded by less than a thousandth of its unit, and a position,
+/// counted from a nearby voxel, by less than a millionth of a voxel.
 class RaySamples {
  public:
   /// Distances count from depth `origin_mm`.
@@ -74,7 +74,7 @@ class RaySamples {
   void fetch_corners() {
     const glm::ivec3 first(cell_[0], cell_[1], cell_[2]);
     const glm::ivec3 end = first + 1;
-    // Five cells in six lie within one brick.
+    // The common case: five cells in six lie within one brick.
     if (((first ^ end) & ~15) == glm::ivec3(0)) {
       const std::int16_t* samples = samples_of(first >> 4);
       const int x0 = along(first.x), x1 = along(end.x);
@@ -116,8 +116,8 @@ struct Sample {
 };
 
 /// The crossing of the threshold between a sample below it and one not below: linear interpolation, repeated
-/// once on the side of the crossing. Trilinear samples along a ray are a cubic; within half a voxel the error
-/// of this is smaller than that of samples rounded to integers.
+/// once on the side of the crossing. Trilinear samples along a ray are a cubic. Within half a voxel the error
+/// of this approximation is smaller than that of samples rounded to integers.
 float crossing(RaySamples& samples, float threshold, Sample below, Sample above) {
   const auto between = [&] {
     return below.distance_mm +
@@ -133,9 +133,9 @@ Seen face_of(const Passage& passage) {
   return {static_cast<float>(passage.enter_mm), 0, true};
 }
 
-/// The surface near a voxel that a ray passes. A ray that enters the voxel outside the surface is searched
-/// until it leaves the voxel; none if it stays outside. A ray that enters inside is searched back over two
-/// voxels; the voxel's face if it was inside all the way. The samples count from the entry.
+/// The surface near a voxel that a ray passes. If the ray enters the voxel outside the surface, searches
+/// until it leaves the voxel; none if it stays outside. If it enters inside, searches back over two voxels;
+/// the voxel's face if the ray was inside all the way. The samples count from the entry.
 std::optional<Seen> surface_about(RaySamples& samples, float threshold, const Passage& passage,
                                   float half_voxel_mm) {
   const auto surface = [&](Sample below, Sample above) {
@@ -151,7 +151,7 @@ std::optional<Seen> surface_about(RaySamples& samples, float threshold, const Pa
     if (leave.value >= threshold) return surface(middle, leave);
     return std::nullopt;
   }
-  // Trilinear surfaces end within a voxel of the object's voxels, along a slanting ray within two.
+  // A trilinear surface lies within a voxel of the object's voxels, which is within two along a slanting ray.
   Sample above = enter;
   for (int step = 1; step <= 4; ++step) {
     const float distance_mm = -static_cast<float>(step) * half_voxel_mm;

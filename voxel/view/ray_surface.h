@@ -26,8 +26,8 @@ class GreySurface {
   /// The crossing of the threshold by trilinear samples (thesis 5.2.2.2), or the voxel's face if the object
   /// was cut there; none if the ray stays outside the surface. Precondition: the mirror is that of the ray.
   std::optional<Seen> seen(const VoxelRay& ray, const Mirror& mirror, const Passage& passage) const;
-  /// The surface of a moved object, whose voxels do not lie on the samples: sought from two voxels before the
-  /// passed one to its far side. Precondition: DrawnObject::moved_from_still is set.
+  /// The surface of a moved object, whose voxels do not lie on the samples. Searches from two voxels before
+  /// the passed one to its far side. Precondition: DrawnObject::moved_from_still is set.
   std::optional<Seen> seen_moved(const VoxelRay& ray, const Passage& passage) const;
 
  private:

@@ -18,8 +18,8 @@
 // again from the smallest block that holds both the old and the new voxel.
 //
 // Rays are walked in the *mirrored frame*: index space shifted so that voxel i reaches from i to i + 1, with
-// the axes reversed along which the ray decreases, so that it increases along all. The time of a ray to a
-// plane across an axis along which it does not move is infinite.
+// the axes reversed along which the ray decreases, so that it increases along all. If a ray does not move
+// along an axis, its time to a plane across that axis is infinite.
 //
 // Longer than other headers, because the receiver of the voxels is inlined into the innermost loop.
 
@@ -27,7 +27,7 @@ namespace octotomy::voxel {
 
 /// The mirrored frame of a view's rays, in which all components of their direction are at least zero.
 struct Mirror {
-  /// For rays of `per_mm` voxels per millimetre of depth through a root block of that side.
+  /// For rays of `per_mm` voxels per millimetre of depth through a root block of `root_side` voxels a side.
   Mirror(const glm::dvec3& per_mm, int root_side) : side(root_side) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
@@ -146,7 +146,7 @@ class Walk {
 
   bool inside_root() const { return ((voxel_.x | voxel_.y | voxel_.z) & mirror_.side) == 0; }
 
-  /// Cuts the path back to the nodes that the current voxel shares with another.
+  /// Shortens the path to the nodes that hold both the current voxel and `other`.
   void forget(const glm::ivec3& other) {
     const auto changed =
         static_cast<unsigned>((voxel_.x ^ other.x) | (voxel_.y ^ other.y) | (voxel_.z ^ other.z));
@@ -195,8 +195,8 @@ class Walk {
     const glm::dvec3 time = (glm::dvec3(end) - start_) * mirror_.mm_per_voxel + mirror_.exit_offset;
     const double leave_mm = std::min(time.x, std::min(time.y, time.z));
     const glm::dvec3 p = start_ + leave_mm * mirror_.speed_per_mm;
-    // Rounding must not carry the ray back or out of the block's other sides. Without branches, because the
-    // side through which a ray leaves is unpredictable.
+    // Clamps, because rounding must not move the ray backwards or out of the block's other sides. Avoids
+    // branches, because the side through which a ray leaves is unpredictable.
     const auto next = [leave_mm](double time_mm, double position, int from, int behind) {
       const int inside = std::min(std::max(static_cast<int>(position), from), behind - 1);
       return time_mm <= leave_mm ? behind : inside;
@@ -213,7 +213,7 @@ class Walk {
   const Mirror& mirror_;
   glm::dvec3 start_{0.0};
   int top_;
-  int lowest_;  ///< height of the lowest node known to hold the voxel; 1: word_
+  int lowest_;  ///< height of the lowest node on the path that holds the voxel; 1: word_
   bool full_root_ = false;
   glm::ivec3 voxel_{0};
   double at_mm_ = 0.0;

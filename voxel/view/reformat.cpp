@@ -22,12 +22,12 @@ void need_pixel(double pixel_mm) {
                                 " mm");
 }
 
-// The number of pixels of a length. The rounding of lengths, sums of a few products of coordinates, must not
-// add another pixel.
+// The number of pixels that cover a length. Subtracts a bound on the rounding of lengths (sums of a few
+// products of coordinates), so that rounding adds no pixel.
 int pixels(double length_mm, double pixel_mm) {
   const double exact = length_mm / pixel_mm;
   const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + exact) * most_sheet_px;
-  // Of infinite lengths the difference is no number.
+  // Written so that NaN, which infinite lengths produce, is refused too.
   if (!(std::ceil(exact - rounding) <= most_sheet_px))
     throw std::invalid_argument(
         "a picture of " + (std::isfinite(length_mm) ? rounded(length_mm) + " mm" : "points that far apart") +
@@ -113,8 +113,8 @@ bool within(const glm::dvec3& p_voxel, const glm::ivec3& dims) {
          glm::all(glm::lessThan(p_voxel, glm::dvec3(dims) - 0.5));
 }
 
-// As interpolate() of a grey octree; beyond the border its samples repeat. None where it would be made of
-// padding.
+// Interpolates like interpolate() of a grey octree. Samples of the border repeat beyond it. None if the value
+// would depend on padding.
 template <typename Samples>
 std::optional<double> interpolated(const Samples& samples, const glm::ivec3& dims, const glm::dvec3& p_voxel,
                                    Interpolation interpolation, std::optional<double> padding) {
@@ -183,7 +183,7 @@ Sheet curved_sheet(const CurveOptions& options) {
     throw std::invalid_argument("the up vector of a curved slice must be finite and not zero");
   const glm::dvec3 up = options.up / up_length;
   std::vector<glm::dvec3> flat;   // the points, projected along up
-  std::vector<double> length_mm;  // of their polyline up to each point
+  std::vector<double> length_mm;  // length of the polyline up to each point
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
   for (const glm::dvec3& point : options.points_mm) {
@@ -284,7 +284,8 @@ EdgeLetters edge_letters(const Sheet& sheet) {
   letters.bottom = patient_side(sheet.down);
   const std::vector<glm::dvec3>& columns = sheet.columns_mm;
   if (columns.empty()) return letters;
-  // From the middle, because both ends of a dental arch run backwards, but one is right and one left.
+  // Directions count from the middle: both ends of a dental arch run backwards, but one lies on the right and
+  // one on the left.
   const glm::dvec3 middle_mm = 0.5 * (columns[(columns.size() - 1) / 2] + columns[columns.size() / 2]);
   if (columns.front() != middle_mm) letters.left = patient_side(columns.front() - middle_mm);
   if (columns.back() != middle_mm) letters.right = patient_side(columns.back() - middle_mm);

@@ -35,17 +35,18 @@ struct Sheet {
 inline constexpr int most_sheet_px = 8192;
 
 /// The smallest sheet on the plane of points with p . view.look = position_mm that shows its whole cut
-/// through the lattice, voxel edges included. If axes and pixels are the lattice's, pixel centres are voxel
-/// centres. The view sets the radiological convention: "inferior" for axial slices and "anterior" for coronal
-/// ones have the patient's left on the picture's right. Throws std::invalid_argument if the plane misses the
-/// lattice, a number is not finite, pixel_mm is not positive, or the picture has more than most_sheet_px a
-/// side.
+/// through the lattice, voxel edges included. If the view's axes and pixel_mm are those of the lattice, pixel
+/// centres are voxel centres. The view sets the radiological convention: "inferior" for axial slices and
+/// "anterior" for coronal ones have the patient's left on the picture's right. Throws std::invalid_argument
+/// if the plane misses the lattice, a number is not finite, pixel_mm is not positive, or the picture has more
+/// than most_sheet_px a side.
 Sheet plane_sheet(const Lattice& lattice, const View& view, double position_mm, double pixel_mm);
 
 struct CurveOptions {
   std::vector<glm::dvec3> points_mm;  ///< at least two, LPS, from the picture's left to its right
-  glm::dvec3 up{0, 0, 1};             ///< of the picture; any length above 0
-  double height_mm = 60.0;            ///< of the picture, half above and half below the points' middle height
+  glm::dvec3 up{0, 0, 1};             ///< the picture's upward direction; any length above 0
+  double height_mm = 60.0;            ///< height of the picture, half above and half below the points' middle
+                                      ///< height
   double pixel_mm = 1.0;
 };
 /// The unrolled sheet through a curve, as for a panoramic view of a dental arch: lines along `up` through the
@@ -58,11 +59,11 @@ struct SheetSamples {
   RayImage image;
   std::vector<std::uint8_t> inside;
 };
-/// Samples a scene at a sheet's pixels; pixels beyond the scan take its border's values, those made of
-/// padding are not inside. Throws Stopped. Parallel over rows, same bits on any thread count.
+/// Samples a scene at a sheet's pixels. Pixels beyond the scan take its border's values. Pixels whose value
+/// depends on padding are not inside. Throws Stopped. Parallel over rows, same bits on any thread count.
 SheetSamples sample(const Scene& scene, const Sheet& sheet, Interpolation interpolation,
                     const Progress& progress = {});
-/// Samples a grey octree; pixels beyond the universe take the background.
+/// Samples a grey octree; pixels beyond the universe take its background.
 SheetSamples sample(const GreyOctree& grey, const Sheet& sheet, Interpolation interpolation,
                     const Progress& progress = {});
 
@@ -74,7 +75,7 @@ std::vector<std::uint8_t> cut(const Octree& octree, const Sheet& sheet);
 std::vector<std::uint8_t> outline(const std::vector<std::uint8_t>& cut, const glm::ivec2& size_px);
 
 /// The letters at a sheet's four edges: the directions from its middle column to its ends, and up and down.
-/// No letter for an end at the middle's place, as with a single column or a closed curve.
+/// An end that coincides with the middle has no letter: a single column or a closed curve.
 EdgeLetters edge_letters(const Sheet& sheet);
 
 }  // namespace octotomy::voxel

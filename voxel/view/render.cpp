@@ -155,7 +155,7 @@ Picture blank_picture(const std::vector<DrawnObject>& objects, const RenderOptio
 ImagePlane plane_of(const std::vector<DrawnObject>& objects, const Picture& picture) {
   ImagePlane plane = image_plane(objects.front().octree.universe(), picture.view, picture.size_px,
                                  {picture.centre_mm, picture.pixel_mm * picture.size_px.x});
-  plane.pixel_mm = picture.pixel_mm;  // to the last place
+  plane.pixel_mm = picture.pixel_mm;  // exactly as in the picture
   plane.eye = picture.eye;
   return plane;
 }

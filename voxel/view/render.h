@@ -54,7 +54,7 @@ struct RenderOptions {
   std::optional<CutTones> cut_tones;
   std::vector<Light> lights;  ///< none: a key light from the upper left, a fill light from the lower right
   bool occlusion = true;      ///< darkens surfaces that lie behind their surroundings
-  /// Counts the nodes that the algorithm visits (appendix A); takes far longer than drawing.
+  /// Counts the nodes that the algorithm visits (appendix A); takes much longer than drawing.
   bool count = false;
   /// Blends the colours of four parts of each edge pixel; depth, object and lit pixels stay those of the
   /// pixel's centre. Adds a sixth (node tracing) to a half (ray casting) to the time of a frame.
@@ -86,8 +86,8 @@ struct Picture {
 
 /// Draws objects of one universe: the opaque ones, and the translucent ones over them. Skips objects of
 /// opacity 0. Depth and object are those of the nearest surface that is at least half opaque. Throws
-/// std::invalid_argument if there is no object or more than 32767, universes differ, or size or width are not
-/// positive. Parallel over pixels; same bits on any thread count.
+/// std::invalid_argument if there are no objects or more than 32767, if their universes differ, or if size or
+/// width is not positive. Parallel over pixels; same bits on any thread count.
 Picture render(const std::vector<DrawnObject>& objects, const RenderOptions& options);
 
 }  // namespace octotomy::voxel

@@ -11,8 +11,8 @@ namespace octotomy::voxel {
 namespace {
 
 bool same_samples(const std::optional<GreyOctree>& a, const std::optional<GreyOctree>& b) {
-  // Grey octrees are immutable and shared, so the same storage holds the same samples. Equal octrees in
-  // different storage only cost another trace.
+  // Grey octrees are immutable and shared, so the same storage holds the same samples. If equal octrees are
+  // stored twice, the only cost is another trace.
   return a.has_value() == b.has_value() && (!a || &a->universe() == &b->universe());
 }
 
@@ -30,7 +30,7 @@ bool same_shape(const DrawnObject& a, const DrawnObject& b) {
          threshold == b.threshold && moved_from_still == b.moved_from_still;
 }
 
-/// Whether two objects of one shape look the same.
+/// Whether two objects of the same shape have the same colour, opacity and scalar.
 bool same_look(const DrawnObject& a, const DrawnObject& b) {
   return a.colour == b.colour && a.opacity == b.opacity && a.scalar == b.scalar;
 }
@@ -58,7 +58,7 @@ bool same_tones(const std::optional<CutTones>& a, const std::optional<CutTones>&
   return same_samples(a->grey, b->grey) && a->black == b->black && a->white == b->white;
 }
 
-/// Whether two sets of options shade the same layers to the same picture.
+/// Whether two sets of options turn the same layers into the same picture.
 bool same_style(const RenderOptions& a, const RenderOptions& b) {
   const auto& [view, size_px, centre_mm, width_mm, eye_mm, algorithm, shading, background, cuts, cut_tones,
                lights, occlusion, count, antialias] = a;
@@ -73,7 +73,7 @@ bool same_view(const View& a, const View& b) {
 
 /// Whether two pictures have the same plane and algorithm.
 bool same_plane(const Picture& a, const Picture& b) {
-  // In one universe and view, the distance determines the eye.
+  // Within one universe and view, the eye's distance determines the eye.
   const auto eye_mm = [](const Picture& picture) { return picture.eye ? picture.eye->distance_mm : 0.0; };
   return eye_mm(a) == eye_mm(b) && a.size_px == b.size_px && a.pixel_mm == b.pixel_mm &&
          a.centre_mm == b.centre_mm && a.nearest_mm == b.nearest_mm && a.algorithm == b.algorithm &&
@@ -121,7 +121,7 @@ class Renderer::Stages {
       all_kept = all_kept && same_shape(object, as_shaded(stage.last->objects[i], options.shading)) &&
                  same_look(object, stage.last->objects[i]);
       layers.push_back(layer_of(stage, object, plane, options, blank.algorithm));
-      // Keeps the layer at once, for the next frame if this one is stopped.
+      // Stores the layer at once, so that the next frame can use it if this one is stopped.
       if (layers.back().layer && find(stage, object) == nullptr) stage.layers.push_back(layers.back());
     }
     progress.at(1.0);
@@ -132,8 +132,8 @@ class Renderer::Stages {
     Picture picture = blank;
     shade(objects, layers, plane, options, picture);
     ++tally.pictures_shaded;
-    // Keeps this frame's layers only, those of hidden objects too, because objects are often hidden and
-    // shown.
+    // Keeps only this frame's layers, including those of hidden objects, because users often hide and show
+    // objects.
     std::erase_if(layers, [](const Kept& kept) { return kept.layer == nullptr; });
     stage.layers = std::move(layers);
     stage.last = Last{objects, options, picture};
@@ -149,7 +149,7 @@ class Renderer::Stages {
   struct Kept {
     DrawnObject shape;
     DrawnObject left;                    ///< the shape without the parts that the cuts remove
-    std::shared_ptr<const Layer> layer;  ///< none: hidden, and never traced
+    std::shared_ptr<const Layer> layer;  ///< none: hidden and not traced yet
   };
   struct Last {
     std::vector<DrawnObject> objects;

@@ -13,13 +13,13 @@
 namespace octotomy::voxel {
 
 /// Draws frame after frame for a screen. Keeps an object's layer while its voxels, samples, cuts and the view
-/// stay the same, and the whole picture while nothing changes. Gives the same bits as a new Renderer. One
-/// thread at a time may use it.
+/// stay the same, and the whole picture while nothing changes. The result is bit for bit that of a new
+/// Renderer. One thread at a time may use it.
 ///
-/// Every object has a layer of its own, so that a moved fragment leaves the skull's layer alone; the nearest
-/// surface wins. If node tracing finds two objects within a voxel of each other, render(), which compares
-/// voxels before it interpolates depths, may show the other one. Hidden objects are traced too. Memory: for
-/// each object and size, a depth image and the algorithm's data.
+/// Every object has a layer of its own, so that moving a fragment does not redraw the skull's layer. The
+/// nearest surface wins. If node tracing finds two objects within a voxel of each other, render(), which
+/// compares voxels before it interpolates depths, may show the other one. Hidden objects are traced too.
+/// Memory: for each object and size, a depth image and the algorithm's data.
 class Renderer {
  public:
   Renderer();
@@ -36,12 +36,13 @@ class Renderer {
   };
   const Tally& tally() const;
 
-  /// The full frame. Throws as render(), and std::invalid_argument if RenderOptions::count is set.
+  /// The full frame. Throws as render() does, and std::invalid_argument if RenderOptions::count is set.
   Picture frame(const std::vector<DrawnObject>& objects, const RenderOptions& options);
 
   /// Calls `show` with the frame at a quarter and at half of the pixels along each side, without blended
-  /// edges, and then with the full frame; at once with the full frame if all its layers are kept. Stops
-  /// between layers and pictures, never within one, and keeps the finished ones. Throws as frame(); Stopped.
+  /// edges, and then with the full frame; only with the full frame if all its layers are cached. Stops
+  /// between layers and pictures, never within one, and keeps the finished ones. Throws as frame() does, and
+  /// Stopped.
   void refine(const std::vector<DrawnObject>& objects, const RenderOptions& options,
               const std::function<void(const Picture&)>& show, const Progress& progress = {});
 

@@ -98,8 +98,8 @@ struct Lighting {
   glm::vec3 halfway{0.0f, 0.0f, -1.0f};
 };
 
-/// Pass 4: Phong's model over a row of slopes, into diffuse and mirrored light. Light by light, because a
-/// loop over pixels alone becomes vectors.
+/// Pass 4: Phong's model over a row of slopes, into diffuse and mirrored light. The outer loop is over
+/// lights, because the compiler vectorises only an inner loop over pixels.
 OCTOTOMY_VECTOR_CLONES void light_row(const Lighting& lighting, const float* __restrict to_right,
                                       const float* __restrict to_top, int first, int last,
                                       float* __restrict diffuse, float* __restrict mirrored) {
@@ -122,7 +122,7 @@ OCTOTOMY_VECTOR_CLONES void light_row(const Lighting& lighting, const float* __r
   const float gloss = lighting.gloss;
   for (int i = first; i < last; ++i) {
     const float mirror = (to_right[i] * halfway.x + to_top[i] * halfway.y - halfway.z) * per_length[i];
-    // The power of 48 by squarings.
+    // The 48th power by squaring.
     const float m1 = mirror > 0.0f ? mirror : 0.0f;
     const float m2 = m1 * m1;
     const float m8 = m2 * m2 * m2 * m2;
@@ -151,7 +151,7 @@ OCTOTOMY_VECTOR_CLONES void dim_row(const Dimming& dimming, const float* __restr
   }
 }
 
-/// Pass 5 for one channel: indices into the table of tones, within it for any light.
+/// Pass 5 for one channel: indices into the table of tones, clamped to its range for any light.
 OCTOTOMY_VECTOR_CLONES void root_row(const float* __restrict colour, const float* __restrict diffuse,
                                      const float* __restrict mirrored, int first, int last,
                                      int* __restrict root) {
@@ -195,7 +195,7 @@ void slopes_of_row(const Scenery& scenery, const DepthPlane& plane, int y, Rows&
             lit.x, lit.y, rows.to_right.data(), rows.to_top.data());
 }
 
-/// The slopes of given normals. A normal that points away from the observer becomes an edge-on one.
+/// The slopes of given normals. A normal that points away from the observer is replaced by one seen edge-on.
 void slopes_of_normals(std::span<const glm::vec3> normals, const glm::ivec2& lit, Rows& rows) {
   constexpr float edgewise = -1e-3f;
   for (int x = lit.x; x < lit.y; ++x) {
@@ -298,7 +298,8 @@ void colours_of_row(const DepthImage& image, const std::vector<glm::vec3>& colou
     }
     return;
   }
-  // Most often all objects are parts of one bone. Colours of background are not used.
+  // In most pictures all objects are parts of one bone and have one colour. Colours of background pixels are
+  // not used.
   const bool same =
       !colours.empty() && std::all_of(colours.begin(), colours.end(),
                                       [&](const glm::vec3& colour) { return colour == colours.front(); });
@@ -383,7 +384,7 @@ std::vector<std::uint8_t> shade(const DepthImage& image, const Scenery& scenery,
 }
 
 std::vector<std::uint32_t> edge_pixels(const DepthImage& image, const Scenery& scenery) {
-  // Breaks under twice the smallest show no jagged edge.
+  // A break under twice the smallest shows no jagged edge.
   const auto limit_mm = static_cast<float>(2.0 * break_mm(std::max(scenery.pixel_mm, scenery.voxel_mm)));
   std::vector<std::uint32_t> edges;
   const auto ends = [&](const Seen& a, const Seen& b) {

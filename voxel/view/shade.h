@@ -48,16 +48,16 @@ struct Scenery {
 
 /// Slopes of the depth image at every pixel, row by row: x is the growth of depth towards the picture's
 /// right, y towards its top, both without unit. Each is the mean of forward and backward differences over
-/// three rows or columns. The smaller difference has the larger weight, so that beside a break of the surface
-/// the other side sets the slope (Gordon, Reynolds 1985; thesis 5.2.2.1). Differences span at least a voxel.
-/// Depths are smoothed first, as by depth_plane(). 0 at background. Parallel over rows.
+/// three rows or columns. The smaller difference has the larger weight, so that next to a break in the
+/// surface the slope comes from the other side (Gordon, Reynolds 1985; thesis 5.2.2.1). Differences span at
+/// least a voxel. Depths are smoothed first, as by depth_plane(). 0 at background. Parallel over rows.
 std::vector<glm::vec2> slopes(const DepthImage& image, const Scenery& scenery);
 
 /// The picture of a depth image, 8-bit sRGB row by row: Phong's model (1975) for the scenery's lights, a
 /// gentle depth cue, and darker surfaces behind their surroundings (Luft, Colditz, Deussen 2006: unsharp
 /// masking of the depth buffer). Normals come from slopes(), or from `normals` if given, one per pixel in
-/// (right, up, look). Precondition: colours are within 0..1. Light beyond 0..1 is shown as its nearer end.
-/// Parallel over rows; same bits on any thread count.
+/// (right, up, look). Precondition: colours are within 0..1. Light outside 0..1 is clamped. Parallel over
+/// rows; same bits on any thread count.
 std::vector<std::uint8_t> shade(const DepthImage& image, const Scenery& scenery,
                                 std::span<const glm::vec3> normals = {});
 

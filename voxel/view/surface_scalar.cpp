@@ -38,7 +38,7 @@ SurfaceScalar distance_to(const Octree& other, const Octree& object, double most
         "the two objects are of different universes: combine one into the other's universe first");
   if (other.is_empty() || object.is_empty())
     throw std::invalid_argument("an empty object has no surface: give objects with at least one voxel");
-  // One voxel more, for the part of the surface beyond the outermost centres.
+  // Adds one voxel, because the surface extends beyond the outermost centres.
   const VoxelRange range = grown(range_of(object), 1);
   return {other.universe(), range, signed_distances_mm(other, range), most_mm};
 }

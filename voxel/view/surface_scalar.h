@@ -7,8 +7,7 @@
 
 namespace octotomy::voxel {
 
-/// A number at every voxel of a range that colours a surface: from blue at -most through near white at 0 to
-/// orange at most.
+/// A number at every voxel of a range. It colours a surface: blue at -most, near white at 0, orange at +most.
 struct SurfaceScalar {
   Universe universe;
   VoxelRange range;
@@ -26,8 +25,9 @@ struct SurfaceScalar {
 /// an octree is empty. Memory: 12 bytes per voxel of the object's extents.
 SurfaceScalar distance_to(const Octree& other, const Octree& object, double most_mm);
 
-/// The sRGB colour of a share from -1 to 1: straight lines in CIE Lab from blue to orange, which readers with
-/// any colour vision distinguish; both ends are equally dark (after Moreland, ISVC 2009).
+/// The sRGB colour of a share from -1 (blue) to 1 (orange), along straight lines in CIE Lab. People with any
+/// type of colour vision can distinguish the two hues, and both ends are equally dark (after Moreland, ISVC
+/// 2009).
 glm::vec3 diverging_colour(double share);
 
 /// `count` colours, evenly from share -1 to 1.

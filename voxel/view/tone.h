@@ -31,7 +31,7 @@ float srgb_from_linear(float linear);
 /// Linear light of an sRGB colour, 0..1.
 glm::vec3 linear_from_srgb(const glm::vec3& colour);
 
-/// Writes a colour of linear light as three bytes of sRGB.
+/// Writes a linear colour as three bytes of sRGB.
 void put(std::uint8_t* rgb, const glm::vec3& linear);
 
 }  // namespace octotomy::voxel

@@ -39,7 +39,7 @@ const std::array<std::pair<std::string_view, TransferFunction>, 3>& presets() {
   return all;
 }
 
-/// The function at a sample, by its points.
+/// The transfer function at a sample, interpolated between its points.
 TransferTable::Entry entry_at(const TransferFunction& transfer, double sample) {
   const auto entry_of = [](const TransferPoint& point) {
     return TransferTable::Entry{linear_from_srgb(point.colour), static_cast<float>(point.per_mm)};

@@ -25,13 +25,13 @@ struct TransferPoint {
 /// before the first and after the last point.
 struct TransferFunction {
   std::vector<TransferPoint> points;  ///< two at least, samples ascending
-  /// Change of samples over a millimetre from which a place is fully shaded as a surface. A smaller change is
-  /// shaded in proportion, because noise has no orientation.
+  /// A position is shaded fully as a surface if samples change by at least this much per millimetre. A
+  /// smaller change is shaded in proportion, because noise has no orientation.
   double surface_per_mm = 50.0;
 };
 
-/// Throws std::invalid_argument that names the point if there are fewer than two, samples do not ascend,
-/// a number is outside its range or not finite, or no point is visible.
+/// Throws std::invalid_argument, which names the point, if there are fewer than two points, samples do not
+/// ascend, a number is outside its range or not finite, or no point is visible.
 void check(const TransferFunction& transfer);
 
 /// Functions for CT in Hounsfield units: "bone", "skin" (translucent, over bone), "vessels" (with contrast

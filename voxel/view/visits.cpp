@@ -63,7 +63,7 @@ void VisitCounter::indirect(int level, Status status, const glm::ivec3& corner) 
 
 void VisitCounter::note(int level, const glm::ivec3& corner) {
   assert(glm::all(glm::greaterThanEqual(corner, glm::ivec3(0))) && level < 16);
-  // Sixteen bits for each coordinate and for the level.
+  // The key uses sixteen bits for each coordinate and for the level.
   static_assert(Universe::max_depth <= 12);
   visited_.insert(static_cast<std::uint64_t>(corner.x) | static_cast<std::uint64_t>(corner.y) << 16 |
                   static_cast<std::uint64_t>(corner.z) << 32 | static_cast<std::uint64_t>(level) << 48);

@@ -19,13 +19,13 @@ struct VisitTally {
 };
 
 /// The cost of drawing in the terms of the thesis's appendix A (A.3.1). A *direct* visit tests an octree node
-/// against its part of the picture; an *indirect* one only passes the node on the way to a neighbour.
+/// against its part of the picture; an *indirect* one only passes through the node on the way to a neighbour.
 struct Visits {
   std::vector<LevelCount> existing;  ///< all nodes of levels 1..n
   VisitTally direct;
   VisitTally all;                   ///< direct and indirect
   std::uint64_t visited_count = 0;  ///< nodes of levels 1..n with a visit of any kind
-  std::uint64_t pixel_count = 0;    ///< of the quadtree for views along axes, of the picture otherwise
+  std::uint64_t pixel_count = 0;    ///< pixels of the quadtree for views along axes, of the picture otherwise
 
   /// Visits to the quadtree per pixel (A.4.1).
   double per_pixel(const VisitTally& tally) const {
@@ -37,7 +37,7 @@ struct Visits {
   void add(const Visits& other);
 };
 
-/// The counter of a walk without counts; its calls compile to nothing.
+/// The counter for a walk that does not count; its calls compile to nothing.
 struct NoVisits {
   void direct(int, Status, const glm::ivec3&) {}
   void indirect(int, Status, const glm::ivec3&) {}

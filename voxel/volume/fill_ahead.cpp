@@ -11,13 +11,13 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The smallest page. Of a larger one, all touches but the first cost nothing.
+/// The smallest page size. In a larger page, every touch after the first costs nothing.
 constexpr std::size_t page_bytes = 4096;
-/// Two of the largest pages that are given without being asked for one by one.
+/// Twice the size of the largest page that the system uses without an explicit request.
 constexpr std::size_t part_bytes = std::size_t{4} << 20;
 constexpr std::size_t most_parts_ahead = 16;
 
-/// Parts that are touched by tasks, unless the filling thread comes to one first.
+/// Parts whose pages tasks touch in advance, unless the filling thread reaches a part first.
 class PartsAhead {
  public:
   PartsAhead(char* memory, std::size_t bytes)
@@ -25,7 +25,7 @@ class PartsAhead {
   PartsAhead(const PartsAhead&) = delete;
   PartsAhead& operator=(const PartsAhead&) = delete;
   ~PartsAhead() {
-    // Tasks that have not begun find nothing to do.
+    // Claims every part, so that tasks that have not begun have nothing to do.
     for (std::size_t part = 0; part < asked_; ++part) own(part);
     tasks_.wait();
   }
@@ -34,7 +34,7 @@ class PartsAhead {
   char* begin(std::size_t part) const { return memory_ + part * part_bytes; }
   std::size_t size(std::size_t part) const { return std::min(part_bytes, bytes_ - part * part_bytes); }
 
-  /// Makes a part this thread's own, and has those after it touched.
+  /// Claims a part for this thread and starts tasks that touch the parts after it.
   void take(std::size_t part) {
     for (; asked_ < std::min(part + most_parts_ahead, count()); ++asked_)
       tasks_.run([this, next = asked_] { touch(next); });
@@ -62,7 +62,7 @@ class PartsAhead {
   std::size_t bytes_;
   std::size_t asked_ = 0;
   std::vector<std::atomic<Place>> places_;
-  tbb::isolated_task_group tasks_;  ///< the thread that waits for them takes up no other work
+  tbb::isolated_task_group tasks_;  ///< isolated: a thread that waits for these tasks runs no others
 };
 
 }  // namespace

@@ -6,11 +6,11 @@
 
 namespace octotomy::voxel {
 
-/// Fills new memory: calls `fill(part, bytes)` on this thread for its parts in ascending order, while others
-/// touch the pages some parts ahead, which writes zeros to them. Meant for a fill that cannot be shared out,
-/// as inflating: to hand out a page can take as long as to inflate what it holds. Returns how many bytes were
-/// filled: `fill` returns how many of its part it filled, and less than all ends it. Passes on what `fill`
-/// throws. Memory beyond the part at hand: at most 64 MiB are touched before they are filled.
+/// Fills new memory: calls `fill(part, bytes)` on this thread for its parts in ascending order, while other
+/// threads touch the pages of the next parts, so that the system allocates and zeroes them. For fills that
+/// cannot run in parallel, such as inflating: allocating a page can take as long as inflating its content.
+/// `fill` returns the number of bytes that it filled; a number below `bytes` ends the loop. Returns the
+/// total. Rethrows exceptions of `fill`. Memory: at most 64 MiB are touched before they are filled.
 std::size_t fill_ahead(char* memory, std::size_t bytes,
                        const std::function<std::size_t(char* part, std::size_t bytes)>& fill);
 

@@ -31,7 +31,7 @@ const Direction* direction_of(std::string_view word) {
   return nullptr;
 }
 
-/// Each unit with its names. British and American endings are made alike before they are compared.
+/// Each unit with its names. British and American endings are unified before comparison.
 constexpr std::array<std::pair<LengthUnit (*)(), std::array<std::string_view, 6>>, 8> all_units{{
     {[] {
        return LengthUnit{"mm", 1.0};

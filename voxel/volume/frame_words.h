@@ -11,7 +11,7 @@ namespace octotomy::voxel {
 /// The patient's directions along which the axes of a file's coordinates grow.
 struct PatientFrame {
   std::string name =
-      "LPS";  ///< one letter an axis: Left or Right, Posterior or Anterior, Superior or Inferior
+      "LPS";  ///< one letter per axis: Left or Right, Posterior or Anterior, Superior or Inferior
   glm::dmat3 lps_from_frame{1.0};
 };
 
@@ -28,12 +28,12 @@ struct LengthUnit {
 /// "metres". Quotes around it are ignored. None for anything else.
 std::optional<LengthUnit> length_unit(std::string_view word);
 
-/// As patient_frame() and length_unit(), of what a user wrote. Throw std::invalid_argument with examples.
+/// patient_frame() and length_unit() for a user's input. Throw std::invalid_argument with examples.
 PatientFrame parse_frame(const std::string& text);
 LengthUnit parse_unit(const std::string& text);
 
-/// The sides of the patient from which axes in LPS come, as MetaImage's AnatomicalOrientation names them:
-/// "RAI" for axes along LPS.
+/// The sides of the patient at which axes (in LPS) start, in the letters of MetaImage's
+/// AnatomicalOrientation: "RAI" for axes along LPS.
 std::string sides_of_origin(const glm::dmat3& axes);
 
 }  // namespace octotomy::voxel

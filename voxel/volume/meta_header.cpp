@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Headers of MetaImage as MetaIO, ITK and VTK read them: TransformMatrix lists the directions of the axes one
-// after the other, Offset is the place of the first sample, both in LPS; MET_LONG has 32 bits. Departures:
-// DistanceUnits hold for spacing and Offset; the intensity function is applied.
+// Reads headers of MetaImage in the same way as MetaIO, ITK and VTK: TransformMatrix lists the directions of
+// the axes one after the other, Offset is the position of the first sample, both in LPS; MET_LONG has 32
+// bits. Departures: DistanceUnits apply to spacing and Offset; the intensity function is applied.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -51,7 +51,8 @@ class MetaReader {
   }
 
  private:
-  /// The numbers under the first of several names; a warning where another of them says something else.
+  /// The numbers under the first of several names that exists. Adds a warning if another of these names has
+  /// different numbers.
   std::vector<double> first_of(const std::vector<const char*>& names, std::size_t count) {
     std::vector<double> taken;
     std::string taken_name;
@@ -136,8 +137,8 @@ class MetaReader {
            "the file states a CenterOfRotation, which ITK and VTK do not apply: it is not used"});
   }
 
-  /// AnatomicalOrientation repeats the matrix in letters: the sides from which the axes come, so that RAI is
-  /// LPS. It places nothing.
+  /// AnatomicalOrientation repeats the matrix in letters, the sides at which the axes start: RAI means axes
+  /// along LPS. It is compared with the matrix and otherwise not used.
   void check_anatomy(bool is_assumed) {
     const std::string letters = text_.field("anatomicalorientation").value_or("???");
     if (letters.find('?') != std::string::npos || axes_ != 3) return;
@@ -150,7 +151,7 @@ class MetaReader {
                                  "; it is not used"});
   }
 
-  /// MetaIO looks at the first letter alone.
+  /// Reads only the first letter, as MetaIO does.
   std::optional<bool> flag(const char* name) const {
     const std::optional<std::string> word = text_.field(name);
     if (!word || word->empty()) return std::nullopt;
@@ -227,7 +228,7 @@ class MetaReader {
   void take_meaning() {
     header_.meaning = text_.field(meaning_key).value_or("");
     header_.modality = text_.field(modality_key).value_or("");
-    // MetaIO's word for it: MET_MOD_CT, _MR, _NM, _US, _OTHER or _UNKNOWN.
+    // MetaIO's names of modalities are MET_MOD_CT, _MR, _NM, _US, _OTHER and _UNKNOWN.
     const std::string met = text_.field("modality").value_or("");
     if (header_.modality.empty() &&
         (met == "MET_MOD_CT" || met == "MET_MOD_MR" || met == "MET_MOD_NM" || met == "MET_MOD_US"))

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Headers of NIfTI-1 and NIfTI-2. nifti1.h and nifti2.h of the NIfTI library name the fields. The library's
-// own reader is not called: it prints to standard error, takes the length of a damaged header's extensions
-// and dims on trust, changes what it finds (negative spacings, forms, slopes) without a word, and would need
-// a second parser before it that refuses what it hangs on. Nothing is left then for it to read.
+// Reads headers of NIfTI-1 and NIfTI-2, whose fields nifti1.h and nifti2.h of the NIfTI library define. Does
+// not call the library's own reader: it prints to standard error, trusts the dims and the length of
+// extensions in damaged headers, silently changes negative spacings, forms and slopes, and hangs on some
+// headers. A parser that refuses those headers beforehand would already read everything.
 //
-// Meaning: the sform where its code is positive, else the qform where its code is, else the spacing alone,
-// which names no frame: the axes are then taken as Analyze files have them, to the left, front and head,
-// centred on the origin, as nibabel, SPM and FSL do. xyzt_units hold for spacing and positions.
+// Geometry: the sform if its code is positive, else the qform if its code is positive, else the spacing
+// alone. The spacing states no frame; the axes are then assumed as in Analyze files, to the left, front and
+// head, centred on the origin, as in nibabel, SPM and FSL. xyzt_units apply to spacing and positions.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -39,7 +39,7 @@ Number swapped(Number value) {
   return value;
 }
 
-/// The fields that have a meaning here, of either version.
+/// The fields that this reader uses, of either version.
 struct Fields {
   int version = 1;
   bool is_swapped = false;
@@ -106,7 +106,7 @@ double worst_shift(const glm::dmat4& a, const glm::dmat4& b, const glm::ivec3& d
   return worst;
 }
 
-/// What a form's code says of its coordinates.
+/// The coordinates that a form's code denotes.
 std::string name_of_code(int code) {
   switch (code) {
     case NIFTI_XFORM_SCANNER_ANAT:
@@ -158,7 +158,7 @@ class NiftiReader {
 
  private:
   static constexpr int most_code = NIFTI_XFORM_TEMPLATE_OTHER;
-  static constexpr std::size_t most_read = 4096;  ///< the header, and our own extension behind it
+  static constexpr std::size_t most_read = 4096;  ///< the header and this program's own extension after it
 
   void read_fields() {
     bytes_.resize(most_read);
@@ -199,7 +199,7 @@ class NiftiReader {
     }
   }
 
-  /// Whether numbers are finite and none reaches a kilometre, as no scanner does.
+  /// Whether numbers are finite and below a kilometre, beyond which no scanner reaches.
   bool are_lengths(std::initializer_list<glm::dvec3> lengths) const {
     const double most = 1e6 / header_.geometry.mm_per_unit.x;
     return std::all_of(lengths.begin(), lengths.end(), [&](const glm::dvec3& length) {
@@ -207,7 +207,7 @@ class NiftiReader {
     });
   }
 
-  /// The spacing along three axes. Of a single slice the header may leave out the third.
+  /// The spacing along three axes. For a single slice the header may omit the third.
   glm::dvec3 spacing(std::size_t axes) {
     glm::dvec3 spacing(fields_.pixdim[1], fields_.pixdim[2], fields_.pixdim[3]);
     const bool has_third = axes >= 3 || std::abs(spacing.z) > 0.0;
@@ -254,8 +254,8 @@ class NiftiReader {
     return ras;
   }
 
-  /// The sform, whose third column a single slice may leave out. False where a number is none or its columns
-  /// span no volume.
+  /// Whether the sform is valid: its numbers are finite and its columns span a volume. For a single slice the
+  /// third column may be absent.
   bool is_sound_sform(std::size_t axes) {
     const glm::dmat4& s = fields_.sform;
     const auto is_finite = [](const glm::dvec4& column) {
@@ -323,7 +323,7 @@ class NiftiReader {
           {"slice_spacing", Verdict::Pass, "a single slice, whose thickness the header states"});
   }
 
-  /// A warning where pixdim, which the sform does not use, contradicts the sform by more than a hundredth.
+  /// Warns if pixdim, which the sform does not use, differs from the sform by more than a hundredth.
   void compare_spacing(std::size_t axes) {
     bool agrees = true;
     glm::dvec3 spacing(0.0);
@@ -340,7 +340,8 @@ class NiftiReader {
                  fields_.pixdim[1], fields_.pixdim[2], fields_.pixdim[3], spacing.x, spacing.y, spacing.z)});
   }
 
-  /// A warning where sform and qform put a corner further apart than rounding of their numbers can.
+  /// Warns if the positions of a corner by sform and by qform differ by more than the rounding of their
+  /// numbers.
   void compare_forms(std::size_t axes) {
     const std::size_t lines = header_.audit.size();
     glm::dmat4 q(1.0);
@@ -351,12 +352,12 @@ class NiftiReader {
           {"forms", Verdict::Warn, "the header's qform is damaged: its sform was taken, which is sound"});
       return;
     }
-    header_.audit.resize(lines);  // the qform is not used: its own flaws are no news
+    header_.audit.resize(lines);  // the qform is not used, so its own flaws are not reported
     third_is_missing_ = false;
     const glm::dmat4& s = fields_.sform;
     const glm::ivec3& dims = header_.geometry.dims;
-    // The quaternion's first number is the root of 1 less the others' squares, whose roundings add up to
-    // `slack`: near half a turn it is uncertain by up to the root of that.
+    // The quaternion's first number is the root of 1 minus the sum of the others' squares. The rounding of
+    // the squares adds up to `slack`, so near half a turn the root is uncertain by up to the root of `slack`.
     constexpr double slack = 4.0 * static_cast<double>(std::numeric_limits<float>::epsilon());
     const double real = std::sqrt(std::max(0.0, 1.0 - glm::dot(fields_.quaternion, fields_.quaternion)));
     const double turn = 2.0 * slack / std::max(real, std::sqrt(slack));
@@ -376,7 +377,7 @@ class NiftiReader {
                                    shift * header_.geometry.mm_per_unit.x)});
   }
 
-  /// Takes the double-precision geometry of our own files where the header still agrees with it.
+  /// Uses the double-precision geometry in this program's own files if the header still agrees with it.
   void take_exact_geometry() {
     const std::optional<glm::dmat4> lps = own_geometry();
     if (!lps) return;
@@ -396,9 +397,9 @@ class NiftiReader {
            "ones in double precision"});
   }
 
-  /// The geometry in our own extension, which is the first one; none if that is absent or damaged.
+  /// The geometry in this program's own extension, which is the first one; none if it is absent or damaged.
   std::optional<glm::dmat4> own_geometry() const {
-    const std::size_t at = header_bytes_ + 4;  // behind the flags that say whether there are extensions
+    const std::size_t at = header_bytes_ + 4;  // after the flags that state whether there are extensions
     if (bytes_.size() < at + 8 || bytes_[header_bytes_] == 0) return std::nullopt;
     const auto length = static_cast<std::size_t>(std::max(8, whole_at(at)));
     if (length > bytes_.size() - at || whole_at(at + 4) != nifti_text_extension) return std::nullopt;

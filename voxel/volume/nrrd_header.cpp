@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Headers of NRRD by its definition (teem.sourceforge.net/nrrd/format.html, Teem 1.9). Departures: one value
-// a sample and one volume only, but for the layers of 3D Slicer's segmentations; bzip2 and blocks are
-// refused. Axes that are none of space are passed over where they have the length 1. Without `centers` a
-// sample stands in the middle of its cell, as Teem assumes.
+// Reads headers of NRRD by its definition (teem.sourceforge.net/nrrd/format.html, Teem 1.9). Departures: only
+// one value per sample and one volume, except for the layers of 3D Slicer's segmentations; bzip2 and blocks
+// are refused. Axes that are not spatial are skipped if their length is 1. Without `centers` a sample is in
+// the middle of its cell, as Teem assumes.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -51,7 +51,7 @@ const std::map<std::string, SampleType>& nrrd_types() {
   return all;
 }
 
-/// Words separated by blanks; those within quotes or brackets stay together, without the quotes.
+/// Splits a text at blanks. Text within quotes or brackets stays together; quotes are removed.
 std::vector<std::string> words_in(const std::string& text) {
   std::vector<std::string> words;
   for (std::size_t at = text.find_first_not_of(" \t"); at != std::string::npos;
@@ -100,7 +100,7 @@ class NrrdReader {
     return *text;
   }
 
-  /// The words of a field that has one for each axis; empty where it is absent.
+  /// The words of a field with one word per axis; empty if the field is absent.
   std::vector<std::string> words_an_axis(const char* name) const {
     const std::optional<std::string> text = text_.field(name);
     if (!text) return {};
@@ -110,7 +110,8 @@ class NrrdReader {
     return words;
   }
 
-  /// Finds the axes of space: those with a direction; without any, those that are not of another kind.
+  /// Finds the spatial axes: those with a direction, or, if there are none, those whose kind is not another
+  /// one.
   void take_axes() {
     const double axes = text_.number(path_, "dimension").value_or(0.0);
     if (!(axes >= 2.0 && axes <= 16.0) || axes != std::trunc(axes))
@@ -227,7 +228,7 @@ class NrrdReader {
         (has_directions_ ? " (space units)" : " (units)");
   }
 
-  /// The numbers of "(1,2,3)", of which those beyond the third are of time.
+  /// The numbers of "(1,2,3)". Numbers after the third belong to time and are ignored.
   glm::dvec3 vector_of(const char* name, const std::string& text) const {
     const bool has_brackets = text.size() >= 2 && text.front() == '(';
     const std::optional<std::vector<double>> numbers =
@@ -260,7 +261,8 @@ class NrrdReader {
                                "the file's measurement frame is of vectors and tensors; a scan has none"});
   }
 
-  /// What axes state of their own beside directions has no meaning in NRRD: it is not used.
+  /// NRRD defines no meaning for an axis's own ends if there are directions. They are not used; warns of
+  /// them.
   void warn_of_ends() {
     for (const char* name : {"axismins", "axismaxs"}) {
       const std::vector<double> ends = numbers_an_axis(name);
@@ -273,7 +275,8 @@ class NrrdReader {
     }
   }
 
-  /// Spacings beside directions have no meaning in NRRD; where they differ, one of both is wrong.
+  /// NRRD defines no meaning for spacings if there are directions. Warns if the two differ, because one of
+  /// them is wrong.
   void warn_of_other_spacings() {
     const std::vector<double> spacings = numbers_an_axis("spacings");
     for (std::size_t i = 0; i < space_axes_.size(); ++i) {
@@ -295,14 +298,14 @@ class NrrdReader {
                              "the file states no origin: its first sample is assumed to lie at 0, 0, 0"});
   }
 
-  /// A field of numbers, one for each axis, of which some may be nan; all nan where it is absent.
+  /// A field with one number per axis. Some may be nan; all are nan if the field is absent.
   std::vector<double> numbers_an_axis(const char* name) const {
     const std::vector<double> numbers = text_.numbers(path_, name, axis_count_);
     return numbers.empty() ? std::vector<double>(axis_count_, std::numeric_limits<double>::quiet_NaN())
                            : numbers;
   }
 
-  /// The older statements, an axis at a time: spacings, or the ends of the axes.
+  /// Reads the older statements for single axes: spacings, or the ends of the axes.
   void take_spacings() {
     StatedGeometry& geometry = header_.geometry;
     const std::vector<double> spacings = numbers_an_axis("spacings");

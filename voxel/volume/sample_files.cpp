@@ -31,8 +31,8 @@ using Encoding = SampleFiles::Encoding;
   refuse(path, "its samples are cut short: " + std::to_string(held) + " bytes of " + std::to_string(bytes));
 }
 
-/// Where a file's samples begin, as they are stored. `bytes` are those of the samples, for raw ones at the
-/// end.
+/// The offset in a file at which its stored samples begin. `bytes` is their size, needed if they are raw and
+/// at the end of the file.
 std::uintmax_t begin_of(const fs::path& path, const SampleFiles& from, const fs::path& file,
                         std::uintmax_t bytes) {
   if (from.at_end) {
@@ -52,7 +52,7 @@ std::uintmax_t begin_of(const fs::path& path, const SampleFiles& from, const fs:
   return from.encoding == Encoding::Raw ? at + from.byte_skip : at;
 }
 
-/// The bytes of samples that are raw or packed, file by file.
+/// Reads the bytes of raw or compressed samples, file by file.
 class SampleBytes {
  public:
   SampleBytes(const fs::path& path, const SampleFiles& from, std::uintmax_t bytes)
@@ -97,7 +97,7 @@ class SampleBytes {
     }
   }
 
-  /// Reads packed samples to their end, so that their checksum is tested.
+  /// Reads compressed samples to their end, so that their checksum is verified.
   void close() {
     if (from_.encoding == Encoding::Deflated) {
       behind_ += stream_->skip_rest();
@@ -125,7 +125,7 @@ bool is_blank(char letter) {
   return letter == ' ' || letter == ',' || (letter >= '\t' && letter <= '\r');
 }
 
-/// As std::from_chars() of a real number; an error where it is not whole.
+/// std::from_chars() for a real number; an error if its value is not an integer.
 std::pair<const char*, std::errc> whole_number(const char* begin, const char* end, double& real) {
   const auto [rest, error] = std::from_chars(begin, end, real);
   return {rest, error == std::errc() && real != std::trunc(real) ? std::errc::invalid_argument : error};

@@ -9,10 +9,10 @@
 
 namespace octotomy::voxel {
 
-/// Reads `bytes` bytes of samples, decoded: numbers of text and hexadecimal ones as well. Calls `held`, if
-/// any, with the count of those that are final, every few megabytes before the last ones. Returns how many
-/// bytes stand behind the samples and are none of them. Throws Error, Input, with `path` and reason where
-/// they are cut short or damaged. Cost: reads and unpacks the files once. Memory: of text, the file.
+/// Reads and decodes `bytes` bytes of samples; text and hexadecimal numbers are converted. Calls `held`, if
+/// set, every few megabytes with the number of bytes that are final, but not for the last ones. Returns the
+/// number of surplus bytes after the samples. Throws Error, Input, with `path` and reason, if the samples are
+/// truncated or damaged. Cost: reads and decompresses the files once. Memory: for text, the whole file.
 std::uintmax_t read_sample_files(const std::filesystem::path& path, const SampleFiles& from, char* samples,
                                  std::uintmax_t bytes,
                                  const std::function<void(std::uintmax_t held)>& held = {});

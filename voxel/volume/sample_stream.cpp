@@ -66,7 +66,7 @@ class SampleStream::Reading {
         if (ended_) return;
         continue;
       }
-      // The file ends before the stream does.
+      // The file ended before the stream did.
       if (before == 0 && inflating_.avail_out == room) refuse_damaged();
     }
   }
@@ -83,14 +83,14 @@ class SampleStream::Reading {
     inflating_.crc_flag = begins_as_gzip() ? ISAL_GZIP : ISAL_ZLIB;
   }
 
-  /// Goes on with a gzip stream that follows another; anything else is the end.
+  /// Continues with the next gzip stream, if one follows; anything else is the end.
   void end_stream() {
     refill();
     ended_ = inflating_.crc_flag != ISAL_GZIP || !begins_as_gzip();
     if (!ended_) begin_stream();
   }
 
-  /// The first byte tells: that of a zlib stream is none of gzip's.
+  /// The first byte decides: a zlib stream never begins with the first byte of gzip.
   bool begins_as_gzip() const { return inflating_.avail_in > 0 && *inflating_.next_in == gzip_magic[0]; }
 
   [[noreturn]] void refuse_damaged() const { refuse(path_, "its packed samples are damaged or cut short"); }
@@ -99,7 +99,7 @@ class SampleStream::Reading {
   std::ifstream in_;
   bool is_packed_;
   bool ended_ = false;
-  std::vector<char> part_;  ///< of the file, packed
+  std::vector<char> part_;  ///< compressed bytes of the file
   inflate_state inflating_{};
 };
 

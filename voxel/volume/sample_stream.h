@@ -8,9 +8,9 @@
 
 namespace octotomy::voxel {
 
-/// The bytes of a file from an offset on, inflated as they are read where they are packed. Packed means one
-/// or more gzip streams one after the other, or a zlib stream; what follows them is not read. Memory: a
-/// megabyte, whatever the file claims.
+/// The bytes of a file from an offset on. Packed bytes are inflated while they are read: one or more
+/// consecutive gzip streams, or one zlib stream. Bytes after these are not read. Memory: one megabyte,
+/// independent of what the file claims.
 class SampleStream {
  public:
   /// Throws Error, Input, with the path if the file cannot be opened.
@@ -18,10 +18,10 @@ class SampleStream {
   SampleStream(SampleStream&&) noexcept;
   ~SampleStream();
 
-  /// Fills `to`, or as much of it as there are bytes left; returns how many. Throws Error, Input, with the
-  /// path where a packed stream is damaged, ends early or fails its checksum.
+  /// Reads up to `count` bytes into `to`; returns their number, which is smaller only at the end. Throws
+  /// Error, Input, with the path, if a packed stream is damaged, ends early or fails its checksum.
   std::size_t read(char* to, std::size_t count);
-  /// Reads to the end, so that checksums are tested; returns how many bytes there were.
+  /// Reads to the end, so that checksums are verified; returns the number of bytes read.
   std::uintmax_t skip_rest();
 
  private:
@@ -29,7 +29,7 @@ class SampleStream {
   std::unique_ptr<Reading> reading_;
 };
 
-/// Whether the file begins as a gzip stream does.
+/// Whether the file begins with a gzip stream.
 bool is_gzip(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

@@ -4,7 +4,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// "left, back and head", to which the axes of a frame run.
+/// The directions of a frame's axes in words: "left, back and head".
 std::string directions_of(const PatientFrame& frame) {
   std::string text;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -33,11 +33,11 @@ constexpr std::array<std::pair<std::string_view, SampleType>, 12> named_types{
      {"double", SampleType::Double},
      {"float64", SampleType::Double}}};
 
-/// What one look at the values finds.
+/// Facts about the values, collected in one pass.
 struct Values {
   std::size_t unreal_count = 0;  ///< not finite, or infinite in single precision
   bool fits_int16 = true;
-  bool is_exact = true;  ///< in single precision
+  bool is_exact = true;  ///< every value is exact in single precision
   double low = std::numeric_limits<double>::infinity();
 
   Values operator+(const Values& other) const {
@@ -50,11 +50,12 @@ bool is_kept(double real) {
   return std::abs(real) <= static_cast<double>(std::numeric_limits<float>::max());
 }
 
-/// Whether a number of 64 bits is the same one in double precision.
+/// Whether a 64-bit integer is exact in double precision.
 template <typename Stored>
 bool is_double(Stored value) {
   if constexpr (std::is_integral_v<Stored> && sizeof(Stored) == 8) {
-    // 2^63 and 2^64 are doubles, but beyond what the type holds: the conversion back would be undefined.
+    // 2^63 and 2^64 are exact doubles but exceed the range of the type, so converting them back would be
+    // undefined.
     constexpr double beyond = std::is_signed_v<Stored> ? 0x1p63 : 0x1p64;
     const auto real = static_cast<double>(value);
     return real < beyond && static_cast<Stored>(real) == value;
@@ -111,8 +112,8 @@ void turn_bytes(Samples<Stored>& stored, bool big_endian) {
   });
 }
 
-/// Below every measured sample, in the type that the samples are kept in; none where single precision has no
-/// such number. Whole numbers keep a whole one.
+/// A value below every measured sample, in the type in which the samples are stored; an integer for integers.
+/// None if single precision has no such number.
 std::optional<double> padding_below(const Values& found) {
   if (found.fits_int16 && found.low > std::numeric_limits<std::int16_t>::min()) return found.low - 1.0;
   const auto low = static_cast<float>(found.low);

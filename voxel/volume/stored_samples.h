@@ -31,15 +31,15 @@ struct StoredSamples {
   bool is_rescaled() const { return slope != 1.0 || intercept != 0.0; }
 };
 
-/// Which of the numbers 0..255 are stored, as in masks and label maps; none where more than 64 are, or
-/// anything else is.
+/// The set of stored numbers, if all are within 0..255 and at most 64 are different, as in masks and label
+/// maps; else none.
 using SmallNumbers = std::optional<std::bitset<256>>;
 
-/// Puts the samples of the scene's lattice into it: as int16 if every value is an integer in its range, else
-/// as float. `fill` writes them to memory as they are stored; where they are int16 without a rescale that
-/// memory is the scene's own. The audit states every change. Values that are not finite, or beyond single
-/// precision, become the lowest of the others. Throws Error, Input, naming the scene's source, if there are
-/// no others, and what `fill` throws. Parallel. Memory: the stored samples and the scene's.
+/// Sets the scene's samples: as int16 if every value is an integer in its range, else as float. `fill` writes
+/// the stored samples to memory; if they are int16 without a rescale, that memory is the scene's own. The
+/// audit reports every change. Values that are not finite, or beyond single precision, become padding below
+/// all others. Throws Error, Input, naming the scene's source, if there are no other values; rethrows
+/// exceptions of `fill`. Parallel. Memory: the stored samples and the scene's.
 SmallNumbers take_stored(const StoredSamples& stored, Scene& scene,
                          const std::function<void(char* memory, std::size_t bytes)>& fill);
 

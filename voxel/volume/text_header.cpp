@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Segmentations have the longest headers: some ten lines a segment.
+/// Segmentations have the longest headers: about ten lines per segment.
 constexpr std::size_t most_header_bytes = std::size_t{4} << 20;
 
 std::string header_bytes_of(const fs::path& path) {
@@ -30,7 +30,7 @@ class HeaderLines {
  public:
   HeaderLines(const fs::path& path, VolumeFormat format)
       : path_(path), format_(format), head_(header_bytes_of(path)) {
-    // Of a header that is too long neither the end nor all of its last line is seen.
+    // If a header is too long, its end is not in memory and its last line may be incomplete.
     is_whole_ = head_.size() < most_header_bytes;
     if (!is_whole_) head_.resize(head_.rfind('\n') + 1);
     const bool is_known = format == VolumeFormat::Nrrd
@@ -42,7 +42,7 @@ class HeaderLines {
   }
 
   TextHeader parsed() {
-    if (format_ == VolumeFormat::Nrrd) next_line();  // the magic
+    if (format_ == VolumeFormat::Nrrd) next_line();  // skips the magic number
     while (at_ < head_.size()) {
       const std::string line = next_line();
       ends_ = line.empty() && format_ == VolumeFormat::Nrrd;
@@ -51,7 +51,7 @@ class HeaderLines {
       format_ == VolumeFormat::Nrrd ? take_nrrd(line) : take_meta(line);
       if (ends_ && !is_list_) break;
       if (!is_list_) continue;
-      list_files();  // to the end of the file
+      list_files();  // the list extends to the end of the file
       ends_ = false;
     }
     if (!ends_ && !is_whole_)
@@ -85,14 +85,15 @@ class HeaderLines {
     put(name, value);
   }
 
-  /// "Key = Value" or "Key: Value", whichever mark comes first, as MetaIO takes it (MET_Read).
+  /// "Key = Value" or "Key: Value", whichever mark comes first, as in MetaIO (MET_Read).
   void take_meta(const std::string& line) {
     const std::size_t mark = line.find_first_of("=:");
     if (mark == std::string::npos || mark == 0)
       refuse(path_, "its MetaImage header is damaged: a line is neither 'Key = Value' nor 'Key: Value'");
     const std::string name = lower_case(trimmed(line.substr(0, mark)));
     const std::string value = trimmed(line.substr(mark + 1));
-    // Private keys may share their first part: "lab:dose = 5" and "lab:date = 6" contradict nothing.
+    // Private keys may share their first part: "lab:dose = 5" and "lab:date = 6" do not contradict each
+    // other.
     if (line[mark] == ':' && value.find('=') != std::string::npos)
       header_.fields.emplace(name, value);
     else
@@ -124,14 +125,14 @@ class HeaderLines {
 };
 
 fs::path beside(const fs::path& header, const std::string& name) {
-  const fs::path file = fs::absolute(header).parent_path() / name;  // an absolute name stays itself
+  const fs::path file = fs::absolute(header).parent_path() / name;  // an absolute name is unchanged
   std::error_code error;
   if (!fs::is_regular_file(file, error))
     refuse(header, "its data file '" + name + "' is missing; keep header and data together");
   return file;
 }
 
-/// The name of a number by a pattern with one %d, %3d or %03d.
+/// The file name for a number, by a pattern with one %d, %3d or %03d.
 class NumberedName {
  public:
   explicit NumberedName(const std::string& pattern) {
@@ -213,7 +214,7 @@ std::vector<fs::path> data_files(const fs::path& header, const std::string& stat
     if (files.empty()) refuse(header, "its header lists no data files behind LIST");
     return files;
   }
-  // A pattern has two numbers behind it, or three, and NRRD's the axes of a file.
+  // A pattern is followed by two or three numbers and, in NRRD, by the number of axes per file.
   std::istringstream words(statement);
   std::string name, rest;
   words >> name;

@@ -14,25 +14,25 @@ namespace octotomy::voxel {
 
 /// The lines of a NRRD's or MetaImage's header.
 struct TextHeader {
-  std::map<std::string, std::string> fields;  ///< by name in lower case; NRRD's also without blanks in it
-  std::map<std::string, std::string> keys;    ///< NRRD's key:=value, by key in lower case
-  std::vector<std::string> listed;            ///< the names of data files in the lines behind LIST
+  std::map<std::string, std::string> fields;  ///< by name in lower case; names of NRRD also without blanks
+  std::map<std::string, std::string> keys;    ///< NRRD's key:=value pairs, by key in lower case
+  std::vector<std::string> listed;            ///< the names of data files in the lines after LIST
   std::size_t end = 0;                        ///< offset of the samples that follow in the same file
 
   std::optional<std::string> field(const std::string& name) const;
-  /// Numbers of a field, separated by blanks or commas; empty where the field is absent. Throws Error, Input,
-  /// naming `path` and the field, where one is no number or their count is another than `count`.
+  /// The numbers of a field, separated by blanks or commas; empty if the field is absent. Throws Error,
+  /// Input, naming `path` and the field, if one is not a number or there are not `count` of them.
   std::vector<double> numbers(const std::filesystem::path& path, const std::string& name,
                               std::size_t count) const;
-  /// As numbers(), of a field that has one number.
+  /// numbers() for a field with one number.
   std::optional<double> number(const std::filesystem::path& path, const std::string& name) const;
 };
 
-/// Throws Error, Input, with path and reason where the file is no NRRD or MetaImage, the header is longer
-/// than 4 MB, a line cannot be parsed, or a field stands there twice with different values.
+/// Throws Error, Input, with path and reason, if the file is not a NRRD or MetaImage, the header is longer
+/// than 4 MB, a line cannot be parsed, or a field occurs twice with different values.
 TextHeader read_text_header(const std::filesystem::path& path, VolumeFormat format);
 
-/// Numbers separated by blanks or commas; none where a part is no number. "nan" and "inf" are numbers.
+/// Numbers separated by blanks or commas; none if a part is not a number. "nan" and "inf" are numbers.
 std::optional<std::vector<double>> numbers_in(const std::string& text);
 
 /// The files that hold the samples: one, those of a LIST, or those of a pattern with its first and last

@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Upper bound on the bytes of samples that a file holds behind its header.
+/// Upper bound on the bytes of samples that a file can hold after its header.
 std::uintmax_t most_bytes(const fs::path& file, const SampleFiles& samples) {
-  // Deflate packs at most 1032 bytes into one.
+  // Deflate compresses at most 1032 bytes into one.
   constexpr std::uintmax_t densest = 1100;
   const std::uintmax_t held = fs::file_size(file);
   const std::uintmax_t before =
@@ -29,7 +29,7 @@ std::uintmax_t most_bytes(const fs::path& file, const SampleFiles& samples) {
       return left * densest;
     case SampleFiles::Encoding::Hex:
       return left / 2;
-    case SampleFiles::Encoding::Text:  // a digit and a blank, which the last number does not need
+    case SampleFiles::Encoding::Text:  // a digit and a blank; the last number needs no blank
       return (left + 1) / 2 * bytes_of(samples.stored.type);
   }
   return 0;
@@ -106,7 +106,7 @@ glm::ivec3 dims_of(const fs::path& path, const std::vector<double>& lengths) {
 Finding rescale_finding(const StoredSamples& stored, const std::string& says) {
   if (!stored.is_rescaled())
     return {"rescale", Verdict::Pass, "values are the stored numbers (" + says + ")"};
-  constexpr double least_step = 0x1p-24;  // what single precision keeps beside 1
+  constexpr double least_step = 0x1p-24;  // rounding error of single precision at 1
   if (std::abs(stored.slope) < least_step * std::abs(stored.intercept))
     return {"rescale", Verdict::Warn,
             print("values are %.9g * stored + %.9g (", stored.slope, stored.intercept) + says +

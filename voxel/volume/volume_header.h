@@ -18,24 +18,24 @@ namespace octotomy::voxel {
 /// Formats of volume files.
 enum class VolumeFormat { Nifti, Nrrd, Meta };
 
-/// The format of a file that write_scene() writes, by its extension in upper or lower case; none for another.
+/// The format in which write_scene() writes a file, by its extension in upper or lower case; none for others.
 std::optional<VolumeFormat> volume_format(const std::filesystem::path& path);
-/// As volume_format(), of files that are read: also NIfTI's pairs, of which .hdr or .img is named and both
-/// are there. DICOM, too, stands in .img files.
+/// volume_format() for files to read: also pairs of NIfTI, if the path is the .hdr or .img and both exist. A
+/// single .img file is not accepted, because DICOM files have this extension too.
 std::optional<VolumeFormat> readable_volume_format(const std::filesystem::path& path);
 
 /// NIfTI's header and samples in two files.
 struct NiftiPair {
   std::filesystem::path header, image;
 };
-/// The pair to which a .hdr or .img file, packed or not, belongs; none for other names and where one is
-/// missing.
+/// The pair to which a .hdr or .img file, compressed or not, belongs; none for other names, or if one of the
+/// two is missing.
 std::optional<NiftiPair> nifti_pair(const std::filesystem::path& path);
 
 /// The format's name in messages.
 const char* name_of(VolumeFormat format);
 
-/// Where a volume's samples stand, and how.
+/// The files, offsets and encoding of a volume's samples.
 struct SampleFiles {
   enum class Encoding { Raw, Deflated, Text, Hex };
 
@@ -43,66 +43,66 @@ struct SampleFiles {
   Encoding encoding = Encoding::Raw;
   std::vector<std::filesystem::path> files;  ///< each holds an equal part, in this order
   std::uintmax_t file_at = 0;    ///< offset of the samples, or of their encoded stream, in each file
-  std::uintmax_t line_skip = 0;  ///< lines from there that are none of them
-  std::uintmax_t byte_skip = 0;  ///< bytes that follow and are none of them, counted once they are decoded
+  std::uintmax_t line_skip = 0;  ///< lines to skip there
+  std::uintmax_t byte_skip = 0;  ///< bytes to skip next, counted after decoding
   bool at_end = false;           ///< the samples are the last bytes of each file instead
 };
 
-/// What the header of a volume file says.
+/// The statements of a volume file's header.
 struct VolumeHeader {
-  std::map<std::string, std::string> fields;  ///< of a NRRD or MetaImage, by name in lower case
+  std::map<std::string, std::string> fields;  ///< fields of a NRRD or MetaImage, by name in lower case
   StatedGeometry geometry;
   SampleFiles samples;
-  /// Of a segmentation of 3D Slicer whose segments overlap: samples of so many label maps stand at each
-  /// place, one behind the other.
+  /// For a segmentation of 3D Slicer whose segments overlap: the number of label maps, whose samples are
+  /// interleaved.
   int layers = 1;
   std::string meaning;                 ///< "HU", "raw" or "label"; empty if the file states none
   std::string modality;                ///< DICOM's two letters; empty if the file states none
-  std::optional<double> padding = {};  ///< Scene::padding, of our own files
-  std::vector<Finding> audit;          ///< lines on its other statements
+  std::optional<double> padding = {};  ///< Scene::padding, in files of this program
+  std::vector<Finding> audit;          ///< lines on the header's other statements
 
   std::optional<std::string> field(const std::string& name) const;
 };
 
-// Names under which our own files keep what the formats have no field for.
+// Names under which this program's files store values for which the formats have no field.
 inline constexpr const char* meaning_key = "octotomy_meaning";
 inline constexpr const char* modality_key = "octotomy_modality";
 inline constexpr const char* padding_key = "octotomy_padding";
-/// NIfTI has one free text, the description: this mark, the meaning, the modality, and behind
-/// nifti_padding_mark the padding.
+/// NIfTI has one free text, the description. It holds this mark, the meaning, the modality and, after
+/// nifti_padding_mark, the padding.
 inline constexpr std::string_view nifti_mark = "octotomy ";
 inline constexpr std::string_view nifti_padding_mark = "padding=";
-/// NIfTI-1 keeps positions in single precision. Our own files add them in double precision, in an extension
-/// of plain text (code 6, which others skip): this mark, then the first three rows of lps_from_voxel.
+/// NIfTI-1 keeps positions in single precision. This program's files add them in double precision, in an
+/// extension of plain text (code 6, which other readers skip): this mark, then the first three rows of
+/// lps_from_voxel.
 inline constexpr std::string_view nifti_geometry_mark = "octotomy lps_from_voxel ";
 inline constexpr std::int32_t nifti_text_extension = 6;
 
-/// Reads a header. Throws Error, Input, with path and reason where it is damaged, states what is no scan
-/// (more than one value a sample, several volumes), or claims more samples than its files can hold. Memory: a
-/// few megabytes.
+/// Reads a header. Throws Error, Input, with path and reason, if it is damaged, does not describe a scan
+/// (more than one value per sample, several volumes), or claims more samples than its files can hold. Memory:
+/// a few megabytes.
 VolumeHeader read_volume_header(const std::filesystem::path& path, VolumeFormat format);
 
-/// Takes the text of Scene::padding. A text that is no number is passed over with a WARN; nothing is done for
-/// none.
+/// Parses the text of Scene::padding into the header. If it is not a number, adds a WARN instead. Does
+/// nothing if there is no text.
 void take_padding(const std::optional<std::string>& text, VolumeHeader& header);
 
 /// The audit's line on slope and intercept. `says` names them as the format does.
 Finding rescale_finding(const StoredSamples& stored, const std::string& says);
-/// Gives a file of two axes its third one: across the first two, 1 mm long, which the audit warns of.
+/// Adds a third axis to a file of two: perpendicular to these, with a spacing of 1 mm. The audit warns of it.
 void add_third_axis(VolumeHeader& header);
 
-/// Adds a line to the audit where a spacing of the field `name` has a minus sign, which formats do not
-/// foresee.
+/// Adds a line to the audit if a spacing of the field `name` has a minus sign, which the formats do not
+/// define.
 void warn_of_minus_signs(const char* name, const std::vector<double>& spacings, VolumeHeader& header);
 
-/// As read_volume_header(), of one format.
+/// read_volume_header() for one format.
 VolumeHeader read_nifti_header(const std::filesystem::path& path);
 VolumeHeader read_nrrd_header(const std::filesystem::path& path);
 VolumeHeader read_meta_header(const std::filesystem::path& path);
 
-/// Throws Error, Input, where `axes` numbers of samples along as many axes are no whole numbers from 1 to
-/// 2^31 - 1; returns the first three, 1 where there are fewer. More than three axes with more than one sample
-/// are refused.
+/// The numbers of samples along the first three axes; 1 for absent axes. Throws Error, Input, if a number is
+/// not an integer from 1 to 2^31 - 1, or if a further axis has more than one sample.
 glm::ivec3 dims_of(const std::filesystem::path& path, const std::vector<double>& lengths);
 
 }  // namespace octotomy::voxel

@@ -41,7 +41,7 @@ std::string_view bytes_of_samples(const Scene& scene) {
       scene.samples);
 }
 
-/// A file that is being written, plain or packed from some point on.
+/// A file that is being written, either plain or compressed from some offset on.
 class OutFile {
  public:
   explicit OutFile(const fs::path& path) : path_(path) {
@@ -55,7 +55,7 @@ class OutFile {
     out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (!out_) refuse_unwritten(path_, errno);
   }
-  /// Replaces bytes that were written.
+  /// Overwrites bytes that were written earlier.
   void overwrite(std::uint64_t at, std::string_view bytes) {
     out_.seekp(static_cast<std::streamoff>(at));
     write(bytes);
@@ -66,8 +66,8 @@ class OutFile {
     if (!out_) refuse_unwritten(path_, errno);
   }
 
-  /// Appends the parts as one gzip or zlib stream; returns its length. Level 1: scans are noise, higher
-  /// levels cost time and gain a few per cent.
+  /// Appends the parts as one gzip or zlib stream; returns its length. Uses level 1: scans are noisy, so
+  /// higher levels cost time and save only a few per cent.
   std::uint64_t write_packed(std::initializer_list<std::string_view> parts, bool is_gzip_stream) {
     z_stream stream{};
     if (deflateInit2(&stream, 1, Z_DEFLATED, is_gzip_stream ? MAX_WBITS + 16 : MAX_WBITS, 9,
@@ -90,7 +90,8 @@ class OutFile {
     ~Ended() { deflateEnd(&stream); }
   };
 
-  /// Gives the stream the first bytes of the part; zlib counts in 32 bits. Returns how many.
+  /// Passes the first bytes of the part to the stream, at most as many as zlib's 32-bit counter holds.
+  /// Returns their number.
   static std::size_t feed(z_stream& stream, std::string_view part) {
     const std::size_t count = std::min(part.size(), std::size_t{1} << 30);
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(part.data()));  // zlib only reads it
@@ -112,8 +113,8 @@ class OutFile {
   std::ofstream out_;
 };
 
-/// Whether the axes are perpendicular up to the rounding of single precision. Readers of MetaImage, and a
-/// NIfTI's qform, take direction cosines for a rotation or reflection.
+/// Whether the axes are perpendicular up to the rounding of single precision. Readers of MetaImage, and the
+/// qform of NIfTI, require direction cosines to be a rotation or reflection.
 bool is_perpendicular(const Lattice& lattice) {
   const glm::dvec3 spacing_mm = lattice.spacing_mm();
   for (int a = 0; a < 3; ++a)
@@ -152,7 +153,7 @@ std::string padding_text(const Scene& scene) {
   return print("%.17g", *scene.padding);
 }
 
-/// The sform always, and the qform, too, where it can say the same.
+/// Always writes the sform, and also the qform if it can represent the same geometry.
 nifti_1_header nifti_header(const Scene& scene, const fs::path& path, std::size_t samples_at) {
   nifti_1_header header{};
   const glm::ivec3& dims = scene.lattice.dims;

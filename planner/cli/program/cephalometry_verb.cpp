@@ -25,7 +25,7 @@ struct CephalometryText : PlanIn {
   int size_px = 900;
 };
 
-/// Landmarks, where they go, and how the head is held.
+/// Landmarks, their moved positions, and the head's orientation.
 struct Face {
   std::vector<MovedLandmark> landmarks;
   glm::dmat3 lps_from_head{1.0};

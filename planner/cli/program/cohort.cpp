@@ -38,20 +38,21 @@ struct CohortText {
   bool again = false, reports = false, dry_run = false;
 };
 
-/// The plan as it reads where the cohort keeps it, so that later calls without --plan read the same files.
+/// The plan with paths relative to the place where the cohort stores it, so that later calls without --plan
+/// read the same files.
 Plan plan_of(const CohortText& text) {
   const fs::path path = text.plan.empty() ? cohort_plan(text.out) : text.plan;
   if (text.plan.empty() && !fs::exists(path))
     throw std::runtime_error("--plan is missing: name the plan that every subject's scans go through");
   const Plan plan = read_plan(path);
-  // Its scans are the subjects': a plan whose steps read no file is kept as it is.
+  // The scans come from the subjects, so a plan whose steps read no file is stored unchanged.
   const bool reads_files = std::any_of(plan.steps.begin(), plan.steps.end(),
                                        [](const Step& step) { return !files_read(step).empty(); });
   return reads_files ? rebased(plan, cohort_plan(text.out).parent_path()) : plan;
 }
 
-/// What a process of an engine runs. The time limit is left out: it is this process's, whose end ends serial
-/// and parallel engines, and --slurm=--time bounds a job.
+/// The command for a process of an engine. Leaves out the time limit: it applies to this process, whose end
+/// also ends serial and parallel engines, and --slurm=--time limits a job.
 std::vector<std::string> command(const Program& program, const CohortText& text, const std::string& level) {
   std::vector<std::string> words{
       fs::read_symlink("/proc/self/exe").string(),
@@ -68,7 +69,7 @@ std::vector<std::string> command(const Program& program, const CohortText& text,
   return words;
 }
 
-/// What the command writes into the cohort's folder.
+/// The files and folders that the command writes into the cohort's folder.
 CohortNeeds needs_of(const CohortText& text, const Plan& plan, const std::vector<Subject>& subjects) {
   CohortNeeds needs;
   if (!text.plan.empty()) needs.plan_text = plan.text;
@@ -90,8 +91,8 @@ Json json_of(const Subject& subject, const SubjectRecord& record) {
           {"peak_mb", record.peak_mb}};
 }
 
-/// The records of the subjects with the WARN and FAIL of their scans' audits, and where one has no answer 3
-/// if a process ran out of time, memory or disk, else 2.
+/// Prints the records of the subjects with the WARN and FAIL of their scans' audits. Returns the exit status:
+/// if a subject has no answer, 3 if a process ran out of time, memory or disk, else 2.
 int say_records(const Program& program, const std::vector<Subject>& subjects,
                 const std::vector<SubjectRecord>& records, const std::vector<std::string>& jobs,
                 const std::vector<std::string>& findings, bool ran_out) {
@@ -109,7 +110,7 @@ int say_records(const Program& program, const std::vector<Subject>& subjects,
     if (!records[i].has_answer() && !records[i].is_another_at_work && jobs.empty())
       warn_finding(subjects[i].label + ": " + records[i].reason);
   }
-  // Doubtful ones first, because a terminal shows the first findings only.
+  // Doubtful subjects first, because only the first findings are printed.
   for (const bool are_doubtful : {true, false})
     for (std::size_t i = 0; i < records.size() && jobs.empty(); ++i)
       for (const std::string& finding : records[i].audit_findings)
@@ -158,7 +159,7 @@ int participants(const Program& program, const CohortText& text, const Plan& pla
   return say_records(program, subjects, records, jobs, findings, ran_out);
 }
 
-/// What the subjects would take, by those that are done.
+/// Prints an estimate of the subjects' resources, based on those that are done.
 int dry_run(const Program& program, const CohortText& text, const std::vector<Subject>& subjects) {
   std::vector<SubjectRecord> done_records;
   std::uint64_t bytes = 0, largest = 0;
@@ -209,7 +210,7 @@ int cohort(Program& program, const CohortText& text) {
   const Plan plan = plan_of(text);
   const std::vector<Subject> all = find_subjects(text.in, plan);
   const std::vector<Subject> subjects = chosen_subjects(all, text.labels);
-  // Of a subject that is asked for by its label nothing is said of the others, as an engine asks for each.
+  // If subjects are requested by label, reports no doubts on the others, because an engine requests each one.
   std::vector<std::string> doubts;
   if (text.labels.empty()) doubts = doubts_of_cohort(text.in, plan, all);
   if (text.dry_run) return dry_run(program, text, subjects);
@@ -245,7 +246,7 @@ Json read_result(const fs::path& path) {
   return json;
 }
 
-/// Refuses an output that would replace a result or a part of one.
+/// Refuses an output path that would replace a result or a part of one.
 void need_table_output(const TableText& text) {
   need_extension(text.out, {".csv"}, "a table is");
   need_unread(text.out, text.results);
@@ -283,7 +284,7 @@ int table(Program& program, const TableText& text) {
   json["path"] = text.out.string();
   json["results"] = labels.size();
   json["numbers"] = count;
-  // Failures first, because a terminal shows the first findings only.
+  // Failures first, because only the first findings are printed.
   findings.insert(findings.begin(), failures.begin(), failures.end());
   for (const std::string& finding : findings) warn_finding(finding);
   json["findings"] = std::move(findings);

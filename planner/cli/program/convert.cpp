@@ -39,9 +39,9 @@ bool is_volume(const fs::path& path) {
                      [&](const char* extension) { return name.ends_with(extension); });
 }
 
-/// The DICOM series that what is written refers to; none where it was made from none. Refuses one of another
-/// patient than what is converted, and adds to the findings what could not be compared and, of a --source,
-/// each WARN and FAIL of its own audit.
+/// The DICOM series to which the output refers; none if it was not made from one. Refuses a series of another
+/// patient than the input. Adds findings on values that could not be compared and, for --source, each WARN
+/// and FAIL of its audit.
 std::optional<voxel::DicomSource> source_of(const Program& program, const ConvertText& text, bool reads_dicom,
                                             const voxel::Identity& identity,
                                             std::vector<std::string>& findings) {
@@ -60,7 +60,7 @@ std::optional<voxel::DicomSource> source_of(const Program& program, const Conver
   return source;
 }
 
-/// The smallest box around objects.
+/// The smallest box around all objects.
 voxel::Box box_around(const std::vector<voxel::DicomSegment>& segments) {
   constexpr double far_mm = std::numeric_limits<double>::infinity();
   voxel::Box around{glm::dvec3(far_mm), glm::dvec3(-far_mm)};
@@ -72,9 +72,9 @@ voxel::Box box_around(const std::vector<voxel::DicomSegment>& segments) {
   return around;
 }
 
-/// Holds what is written, a box in LPS millimetres, against the images of --source that it refers to. Refuses
-/// what lies wholly beside them, as that was made of another scan or its frame is wrong, unless
-/// --other-identity allows it; adds a line where it reaches beyond. Nothing is held where nothing is written.
+/// Compares the output's box, in LPS millimetres, with the images of --source. Refuses a box wholly outside
+/// them, because the input was made from another scan or has a wrong frame, unless --other-identity allows
+/// it. Adds a finding if the box extends beyond the images. Does nothing if nothing is written.
 void need_on_source(const ConvertText& text, const voxel::DicomSource& source, const voxel::Box& box,
                     std::vector<std::string>& findings) {
   if (!(box.low_mm.x <= box.high_mm.x)) return;
@@ -100,13 +100,13 @@ void need_on_source(const ConvertText& text, const voxel::DicomSource& source, c
       throw std::runtime_error(said + " Where that is meant, --other-identity goes on and reports a FAIL");
     findings.push_back("FAIL: " + said);
   } else if (beyond_mm > std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z})) {
-    // Less than a voxel is how objects end on other voxels than the images'.
+    // Less than a voxel is normal for objects whose voxels differ from those of the images.
     findings.push_back(text.in.string() + ": reaches beyond" + images + " by " + three_figures(beyond_mm) +
                        " mm: was it made of another scan?");
   }
 }
 
-/// Refuses options of DICOM where something else is written, which they would not change.
+/// Refuses options for DICOM if another format is written, because they would have no effect.
 void need_used(const ConvertText& text, bool writes_dicom, bool writes_segments) {
   const auto need = [&](bool is_given, const std::string& option, bool is_used, const std::string& of) {
     if (is_given && !is_used)
@@ -120,7 +120,7 @@ void need_used(const ConvertText& text, bool writes_dicom, bool writes_segments)
     throw std::runtime_error("--other-identity is about --source: give it, or leave both out");
 }
 
-/// Findings in the answer, and as warnings.
+/// Adds findings to the JSON and prints them as warnings.
 void tell(const std::vector<std::string>& findings, Json& json) {
   json["findings"] = findings;
   for (const std::string& finding : findings) warn_finding(finding);
@@ -170,7 +170,7 @@ int convert_octree(const Program& program, const ConvertText& text) {
   return done;
 }
 
-/// A label map as a DICOM segmentation of its labels on its own slices, under the names that it has.
+/// Converts a label map to a DICOM segmentation of its labels, on its own slices and with its own names.
 int convert_labels(const Program& program, const ConvertText& text) {
   need_used(text, true, true);
   need_folder_of(text.out);

@@ -51,7 +51,7 @@ int info_of_mesh(const Program& program, const std::filesystem::path& path) {
   return done;
 }
 
-/// The series of a DICOM folder, as --series counts them; null of what is none.
+/// The series of a DICOM folder, numbered as for --series; null for other inputs.
 Json series_of(const std::filesystem::path& path, const voxel::Scene& scene) {
   if (!is_dicom(scene)) return nullptr;
   Json list = Json::array();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// The program's operator new. Blocks of many megabytes begin at a huge page, and all but the small ones ask
-// the system for huge pages: else it takes a fault for each 4 KiB, which costs more than filling them, and
-// gives as many back when a program that holds gigabytes is stopped. This reaches every array of both kernels
-// and of the libraries under them.
+// The program's operator new. Blocks of many megabytes begin at a huge page, and all but small blocks request
+// huge pages from the system. Otherwise each 4 KiB causes a page fault, which costs more than filling them,
+// and as many pages must be released when the program ends. This affects every array of both kernels and of
+// the libraries they use.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -16,14 +16,14 @@
 namespace {
 
 constexpr std::size_t huge_page = std::size_t{2} << 20;
-/// Smaller blocks would lose too much to the last page if they began at a huge one.
+/// Below this size, rounding up to a huge page wastes too much memory.
 constexpr std::size_t least_aligned = 8 * huge_page;
-/// What a call of the system costs is little against filling as much.
+/// From this size on, a system call costs little compared with filling the block.
 constexpr std::size_t least_advised = huge_page / 8;
 
 #if defined(__linux__)
-/// Asks for huge pages for a block that may begin and end anywhere. Other blocks on its first and last huge
-/// page get them, too. Advice only: a system that ignores it gives small pages.
+/// Requests huge pages for a block at any address. Other blocks on its first and last huge page are affected
+/// too. It is only advice: a system may ignore it and use small pages.
 void advise_huge_pages(void* memory, std::size_t bytes) {
   const std::uintptr_t before = reinterpret_cast<std::uintptr_t>(memory) % huge_page;
   const std::size_t advised = (before + bytes + huge_page - 1) / huge_page * huge_page;
@@ -31,7 +31,7 @@ void advise_huge_pages(void* memory, std::size_t bytes) {
 }
 #endif
 
-/// Null where there is no memory.
+/// Allocates a block; null if there is no memory.
 void* block_of(std::size_t bytes) {
 #if defined(__linux__)
   if (bytes >= least_advised && bytes < std::size_t(-1) / 2) {

@@ -32,7 +32,7 @@ int look(Program& program, LookText& text) {
     first.anonymous = text.anonymous;
     write_result_files(first, output.path(), {program.stop.get_token(), {}});
     early = output.publish_early();
-    // Only to people: a script reads one line of how the verb ended.
+    // Only on a terminal: scripts expect one line on how the verb ended.
     if (early && program.shows_progress())
       warn("audit and pictures: " + (text.out / "report.html").string() + "; certificates follow");
   };

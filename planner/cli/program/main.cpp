@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-//
-// The program: reads the command line, runs the chosen verb and turns what it throws into an exit status:
-// 2 for what the user can mend, 3 for time, memory and disk, 70 for a mistake in the program.
+// SPDX-License-Identifier: AGPL-3.0-or-later The program: reads the command line, runs the chosen verb and
+// turns exceptions into an exit status: 2 for errors that the user can correct, 3 for time, memory and disk,
+// 70 for a mistake in the program.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
@@ -46,15 +45,15 @@ using octotomy::planner::Fault;
 std::atomic<int> interrupts{0};
 std::atomic<bool> is_processor_time_over{false};
 
-/// Handles a signal, unless whoever started the program had it ignored, as nohup does with SIGHUP.
+/// Installs a handler, unless the signal was ignored when the program started, as nohup does with SIGHUP.
 void heed(int signal, void (*handler)(int)) {
   if (std::signal(signal, handler) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
 
-/// Which signals ask for an end, and which a failed call tells of anyway. A second SIGINT or SIGTERM ends the
-/// process at once; SIGHUP counts once, as a terminal that closes may send it twice. SIGXCPU, of a limit on
-/// processor time, is the same as --time-limit. SIGQUIT keeps its meaning, an end at once with a core: as
-/// after SIGKILL, the next run removes what is left.
+/// Installs handlers for signals that request an end, and for those that a failed call reports anyway. A
+/// second SIGINT or SIGTERM ends the process at once; SIGHUP counts once, because a closing terminal may send
+/// it twice. SIGXCPU, of a limit on processor time, acts like --time-limit. SIGQUIT keeps its default action,
+/// an immediate end with a core file; as after SIGKILL, the next run removes leftovers.
 void heed_signals() {
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { ++interrupts; });
   heed(SIGHUP, [](int) {
@@ -62,13 +61,13 @@ void heed_signals() {
     interrupts.compare_exchange_strong(none, 1);
   });
   heed(SIGXCPU, [](int) { is_processor_time_over = true; });
-  // A reader that goes away and a limit on the size of files: the call that writes fails with EPIPE or EFBIG.
-  // Handled instead of ignored, as programs that are started inherit what is ignored.
+  // If the reader closes a pipe or a file-size limit is reached, the writing call fails with EPIPE or EFBIG.
+  // The signals are handled instead of ignored, because child programs inherit ignored signals.
   for (const int signal : {SIGPIPE, SIGXFSZ}) heed(signal, [](int) {});
 }
 
-/// Says why and ends the process without the verb, whose threads may still work: what they have not finished
-/// is removed, and the processes that they started end with this one.
+/// Prints the reason and ends the process, although the verb's threads may still be running: removes their
+/// unfinished files; processes that they started end with this one.
 [[noreturn]] void end_now(const char* why) {
   octotomy::voxel::remove_unfinished();
   cli::end_progress();
@@ -80,9 +79,9 @@ constexpr const char* out_of_memory =
     "out of memory: nothing was written; use larger voxels (universe, voxel_mm), a smaller scan, or raise "
     "--memory";
 
-/// An allocation failed, or a thread met an error that nobody could take: most likely no further thread could
-/// be started. Ends the process here and now: code that goes on without its memory may crash or wait for
-/// ever.
+/// Called if an allocation failed, or a thread had an error that nothing could handle, most likely because no
+/// further thread could be started. Ends the process at once: code that continues without its memory may
+/// crash or wait forever.
 [[noreturn]] void end_for_want(const char* why) {
   static std::atomic_flag ending;
   if (ending.test_and_set()) ::pause();
@@ -90,11 +89,11 @@ constexpr const char* out_of_memory =
   end_now(why);
 }
 
-/// An error that no code handles, on whatever thread. Want of memory or of threads ends there, too.
+/// The handler of std::terminate, for unhandled errors on any thread, including lack of memory or threads.
 [[noreturn]] void end_of_no_handler() {
   std::string what = "an error without a handler";
   try {
-    if (std::current_exception() == nullptr) throw std::bad_alloc();  // no thread could be joined or started
+    if (std::current_exception() == nullptr) throw std::bad_alloc();  // a thread did not start or join
     throw;
   } catch (const std::exception& error) {
     const Fault fault = octotomy::planner::fault_of(error);
@@ -111,8 +110,8 @@ constexpr const char* out_of_memory =
   std::_Exit(EX_SOFTWARE);
 }
 
-/// Asks the verb to stop when its time is over or the user interrupts, and ends the process where the verb
-/// does not heed it, or a second interrupt comes. Ends with its scope.
+/// Requests the verb to stop when its time is over or the user interrupts, and ends the process if the verb
+/// does not stop or a second interrupt arrives. Active until the end of its scope.
 class Watch {
  public:
   explicit Watch(Program& program)
@@ -120,7 +119,7 @@ class Watch {
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// A verb that looks at its stop token ends by itself within this; the message is then its own.
+  /// A verb that checks its stop token ends within this time and prints its own message.
   static constexpr std::chrono::milliseconds grace{150};
   static constexpr std::chrono::milliseconds look_every{5};
 
@@ -130,7 +129,7 @@ class Watch {
     std::optional<Clock::time_point> asked;
     std::mutex mutex;
     std::unique_lock lock(mutex);
-    std::condition_variable_any end;  // wakes at once, where a sleep would delay the program's end
+    std::condition_variable_any end;  // wakes immediately; a sleep would delay the program's end
     while (!end.wait_for(lock, over, look_every, [&over] { return over.stop_requested(); })) {
       if (octotomy::voxel::is_memory_over()) end_for_want(out_of_memory);
       if (shows) cli::show_silent_work();
@@ -142,7 +141,7 @@ class Watch {
       program.stop.request_stop();
       if (!asked) asked = Clock::now();
       if (Clock::now() < *asked + grace) continue;
-      // A verb that has its answer may give it, unless it is interrupted: its reader may never read.
+      // A verb that has its answer may print it unless interrupted, because its reader may never read.
       if (has_last_word(cli::Speaker::Watch))
         end_now(interrupts > 0 ? "interrupted: nothing was written" : "out of time: nothing was written");
       if (interrupts > 0) end_now("interrupted while the answer was written");
@@ -152,7 +151,7 @@ class Watch {
   std::jthread thread_;
 };
 
-/// An error's text on one line: what, where, what to try.
+/// Prints an error on one line: what, where and a remedy.
 int refuse(const std::string& text, int status) {
   while (!has_last_word(cli::Speaker::Verb)) std::this_thread::sleep_for(std::chrono::seconds(1));
   cli::warn(text);
@@ -186,7 +185,7 @@ int run_chosen(Program& program) {
   }
 }
 
-/// Refuses an output of no name, which a script's empty variable gives.
+/// Refuses an empty output name, which an unset variable in a script produces.
 void need_named_outputs(const CLI::App& verb) {
   for (const CLI::Option* option : verb.get_options())
     if (option->check_sname("o") && option->count() > 0 && option->results().back().empty())
@@ -242,7 +241,7 @@ int parse_and_run(int count, char** arguments) {
       return refuse(cli::unknown_verb(app, arguments[1]), cli::bad_input);
     return refuse(std::string(error.what()) + "; see octotomy --help", cli::bad_input);
   } catch (const std::filesystem::filesystem_error& error) {
-    // A path that is too long, or in a folder that is closed.
+    // A path that is too long, or in an inaccessible folder.
     return refuse(error.path1().string() + ": " + error.code().message(), cli::bad_input);
   }
   return run_chosen(program);
@@ -256,7 +255,7 @@ int main(int count, char** arguments) {
   try {
     return parse_and_run(count, arguments);
   } catch (const std::bad_alloc&) {
-    // Of run_chosen()'s errors only this gets past it; a line that is no allocation can still be said.
+    // The only error that run_chosen() may throw. Printing this line needs no allocation.
     std::fputs("octotomy: out of memory\n", stderr);
     return cli::out_of_resources;
   } catch (const std::exception& error) {

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // A verb made from an operation:
-//   1 The words of its options become the JSON of a step, read as a plan's step is.
-//   2 The files that it names become objects: meshes proven solid, or octrees.
-//   3 The kernel that the output's kind asks for answers; with --certify both do, and are compared. Where
-//   only the
-//     mesh kernel answers, an octree is its answer's voxels.
-//   4 The answer is written, measured and told.
+//   1 The words of its options become the JSON of a step, which is read like a step of a plan. 2 The files
+//   that it names become objects: meshes, checked to be solids, or octrees. 3 The kernel that the output's
+//   format needs computes the answer; with --certify both do and are compared. If only the mesh kernel has an
+//   answer, an octree is made from its voxels. 4 The answer is written, measured and printed.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -34,7 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the command line says.
+/// The words of the command line.
 struct OperationText {
   FieldWords words;
   fs::path out;
@@ -44,7 +42,7 @@ struct OperationText {
   CLI::App* verb = nullptr;
 };
 
-/// The fields that the command line has: positionals and options.
+/// The fields available on the command line: positionals and options.
 std::vector<Field> fields_of(const Operation& operation) {
   std::vector<Field> fields;
   for (const std::vector<Field>* all : {&operation.fields, &operation.verb_fields})
@@ -123,7 +121,7 @@ class OperationRun {
     }
   }
 
-  /// Without an octree among the operands: around all of them.
+  /// If no operand is an octree, the universe is around all operands.
   void choose_universe() {
     if (has_octree_) return;
     voxel::Box box{glm::dvec3(1e300), glm::dvec3(-1e300)};
@@ -131,7 +129,7 @@ class OperationRun {
       const brep::Size& size = object.mesh.whole->size();
       box = {glm::min(box.low_mm, size.low_mm), glm::max(box.high_mm, size.high_mm)};
     }
-    const double room_mm = 0.25 * longest_side_mm(box);  // as margins may need
+    const double room_mm = 0.25 * longest_side_mm(box);  // for operations that add a margin
     universe_ = universe_around({box.low_mm - room_mm, box.high_mm + room_mm}, longest_side_mm(box));
   }
 
@@ -140,7 +138,7 @@ class OperationRun {
     return std::max({extent.x, extent.y, extent.z});
   }
 
-  /// Voxels of --voxel, or a 128th of what they show.
+  /// Voxels of --voxel, or a 128th of `shown_mm`.
   voxel::Universe universe_around(const voxel::Box& box, double shown_mm) const {
     return voxel::universe_around(box, text_.voxel_mm.value_or(shown_mm / 128.0));
   }
@@ -169,7 +167,7 @@ class OperationRun {
       throw std::runtime_error("nothing is left of " + made.definition + ": there is no surface to write");
   }
 
-  /// What the mesh kernel alone makes.
+  /// Voxelises an answer that only the mesh kernel has.
   void voxelise_answer(Object& made) {
     const Stopwatch watch(timings_, "voxelise");
     const brep::Solid& solid = *made.mesh.whole;
@@ -238,7 +236,7 @@ class OperationRun {
   Timings timings_;
   voxel::Universe universe_;
   bool has_octree_ = false;
-  std::vector<std::string> mended_;  ///< what was done to meshes that are no solids
+  std::vector<std::string> mended_;  ///< repairs of meshes that are not solids
   std::vector<Object> inputs_;
   Objects objects_;
 };
@@ -269,10 +267,10 @@ void add_object_options(CLI::App& verb, const Operation& operation, OperationTex
   verb.add_flag("--mend", text.mend, "Meshes that are no solids are mended first, as repair --solid does");
   CLI::Option* certify =
       verb.add_flag("--certify", text.certify, "Let both kernels answer and tell their certificate");
-  if (!by_both) certify->group("");  // hidden: it is refused with the reason
+  if (!by_both) certify->group("");  // hidden: it is refused with a reason
 }
 
-/// Whether the command line names objects, which are files of meshes or octrees.
+/// Whether the command line names objects, that is, files of meshes or octrees.
 bool names_files(const Operation& operation, const std::vector<Field>& fields) {
   const std::shared_ptr<void> fresh = operation.fresh();
   return std::any_of(fields.begin(), fields.end(),

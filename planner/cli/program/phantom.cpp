@@ -22,19 +22,19 @@ struct PhantomText {
   const CLI::App* verb = nullptr;
   std::string kind;
   std::filesystem::path out;
-  // Of the head.
+  // Options of the head.
   verify::HeadOptions head;
   double truth_step_mm = 1.0;
   bool dicom = false;
-  // Of solids.
+  // Options of solids.
   std::optional<int> voxels;
   std::optional<double> radius_voxels;
   std::vector<double> turn_deg;
   std::string digitise = "centre";
 };
 
-/// Writes a phantom's scan by the kind of path that is named. Throws std::runtime_error before the scan is
-/// made where there is no such kind.
+/// Writes a phantom's scan in the format of the path. Throws std::runtime_error before the scan is made if
+/// there is no such format.
 class ScanOut {
  public:
   ScanOut(const PhantomText& text, std::string series) : path_(text.out), series_(std::move(series)) {
@@ -46,7 +46,7 @@ class ScanOut {
       throw std::runtime_error(path_.string() +
                                ": unknown kind of scan; use .nrrd, .nii.gz or .mha, or a folder for DICOM");
   }
-  /// Throws voxel::Error (Resource) where a scan of the box does not fit onto the disk.
+  /// Throws voxel::Error (Resource) if a scan of the box does not fit on the disk.
   void need_disk_of(const voxel::Box& box, double voxel_mm, double slice_mm) const {
     voxel::Lattice least;
     least.dims = glm::floor((box.high_mm - box.low_mm) / glm::dvec3(voxel_mm, voxel_mm, slice_mm));
@@ -76,7 +76,7 @@ int head(const Program& program, const PhantomText& text) {
     const Stopwatch watch(timings, "phantom");
     scene = verify::head_phantom(text.head);
   }
-  // Sampling the closed form takes longer than the scan, and only the JSON tells it.
+  // Sampling the closed form takes longer than the scan and is reported only in the JSON.
   verify::SampledVolume bone;
   if (program.json) {
     const Stopwatch watch(timings, "truth");

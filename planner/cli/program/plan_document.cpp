@@ -106,7 +106,7 @@ int history_of(const Program& program, const HistoryText& text) {
   if (int{text.undo} + int{text.redo} + int{!text.go_to.empty()} > 1)
     throw std::runtime_error("--undo, --redo and --go-to each choose a state: give one of them");
   const Plan plan = read_plan(text.plan);
-  // What changes nothing needs no folder that can be written.
+  // Listing alone needs no writable folder.
   const bool only_lists = !text.undo && !text.redo && text.go_to.empty() && text.branch.empty() &&
                           text.name.empty() && !PlanHistory::can_write(text.plan);
   PlanHistory history(text.plan, only_lists ? PlanHistory::Access::Read : PlanHistory::Access::Write);

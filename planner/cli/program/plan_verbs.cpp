@@ -59,14 +59,15 @@ int preview_step(Program& program, PreviewText& text) {
   return done;
 }
 
-/// Writes the result's folder; returns what result.json holds.
+/// Writes the result's folder; returns the contents of result.json.
 Json written(Program& program, Result& result, const std::filesystem::path& out) {
   if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
   return write_result(result, out, {program.stop.get_token(), program.progress()});
 }
 
-/// Refuses a result one of whose label maps does not fit onto the disk as soon as the first scan, and with it
-/// the universe, is read; later ones may lie beside it packed to nearly nothing.
+/// Refuses a result if one of its label maps does not fit on the disk, as soon as the first scan and thus the
+/// universe is known. Requires space only for the largest map, because the others may compress to almost
+/// nothing.
 void need_disk_of_label_maps(const Plan& plan, const std::filesystem::path& out, EvaluateOptions& options) {
   const auto is_first = std::make_shared<bool>(true);
   options.read_scene = [&plan, out, is_first](const std::filesystem::path& path,

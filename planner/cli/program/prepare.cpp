@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A plan of steps that each make a scan of the one before, from the table of operations.
+// SPDX-License-Identifier: AGPL-3.0-or-later A plan of operations that each make a scan from the previous
+// one.
 #include <CLI/CLI.hpp>
 
 #include "planner/cli/program/verbs.h"
@@ -36,7 +36,7 @@ std::vector<const Operation*> known_steps() {
   return known;
 }
 
-/// A step as it is given: NAME or NAME=VALUE,VALUE,...
+/// The action of a step as written: NAME or NAME=VALUE,VALUE,...
 Action step_of(const std::string& text, const PrepareText& given) {
   const auto equals = text.find('=');
   const std::string name = text.substr(0, equals);
@@ -71,13 +71,13 @@ Action step_of(const std::string& text, const PrepareText& given) {
   return action;
 }
 
-/// The file that a restore step reads; empty of other steps.
+/// The file that a restore step reads; empty for other steps.
 fs::path read_by(const std::string& step) {
   constexpr std::string_view restore = "restore=";
   return step.starts_with(restore) ? step.substr(restore.size()) : "";
 }
 
-/// What cannot be written is refused before anything is read.
+/// Refuses outputs that cannot be written, before anything is read.
 void check_outputs(const PrepareText& text) {
   if (!voxel::volume_format(text.out))
     throw std::runtime_error(text.out.string() + ": unknown kind of scan; use .nrrd, .nii.gz or .mha");

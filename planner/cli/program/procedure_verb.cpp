@@ -30,7 +30,7 @@ struct ProcedureText {
   bool anonymous = false;
 };
 
-/// What a procedure takes, or the names of all.
+/// Prints the inputs of a procedure, or the names of all procedures.
 int explain(const Program& program, const ProcedureText& text) {
   Json json = answer({});
   if (text.name.empty()) {

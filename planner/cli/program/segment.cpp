@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The segment operation on files: an object for each window, octrees beside them, as an octree, a label map
-// or a DICOM segmentation.
+// SPDX-License-Identifier: AGPL-3.0-or-later The segment operation on files: an object for each window, and
+// further octrees, written as an octree, a label map or a DICOM segmentation.
 #include "planner/operation/object/segment.h"
 
 #include <CLI/CLI.hpp>
@@ -38,12 +37,12 @@ struct SegmentText {
   ScanIn in;
 };
 
-/// An object and what was done to it; for a label map at the scan's own samples, too.
+/// An object and a record of what was done to it; for a label map also the object on the scan's own samples.
 struct Named {
   std::string name;
   Segmented made;
   std::optional<voxel::Octree> on_samples = std::nullopt;
-  bool is_named = true;  ///< the name is one for people, and not two numbers of a window
+  bool is_named = true;  ///< the name is a word, not the two numbers of a window
 };
 
 bool is_dicom_seg(const fs::path& path) {
@@ -58,8 +57,9 @@ SampleWindow window_of(const std::string& text) {
   }
 }
 
-/// An object for each window, or the one of the class, seeds or label; then the octrees.
-/// One set for both kinds of file: the octree's voxels choose the parts, a label map's samples are of them.
+/// An object for each window, or the one of the class, seeds or label; then the octrees. Both kinds of file
+/// contain the same set: parts are chosen on the octree's voxels, and a label map has the samples inside
+/// them.
 std::vector<Named> segments_of(const Program& program, const SegmentText& text, Segment asked,
                                const voxel::Scene& scene, Timings& timings) {
   const voxel::Universe universe = universe_of(scene, text.voxel_mm, asked.label.has_value());
@@ -67,7 +67,7 @@ std::vector<Named> segments_of(const Program& program, const SegmentText& text, 
     return [&]() -> const voxel::GreyOctree& {
       if (kept) return *kept;
       const Stopwatch watch(timings, "octree");
-      // Beyond the scan is what no window means: less than any of its samples.
+      // Outside the scan, samples are lower than any sample of it, so that no window includes them.
       const double low = std::max(-32768.0, std::floor(std::min(voxel::range(scene).low - 1.0, -1024.0)));
       return kept.emplace(voxel::grey_octree_of(where, scene, static_cast<std::int16_t>(low),
                                                 {program.stop.get_token(), program.progress("octree")}));
@@ -80,7 +80,7 @@ std::vector<Named> segments_of(const Program& program, const SegmentText& text, 
   const auto add = [&](const std::string& name, bool is_named) {
     const Stopwatch watch(timings, "segment");
     segments.push_back({name, segmented(asked, source), {}, is_named});
-    // Voxels that are samples already stand where the label map has its own.
+    // If the voxels are the scan's samples, the label map uses them directly.
     if (is_octree(text.out)) return;
     if (!is_dicom_seg(text.out) && on_samples(scene.lattice, universe.lattice())) return;
     const voxel::Universe own = voxel::universe_on(scene.lattice);
@@ -93,7 +93,7 @@ std::vector<Named> segments_of(const Program& program, const SegmentText& text, 
   if (asked.tolerance) add("grown", false);
   for (const std::string& window : text.windows) {
     asked.window = window_of(window);
-    add(window, window.find(':') == std::string::npos);  // a tissue's word, not two numbers
+    add(window, window.find(':') == std::string::npos);  // a tissue's name, not two numbers
   }
   for (const fs::path& path : text.objects) {
     const voxel::OctreeFile file = read_timed(path, timings);
@@ -108,14 +108,14 @@ std::vector<Named> segments_of(const Program& program, const SegmentText& text, 
   return segments;
 }
 
-/// The contours at a threshold, as mask --slices and segment --regions read them.
+/// Writes the contours at a threshold, in the format of mask --slices and segment --regions.
 Json write_contours(const Program& program, const SegmentText& text, const voxel::Scene& scene,
                     double threshold, Outputs& outputs, Timings& timings) {
   const Stopwatch watch(timings, "contours");
   const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
   voxel::ContourOptions options;
   options.threshold = threshold;
-  options.least_mm2 = spacing_mm.x * spacing_mm.y;  // a voxel's: less is noise
+  options.least_mm2 = spacing_mm.x * spacing_mm.y;  // the area of a pixel; smaller contours are noise
   options.progress.stop = program.stop.get_token();
   const voxel::SliceMask mask = voxel::contour_regions(scene, options);
   std::size_t contours = 0, points = 0;
@@ -131,7 +131,7 @@ Json write_contours(const Program& program, const SegmentText& text, const voxel
           {"points", points}};
 }
 
-/// What was written, and beside a label map's samples the octree of the same set.
+/// The JSON of the written object and, for a label map's samples, of the octree of the same set.
 Json said_of(const Named& segment) {
   const auto put = [](Json& json, const voxel::Octree& octree) {
     json["voxels"] = octree.voxel_count();
@@ -144,7 +144,7 @@ Json said_of(const Named& segment) {
   return said;
 }
 
-/// The objects as named segments on the scan's own slices.
+/// Writes the objects as named segments on the scan's own slices.
 void write_seg(const Program& program, const SegmentText& text, const voxel::Scene& scene,
                const std::vector<Named>& segments, Outputs& outputs, Timings& timings, Json& json) {
   const Stopwatch watch(timings, "write");
@@ -217,7 +217,7 @@ std::map<int, std::string> write_segments(const Program& program, const SegmentT
   return names;
 }
 
-/// What cannot be said together is refused before anything is read.
+/// Refuses contradictory options before anything is read.
 void check_text(const SegmentText& text, const Segment& asked) {
   const int ways = (text.windows.empty() ? 0 : 1) + (asked.otsu ? 1 : 0) + (asked.tolerance ? 1 : 0) +
                    (asked.label ? 1 : 0) + (asked.named ? 1 : 0);
@@ -244,7 +244,7 @@ void check_text(const SegmentText& text, const Segment& asked) {
   std::vector<fs::path> read{text.scan};
   read.insert(read.end(), text.objects.begin(), text.objects.end());
   for (const auto& [field, words] : text.words)
-    read.insert(read.end(), words.begin(), words.end());  // a word that is no file is none that is written
+    read.insert(read.end(), words.begin(), words.end());  // a word that is not a file cannot be an output
   need_outputs({text.out, text.contours}, read);
 }
 

@@ -31,8 +31,9 @@ struct ServeText {
   bool open = false;
 };
 
-/// Starts the desktop's browser; nothing is said where there is none. Every user of the machine can read the
-/// arguments of a process, and the URL holds the token: a page that only its owner may read leads there.
+/// Starts the desktop's browser; does nothing if there is none. The URL contains the token and every user can
+/// read the arguments of a process, so the browser opens a page that only its owner can read and that
+/// redirects to the URL.
 void open_browser(const std::string& url, const fs::path& closed_folder) {
   const fs::path page = closed_folder / "planner.html";
   const int file = ::open(page.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
@@ -46,7 +47,7 @@ void open_browser(const std::string& url, const fs::path& closed_folder) {
   ::_exit(1);
 }
 
-/// The plan or scan to begin with. Throws std::runtime_error where two are named.
+/// The plan or scan with which to begin. Throws std::runtime_error if two are named.
 std::optional<fs::path> beginning_of(const std::vector<fs::path>& paths) {
   std::optional<fs::path> beginning;
   for (const fs::path& path : paths) {
@@ -57,15 +58,15 @@ std::optional<fs::path> beginning_of(const std::vector<fs::path>& paths) {
   return beginning;
 }
 
-/// A plan that was named on the command line reads its own scans and files, wherever they lie.
+/// Allows a plan from the command line to read its scans and files in any folder.
 void allow_reading_of(const Plan& plan, serve::Folders& folders) {
   for (const auto& [name, scan] : plan.scans) folders.allow_reading(scan_path(plan, scan));
   for (const Step& step : plan.steps)
     for (const fs::path& file : files_read(step)) folders.allow_reading(plan.folder / file);
 }
 
-/// Ends the program after the server: every edit is on the disk, and work that is under way is nobody's any
-/// more and may take long to stop. An edit ends before names are forbidden to change, as it changes some.
+/// Ends the program after the server: every edit is on disk, nobody waits for running work, and stopping it
+/// may take long. Waits for a running edit before renaming is disabled, because an edit renames files.
 [[noreturn]] void end_program(serve::Desk& desk, bool is_out_of_time) {
   constexpr std::chrono::milliseconds longest_edit{100};
   while (!has_last_word(Speaker::Verb)) ::pause();
@@ -78,7 +79,7 @@ void allow_reading_of(const Plan& plan, serve::Folders& folders) {
 int run(Program& program, ServeText& text) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  // All that can be refused comes before a plan is written.
+  // Checks everything that can be refused before a plan is written.
   const std::optional<fs::path> beginning = beginning_of(text.paths);
   text.options.token = text.token_file.empty() ? serve::new_token() : serve::token_in(text.token_file);
   std::optional<voxel::UnfinishedFolder> closed_folder;
@@ -102,7 +103,7 @@ int run(Program& program, ServeText& text) {
   if (beginning) desk.open(*beginning, {program.stop.get_token(), program.progress()});
   serve::Service service(desk, line_of);
   server.run(service, desk, program.stop.get_token());
-  // The watch began to count shortly before or after this verb did.
+  // The watch started shortly before or after this verb.
   constexpr std::chrono::duration<double> margin{0.1};
   end_program(desk, program.time_limit_s && Clock::now() - start + margin >=
                                                 std::chrono::duration<double>(*program.time_limit_s));

@@ -27,7 +27,7 @@ constexpr std::string_view elements = "Finite elements";
 constexpr std::string_view checking = "Check the kernels";
 constexpr std::string_view many = "Many scans";
 
-/// The groups in the order of the help.
+/// The groups in their order in the help.
 constexpr std::array group_order{looking,  planning,  scans,    cutting, shaping,
                                  elements, measuring, checking, many};
 
@@ -86,8 +86,8 @@ constexpr bool each_verb_stands_once() {
 }
 static_assert(each_verb_stands_once());
 
-/// CLI11 prints groups in the order in which verbs were added; this one in the table's order. Groups that the
-/// table lacks come last.
+/// Prints groups in the table's order; CLI11 would use the order in which verbs were added. Groups that are
+/// not in the table come last.
 class GroupedHelp : public CLI::Formatter {
  public:
   std::string make_subcommands(const CLI::App* app, CLI::AppFormatMode mode) const override {
@@ -105,7 +105,7 @@ class GroupedHelp : public CLI::Formatter {
   }
 
  private:
-  /// The verb's name and what it does, on one line however long.
+  /// The verb's name and description on one line of any length.
   static std::string line_of_verb(const CLI::App& verb) {
     constexpr std::size_t name_width = 16;
     std::string line = "  " + verb.get_name();

@@ -7,9 +7,9 @@ class App;
 
 namespace octotomy::planner::cli {
 
-/// Sorts the program's verbs into groups by task, which its help prints one after the other. All verbs have
-/// to be added before. Throws CLI::OptionNotFound for a name of the table that is no verb; a verb that the
-/// table lacks stays in the help's group "Subcommands", which a test refuses.
+/// Sorts the program's verbs into groups by task, in which its help lists them. Precondition: all verbs have
+/// been added. Throws CLI::OptionNotFound if a name in the table is not a verb. A verb that is not in the
+/// table stays in the help's group "Subcommands", which a test refuses.
 void group_verbs(CLI::App& app);
 
 }  // namespace octotomy::planner::cli

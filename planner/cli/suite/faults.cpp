@@ -14,7 +14,7 @@
 namespace octotomy::planner::cli {
 namespace {
 
-/// A row a fault, a column a size: caught of tried.
+/// A table of detected per tried faults: one row per fault, one column per size.
 std::string table(const std::vector<verify::DetectionPower>& powers) {
   std::vector<std::pair<std::string, std::string>> rows;
   for (const verify::DetectionPower& power : powers) {
@@ -29,8 +29,8 @@ std::string table(const std::vector<verify::DetectionPower>& powers) {
   return lines(rows);
 }
 
-/// The scans of --scan NAME=PATH, each with the window of its bone: in Hounsfield units from 300, else the
-/// brightest of three classes.
+/// The scans of --scan NAME=PATH, each with the window of its bone: from 300 HU, or the brightest of three
+/// classes for other units.
 std::vector<verify::ScanToAlter> scans_to_alter(Program& program, const VerifyText& text) {
   constexpr double bone_hu = 300.0;
   std::vector<verify::ScanToAlter> scans;
@@ -51,7 +51,7 @@ std::vector<verify::ScanToAlter> scans_to_alter(Program& program, const VerifyTe
   return scans;
 }
 
-/// How many of each kind there were over the limit, and how many of them passed.
+/// A table of the alterations of each kind above the limit, and of those that passed.
 std::string table(const std::vector<verify::Alteration>& alterations) {
   std::map<std::string, std::array<int, 3>> kinds;
   for (const verify::Alteration& one : alterations) {
@@ -100,7 +100,7 @@ SuiteAnswer run_faults(Program& program, const VerifyText& text) {
                      {"reasons", trial.certificate.reasons}};
     tried.push_back(place);
     if (trial.fault.empty()) {
-      // The clean twins are what the kernels really say.
+      // The unaltered twins have the kernels' real certificates.
       answer.certificates.push_back(to_json(trial.certificate));
       add(answer.counts, trial.certificate);
     } else if (trial.must_be_caught && trial.voxels >= verify::resolved_size && !trial.caught()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// One question is A OP B, and perhaps C, somebody's answer to it. Both kernels answer it and are held against
-// each other; then C is held against each of them. A triple is such a question as JSON, or a folder of files.
+// A question is A OP B with an optional answer C of another program. Both kernels compute it and are
+// compared; then C is compared with each of them. A question is given as JSON or as a folder of files.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -43,7 +43,7 @@ brep::Operation operation_of(const std::string& word) {
   throw CLI::ValidationError("OP", "'" + word + "' is none of union, intersection, difference, |, & and -");
 }
 
-/// What is asked, and whose answer is judged.
+/// A question, and the answer to check.
 struct Question {
   std::string name;
   fs::path a, b;
@@ -51,8 +51,8 @@ struct Question {
   std::optional<fs::path> answer;
 };
 
-/// All voxels of an .octree file, or all that have a label; on the lattice `onto` where that is given and has
-/// them.
+/// All voxels of an .octree file, or all labelled samples of a label map; on the lattice `onto` if it is
+/// given and contains them.
 voxel::Octree labelled(const Program& program, const fs::path& path, Timings& timings,
                        voxel::Lattice& lattice, const voxel::Lattice* onto = nullptr,
                        bool may_be_empty = false) {
@@ -84,7 +84,7 @@ voxel::Octree labelled(const Program& program, const fs::path& path, Timings& ti
   return voxel::combine(universe, all);
 }
 
-/// Both kernels' answers and the certificates of these.
+/// Both kernels' answers and their certificates.
 struct Answered {
   verify::KernelAnswers kernels;
   std::vector<verify::Certificate> certificates;
@@ -97,7 +97,7 @@ struct Answered {
 };
 
 Answered of_label_maps(Program& program, const Question& asked, Timings& timings) {
-  // A label map is laid on an octree's lattice, or on the other map's.
+  // A label map is converted to the lattice of the octree or of the other map.
   voxel::Lattice lattice_a, lattice_b;
   const bool is_b_first = is_octree(asked.b) && !is_octree(asked.a);
   const voxel::Octree first = labelled(program, is_b_first ? asked.b : asked.a, timings, lattice_a),
@@ -120,7 +120,8 @@ Answered of_label_maps(Program& program, const Question& asked, Timings& timings
       {std::move(given.octree), std::move(given.solid), given.shift_mm, std::move(given.findings)}, {}, {}};
   const std::string question = asked.a.string() + " " + asked.operation + " " + asked.b.string();
   given.certificate.operation = question;
-  // Sets that touch themselves at an edge may have no manifold Boolean: then general position alone tells.
+  // Sets that touch themselves at an edge may have no manifold Boolean; then only the test in general
+  // position applies.
   if (answered.kernels.solid)
     answered.certificates.push_back(std::move(given.certificate));
   else
@@ -146,7 +147,7 @@ SetAsSolid solid_of_set(const Program& program, const fs::path& path, Timings& t
           set.universe()};
 }
 
-/// Whether a solid ends within a universe, so that no voxel of it is lost there.
+/// Whether a solid lies within a universe, so that no voxel of it is lost.
 bool holds(const voxel::Universe& universe, const brep::Solid& solid) {
   const voxel::Lattice lattice = universe.lattice();
   const brep::Size& size = solid.size();
@@ -162,8 +163,9 @@ bool holds(const voxel::Universe& universe, const brep::Solid& solid) {
   return true;
 }
 
-/// A mesh and a set of voxels: both kernels have the set as the boundary of its voxels. They are compared in
-/// the set's own voxels where these hold the mesh, so that the octree has the set as it is.
+/// A mesh and a set of voxels: both kernels represent the set by the boundary of its voxels. If the set's
+/// universe contains the mesh, they are compared in the set's own voxels, so that the octree is the set
+/// itself.
 Answered of_mesh_and_set(Program& program, const Question& asked, const VerifyText& text, Timings& timings) {
   const bool is_mesh_first = is_mesh(asked.a);
   const fs::path &mesh_file = is_mesh_first ? asked.a : asked.b,
@@ -196,7 +198,7 @@ Answered of_mesh_and_set(Program& program, const Question& asked, const VerifyTe
 Answered of_meshes(Program& program, const Question& asked, const VerifyText& text, Timings& timings) {
   const brep::Solid left = read_solid(asked.a, timings), right = read_solid(asked.b, timings);
   verify::MeshOperationOptions options{text.operand_voxel_mm, {}, {program.stop.get_token(), {}}};
-  // Voxels are judged in their own universe.
+  // An answer of voxels is compared in its own universe.
   if (asked.answer && is_octree(*asked.answer))
     options.universe = voxel::universe(voxel::read_octree(*asked.answer));
   else if (asked.answer && !is_mesh(*asked.answer))
@@ -208,7 +210,7 @@ Answered of_meshes(Program& program, const Question& asked, const VerifyText& te
   return {{*answers.octree, answers.solid, answers.shift_mm, answers.findings}, {answers.certificate}, {}};
 }
 
-/// Reads the answer and holds it against both kernels'. `operands` is the lattice of label maps, or null.
+/// Reads the answer and compares it with both kernels'. `operands` is the lattice of label maps, or null.
 std::vector<verify::Certificate> judged(const fs::path& answer, const verify::KernelAnswers& kernels,
                                         const voxel::Lattice* operands, Program& program, Timings& timings) {
   if (is_mesh(answer)) {
@@ -262,7 +264,8 @@ std::string what_of(const verify::Certificate& certificate) {
   return lines(rows);
 }
 
-/// "operands", "operation" and perhaps "result" of one question; paths are relative to the file's folder.
+/// Reads "operands", "operation" and optionally "result" of one question; paths are relative to the file's
+/// folder.
 Question question_of(const nlohmann::json& json, const std::string& where, const fs::path& folder) {
   check_keys(json, where, {"operands", "operation", "result", "name"});
   const nlohmann::json& operands = need(json, "operands", where);
@@ -328,7 +331,7 @@ std::string volume_text(double volume_mm3) {
   return grouped(volume_mm3, 3);
 }
 
-/// A row of the table: the worst verdict of a question's certificates.
+/// A row of the table, with the worst verdict of a question's certificates.
 Json row_of(const Question& asked, const Answered& found) {
   const std::vector<verify::Certificate>& certificates = found.certificates;
   const auto worst = std::max_element(

@@ -44,7 +44,8 @@ Json study_json(const verify::PhantomSuite& suite) {
   return json;
 }
 
-/// The coverage of the recommended values' intervals: a row for each kind of solid, and two that must hold.
+/// Adds the coverage of the recommended values' intervals: a row for each kind of solid, and two rows that
+/// must pass.
 void add_intervals(const std::vector<verify::IntervalCoverage>& table,
                    std::vector<std::pair<std::string, std::string>>& rows, SuiteAnswer& answer) {
   Json json = Json::array();
@@ -77,8 +78,8 @@ void add_intervals(const std::vector<verify::IntervalCoverage>& table,
   answer.more["intervals"] = std::move(json);
 }
 
-/// The same of solids drawn by chance, by class; classes held back from calibration apart from the others.
-/// Every row must hold.
+/// The same for random solids, by class; classes that were not used for calibration are separate. Every row
+/// must pass.
 void add_drawn(const std::vector<verify::IntervalCoverage>& table,
                std::vector<std::pair<std::string, std::string>>& rows, SuiteAnswer& answer) {
   Json json = Json::array();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Of each part that the program starts or loads: whether it is there, carries the program's own mark of its
-// build, and does a small piece of work whose answer is known.
+// Checks each part that the program starts or loads: whether it exists, has the program's build mark, and
+// solves a small task with a known result.
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <iterator>
@@ -17,7 +17,7 @@ extern "C" const char octotomy_build_mark[];
 namespace octotomy::planner::cli {
 namespace {
 
-/// The mark without its last word, which is the build's.
+/// The mark without its last word, which identifies the build.
 std::string mark_prefix() {
   return "octotomy build mark ";
 }
@@ -32,7 +32,7 @@ std::string mark_in(const std::filesystem::path& path) {
   return bytes.substr(at, end == std::string::npos ? end : end + 1 - at);
 }
 
-/// A tetrahedron with edges of some 10 mm.
+/// A tetrahedron with edges of about 10 mm.
 convert::MesherInput tetrahedron() {
   return {{{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {0, 0, 10}},
           {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}},
@@ -61,7 +61,7 @@ bool mesh3_fills() {
   return is_filled(convert::run_mesh3(input, convert::Mesh3Sizes(), {}), 100.0, 200.0);
 }
 
-/// A cube of six voxels a side in an empty border.
+/// Meshes a cube of six voxels a side with an empty border.
 bool mesh3_fills_labels() {
   constexpr int side = 12, low = 3, high = 8;
   convert::LabelImage image{
@@ -78,7 +78,7 @@ bool mesh3_fills_labels() {
   return is_filled(convert::run_mesh3(image, {2.0, 0.3, 3.0}, {}), 150.0, 230.0);
 }
 
-/// Two rows of three pixels in run lengths: 0 1 2, 3 3 3.
+/// Decompresses two rows of three pixels in run lengths: 0 1 2, 3 3 3.
 bool codec_decompresses() {
   std::string frame(64, '\0');
   frame[0] = 1;   // segments
@@ -104,7 +104,7 @@ constexpr Part parts[] = {{"octotomy-tetgen", "tetrahedra by TetGen", tetgen_fil
                           {"octotomy_dicom_codec", "compressed DICOM", codec_decompresses},
                           {"octotomy_image_io.so", "pictures", image_is_encoded}};
 
-/// What is wrong with a part; empty: nothing. `path` is where it was found.
+/// The fault of a part; empty if there is none. Sets `path` to its location.
 std::string trouble_of(const Part& part, std::filesystem::path& path) {
   try {
     path = voxel::helper_file(part.file);
@@ -123,7 +123,7 @@ SuiteAnswer run_self(Program& program, const VerifyText&) {
   SuiteAnswer answer;
   const Stopwatch watch(answer.timings, "self");
   const std::string build =
-      std::string(octotomy_build_mark).substr(mark_prefix().size(), 16);  // enough to tell builds apart
+      std::string(octotomy_build_mark).substr(mark_prefix().size(), 16);  // enough to distinguish builds
   Json told = Json::array();
   std::vector<std::pair<std::string, std::string>> rows{{"octotomy", OCTOTOMY_VERSION ", build " + build}};
   for (const Part& part : parts) {

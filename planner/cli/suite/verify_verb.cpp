@@ -9,7 +9,7 @@
 namespace octotomy::planner::cli {
 namespace {
 
-/// The suites there are.
+/// All suites.
 const std::vector<Suite>& suites() {
   static const std::vector<Suite> all{fault_suite, phantoms_suite, random_suite, self_suite, thesis_suite};
   return all;
@@ -42,7 +42,7 @@ SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
   return answer;
 }
 
-/// What was named: a suite by its option, or a plan.
+/// Runs the suite selected by its option, or verifies the plan.
 SuiteAnswer chosen(Program& program, VerifyText& text, const std::vector<CLI::Option*>& named) {
   const Suite* suite = nullptr;
   for (std::size_t i = 0; i < named.size(); ++i) {
@@ -66,7 +66,7 @@ SuiteAnswer chosen(Program& program, VerifyText& text, const std::vector<CLI::Op
   return verify_plan(program, text);
 }
 
-/// As it was asked for.
+/// The subject as written on the command line.
 std::string subject_of(const VerifyText& text, const std::vector<CLI::Option*>& named) {
   std::string subject;
   for (const std::string& word : text.subject) subject += (subject.empty() ? "" : " ") + word;

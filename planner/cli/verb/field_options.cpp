@@ -30,7 +30,7 @@ std::string help_of(const Field& field, void* fresh) {
   return printed.empty() ? text : text + " Default: " + printed.begin()->dump() + ".";
 }
 
-/// A refusal that names fields, with the options in their place.
+/// An error message with the names of fields replaced by those of options.
 std::string in_options(std::string text, const std::string& operation, const std::vector<Field>& fields) {
   for (const Field& field : fields)
     for (const std::string& said : {operation + ", " + field.name + ":", "'" + field.name + "'"})
@@ -39,7 +39,7 @@ std::string in_options(std::string text, const std::string& operation, const std
   return text;
 }
 
-/// A refusal of an option's words, which it shows.
+/// An error message about an option's words, which it quotes.
 std::string with_words(std::string text, const Field& field, const std::vector<std::string>& words) {
   if (text.starts_with(field.name + ": ")) text.erase(0, field.name.size() + 2);
   if (text.find(words.back()) != std::string::npos) return text;

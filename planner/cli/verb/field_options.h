@@ -8,18 +8,19 @@
 #include "planner/cli/verb/verb.h"
 #include "planner/operation/table/operation.h"
 
-// An operation's fields as options of its verb, and back.
+// Converts an operation's fields to options of its verb, and words to values.
 namespace octotomy::planner::cli {
 
 /// The words on the command line, by field.
 using FieldWords = std::map<std::string, std::vector<std::string>>;
 
-/// Adds an option, or a positional, for each field that the command line has; `words` must outlive the verb.
+/// Adds an option or a positional for each field that is available on the command line; `words` must outlive
+/// the verb.
 void add_field_options(CLI::App& verb, const Operation& operation, const std::vector<Field>& fields,
                        FieldWords& words);
 
-/// The operation's value of the words. Throws CLI::ValidationError where a word is not its field's,
-/// std::runtime_error where the operation refuses the whole.
+/// The operation's value from the words. Throws CLI::ValidationError if a word is not valid for its field,
+/// std::runtime_error if the operation refuses the combination.
 Action read_action(const Operation& operation, const FieldWords& words);
 
 }  // namespace octotomy::planner::cli

@@ -11,7 +11,7 @@ namespace {
 using Options = std::vector<const CLI::Option*>;
 using Verbs = std::vector<const CLI::App*>;
 
-/// Those that help shows.
+/// The options that help shows.
 Options shown_options(const CLI::App& app) {
   Options options = app.get_options([](const CLI::Option* option) { return !option->get_group().empty(); });
   return options;
@@ -39,7 +39,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-/// Text of a man page: no backslash, minus or leading dot means anything.
+/// Escapes text for a man page: backslash, minus and leading dot.
 std::string troff(const std::string& text) {
   std::string safe = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   safe = replaced(safe, "\n.", "\n\\&.");
@@ -60,12 +60,12 @@ std::string troff_options(const CLI::App& app) {
   return text;
 }
 
-/// A footer's "Example:" lines as they are typed.
+/// The "Example:" lines of a footer, unformatted.
 std::string troff_footer(const CLI::App& app) {
   return app.get_footer().empty() ? "" : ".PP\n.nf\n" + troff(app.get_footer()) + "\n.fi\n";
 }
 
-/// A verb's section; a group's are those of its verbs.
+/// The section of a verb, or the sections of a group's verbs.
 std::string troff_verb(const CLI::App& verb, const std::string& name) {
   if (verb.get_subcommands([](const CLI::App*) { return true; }).empty())
     return ".SS " + troff(name) + "\n" + troff(verb.get_description()) + "\n" + troff_options(verb) +
@@ -87,7 +87,7 @@ std::string man_page(const CLI::App& app) {
   return text + ".SH EXAMPLES\n" + troff_footer(app);
 }
 
-/// What may follow a verb: the verbs of a group, and options.
+/// The words that may follow a verb: the verbs of a group, and options.
 std::string joined_names(const CLI::App& app, const Options& options) {
   std::string text;
   for (const CLI::App* verb : app.get_parent() == nullptr ? Verbs() : shown_verbs(app))
@@ -115,7 +115,7 @@ std::string bash_completion(const CLI::App& app) {
          "}\ncomplete -o default -F _octotomy octotomy\n";
 }
 
-/// Text within a zsh word in single quotes and a description in brackets.
+/// Escapes text for a zsh word in single quotes and a description in brackets.
 std::string zsh(const std::string& text) {
   std::string safe = replaced(text, "'", "'\\''");
   for (const char* mark : {"[", "]", ":"}) safe = replaced(safe, mark, std::string("\\") + mark);

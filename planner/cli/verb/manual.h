@@ -9,11 +9,11 @@ class App;
 
 namespace octotomy::planner::cli {
 
-/// What the program's options, verbs and examples are for people and shells, from the options themselves:
-/// "man" gives a page in troff, "bash" and "zsh" a completion. Throws CLI::ValidationError for another kind.
+/// Documentation generated from the program's options, verbs and examples: "man" is a page in troff, "bash"
+/// and "zsh" are completions. Throws CLI::ValidationError for another kind.
 std::string manual(const CLI::App& app, const std::string& kind);
 
-/// Adds the option --manual KIND, which help does not show: prints manual() and ends with success.
+/// Adds the hidden option --manual KIND, which prints manual() and exits successfully.
 void add_manual(CLI::App& app);
 
 }  // namespace octotomy::planner::cli

@@ -5,10 +5,10 @@ namespace CLI {
 class App;
 }  // namespace CLI
 
-// What the verbs that read meshes have in common.
+// Common options of verbs that read meshes.
 namespace octotomy::planner::cli {
 
-/// Adds --frame and --unit to a verb's help, where no other option of the verb has that name already.
+/// Adds --frame and --unit to a verb, unless it already has an option of that name.
 void add_mesh_options(CLI::App& verb);
 
 /// Passes the words of the verb's --frame and --unit to choose_mesh_reading(). Throws as that does.

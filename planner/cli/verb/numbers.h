@@ -10,10 +10,10 @@
 
 namespace octotomy::planner::cli {
 
-/// The finite number that a text is, or nothing.
+/// The finite number in a text, or none.
 std::optional<double> parse_number(const std::string& text);
 
-/// Finite numbers between commas, just as many, or nothing.
+/// Exactly `Count` finite numbers separated by commas, or none.
 template <std::size_t Count>
 std::optional<std::array<double, Count>> parse_numbers(const std::string& text) {
   std::array<double, Count> numbers{};
@@ -27,7 +27,7 @@ std::optional<std::array<double, Count>> parse_numbers(const std::string& text) 
   return numbers;
 }
 
-/// The same; throws CLI::ValidationError naming the option, the text and the example where there are none.
+/// The same, but throws CLI::ValidationError, which names the option, the text and the example.
 template <std::size_t Count>
 std::array<double, Count> numbers_of(const std::string& option, const std::string& text,
                                      const std::string& example) {
@@ -37,7 +37,7 @@ std::array<double, Count> numbers_of(const std::string& option, const std::strin
   throw CLI::ValidationError(option, message);
 }
 
-/// Checks of options that are numbers. CLI11's own let NaN through, which is on no side of any bound.
+/// Checks of numeric options. CLI11's own checks accept NaN, because comparisons with it are false.
 CLI::Validator finite();
 CLI::Validator above_zero();
 CLI::Validator between(double low, double high);

@@ -4,13 +4,14 @@
 #include "planner/cli/verb/verb.h"
 #include "planner/operation/file/octree_in.h"
 
-// What the verbs that write an .octree file have in common.
+// Common output of verbs that write an .octree file.
 namespace octotomy::planner::cli {
 
-/// Puts an answer on standard output, its findings on standard error. Without rows it is of an octree.
+/// Prints an answer to standard output and its findings to standard error. Without rows, prints the rows of
+/// an octree.
 int say(const Program& program, const FileAnswer& made, const Timings& timings);
 
-/// What info does for an .octree file.
+/// Runs `info` for an .octree file.
 int info_of_octree(const Program& program, const std::filesystem::path& path);
 
 }  // namespace octotomy::planner::cli

@@ -10,31 +10,31 @@
 #include "planner/plan/evaluate.h"
 #include "planner/plan/plan.h"
 
-// What the verbs that replay a plan have in common.
+// Common options and steps of verbs that replay a plan.
 namespace octotomy::planner::cli {
 
-/// A plan as the command line names it, and what it says of the plan's scans.
+/// A plan on the command line, and options for its scans.
 struct PlanIn {
   std::filesystem::path plan;
   std::vector<std::string> scans;  ///< NAME=PATH each
   ScanIn in;
 };
-/// Adds --scan; the plan itself is the verb's own to name.
+/// Adds --scan; each verb adds its own argument for the plan.
 void add_scan_paths(CLI::App& verb, PlanIn& text);
-/// Adds --scan and the options that say how the plan's scan is read.
+/// Adds --scan and the options for reading the plan's scan.
 void add_plan_options(CLI::App& verb, PlanIn& text);
 
-/// Reads the plan and puts NAME=PATH in the place of its scans' paths; those are relative to where we are.
-/// Throws as read_plan(), and std::runtime_error where --scan names none of the plan's scans.
+/// Reads the plan and replaces its scans' paths by those of NAME=PATH, which are relative to the working
+/// folder. Throws as read_plan() does, and std::runtime_error if --scan names no scan of the plan.
 Plan plan_of(const Program& program, const PlanIn& text);
 
-/// Progress and stop as the program has them, certificates wanted.
+/// Options with the program's progress and stop, and with certificates.
 EvaluateOptions evaluate_options(Program& program);
 
-/// The plan evaluated; its scans are noted.
+/// Evaluates the plan and notes its scans for say().
 Evaluation evaluated(Program& program, const Plan& plan, const EvaluateOptions& options);
 
-/// When a replay's certificates are made.
+/// When a replay's certificates are computed.
 enum class Certify {
   Now,
   Later,  ///< the result is written without certificates first, and again with them
@@ -46,19 +46,19 @@ struct RunText : PlanIn {
   bool as_pdf = false;
   bool anonymous = false;
 };
-/// Replays a plan into a result's folder and says what came of it; the exit status.
+/// Replays a plan into a result's folder and prints a summary; returns the exit status.
 int run(Program& program, const RunText& text);
-/// The same of a plan that was read. `beside` is called once when the result is first written: for what is
-/// there with it, or not at all.
+/// The same for a plan that was already read. `beside` is called once when the result is first written, for
+/// files that must appear together with it.
 int run(Program& program, const RunText& text, Plan plan, const std::function<void()>& beside = {});
 /// Adds --anonymous to a verb that writes a report.
 void add_anonymous(CLI::App& verb, bool& anonymous);
 /// Adds --certify to a verb that replays a plan.
 void add_certify(CLI::App& verb, Certify& certify);
 
-/// A line an object for people: its verdict with both answers. Findings go to standard error.
+/// Text with one line per object: its verdict and both answers. Prints findings to standard error.
 std::string verdict_text(const Evaluation& evaluation);
-/// The exit status that the verdicts make; says so on standard error where the kernels disagree.
+/// The exit status by the verdicts; prints a line to standard error if the kernels disagree.
 int status_of(const Evaluation& evaluation);
 
 }  // namespace octotomy::planner::cli

@@ -57,7 +57,7 @@ class Line {
     told_ = now;
   }
 
-  /// Also while another thread has the line: the process may end in its midst.
+  /// Works even if another thread holds the lock, because the process may end in the middle of its output.
   void leave(bool for_good) {
     const std::unique_lock lock(mutex_, std::try_to_lock);
     erase();
@@ -72,7 +72,7 @@ class Line {
   }
   void show(const std::string& text) {
     if (is_over_) return;
-    // Erased first, so that a shorter text leaves nothing of a longer one.
+    // Erases the line first, so that no part of a longer text remains.
     std::fprintf(stderr, "\r\x1b[2K%s", line_of(text).c_str());
     std::fflush(stderr);
     is_shown_ = true;
@@ -85,14 +85,14 @@ class Line {
   }
 
   std::mutex mutex_;
-  std::string doing_;  ///< empty where nothing tells its share
+  std::string doing_;  ///< empty if no task reports its progress
   double fraction_ = 0.0, start_fraction_ = 0.0;
-  /// Of the shares that grow, of what is done, and of the last word.
+  /// Start of the growing fractions, start of the current task, and time of the last report.
   Clock::time_point start_, doing_start_, told_ = Clock::now();
   bool is_shown_ = false, is_over_ = false;
 };
 
-/// Never destroyed: a thread may still tell its share while the process ends.
+/// Never destroyed, because a thread may still report progress while the process ends.
 Line& line() {
   static auto& only = *new Line;
   return only;

@@ -4,27 +4,27 @@
 #include <chrono>
 #include <string>
 
-// The line at the bottom of a terminal that says what is being done. Of the process, on standard error; any
-// thread may call. Callers look whether that is a terminal.
+// The progress line of the process, on standard error. Any thread may call. Callers must check that standard
+// error is a terminal.
 
 namespace octotomy::planner::cli {
 
 using Seconds = std::chrono::duration<double>;
 
-/// How long the rest takes if it goes on as the share done in a time: "about 40 s left". Empty before two
-/// seconds or a fiftieth of the work, which tell nothing.
+/// The remaining time, extrapolated from the fraction done: "about 40 s left". Empty before two seconds and a
+/// fiftieth of the work, when the estimate would be unreliable.
 std::string left_text(double done, double rest, Seconds time);
 
-/// A share of the work, 0..1, which 1 ends.
+/// Shows the fraction of a task that is done, 0..1; 1 ends the task.
 void show_progress(const std::string& doing, double fraction);
 
-/// To be called a few times a second. Where nothing was told for a second, says what is being done and how
-/// long by now: the last thing that told a share, else the stage whose Stopwatch runs.
+/// To be called a few times a second. If no progress was reported for a second, shows the current task and
+/// its elapsed time: the last task that reported progress, else the stage of the running Stopwatch.
 void show_silent_work();
 
-/// Takes the line away, before other words come.
+/// Erases the line before other output.
 void erase_progress();
-/// The same for good: the verb has ended.
+/// Erases the line permanently, because the verb has ended.
 void end_progress();
 
 }  // namespace octotomy::planner::cli

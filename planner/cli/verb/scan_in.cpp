@@ -27,7 +27,7 @@ std::vector<voxel::SliceRange> slices_of(const std::string& text) {
   }
 }
 
-/// What `parse` makes of an option's text, if it is given.
+/// The result of `parse` for an option's text, if it is given.
 template <typename Value>
 std::optional<Value> parsed(const char* option, const std::string& text, Value (*parse)(const std::string&)) {
   if (text.empty()) return std::nullopt;

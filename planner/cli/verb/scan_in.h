@@ -8,10 +8,10 @@ namespace CLI {
 class Validator;
 }  // namespace CLI
 
-// What the verbs that read a scan have in common.
+// Common options of verbs that read a scan.
 namespace octotomy::planner::cli {
 
-/// The options about it, as text.
+/// The options for reading a scan, as text.
 struct ScanIn {
   std::string series, slices, spacing, frame, unit;
   bool join = false;
@@ -21,21 +21,21 @@ struct ScanIn {
 };
 
 /// Adds --series, --join, --slices, --frame, --unit, --spacing, --raw, --big-endian and --offset to a verb's
-/// help, under a heading that says whose they are.
+/// help, under a heading that names the scan.
 void add_scan_options(CLI::App& verb, ScanIn& in, const std::string& heading = "scan");
 
-/// Throws std::runtime_error where options about a scan are given to `files` that are all meshes or octrees:
-/// they would change nothing. --frame and --unit are those of meshes, too.
+/// Throws std::runtime_error if options for a scan are given but all `files` are meshes or octrees, because
+/// they would have no effect. --frame and --unit also apply to meshes.
 void need_options_fit(const CLI::App& verb, const std::vector<std::string>& files);
 
-/// A path that is there, or a pattern of image files.
+/// Accepts an existing path, or a pattern of image files.
 CLI::Validator scan_path();
 
-/// Throws CLI::ValidationError where an option cannot be understood.
+/// The options for reading a scan. Throws CLI::ValidationError if an option is invalid.
 voxel::ReadOptions read_options(const Program& program, const ScanIn& in);
 
-/// Reads the scan; "read" in the timings, progress on a terminal; `slices_final` as in voxel::ReadOptions.
-/// Throws as voxel::read_scene().
+/// Reads the scan, with the time added to "read" and progress on a terminal; `slices_final` as in
+/// voxel::ReadOptions. Throws as voxel::read_scene() does.
 voxel::Scene read_scan(const Program& program, const std::filesystem::path& path, const ScanIn& in,
                        Timings& timings, const voxel::SlicesFinal& slices_final = {});
 

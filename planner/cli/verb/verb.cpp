@@ -27,12 +27,12 @@ namespace {
 
 std::atomic<Speaker> last_speaker{Speaker::None};
 
-constexpr std::size_t most_findings = 40;  ///< that are said; about a page
-std::size_t findings = 0;                  ///< of this program's run
+constexpr std::size_t most_findings = 40;  ///< largest number of printed findings, about a page
+std::size_t findings = 0;                  ///< number of findings in this run
 
-/// Writes all of it, or throws; a reader that has gone away wants no more, which is no error.
+/// Writes the whole text or throws. A closed pipe is not an error, because its reader needs no more.
 void put(const std::string& text) {
-  // The watch has said how the program ends, which it does at any moment.
+  // If the watch has printed how the program ends, waits for this end.
   while (!has_last_word(Speaker::Verb)) std::this_thread::sleep_for(std::chrono::seconds(1));
   end_progress();
   errno = 0;
@@ -45,7 +45,7 @@ void put(const std::string& text) {
 
 CLI::App& Program::verb(const std::string& name, const std::string& does, const std::string& example,
                         std::function<int()> action) {
-  // "plan diff" is the verb diff of the group plan.
+  // "plan diff" means the verb diff in the group plan.
   CLI::App* parent = &app;
   const auto blank = name.find(' ');
   if (blank != std::string::npos) parent = app.get_subcommand(name.substr(0, blank));
@@ -74,8 +74,8 @@ bool Program::is_asked(const std::string& name) const {
 
 namespace {
 
-/// That a scan is not of the first one's patient, or a label map not of its study or frame. Scans of one
-/// patient may be of several studies.
+/// A finding if a scan is not of the first one's patient, or a label map not of its study or frame. Scans of
+/// one patient may be of several studies.
 std::optional<voxel::Finding> doubt_of(const ScanRecord& scan, const std::vector<ScanRecord>& earlier) {
   if (earlier.empty()) return std::nullopt;
   const ScanRecord& first = earlier.front();
@@ -201,14 +201,15 @@ FindingsOfRun::~FindingsOfRun() {
 }
 
 std::string line_of(const std::string& text) {
-  constexpr std::size_t most = 1000;  // bytes; a page at most, and never a whole file
+  constexpr std::size_t most = 1000;  // bytes; at most a page, never a whole file
   constexpr const char* cut = " ... ";
   std::string line = text;
   while (!line.empty() && (line.back() == ' ' || line.back() == '\n')) line.pop_back();
   for (char& symbol : line)
     if (is_control(symbol)) symbol = symbol == '\n' || symbol == '\t' ? ' ' : '?';
   if (line.size() <= most) return line;
-  // The beginning names the place, the end says what to do. No character is cut in two.
+  // Keeps the beginning, which names the place, and the end, which states a remedy. Does not split a
+  // character.
   std::size_t first = most / 2, last = line.size() - most / 2 + 5;
   while (first > 0 && (static_cast<unsigned char>(line[first]) & 0xc0) == 0x80) --first;
   while (last < line.size() && (static_cast<unsigned char>(line[last]) & 0xc0) == 0x80) ++last;

@@ -18,13 +18,13 @@ namespace CLI {
 class App;
 }  // namespace CLI
 
-// What the verbs of the command line have in common.
+// Common parts of the verbs of the command line.
 namespace octotomy::planner::cli {
 
 /// Exit statuses. Anything else is a bug.
 enum Status { done = 0, disagreement = 1, bad_input = 2, out_of_resources = 3 };
 
-/// The program as a verb sees it.
+/// The program's interface for verbs.
 struct Program {
   /// `words`: the command line after the program's name.
   Program(CLI::App& top, std::vector<std::string> words) : app(top), words_(std::move(words)) {}
@@ -35,28 +35,28 @@ struct Program {
   std::optional<double> time_limit_s;
   std::optional<double> memory_gb;
   std::stop_source stop;
-  std::function<int()> chosen;  ///< what the verb on the command line does; its answer is the exit status
+  std::function<int()> chosen;  ///< runs the verb on the command line; returns the exit status
 
-  /// Adds a verb, and where it is asked for the options that every verb has. `example` ends its --help.
+  /// Adds a verb and, if it is requested, the options common to all verbs. `example` ends its --help.
   CLI::App& verb(const std::string& name, const std::string& does, const std::string& example,
                  std::function<int()> action);
-  /// Whether the command line may mean this verb, which then needs its options: adding those of all verbs
-  /// takes longer than most verbs' work. True of all verbs where an option comes first, as --manual.
+  /// Whether the command line may request this verb, which then needs its options: adding those of all verbs
+  /// takes longer than most verbs' work. True for all verbs if an option comes first, such as --manual.
   bool is_asked(const std::string& name) const;
-  /// Keeps the audit of a scan that the verb has read for say().
+  /// Stores the audit of a scan that the verb has read, for say().
   void note_scan(const std::filesystem::path& path, const voxel::Scene& scene) const;
   void note_scan(const ScanRecord& scan) const;
-  /// Keeps the tissues among the words of the command line, also of NAME=TISSUE, for say().
+  /// Stores the tissues among the words of the command line, also of NAME=TISSUE, for say().
   void note_tissues(const std::vector<std::string>& words) const;
-  /// Puts the answer on standard output: the JSON object, or the text for people. Warnings and failures of
-  /// the noted scans' audits go to standard error, one line each, and their audits into the JSON as "scans"
-  /// if the answer holds no audit yet; the noted tissues' bounds go the same ways, as "tissues".
+  /// Prints the answer to standard output: the JSON object, or the text. Prints warnings and failures of the
+  /// noted scans' audits to standard error, one line each, and adds the audits to the JSON as "scans" if the
+  /// answer contains no audit. Treats the noted tissues' bounds in the same way, as "tissues".
   void say(const Json& answer, const std::string& text) const;
-  /// Whether people read on a terminal what is being done.
+  /// Whether progress is shown, that is, standard error is a terminal.
   bool shows_progress() const;
-  /// A progress line on standard error where shows_progress(), else none.
+  /// A progress line on standard error if shows_progress(), else none.
   std::function<void(const std::string&, double)> progress() const;
-  /// The same of one thing only, which the line calls `doing`.
+  /// The same for a single task, which the line calls `doing`.
   std::function<void(double)> progress(const std::string& doing) const;
 
  private:
@@ -65,18 +65,19 @@ struct Program {
   std::shared_ptr<std::vector<ScanRecord>> scans_ = std::make_shared<std::vector<ScanRecord>>();
 };
 
-/// Says that no verb is called `word`: with the nearest one's name, and where to find them.
+/// The message that no verb is called `word`, with the nearest verb's name and where to find the list of
+/// verbs.
 std::string unknown_verb(const CLI::App& app, const std::string& word);
 
-/// One line on standard error, as line_of() makes it.
+/// Prints one line, formatted by line_of(), to standard error.
 void warn(const std::string& line);
 
-/// The same of one finding among many: the first of a run are said, so that what matters is not lost among
-/// thousands.
+/// The same for one finding of many: only the first ones of a run are printed, so that important ones are not
+/// lost among thousands.
 void warn_finding(const std::string& finding);
 
-/// A run of the program. Its end states the number of findings that warn_finding() has kept back, and forgets
-/// how meshes were to be read and which were.
+/// A run of the program. Its destructor prints the number of findings that warn_finding() has suppressed, and
+/// resets the options for reading meshes and the list of meshes read.
 struct FindingsOfRun {
   FindingsOfRun() = default;
   FindingsOfRun(const FindingsOfRun&) = delete;
@@ -87,15 +88,15 @@ struct FindingsOfRun {
 /// A text as one line for a terminal: without control characters, at most 1000 bytes.
 std::string line_of(const std::string& text);
 
-/// How the program ends is said once: by the verb, or by the watch over it. True for the first that asks,
-/// and for the same one again.
+/// Only one of verb and watch prints how the program ends. True for the first caller, and for the same one
+/// again.
 enum class Speaker { None, Verb, Watch };
 bool has_last_word(Speaker speaker);
 
-/// Numbers of samples for people: 512 x 512 x 300.
+/// Numbers of samples as text: 512 x 512 x 300.
 std::string dims_text(const glm::ivec3& dims);
 
-/// A table of two columns for people.
+/// A table of two columns as text.
 std::string lines(const std::vector<std::pair<std::string, std::string>>& rows);
 
 }  // namespace octotomy::planner::cli

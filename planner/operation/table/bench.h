@@ -135,7 +135,7 @@ struct AnswerBench {
   const std::vector<ScanRecord>& scans;
   Timings& timings;
   std::stop_token stop = {};
-  /// Called with what is being done and a fraction of it, 0..1; may be empty.
+  /// Called with the current task and its fraction done, 0..1; may be empty.
   std::function<void(const std::string& doing, double fraction)> report = {};
   std::filesystem::path folder = {};      ///< files are written below it
   std::vector<std::string> origins = {};  ///< where the objects come from, for files' headers
@@ -153,7 +153,7 @@ struct AnswerBench {
 struct FileBench {
   Timings& timings;
   std::stop_token stop = {};
-  /// Called with what is being done and a fraction of it, 0..1; may be empty.
+  /// Called with the current task and its fraction done, 0..1; may be empty.
   std::function<void(const std::string& doing, double fraction)> report = {};
   /// Reads a scan according to the command line's options, with `slices_final` as in voxel::ReadOptions;
   /// timed.

@@ -46,7 +46,7 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
     if (row.size() > 1 || !row.front().empty()) rows.push_back(std::move(row));
     row.assign(1, {});
   };
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // as spreadsheets begin UTF-8
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // the byte-order mark of spreadsheets
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
     refuse(1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + zero, '\n')),
            "a byte 0: it is no text, or not UTF-8");
@@ -89,7 +89,7 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
 }
 
 std::vector<std::vector<std::string>> parse_tsv(std::string_view text) {
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // as spreadsheets begin UTF-8
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // the byte-order mark of spreadsheets
   if (text.find('\0') != std::string_view::npos) refuse(1, "a byte 0: it is no text, or not UTF-8");
   std::vector<std::vector<std::string>> rows;
   for (std::size_t at = 0; at < text.size();) {

@@ -12,8 +12,8 @@
 
 #include "planner/operation/table/sample_window.h"
 
-// The fields of operations: the name, type and meaning of each. Reading and printing JSON, refusals, the
-// schema, the command line's options and their help all derive from this one description.
+// The fields of operations: the name, type and meaning of each. Reading and printing JSON, error messages,
+// the schema, the command line's options and their help all derive from this one description.
 namespace octotomy::planner {
 
 /// The name of an object that an earlier step makes.
@@ -30,7 +30,7 @@ struct Site {
   std::string object;  ///< empty: the point
 };
 /// A point: typed in LPS millimetres, or a landmark of the plan. The landmark is at its position in the scan,
-/// or, as "ans@advanced", where that object's motions put it.
+/// or, as "ans@advanced", at the position to which that object's motions move it.
 struct Mark {
   glm::dvec3 p_mm{0.0};  ///< of a landmark: in the scan
   std::string landmark;  ///< empty: typed
@@ -61,7 +61,7 @@ using Slot = std::variant<
     std::vector<int>*, std::vector<std::string>*, std::vector<glm::dvec3>*, std::vector<ObjectName>*, Mark*,
     std::optional<Mark>*, std::vector<Mark>*, std::optional<glm::dmat4>*, Polygons*, NamePairs*, Records>;
 
-/// The unit at the end of a name, for people: "mm", "mm³", "°"; empty if there is none.
+/// The unit at the end of a name, as shown to users: "mm", "mm³", "°"; empty if there is none.
 std::string unit_of_name(const std::string& name);
 
 /// One field of an operation or of a record within it.
@@ -74,11 +74,11 @@ struct Field {
   bool is_required = false;
   bool is_direction = false;            ///< a vector that must have a length
   std::optional<double> above = {};     ///< numbers are greater
-  std::optional<double> least = {};     ///< numbers are at least this, lists have at least so many entries
-  std::optional<double> most = {};      ///< numbers are at most this, lists have at most so many entries
+  std::optional<double> least = {};     ///< numbers are at least this, lists have at least this many entries
+  std::optional<double> most = {};      ///< numbers are at most this, lists have at most this many entries
   std::optional<double> below = {};     ///< numbers are less
   std::vector<std::string> words = {};  ///< the texts that are allowed; empty: any that is not empty
-  std::string sample = {};              ///< an example for refusals, as JSON
+  std::string sample = {};              ///< an example for error messages, as JSON
 
   std::optional<std::string> argument = {};  ///< on the command line a positional argument of this name
   std::string option = {};                   ///< on the command line "--" and this; default: from `name`

@@ -9,14 +9,14 @@
 #include <string_view>
 #include <vector>
 
-// Files of JSON that people write. All throw std::runtime_error that begins with `where`: the file, then the
-// place in it.
+// JSON files written by users. All functions throw std::runtime_error whose message begins with `where`: the
+// file, then the position in it.
 namespace octotomy::planner {
 
 /// If `where` is empty, the message contains `what` alone.
 [[noreturn]] void refuse(const std::string& where, const std::string& what);
 
-/// For a refusal: "a number", "a JSON array".
+/// A value's type for error messages: "a number", "a JSON array".
 std::string type_of(const nlohmann::json& value);
 
 /// The largest depth of JSON. Copying and writing recurse once a level, so deeper JSON could exhaust the
@@ -31,7 +31,7 @@ void need_shallow_json(std::string_view text);
 /// Line and column stay.
 std::string without_last_read(std::string message);
 
-/// Refuses a key that stands twice in one object: a parser alone would take the last one. To be called for
+/// Refuses a key that occurs twice in one object; a parser alone would silently use the last one. Call it for
 /// each event of a parser, in order.
 class OneOfEachKey {
  public:
@@ -65,24 +65,25 @@ AnyJson parse_json(std::string_view text) {
 
 nlohmann::json read_json(const std::filesystem::path& path);
 
-/// JSON as text. Bytes that are no UTF-8, as in names of files, become U+FFFD. An indent of -1: on one line.
+/// JSON as text. Bytes that are not valid UTF-8, as in file names, become U+FFFD. An indent of -1 writes one
+/// line.
 template <typename AnyJson>
 std::string json_text(const AnyJson& json, int indent = -1) {
   return json.dump(indent, ' ', false, AnyJson::error_handler_t::replace);
 }
 
-/// Written beside and renamed into place.
+/// Writes to a temporary file and renames it into place.
 void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
 /// Throws for an unknown key, with the nearest known one.
 void check_keys(const nlohmann::json& object, const std::string& where,
                 const std::vector<std::string>& known);
 
-/// The value of a key that must be there.
+/// The value of a required key; throws if it is absent.
 const nlohmann::json& need(const nlohmann::json& object, const std::string& key, const std::string& where);
 
 double number_of(const nlohmann::json& value, const std::string& where);      ///< finite
-std::size_t count_of(const nlohmann::json& value, const std::string& where);  ///< whole, from 0
+std::size_t count_of(const nlohmann::json& value, const std::string& where);  ///< an integer from 0
 std::string word_of(const nlohmann::json& value, const std::string& where);
 glm::dvec2 point_of(const nlohmann::json& value, const std::string& where);  ///< [u, v]
 

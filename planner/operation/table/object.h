@@ -41,7 +41,7 @@ struct MeshSide {
   std::optional<brep::Solid> whole;   ///< also beyond the universe; none if the kernel has no answer
   std::optional<brep::Solid> within;  ///< the part of it within the universe
   std::string lineage;
-  std::vector<std::string> makers;  ///< as of VoxelSide
+  std::vector<std::string> makers;  ///< as in VoxelSide
   double shift_mm = 0.0;            ///< how far Booleans moved operands
   std::vector<std::string> findings;
   nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< further results of the operation
@@ -49,34 +49,38 @@ struct MeshSide {
   std::optional<std::pair<std::string, brep::Solid>> parts_of = {};
 };
 
-/// A plane along which an object was cut, parallel to the universe's planes when it was cut.
+/// A plane along which an object was cut. It was parallel to the universe's planes at the time of the cut.
 struct CutPlane {
-  int axis = 0;                ///< of its normal then
-  glm::dvec3 normal{1, 0, 0};  ///< now
+  int axis = 0;                ///< axis of its normal at that time
+  glm::dvec3 normal{1, 0, 0};  ///< its current normal
   double offset_mm = 0.0;      ///< normal . p of its points
-  double voxels = 1.0;         ///< the error of its area, relative to a cut through voxels
+  double voxels = 1.0;         ///< error of its area, relative to a cut through voxels
 };
 
-/// The samples that show an object's surface: it is one window's lower bound wherever it is not a cut.
+/// The samples that show an object's surface: except at cuts, it lies at the lower bound of one of these
+/// windows.
 struct Shown {
   voxel::GreyOctree grey;
   double threshold = 0.0;
-  std::string scan;                                  ///< that grey is of
-  glm::dmat4 moved_from_still{1.0};                  ///< LPS to LPS, of all the steps that moved it since
-  std::shared_ptr<const voxel::Scene> samples = {};  ///< the scan's own; none: grey alone shows it
+  std::string scan;                                  ///< name of the scan of `grey`
+  glm::dmat4 moved_from_still{1.0};                  ///< motion by all steps since, LPS to LPS
+  std::shared_ptr<const voxel::Scene> samples = {};  ///< samples of the scan; none: only `grey` shows the
+                                                     ///< surface
   double high = std::numeric_limits<double>::infinity();  ///< the window's upper bound
 };
 
-/// What a certificate's bound is made of.
+/// The terms of a certificate's bound.
 struct BoundTerms {
   std::vector<CutPlane> planes;
-  glm::dvec3 spacing_mm{0.0};  ///< of the coarsest scan that the object derives from; zero if there is none
-  std::optional<voxel::Box> scan_box_mm;  ///< of the scan it derives from; none once it has moved
+  glm::dvec3 spacing_mm{0.0};  ///< spacing of the coarsest scan from which the object derives; zero if there
+                               ///< is none
+  std::optional<voxel::Box> scan_box_mm;  ///< box of the scan from which it derives; none after a motion
   bool voxels_are_samples = false;
   double shift_mm = 0.0;       ///< how far Booleans on the way moved operands (brep::Booleans)
-  std::vector<Shown> windows;  ///< of all that it was made of: their bounds decide where its surface lies
-  /// Objects whose surface was made anew on the way, by an offset, by smoothing or by fewer triangles: where
-  /// theirs is in doubt, so is this one's.
+  std::vector<Shown> windows;  ///< windows of all objects from which it was made; their bounds determine its
+                               ///< surface
+  /// Objects on the way whose surface was replaced: by an offset, by smoothing or by decimation. Uncertainty
+  /// of their surface also applies to this object.
   std::vector<std::string> reshaped;
   /// The mean distance by which two correct answers may differ because each kernel measured distances by
   /// itself (verify::BoundInputs).
@@ -94,8 +98,8 @@ struct CutWall {
 struct Caveat {
   voxel::Verdict verdict = voxel::Verdict::Warn;
   std::string reason;
-  bool is_inherited = false;  ///< of an object that it was made of
-  bool is_of_place = false;   ///< of where the object lies: it does not go with a motion
+  bool is_inherited = false;  ///< caveat of an object from which it was made
+  bool is_of_place = false;   ///< depends on the object's position, so a moved object does not inherit it
 };
 
 /// What an operation made, in both kernels.
@@ -112,8 +116,8 @@ struct Object {
   VoxelSide voxel;
   MeshSide mesh;
   BoundTerms bound;
-  verify::Witness witness;  ///< of the object as `mesh.whole` has it; empty where no third reading exists
-  std::optional<verify::Certificate> certificate;  ///< none for tools, and where there is no mesh
+  verify::Witness witness;  ///< describes `mesh.whole`; empty if there is no independent third reading
+  std::optional<verify::Certificate> certificate;  ///< none for tools, and if there is no mesh
   std::vector<std::string> findings;
   /// The finding if the scan's border cuts the object off, because neither kernel has data beyond it. A
   /// motion keeps the finding.
@@ -124,9 +128,9 @@ struct Object {
   std::vector<std::string> shared_values;
   bool ends_with_universe = false;  ///< its mesh stays cut at the universe's border when it moves on
   std::optional<Shown> shown;
-  /// Of a moved object.
+  /// Details of a moved object.
   struct Moved {
-    std::string object;  ///< that was moved
+    std::string object;  ///< name of the object that was moved
     glm::dmat4 motion{1.0};
     /// Reported facts about the motion: how it was found, residuals of points.
     nlohmann::ordered_json details = nlohmann::ordered_json::object();
@@ -140,13 +144,13 @@ struct Object {
     bool is_whole = false;
   };
   std::optional<Image> image;
-  std::vector<CutWall> walls;  ///< of the masks that it was made with, where they have a mesh
+  std::vector<CutWall> walls;  ///< walls cut by the masks with which it was made, if these have a mesh
 };
 
-/// The objects that steps have made so far, in their order. Addresses stay.
+/// The objects that steps have made so far, in order. References stay valid when objects are added.
 class Objects {
  public:
-  /// Throws std::invalid_argument where no object has this name.
+  /// Throws std::invalid_argument if no object has this name.
   const Object& at(const std::string& name) const;
   const Object& add(Object object);
 
@@ -158,10 +162,10 @@ class Objects {
   const Object& operator[](std::size_t index) const { return objects_[index]; }
   const Object& front() const { return objects_.front(); }
   const Object& back() const { return objects_.back(); }
-  /// For a certificate that comes last, and for tests that spoil an object.
+  /// For adding the certificate, and for tests that modify an object.
   Object& change(std::size_t index) { return objects_[index]; }
 
-  /// How the head is held: columns are the directions left, back and up of the head, LPS.
+  /// The head's orientation: columns are the head's directions left, back and up, LPS.
   glm::dmat3 lps_from_head{1.0};
 
  private:
@@ -169,11 +173,11 @@ class Objects {
   std::map<std::string, std::size_t> index_;
 };
 
-/// The object that an image is of; the object itself where it is none.
+/// The original object of a moved or mirrored one; the object itself if it is neither.
 const Object& still_of(const Objects& objects, const Object& object);
 /// The motion of all the steps that moved an object since it was made, LPS to LPS.
 glm::dmat4 moved_since_made(const Objects& objects, const std::string& object);
-/// Where a mark lies: a landmark that goes with an object moves along with that object's motions.
+/// The position of a mark. A landmark attached to an object moves with that object's motions.
 glm::dvec3 mark_mm(const Mark& mark, const Objects& objects);
 
 }  // namespace octotomy::planner

@@ -20,7 +20,7 @@ void collect_marks(const std::vector<Field>& fields, void* owner, std::vector<Ma
   }
 }
 
-/// Names, each once, in the order they come.
+/// Names without duplicates, in order of first occurrence.
 class Names {
  public:
   void add(const std::string& name) {

@@ -36,7 +36,7 @@ struct Operation {
   std::function<std::shared_ptr<void>()> fresh;
   /// Checks conditions that involve several fields. Throws if one is not met.
   std::function<void(const void* value, const Place& place)> check;
-  /// The operation in words, for people: "skull & cut".
+  /// The operation in words, to show to users: "skull & cut".
   std::function<std::string(const void* value, const Objects& objects)> definition;
   /// Completes the value by what the operation computes, such as a plane of best fit. The other functions get
   /// the completed value. Empty if there is nothing to compute.
@@ -183,11 +183,11 @@ class Action {
 
 /// All operations, by name.
 const std::vector<Operation>& operations();
-/// Null where there is none.
+/// Null if there is none.
 const Operation* find_operation(const std::string& name);
 /// The objects that an action uses, each once, in the order of its fields.
 std::vector<std::string> objects_used(const Action& action);
-/// The file that an action writes, as its field says it; empty where it writes none.
+/// The file that an action writes, as written in its field; empty if it writes none.
 std::filesystem::path path_written(const Action& action);
 /// The marks of an action's fields, in their order.
 std::vector<Mark> marks_used(const Action& action);

@@ -27,10 +27,10 @@ voxel::Universe universe_about(const voxel::Lattice& scan, std::optional<double>
                        static_cast<std::uint64_t>(std::min(most, voxels.x * voxels.y * voxels.z)),
                        sizeof(std::int16_t), "in the scan's box they");
   }
-  // A universe around an odd number of samples lies half a voxel off them, and resampling would blur what
-  // need not be touched: put a voxel's centre on the first sample, where the box stays inside.
+  // A universe around an odd number of samples is shifted by half a voxel, and resampling would blur samples
+  // unnecessarily. Moves a voxel's centre to the first sample if the box then still contains the scan.
   glm::dvec3 first = universe.lattice().voxel(scan.lps_mm(glm::dvec3(0.0)));
-  // A cell's border, as far from a voxel's as the voxel's centre is from this.
+  // The offset that aligns the border of the first cell with a voxel's border.
   if (by_cells) first += 0.5 - 0.5 * spacing_mm / edge_mm;
   const double spare_voxels = 0.5 * universe.side();
   for (int axis = 0; axis < 3; ++axis) {

@@ -8,16 +8,16 @@
 
 namespace octotomy::planner {
 
-/// The universe a plan is evaluated in: around the scan's bounds, voxels of the asked edge; by default the
-/// scan's smallest spacing, or what makes the bounds 512 voxels a side where that is larger. A voxel's centre
-/// lies on the scan's first sample, so that samples as far apart as voxels are taken over as they are. Throws
-/// voxel::Error (Resource) with the figures where voxels finer than the samples may take more memory than is
-/// free.
+/// The universe in which a plan is evaluated: around the scan's bounds, with voxels of edge `voxel_mm`.
+/// Default: the scan's smallest spacing, or a larger one at which the bounds have 512 voxels a side. A
+/// voxel's centre lies on the scan's first sample, so that samples with the spacing of voxels are copied
+/// unchanged. Throws voxel::Error (Resource), with the figures, if voxels finer than the samples may take
+/// more memory than is free.
 voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm);
 
-/// The same for a scan. Samples of a label map are cells, also where the file does not say that it is one and
-/// a label of it is wanted, `are_labels`. There voxels' borders lie on those of the first cell: of voxels
-/// with their centres on cells' centres, those on a border between two cells would all fall to the same side.
+/// The same for a scan. The samples of a label map are cells; `are_labels` declares a label map whose file
+/// does not state it. Then borders of voxels lie on those of the first cell: otherwise all voxels with their
+/// centre on a border between two cells would be assigned to the same side.
 voxel::Universe universe_of(const voxel::Scene& scan, std::optional<double> voxel_mm,
                             bool are_labels = false);
 

@@ -22,8 +22,8 @@ bool states_nothing(const voxel::Identity& identity) {
          identity.frame_uids.empty();
 }
 
-/// A line where what is laid onto a scan refers to images of other series alone; none where one of both
-/// states no series.
+/// A line if `laid` refers only to images of other series than the scan's; none if one of the two states no
+/// series.
 std::vector<std::string> other_series(const IdentityOf& scan, const IdentityOf& laid) {
   const std::string& own = scan.identity.series_uid;
   const std::vector<std::string>& referred = laid.identity.referred_series_uids;

@@ -8,23 +8,22 @@
 
 namespace octotomy::planner {
 
-/// One of two files that are laid onto each other.
+/// The identity of one of two files that are used together.
 struct IdentityOf {
-  std::string name;  ///< for people
+  std::string name;  ///< name for messages
   const voxel::Identity& identity;
 };
 
-/// The audit's line on whether two files are of one patient, study and frame of reference. Fail names each
-/// value that differs; Warn says what could not be compared because a file does not state it.
+/// The audit's line on whether two files are of one patient, study and frame of reference. A Fail lists each
+/// value that differs; a Warn lists values that could not be compared because a file does not state them.
 voxel::Finding identity_finding(const IdentityOf& scan, const IdentityOf& laid);
 
-/// Whether details of an audit's check quote what files state of patients, studies and series where these
-/// differ.
+/// Whether the details of this check may quote differing patients, studies and series from files.
 bool quotes_identity(const std::string& check);
 
-/// Throws std::runtime_error where identity_finding() fails, with `option` as the way to go on; where
-/// `is_allowed` returns the failure instead. A WARN follows where `laid` is a structure set that was drawn on
-/// other series than the scan's alone. Returns no line where the files agree in all.
+/// Throws std::runtime_error if identity_finding() fails and names `option` as the way to proceed; with
+/// `is_allowed`, returns the failure instead. Adds a WARN if `laid` is a structure set that was drawn only on
+/// other series than the scan's. Returns no lines if the files agree.
 std::vector<std::string> need_same_patient(const IdentityOf& scan, const IdentityOf& laid, bool is_allowed,
                                            const std::string& option);
 

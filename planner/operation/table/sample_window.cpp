@@ -31,7 +31,7 @@ std::vector<std::string> tissue_names() {
 
 SampleWindow parse_sample_window(const std::string& text) {
   if (const std::optional<voxel::Tissue> tissue = voxel::tissue(text)) {
-    // Below any sample: what has no lower bound is a window from there.
+    // Below any sample: the lower bound of a window without one.
     constexpr double lowest = std::numeric_limits<std::int16_t>::min();
     return {tissue->low.value_or(lowest), tissue->high, text};
   }

@@ -14,7 +14,7 @@ namespace octotomy::planner {
 struct SampleWindow {
   double low = 0.0;
   std::optional<double> high = {};  ///< none: no upper limit
-  std::string tissue = {};          ///< the name that gave the bounds, which are Hounsfield units then
+  std::string tissue = {};          ///< the tissue that defined the bounds, which are then Hounsfield units
 
   double high_or_infinity() const { return high.value_or(std::numeric_limits<double>::infinity()); }
 };
@@ -23,13 +23,13 @@ struct SampleWindow {
 /// example or the nearest tissue.
 SampleWindow parse_sample_window(const std::string& text);
 
-/// The text that parse_sample_window() reads back: "300:1500", "bone".
+/// The text from which parse_sample_window() returns the same window: "300:1500", "bone".
 std::string to_string(const SampleWindow& window);
 
 /// The window as a leaf of expressions.
 voxel::Window window_on(const voxel::GreyOctree& grey, const SampleWindow& window);
 
-/// Throws std::runtime_error where the window is a tissue's and the samples are no Hounsfield units.
+/// Throws std::runtime_error if the window is that of a tissue and the samples are not Hounsfield units.
 void need_hounsfield(const SampleWindow& window, const voxel::Scene& scene);
 
 }  // namespace octotomy::planner

@@ -13,7 +13,7 @@ namespace octotomy::planner {
 
 struct Operation;
 
-/// A named point of the document, LPS millimetres, as it lies in the scan.
+/// A named point of the document: its position in the scan, LPS millimetres.
 struct NamedPoint {
   std::string name;
   glm::dvec3 p_mm{0.0};
@@ -22,31 +22,31 @@ struct NamedPoint {
 /// The names that a document has bound so far.
 class Scope {
  public:
-  /// `scans` are the names of the document's scans; files that it names lie in `folder`.
+  /// `scans` are the names of the document's scans; file names are relative to `folder`.
   explicit Scope(std::vector<std::string> scans = {}, std::filesystem::path folder = {})
       : scans_(std::move(scans)), folder_(std::move(folder)) {}
 
-  /// Binds a step's id. Throws std::runtime_error where it is no identifier or is taken; `where` names the
-  /// step in the refusal.
+  /// Binds a step's id. Throws std::runtime_error if it is not an identifier or is taken; `where` names the
+  /// step in the message.
   void bind(const std::string& where, const std::string& id, const Operation& operation);
-  /// Throws std::runtime_error, with the nearest name there is, where no earlier step makes this object.
+  /// Throws std::runtime_error, with the nearest existing name, if no earlier step makes this object.
   void need_object(const std::string& where, const std::string& name) const;
   /// The same for a scan of the document.
   void need_scan(const std::string& where, const std::string& name) const;
-  /// Throws std::runtime_error where a path is written by an earlier step.
+  /// Records that a step writes a path. Throws std::runtime_error if an earlier step writes it.
   void take_path(const std::string& where, const std::string& path);
   /// The operation that made an object. Precondition: need_object() passes.
   const Operation& maker_of(const std::string& name) const { return *operations_.at(name); }
 
-  /// Binds a landmark. Throws std::runtime_error where its name is taken, empty or holds an '@'.
+  /// Binds a landmark. Throws std::runtime_error if its name is taken, empty or contains an '@'.
   void bind_landmark(const std::string& where, const NamedPoint& landmark);
-  /// Throws std::runtime_error, with the nearest name there is, where no earlier step has this landmark.
+  /// Throws std::runtime_error, with the nearest existing name, if no earlier step has this landmark.
   glm::dvec3 landmark_mm(const std::string& where, const std::string& name) const;
   const std::vector<NamedPoint>& landmarks() const { return landmarks_; }
-  /// Sets how the head is held: columns are the directions left, back and up of the head, LPS. Throws
-  /// std::runtime_error where an earlier step has set it.
+  /// Sets the head's orientation: columns are the head's directions left, back and up, LPS. Throws
+  /// std::runtime_error if an earlier step has set it.
   void hold_head(const std::string& where, const glm::dmat3& lps_from_head);
-  /// None where no step holds the head: its directions are then the scan's.
+  /// None if no step sets the head's orientation; its directions are then those of the scan.
   const std::optional<glm::dmat3>& lps_from_head() const { return lps_from_head_; }
   const std::filesystem::path& folder() const { return folder_; }
 
@@ -55,17 +55,17 @@ class Scope {
   std::set<std::string> paths_;
   std::filesystem::path folder_;
   std::vector<NamedPoint> landmarks_;
-  std::map<std::string, std::size_t> landmark_of_;  ///< numbers by names
+  std::map<std::string, std::size_t> landmark_of_;  ///< indices by names
   std::optional<glm::dmat3> lps_from_head_;
   std::map<std::string, const Operation*> operations_;
 };
 
-/// Where a value stands in its document, for refusals, and the names bound there.
+/// The position of a value in its document, for error messages, and the names bound there.
 struct Place {
   std::string where;       ///< "step 'cut'"; may be empty
-  Scope* scope = nullptr;  ///< null: names are not checked, as they are paths of files
+  Scope* scope = nullptr;  ///< null: names are paths of files and are not checked
 
-  /// The place of a field or record within.
+  /// The place of a field or record of this value.
   Place at(const std::string& field) const { return {where.empty() ? field : where + ", " + field, scope}; }
   /// Throws std::runtime_error: "step 'cut', regions: has no region".
   [[noreturn]] void refuse(const std::string& what) const;

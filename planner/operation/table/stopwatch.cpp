@@ -11,7 +11,7 @@ namespace {
 
 std::mutex mutex;
 
-/// Of the whole process, the newest last.
+/// All running stopwatches of the process, newest last.
 std::vector<const Stopwatch*>& running() {
   static std::vector<const Stopwatch*> watches;
   return watches;

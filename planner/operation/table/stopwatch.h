@@ -9,16 +9,16 @@
 namespace octotomy::planner {
 
 /// Wall-clock milliseconds by stage ("read", "octree", "isosurface", ...). Stages may overlap: certificates
-/// are made while further objects are.
+/// are computed while further objects are made.
 using Timings = std::map<std::string, double>;
 
-/// A stage that has not ended yet.
+/// A stage that is still running.
 struct RunningStage {
   std::string name;
   std::chrono::steady_clock::time_point start;
 };
 
-/// Adds the time from its making to its end to a stage.
+/// Adds the time between its construction and destruction to a stage.
 class Stopwatch {
  public:
   Stopwatch(Timings& timings, std::string stage);
@@ -34,7 +34,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// What this process does: of the stages that run the one begun last. None between stages.
+/// The current stage of this process: the running one that was started last. None between stages.
 std::optional<RunningStage> newest_stage();
 
 }  // namespace octotomy::planner

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 Surface of the later scan.
-// 2 The bone that stayed, laid on it: after_from_before.
-// 3 Each piece, from where that and the plan put it, laid on it: its achieved motion is the inverse of 2
-//   times 3.
-// 4 Intervals: both fits' covariances with the deviation of their own residuals, in which both scans' noise
-//   is; a sample stands for two samples of the scan a side, since noise of neighbours is one. A lattice
-//   places an isosurface to some hundredths of its spacing, the same way wherever bone is flat, which is
-//   added.
+// 1 Compute the surface of the later scan.
+// 2 Fit the bone that did not move to it: after_from_before.
+// 3 Fit each piece to it, starting at its planned position transformed by 2. The achieved motion is the
+// inverse of 2 times 3.
+// 4 Compute intervals from both fits' covariances and the deviation of their residuals, which includes the
+// noise of both scans. A sample represents two samples of the scan a side, because the noise of neighbours is
+// correlated. Adds a systematic error: a lattice shifts an isosurface by some hundredths of its spacing,
+// equally wherever bone is flat.
 #include "planner/result/outcome/outcome.h"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ constexpr double deviations = 2.5758;  ///< half-width of 99 of 100 normal cases
 constexpr double lattice_share = 0.03;
 constexpr std::size_t samples = 5000;
 
-/// The last place of each thing that moves.
+/// An object that moves, in its last position.
 struct Piece {
   const Object* moved;
   const Object* still;
@@ -63,7 +63,7 @@ bool shares_bone(const Object& object, const Object& piece) {
               .is_empty();
 }
 
-/// The largest of what comes of the scan and is no part of what moves; where there is none, of all.
+/// The largest object from the scan that is not part of a moved one; if there is none, the largest of all.
 const Object& unmoved_of(const Objects& objects, const std::vector<Piece>& pieces, const std::string& asked) {
   if (!asked.empty()) return objects.at(asked);
   const Object* best = nullptr;
@@ -87,7 +87,7 @@ const brep::Solid& solid_of(const Object& object) {
   return *object.mesh.whole;
 }
 
-/// A fit and the deviation of a sample's distance.
+/// A fit and the standard deviation of a sample's distance.
 struct Laid {
   brep::SurfaceFit fit;
   double deviation_mm = 0.0;

@@ -12,28 +12,28 @@
 
 namespace octotomy::planner {
 
-/// A point of a piece: the plan's displacement and the achieved one, and the interval of the latter that
-/// holds in 99 of 100 cases, along the head's directions.
+/// A point of a piece: the plan's displacement and the achieved one, and the interval that contains the
+/// achieved one in 99 of 100 cases, along the head's directions.
 struct PointOutcome {
-  std::string name;  ///< of a landmark; the piece's own for its centroid
+  std::string name;  ///< name of a landmark, or of the piece for its centroid
   Displacement planned, achieved;
   Displacement half_width;
-  double off_mm = 0.0;  ///< between planned and achieved place
+  double off_mm = 0.0;  ///< distance between planned and achieved position
 };
 
 struct PieceOutcome {
-  std::string object;                      ///< moved, as the plan leaves it
-  std::string still;                       ///< as it lies in the scan
+  std::string object;                      ///< the moved object at the end of the plan
+  std::string still;                       ///< the object in its position in the scan
   glm::dmat4 planned{1.0}, achieved{1.0};  ///< LPS to LPS of the plan's scan
   Turns planned_turns, achieved_turns;
   Turns turn_half_width;
-  std::vector<PointOutcome> points;       ///< the centroid, then the landmarks that go with the piece
+  std::vector<PointOutcome> points;       ///< the centroid, then the landmarks that move with the piece
   double rms_mm = 0.0, kept_share = 0.0;  ///< of the fit
   std::vector<std::string> findings;
 };
 
 struct Outcome {
-  std::string unmoved;  ///< the object that both scans are laid on each other by
+  std::string unmoved;  ///< the object by which the two scans are aligned
   glm::dmat4 after_from_before{1.0};
   double rms_mm = 0.0, kept_share = 0.0;
   std::vector<std::string> findings;
@@ -42,14 +42,14 @@ struct Outcome {
 
 struct OutcomeOptions {
   std::string unmoved = {};        ///< default: the largest object that shares no bone with a moved piece
-  std::optional<double> low = {};  ///< the lowest sample of the later scan that is bone; default: the plan's
+  std::optional<double> low = {};  ///< the lower bound of bone in the later scan; default: that of the plan
   voxel::Progress progress = {};
 };
 
-/// Lays the plan's pieces on a scan after the operation. The evaluation needs meshes. Intervals are of what
-/// noise and lattices leave open, for bone that has kept its shape: swelling, bent or resorbed bone is seen
-/// in the fits' rms only. Throws std::runtime_error where nothing moves, an object has no mesh or the later
-/// scan no bone; Stopped. Cost: an isosurface and a registration a piece, some seconds a head.
+/// Fits the plan's pieces to a scan after the operation. The evaluation needs meshes. Intervals cover noise
+/// and sampling for bone that has kept its shape: swelling, bent or resorbed bone shows only in the fits'
+/// rms. Throws std::runtime_error if nothing moves, an object has no mesh or the later scan has no bone;
+/// Stopped. Cost: an isosurface, and a registration per piece; some seconds for a head.
 Outcome outcome_of(const Plan& plan, const Evaluation& evaluation, const voxel::Scene& after,
                    const OutcomeOptions& options = {});
 

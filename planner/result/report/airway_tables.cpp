@@ -14,7 +14,7 @@ std::string number(const Json& json, int decimals) {
   return json.is_number() ? grouped(json.get<double>(), decimals) : "\u2013";
 }
 
-/// The area along the line: both kernels' answers, and the narrowest place.
+/// A plot of the area along the line, with both kernels' answers and the narrowest section.
 std::string plot(const Json& airway) {
   constexpr double width = 640.0, height = 180.0, left = 52.0, below = 34.0, above = 12.0;
   const double length_mm = airway.at("length_mm");

@@ -6,7 +6,7 @@
 
 namespace octotomy::planner {
 
-/// Airways: size, narrowest section and the area along the line as HTML; nothing where none was measured.
+/// Airways: size, narrowest section and the area along the line as HTML; empty if none was measured.
 std::string airway_tables(const nlohmann::ordered_json& measurements);
 
 }  // namespace octotomy::planner

@@ -13,14 +13,14 @@ namespace octotomy::planner {
 namespace {
 
 constexpr int contact_picture_px = 480;
-/// Bone about the contacts that shows where they are, and what may stand above them.
+/// How much bone around the contacts is shown, and how far it may rise above them.
 constexpr double about_mm = 20.0, above_mm = 3.0;
 
 glm::dvec3 point_of(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
 
-/// The view along the axes that looks most against a direction.
+/// The axis-aligned view whose direction is most opposite to `normal`.
 std::string view_onto(const glm::dvec3& normal, const glm::dmat3& lps_from_head) {
   std::string best;
   double least = std::numeric_limits<double>::infinity();
@@ -30,7 +30,7 @@ std::string view_onto(const glm::dvec3& normal, const glm::dmat3& lps_from_head)
   return best;
 }
 
-/// The part of the object about the places, without what would hide them.
+/// The part of the object around the contacts, without parts that would hide them.
 voxel::Octree part_about(const voxel::Octree& octree, const std::vector<glm::dvec3>& places_mm,
                          const glm::dvec3& towards_reader) {
   voxel::Box box{places_mm.front(), places_mm.front()};

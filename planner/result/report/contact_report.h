@@ -6,14 +6,14 @@
 
 #include "planner/result/report/report.h"
 
-// What a report says of objects that touch.
+// Pictures and tables of contacts between objects.
 namespace octotomy::planner {
 
 /// Adds a group of pictures for each contact map of `result.measurements` that has none yet: the surface
 /// coloured by its distance to the other one, seen towards the contacts, which are numbered.
 void add_contact_pictures(Result& result);
 
-/// A table a contact map; nothing where there are none.
+/// One table per contact map; empty if there are none.
 std::string contact_tables(const nlohmann::ordered_json& measurements);
 
 }  // namespace octotomy::planner

@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Source: ASME V&V 40-2018, Assessing Credibility of Computational Modeling through Verification and
-// Validation: Application to Medical Devices: its terms and its credibility factors (section 5). The
-// gradation of factors is left to people, as it follows from a model risk that only they can state.
+// SPDX-License-Identifier: AGPL-3.0-or-later Source: ASME V&V 40-2018, Assessing Credibility of Computational
+// Modeling through Verification and Validation: Application to Medical Devices: its terms and its credibility
+// factors (section 5). Factors are not graded, because the grade depends on a model risk that only the user
+// can state.
 #include "planner/result/report/credibility.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* to_state = "to be stated by who uses the numbers: this run cannot know it";
 
-/// The certificates by the objects that they are of.
+/// The certificates by their objects.
 std::map<std::string, Json> certificates_of(const Json& result) {
   std::map<std::string, Json> found;
   for (const Json& one : result.at("certificates")) found.emplace(one.at("object").get<std::string>(), one);
@@ -37,7 +37,7 @@ Json evidence_of(const Json& certificate) {
   return evidence;
 }
 
-/// A number of the result as it stands there, and what the run did for it.
+/// A number of the result, with the run's evidence for it.
 class Number {
  public:
   Number(std::string step, std::string quantity, Json value, std::string unit)
@@ -56,7 +56,7 @@ class Number {
     if (!found->second.at("resolved").get<bool>())
       gap("'" + object + "' is not resolved by its voxels: its certificate proves little");
   }
-  /// The interval where the run told one.
+  /// Adds the interval, if the run reports one.
   void by_half_width(const Json& half_width, const Json& sources, const Json& coverage = {}) {
     if (!half_width.is_number()) return gap("no half-width was told");
     Json names = Json::array();
@@ -68,7 +68,7 @@ class Number {
                                      {"sources", names},
                                      {"factor", "calculation verification: discretization error"}});
   }
-  /// The other kernel's answer to the same question, which agrees within the half-width or contradicts.
+  /// Adds the other kernel's answer, which either agrees within the half-width or contradicts.
   void by_other_kernel(const Json& answer, const Json& half_width) {
     const Json& value = json_.at("value");
     if (!answer.is_number() || !value.is_number() || !half_width.is_number())
@@ -81,7 +81,7 @@ class Number {
          {"difference", difference},
          {"factor", "calculation verification: discretization error"}});
   }
-  /// How far typed errors reach into the number, of trials.
+  /// Adds the effect of the stated errors on the number, from trials.
   void by_trials(const Json& trials, const Json& doubt) {
     Json names = Json::array();
     for (const Json& source : doubt.at("sources")) names.push_back(source.at("name"));
@@ -124,7 +124,7 @@ void add_contacts(const Json& flap, const std::map<std::string, Json>& certifica
   }
 }
 
-/// Where two objects touch: both kernels tell how near, one alone how much.
+/// Adds the numbers of a contact: both kernels compute the distance, only one the area.
 void add_contact_map(const Json& map, const std::map<std::string, Json>& certificates, Json& numbers) {
   const std::string id = map.at("id").get<std::string>();
   const std::string pair =
@@ -139,7 +139,8 @@ void add_contact_map(const Json& map, const std::map<std::string, Json>& certifi
     Number number(id, "nearest at contact " + std::to_string(++place) + " of " + pair,
                   contact.at("nearest_mm"), "mm");
     number.by_half_width(contact.at("half_width_mm"), Json());
-    // Areas are told of meshes alone: without one the voxels' distance is the number itself.
+    // Areas come from meshes only. Without a mesh the voxel kernel's distance is the number itself and no
+    // evidence for it.
     number.by_other_kernel(map.at("area_mm2").is_number() ? contact.at("voxel_nearest_mm") : Json(),
                            contact.at("half_width_mm"));
     add(std::move(number));
@@ -172,7 +173,7 @@ void add_airway(const Json& one, const std::map<std::string, Json>& certificates
   };
   add("airway volume", airway.at("volume_mm3"), "mm3", airway.at("volume_half_width_mm3"), Json(),
       airway.at("volume_mesh_mm3"));
-  // The mesh's area is the one told where there is one; it must not vouch for itself.
+  // The reported area is that of the mesh if there is one; it must not count as evidence for itself.
   add("narrowest section", least.at("area_mm2"), "mm2", least.at("half_width_mm2"),
       least.value("half_width_terms", Json()),
       least.at("mesh_mm2").is_number() ? least.at("voxel_mm2") : Json());
@@ -190,7 +191,8 @@ void add_trials(const Json& trials, Json& numbers) {
   }
 }
 
-/// What pieces moved: the plan's own motion, which the pieces' certificates saw from both kernels.
+/// Adds the pieces' movements. They are the plan's own motions, which both kernels applied in the pieces'
+/// certificates.
 void add_movements(const Json& result, const std::map<std::string, Json>& certificates, Json& numbers) {
   for (const Json& moved : result.value("movements", Json::array())) {
     const std::string object = moved.at("object").get<std::string>();
@@ -208,7 +210,7 @@ void add_movements(const Json& result, const std::map<std::string, Json>& certif
   }
 }
 
-/// Values of landmarks: their own placement is all that stands behind them.
+/// Adds values computed from landmarks; the only evidence for them is the placement of the landmarks.
 void add_cephalometry(const Json& result, Json& numbers) {
   if (!result.contains("cephalometry") || !result.at("cephalometry").is_object()) return;
   for (const Json& measure : result.at("cephalometry").at("measures"))
@@ -286,7 +288,7 @@ Json scan_evidence(const Json& result) {
   return evidence;
 }
 
-/// The audit of the scans, and the errors of what else goes in that trials were told.
+/// The audit of the scans, and the errors of other inputs as stated for trials.
 Json input_evidence(const Json& result) {
   Json evidence = scan_evidence(result);
   for (const Json& one : result.at("measurements"))
@@ -406,7 +408,7 @@ std::string spaced(std::string key) {
   return key;
 }
 
-/// A value within a sentence.
+/// A value formatted for a sentence.
 std::string in_line(const Json& value) {
   if (value.is_number_float()) return three_figures(value.get<double>());
   if (value.is_string()) return value.get<std::string>();

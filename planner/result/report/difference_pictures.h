@@ -6,8 +6,8 @@
 
 namespace octotomy::planner {
 
-/// The voxel kernel's surface coloured by how far it lies outside (orange) or inside (blue) of the mesh
-/// kernel's, from four sides, and what the ends of the colours stand for.
+/// The voxel kernel's surface coloured by its distance outside (orange) or inside (blue) the mesh kernel's
+/// surface, from four sides, with the distance at the ends of the colours.
 struct DifferencePictures {
   PictureGroup group;
   double most_mm = 1.0;

@@ -6,7 +6,7 @@
 
 namespace octotomy::planner {
 
-/// A free flap's segments and osteotomies as two tables of HTML; empty where no measurement is of a flap.
+/// A free flap's segments and osteotomies as two tables of HTML; empty if no measurement is of a flap.
 std::string flap_tables(const nlohmann::ordered_json& measurements);
 
 }  // namespace octotomy::planner

@@ -6,8 +6,8 @@
 
 namespace octotomy::planner {
 
-/// First guesses of landmarks and what was not found, as HTML that says that nobody has confirmed them;
-/// nothing where none was asked for.
+/// Proposed landmarks and those that were not found, as HTML, with a note that nobody has confirmed them;
+/// empty if none were requested.
 std::string landmark_tables(const nlohmann::ordered_json& measurements);
 
 }  // namespace octotomy::planner

@@ -23,8 +23,8 @@ std::vector<std::string> parts_of_text(const std::string& text, char separator) 
   return parts;
 }
 
-/// A DICOM name for people. Of its alphabetic, ideographic and phonetic groups the first that is filled in;
-/// of its components family name, given name, middle name (PS3.5, 6.2.1).
+/// A DICOM name in readable form: family name, given name and middle name (PS3.5, 6.2.1) of the first of its
+/// alphabetic, ideographic and phonetic groups that is not empty.
 std::string readable_name(const std::string& name) {
   for (const std::string& group : parts_of_text(name, '=')) {
     std::vector<std::string> components = parts_of_text(group, '^');
@@ -50,7 +50,7 @@ std::string readable_sex(const std::string& sex) {
   return sex == "F" ? "female" : sex == "M" ? "male" : sex == "O" ? "other sex" : "";
 }
 
-/// What a text quotes of a patient, without it.
+/// Replaces a patient's quoted values in a text.
 void hide_quoted(const std::vector<std::string>& values, std::string& text) {
   for (const std::string& value : values) {
     const std::string quoted = "'" + value + "'", hidden = "(left out)";
@@ -109,7 +109,8 @@ std::vector<std::string> patient_lines(const Evaluation& evaluation) {
 }
 
 void leave_out_patients(Result& result) {
-  // Findings that compare identities quote files that the result does not keep, so their text goes as a whole.
+  // Findings that compare identities quote files that the result does not store, so their whole text is
+  // replaced.
   constexpr const char* left_out = "what the files state differs; left out as asked";
   std::vector<std::string> values;
   for (ScanRecord& scan : result.evaluation.scans) {

@@ -38,7 +38,7 @@ std::optional<fs::path> on_path(const std::string& name) {
 
 using Words = std::vector<std::string>;
 
-/// The command line that prints; empty where no printer is there. `profile`: a folder that Chromium may fill.
+/// The command line for printing; empty if no printer is installed. `profile`: a folder for Chromium's files.
 Words printing(const fs::path& page, const fs::path& pdf, const fs::path& profile) {
   if (const auto weasyprint = on_path("weasyprint"))
     return {weasyprint->string(), "--quiet", page.string(), pdf.string()};
@@ -58,7 +58,7 @@ Words printing(const fs::path& page, const fs::path& pdf, const fs::path& profil
   return {};
 }
 
-/// The program's exit status; its words go nowhere.
+/// Runs a program without showing its output; returns its exit status.
 int run(Words words, const std::stop_token& stop) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 Choose what is seen: the step's objects, and one that is cut, as context.
-// 2 Evaluate what those need.
-// 3 Take the step's part out of the context, so that each voxel is drawn once.
+// 1 Choose the visible objects: those of the step and, as context, the one that is cut.
+// 2 Evaluate the steps that these need.
+// 3 Remove the step's objects from the context, so that each voxel is drawn once.
 // 4 Draw all views in one frame.
 #include "planner/result/report/preview.h"
 
@@ -33,7 +33,7 @@ bool is_piece(const Step& step) {
   return step.action.operation().makes == Makes::Object && !step.action.operation().is_tool;
 }
 
-/// The first piece that a step goes back to; empty where it goes back to none.
+/// The first piece on which a step depends; empty if there is none.
 std::string origin_of(const Plan& plan, const std::string& id) {
   const std::set<std::string> needed = needed_for(plan, {id});
   for (const Step& step : plan.steps)
@@ -41,7 +41,7 @@ std::string origin_of(const Plan& plan, const std::string& id) {
   return "";
 }
 
-/// The piece that a mask is to cut: the first that is combined with it, or the last before it.
+/// The piece that a mask will cut: the first that is combined with it, or the last one before it.
 std::string cut_by(const Plan& plan, const std::string& mask) {
   std::string last;
   bool is_before = true;
@@ -56,7 +56,7 @@ std::string cut_by(const Plan& plan, const std::string& mask) {
   return last;
 }
 
-/// What is seen: objects in colour, and the context.
+/// The visible objects: those in colour, and the context.
 struct Seen {
   std::vector<std::string> objects;
   std::string context;
@@ -85,7 +85,7 @@ voxel::DrawnObject part(const Object& object, const voxel::Octree& octree, const
   return part;
 }
 
-/// Pieces in colour and the context without them and without what they were before they moved.
+/// The pieces in colour, and the context without these pieces and without their originals before a motion.
 std::vector<voxel::DrawnObject> scene_of(const Plan& plan, const Step& step, const Seen& seen,
                                          const Evaluation& evaluation) {
   std::vector<voxel::DrawnObject> scene;
@@ -120,7 +120,7 @@ std::vector<voxel::DrawnObject> scene_of(const Plan& plan, const Step& step, con
   return scene;
 }
 
-/// Slices of the scan before a step, in red where the step changed it.
+/// Slices of the scan before a step, with the samples that the step changed in red.
 Preview changes(const Plan& plan, const Step& step, EvaluateOptions options) {
   options.wanted = {step.id};
   options.keep_scans = true;

@@ -12,23 +12,23 @@ namespace octotomy::planner {
 
 struct PreviewOptions {
   std::vector<std::string> views{"anterior", "left", "35,15"};  ///< as voxel::parse_view() reads them
-  int size_px = 480;                                            ///< of each view's square
-  EvaluateOptions evaluation;  ///< its wanted steps, meshes and certificates are chosen by the preview
+  int size_px = 480;                                            ///< side of each view's square
+  EvaluateOptions evaluation;  ///< preview() sets its wanted steps, meshes and certificates
 };
 
 /// One step's picture: its views side by side.
 struct Preview {
-  Evaluation evaluation;  ///< of the steps that it needed
+  Evaluation evaluation;  ///< evaluation of the steps that the preview needed
   std::vector<voxel::DrawnObject> objects;
   std::vector<ScenePicture> frames;
   std::vector<std::uint8_t> png;
 };
 
-/// Draws one step, in the voxel kernel alone and without certificates. What a step makes is in colour; the
-/// bone that it was cut from, or that stays behind, is pale. A mask shows what it holds of the object that it
-/// cuts, a landmarks step its points as balls. A step that makes a scan shows removed_picture(), whatever the
-/// views are. Throws std::runtime_error where the plan has no such step, with the nearest name, or the step
-/// makes a scan of other voxels; what evaluate() throws.
+/// Draws one step, by the voxel kernel alone and without certificates. The step's result is in colour; the
+/// bone from which it was cut, or that remains, is pale. A mask shows the part of the object that it will
+/// cut, a landmarks step its points as balls. A step that makes a scan shows removed_picture(), independent
+/// of the views. Throws std::runtime_error, with the nearest name, if the plan has no such step; if the step
+/// makes a scan with a different lattice; as evaluate() does.
 Preview preview(const Plan& plan, const std::string& step, const PreviewOptions& options = {});
 
 }  // namespace octotomy::planner

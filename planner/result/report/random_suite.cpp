@@ -32,7 +32,7 @@ using voxel::Octree;
 
 constexpr const char* scans_prefix = "octotomy-random-";
 
-/// The system's folder for temporary files, without what killed runs left there.
+/// The system's folder for temporary files, after removing leftovers of killed runs.
 std::filesystem::path cleared_temporary_folder() {
   std::filesystem::path folder = std::filesystem::temp_directory_path();
   voxel::remove_abandoned(folder, scans_prefix);
@@ -56,22 +56,23 @@ struct ExactQuestion {
     names.object = [this](std::string_view name) { return Expression(set(name)); };
     return voxel::parse_expression(text(tree, letter), names);
   }
-  /// Neither empty nor one of its sets.
+  /// Whether the result is neither empty nor equal to one of its sets.
   bool has_substance() const {
     const Octree result = voxel::combine(sets.front().universe(), expression());
     return !result.is_empty() && std::find(sets.begin(), sets.end(), result) == sets.end();
   }
 };
 
-/// Sets of one size: their share of the questions, the universe's depth, their side, leaves at most.
+/// Sets of one size: their share of the questions, the universe's depth, their side, and the most leaves.
 struct SetSize {
   int per_cent, depth, side, leaves;
 };
 using SetSizes = std::array<SetSize, 5>;
-// Of large sets fewer, and fewer at a time: triangles grow with the square of the side.
+// Large sets are rarer and have fewer leaves, because the number of triangles grows with the square of the
+// side.
 constexpr SetSizes sizes_in_general{
     {{40, 3, 8, 7}, {25, 4, 14, 6}, {20, 5, 24, 4}, {10, 5, 32, 3}, {5, 6, 48, 3}}};
-// Eight voxels hold each way in which faces, edges and corners of two sets can meet.
+// Eight voxels suffice for every way in which faces, edges and corners of two sets can meet.
 constexpr SetSizes sizes_as_given{{{40, 2, 2, 4}, {30, 2, 2, 3}, {22, 2, 2, 2}, {6, 2, 3, 3}, {2, 2, 4, 2}}};
 
 ExactQuestion exact_question(std::uint64_t seed, RandomTier tier) {
@@ -97,7 +98,7 @@ ExactQuestion exact_question(std::uint64_t seed, RandomTier tier) {
   return question;
 }
 
-/// The kernels' agreement on a question; a kernel that gives up where it must not has failed.
+/// The certificate of a question. A kernel that refuses a question it must answer counts as a FAIL.
 Certificate answer_of(const ExactQuestion& question, const std::stop_token& stop) {
   Certificate certificate;
   try {
@@ -127,7 +128,8 @@ Octree half_of(const voxel::Universe& universe, int axis, bool upper, int cut) {
       universe, Expression(voxel::Box{universe.lattice().lps_mm(low), universe.lattice().lps_mm(high)}));
 }
 
-/// The simplest question found that still fails: operators go first, then halves, quarters, ... of the sets.
+/// The simplest question found that still fails: removes operators first, then halves, quarters, ... of the
+/// sets.
 ExactQuestion simplified(ExactQuestion question, const std::stop_token& stop) {
   const auto fails = [&](const ExactQuestion& q) {
     return answer_of(q, stop).verdict == verify::Verdict::Fail;
@@ -157,7 +159,7 @@ ExactQuestion simplified(ExactQuestion question, const std::stop_token& stop) {
   return question;
 }
 
-/// The sets of a question as label scans and windows on them, and the expression.
+/// Writes a question as a plan: its sets as label scans with windows on them, and the expression.
 void write_plan(const ExactQuestion& question, const std::filesystem::path& folder) {
   Json json{
       {"octotomy_plan", 1}, {"name", "disagreement"}, {"scans", Json::object()}, {"steps", Json::array()}};
@@ -173,7 +175,7 @@ void write_plan(const ExactQuestion& question, const std::filesystem::path& fold
   write_text(folder / "disagreement.plan.json", json_text(json, 2));
 }
 
-/// A random plan's evaluation, or why there is none.
+/// A random plan's evaluation, or the reason why there is none.
 struct PlanAnswer {
   std::optional<Evaluation> evaluation;
   std::string refusal;
@@ -227,7 +229,7 @@ void write_plan(RandomPlan plan, const std::filesystem::path& folder) {
   write_text(folder / "disagreement.plan.json", text(plan));
 }
 
-/// The suite under way. What a case adds is kept by its number, so that order is the seeds'.
+/// The running suite. Results of a case are stored by its number, so that they are in the order of seeds.
 class Asking {
  public:
   explicit Asking(const RandomSuiteOptions& options) : options_(options) {
@@ -291,7 +293,8 @@ class Asking {
                       static_cast<double>(done) / static_cast<double>(of));
   }
 
-  /// Objects are large: of all that were found so far one is kept, the first seed's of equals.
+  /// Stores only the worst objects found so far, because they are large; among equals those of the first
+  /// seed.
   void contend(std::uint64_t seed, verify::Contested&& found) {
     const std::lock_guard lock(keeping_);
     if (worst_ && (verify::is_worse(worst_->certificate, found.certificate) ||

@@ -15,27 +15,29 @@
 
 namespace octotomy::planner {
 
-/// What a random question asks.
+/// The tiers of random questions.
 enum class RandomTier {
-  Exact,    ///< sets of voxels in general position, to the voxel
-  AsGiven,  ///< small sets of voxels as they are, so that faces coincide and edges touch, to the voxel
-  Bounded   ///< plans on scans, within their bounds
+  Exact,    ///< sets of voxels in general position, compared voxel by voxel
+  AsGiven,  ///< small sets of voxels as given, so that faces coincide and edges touch, compared voxel by
+            ///< voxel
+  Bounded   ///< plans on scans, compared within their bounds
 };
 
 /// "exact", "as_given" or "bounded".
 const char* name_of(RandomTier tier);
 
 struct RandomSuiteOptions {
-  int count = 1000;  ///< questions to each tier
+  int count = 1000;  ///< number of questions in each tier
   std::vector<RandomTier> tiers{RandomTier::Exact, RandomTier::AsGiven, RandomTier::Bounded};
-  std::uint64_t seed = 1;  ///< of the first; question i has seed + i
-  /// Where plans of disagreements are written, a folder each; made when there is one.
+  std::uint64_t seed = 1;  ///< seed of the first question; question i has seed + i
+  /// The folder to which plans of disagreements are written, each in a folder of its own; created if there is
+  /// one.
   std::filesystem::path failures = "disagreements";
   std::stop_token stop{};
   std::function<void(const std::string& doing, double share)> progress{};
 };
 
-/// A question on which the kernels disagree, made as simple as it stays one.
+/// A question on which the kernels disagree, simplified as far as they still disagree.
 struct Disagreement {
   std::uint64_t seed = 0;
   std::string tier;
@@ -44,14 +46,15 @@ struct Disagreement {
   std::filesystem::path plan;  ///< where it was written
 };
 
-/// How one tier's questions were answered.
+/// The results of one tier's questions.
 struct RandomAnswers {
-  VerdictCounts verdicts;  ///< of sets: a question each; bounded: every object of every plan
+  VerdictCounts verdicts;  ///< for tiers of sets, one per question; for bounded, one per object of every plan
   int asked = 0;
-  int of_substance = 0;  ///< results that voxels resolve and that are neither empty nor an operand
-  int no_answer = 0;     ///< the mesh kernel had none, and said so
-  int refused = 0;       ///< a mask or window without a voxel: no question
-  /// Of the questions, in their order, where there is one: of the first most_told, and all that do not pass.
+  int of_substance = 0;  ///< number of results that voxels resolve and that are neither empty nor an operand
+  int no_answer = 0;     ///< questions for which the mesh kernel reported that it has no answer
+  int refused = 0;       ///< masks or windows without a voxel, which are not questions
+  /// Certificates in the order of the questions: those of the first most_told questions, and all that do not
+  /// pass.
   std::vector<verify::Certificate> results;
   static constexpr std::size_t most_told = 1000;
 };
@@ -59,20 +62,21 @@ struct RandomAnswers {
 struct RandomSuite {
   RandomAnswers exact, as_given, bounded;
   std::vector<Disagreement> disagreements;
-  std::optional<verify::Contested> worst;  ///< of the bounded tier's objects
+  std::optional<verify::Contested> worst;  ///< the worst of the bounded tier's objects
 
   /// Results of substance as a share of all.
   double substance() const;
 };
 
-/// Results of less substance would show agreement on nothing.
+/// With a lower share, the agreement would mostly be on trivial results.
 inline constexpr double least_substance = 0.3;
 
-/// Asks both kernels random questions: expressions up to six operators deep, of sets of up to 48 voxels a
-/// side in general position and of up to four as given; and plans. Questions are asked in parallel; answers
-/// depend on the seed only. A disagreement is simplified (operators, motions and regions taken away, sets cut
-/// down) as long as it stays one, and written as a plan with its scans. Throws Stopped, and as write_text().
-/// Cost in processor time: a question to the exact tier about 0.3 s, as given 3 ms, to the bounded tier 1 s.
+/// Compares both kernels on random questions: expressions up to six operators deep, over sets of up to 48
+/// voxels a side in general position or up to four as given; and plans. Questions run in parallel; results
+/// depend only on the seed. A disagreement is simplified (by removing operators, motions and regions and
+/// reducing sets) while it persists, and written as a plan with its scans. Throws Stopped, and as
+/// write_text() does. Cost in processor time per question: about 0.3 s in the exact tier, 3 ms as given, 1 s
+/// in the bounded tier.
 RandomSuite ask_random(const RandomSuiteOptions& options);
 
 }  // namespace octotomy::planner

@@ -40,7 +40,7 @@ std::string signatures(const Result& result) {
   return lines;
 }
 
-/// Whom the report is about.
+/// The patients of the report.
 std::string patients(const Result& result) {
   std::string lines;
   if (result.anonymous) {
@@ -85,7 +85,7 @@ std::string svg_text(const glm::dvec2& at, double size, const std::string& ancho
          fixed(size / 4.0) + "\" paint-order=\"stroke\">" + text + "</text>";
 }
 
-/// A bar of a round number of millimetres, at most a third of the picture.
+/// A scale bar of a round length in millimetres, at most a third of the picture.
 std::string scale_bar(const ScenePicture& picture, double letters) {
   const double bar_mm = voxel::round_length(picture.width_mm / 3.0);
   const double size = picture.size_px;
@@ -97,7 +97,7 @@ std::string scale_bar(const ScenePicture& picture, double letters) {
                   grouped(bar_mm, bar_mm < 1.0 ? 1 : 0) + " mm");
 }
 
-/// The outlines of the plan's mask regions that were drawn in this picture's view, of the head as it is held.
+/// The outlines of the plan's mask regions that were drawn in this picture's view, in the head's orientation.
 std::string outlines(const Plan& plan, const ScenePicture& picture, double size) {
   std::string paths;
   for (const Step& step : plan.steps)
@@ -129,11 +129,11 @@ std::string view_title(const ScenePicture& picture) {
          (to_right ? "right" : "left") + ", " + picture.view.substr(comma + 1) + "\u00b0 above";
 }
 
-/// How a picture stands on the page.
+/// A picture's presentation on the page.
 struct Placed {
   std::string title;
-  std::string says;       ///< before the view's name, for who cannot see it
-  bool outlined = false;  ///< with the outlines of mask regions
+  std::string says;       ///< text before the view's name, for readers who cannot see the picture
+  bool outlined = false;  ///< whether to draw the outlines of mask regions
   double letters = 13.0;  ///< in the picture's pixels
   std::vector<glm::dvec3> marks_mm = {};
 };
@@ -195,7 +195,7 @@ std::string group_section(const Result& result, const PictureGroup& group) {
          element(two_in_a_row ? "div class=\"pictures two\"" : "div class=\"pictures four\"", figures);
 }
 
-/// Pictures of one view before and after stand side by side; what remains is a grid of views.
+/// Pictures of one view before and after are side by side; the others form a grid of views.
 std::string pictures(const Result& result) {
   const auto named = [&](const std::string& name) {
     return std::find_if(result.pictures.begin(), result.pictures.end(),
@@ -232,7 +232,7 @@ std::string doubtful(const Json& json, const char* key, const char* half_width, 
          (known ? " \u00b1 " + three_figures(json.at(half_width).get<double>()) : std::string());
 }
 
-/// A recommended number with its interval; a dash where a result has none.
+/// A recommended number with its interval; a dash if the result has none.
 std::string recommended(const Json& size, const char* quantity, int decimals) {
   return size.contains(quantity) ? doubtful(size.at(quantity), "value", "half_width", decimals) : "\u2013";
 }
@@ -320,7 +320,7 @@ std::string displacement_cells(const Json& row) {
   return signed_mm("forward_mm") + signed_mm("up_mm") + signed_mm("left_mm");
 }
 
-/// A row for each moved piece, one for each landmark on it and each point that was to be moved.
+/// A row for each moved piece, for each landmark on it and for each point with a prescribed target.
 std::string movements(const Result& result) {
   if (result.movements.empty()) return "";
   std::string rows =

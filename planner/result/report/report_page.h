@@ -7,8 +7,8 @@
 
 namespace octotomy::planner {
 
-/// The result as one HTML page that needs nothing else: styles and pictures are in it, no script, no network.
-/// Made to be read on a screen and printed on A4.
+/// The result as one self-contained HTML page with styles and pictures, without scripts or network access,
+/// for screens and for printing on A4.
 std::string report_html(const Result& result);
 
 }  // namespace octotomy::planner

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Publishing, in steps that a kill may separate:
+// The steps of publishing; the process may be killed between any two:
 // 1. the list of the new files is written among them;
-// 2. files of somebody else in the old folder are hard-linked into the new one;
+// 2. other files in the old folder (not listed) are hard-linked into the new one;
 // 3. the two folders exchange their names (renameat2);
-// 4. the old folder, now hidden, is emptied: listed files and second links go; a file that is neither,
-// because
-//    it appeared after step 2 or could not be linked, moves into the new folder.
-// A hidden folder without a list was therefore never near anybody's files; one with a list is emptied as in
-// step 4 by the next run. A lock on the hidden folder says that its owner lives.
+// 4. the old folder, now hidden, is emptied: listed files and second links are removed; a file that is
+// neither, because it appeared after step 2 or could not be linked, is moved into the new folder. A hidden
+// folder without a list therefore never contained other files; one with a list is emptied as in step 4 by the
+// next run. A lock on the hidden folder shows that its process is running.
 #include "planner/result/report/result_folder.h"
 
 #include <algorithm>
@@ -45,7 +44,7 @@ constexpr const char* list_name = ".octotomy-result";
   throw voxel::Error(ErrorCode::Input, message);
 }
 
-/// Refuses a name that a terminal or a list would obey or break at.
+/// Refuses a name with control characters, which would control a terminal or break a list.
 fs::path plain_place_of(const fs::path& folder) {
   if (has_control(folder.native()))
     refuse(folder.string() + ": a folder's name has no control characters: choose another -o");
@@ -63,7 +62,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
          of_a.st_ino == of_b.st_ino;
 }
 
-/// Renames and replaces nothing; false if it cannot.
+/// Renames without replacing anything; false if this fails.
 bool rename_to_new(const fs::path& from, const fs::path& to) {
   return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0 ||
          (errno == EINVAL && !is_there(to) && ::rename(from.c_str(), to.c_str()) == 0);
@@ -83,7 +82,7 @@ void write_list(const fs::path& folder) {
     text += name;
     text += '\n';
   }
-  // Whole or not at all: half a list would make somebody else's of what it does not name.
+  // Writes the list completely or not at all: with half a list, the files it lacks would count as the user's.
   const fs::path part = folder / (std::string(list_name) + "-part");
   write_text(part, text);
   fs::rename(part, folder / list_name);
@@ -107,8 +106,8 @@ void need_writable(const fs::path& folder, const fs::path& named) {
     refuse(named.string() + ": " + folder.string() + " cannot be written to: choose another -o");
 }
 
-/// Tries it, as a system may grant what it then refuses. Not under a result's hidden name: what such a folder
-/// holds may be somebody else's.
+/// Tries to write, because permissions alone do not guarantee success. Does not use a result's hidden name:
+/// such a folder may contain other files.
 void try_to_write(fs::path folder, const fs::path& named) {
   constexpr const char* prefix = ".octotomy-";
   while (!is_there(folder)) folder = folder.parent_path();
@@ -125,7 +124,8 @@ dev_t device_of(const fs::path& path) {
   return ::lstat(path.c_str(), &of_path) == 0 ? of_path.st_dev : 0;
 }
 
-/// The list of the earlier result in `folder`; empty for an empty folder. `named` is the user's name for it.
+/// The list of the earlier result in `folder`; empty for an empty folder. `named` is the folder as the user
+/// wrote it.
 ResultList need_earlier_result(const fs::path& folder, const fs::path& named) {
   if (fs::is_empty(folder)) return {};
   ResultList list = result_list(folder);
@@ -143,7 +143,7 @@ ResultList need_earlier_result(const fs::path& folder, const fs::path& named) {
   return list;
 }
 
-/// Refuses if a file that the list does not name stands at `name`, or where a folder of it must be.
+/// Refuses if a file that is not in the list occupies `name` or a folder of it.
 void need_free(const fs::path& folder, const ResultList& list, const fs::path& name, const fs::path& named) {
   fs::path part;
   for (const fs::path& step : name) {
@@ -156,7 +156,7 @@ void need_free(const fs::path& folder, const ResultList& list, const fs::path& n
   }
 }
 
-/// As need_result_folder(), of a path without links; the list of the earlier result there.
+/// need_result_folder() for a path without links. Returns the list of the earlier result there.
 ResultList need_place(const fs::path& place, const fs::path& named, const std::vector<fs::path>& names) {
   if (lies_in(fs::current_path(), fs::weakly_canonical(place)))
     refuse(
@@ -187,7 +187,7 @@ ResultList need_place(const fs::path& place, const fs::path& named, const std::v
   return list;
 }
 
-/// Holds other runs off while folders change their names; where locks are not known, nobody is.
+/// Excludes other runs while folders are renamed. On file systems without locks it has no effect.
 class PlaceLock {
  public:
   explicit PlaceLock(const fs::path& parent) : file_(::open(parent.c_str(), O_RDONLY | O_CLOEXEC)) {
@@ -203,14 +203,14 @@ class PlaceLock {
   int file_;
 };
 
-/// Gives what is new the permissions of what stood in its place.
+/// Copies the permissions of the old file or folder to the new one.
 void keep_mode(const fs::path& old, const fs::path& made) {
   struct stat of_old {};
   if (fs::exists(fs::symlink_status(made)) && ::lstat(old.c_str(), &of_old) == 0 && !S_ISLNK(of_old.st_mode))
     ::chmod(made.c_str(), of_old.st_mode & 07777);
 }
 
-/// Links into `made` the files of `old` that its list does not name, and keeps permissions. Throws Error if a
+/// Links into `made` the files of `old` that are not in its list, and copies permissions. Throws Error if a
 /// name is taken.
 void take_over(const fs::path& old, const ResultList& list, const fs::path& made, const fs::path& named) {
   std::vector<fs::path> kept{""};
@@ -219,7 +219,7 @@ void take_over(const fs::path& old, const ResultList& list, const fs::path& made
     kept.push_back(name);
     if (name == list_name || list.contains(name.generic_string())) continue;
     if (fs::is_directory(entry.symlink_status())) {
-      // A folder of listed files goes with them.
+      // A folder with listed files is not created for itself; its other files create it if needed.
       const std::string prefix = name.generic_string() + "/";
       const auto first = list.lower_bound(prefix);
       if (first != list.end() && first->first.starts_with(prefix)) continue;
@@ -233,12 +233,12 @@ void take_over(const fs::path& old, const ResultList& list, const fs::path& made
           ::linkat(AT_FDCWD, entry.path().c_str(), AT_FDCWD, (made / name).c_str(), 0);
     }
   }
-  // Inner ones first: a folder may become closed.
+  // Inner folders first, because the new permissions of a folder may prevent access.
   for (auto name = kept.rbegin(); name != kept.rend(); ++name) keep_mode(old / *name, made / *name);
 }
 
-/// Removes the files of a list that are unchanged, the list, and the folders that this empties; `place`
-/// itself unless it `was_there` before.
+/// Removes the unchanged files of a list, the list itself, and folders that become empty; also `place`,
+/// unless it existed before (`was_there`).
 void take_back(const fs::path& place, const ResultList& list, bool was_there) {
   std::set<fs::path> folders;
   for (const auto& [name, sum] : list) {
@@ -247,13 +247,13 @@ void take_back(const fs::path& place, const ResultList& list, bool was_there) {
     if (unchanged(place / name, sum)) fs::remove(place / name);
   }
   fs::remove(place / list_name);
-  // Inner ones first; one that holds a user's file stays.
+  // Inner folders first; a folder with a user's file stays.
   for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) ::rmdir((place / *folder).c_str());
   if (!was_there) ::rmdir(place.c_str());
 }
 
-/// Step 4: empties a hidden folder and removes it. What is neither listed nor in `place` moves there. `sure`
-/// if the listed files are known to be unchanged.
+/// Step 4: empties a hidden folder and removes it. A file that is neither listed nor in `place` is moved
+/// there. `sure`: the listed files are known to be unchanged.
 void discard(const fs::path& hidden, const fs::path& place, bool sure) {
   std::error_code ignored;
   if (!is_there(hidden / list_name)) {
@@ -285,7 +285,7 @@ void discard(const fs::path& hidden, const fs::path& place, bool sure) {
   if (empty) fs::remove_all(hidden, ignored);
 }
 
-/// For a file system without the exchange: between the first two steps the old result lies beside its place.
+/// For file systems without the exchange: between its two renames the old result is beside its place.
 void exchange_in_steps(const fs::path& staged, const fs::path& place) {
   const fs::path old = staged.string() + steps_suffix;
   fs::rename(place, old);
@@ -298,7 +298,7 @@ void exchange_in_steps(const fs::path& staged, const fs::path& place) {
   fs::rename(old, staged);
 }
 
-/// Removes what runs that were killed left beside the place; an earlier result that stands there only goes
+/// Removes leftovers of killed runs beside the place. If an earlier result exists only there, it is moved
 /// back.
 void discard_leftovers(const fs::path& place) {
   const std::string prefix = hidden_prefix(place).string();
@@ -324,7 +324,7 @@ void discard_leftovers(const fs::path& place) {
         const_cast<fs::path*>(&place));
 }
 
-/// The permissions of a folder that is made in `folder` as any other.
+/// Sets the permissions that a newly created folder would have.
 void take_usual_mode(const fs::path& folder) {
   const fs::path probe = folder / "probe";
   fs::create_directory(probe);
@@ -348,7 +348,7 @@ void need_result_folder(const fs::path& folder, const std::vector<fs::path>& nam
   const fs::path place = plain_place_of(folder);
   need_place(place, folder, names);
   try_to_write(place.parent_path(), folder);
-  // A page without pictures, its tables and the list of files.
+  // Size of a page without pictures, its tables and the list of files.
   constexpr std::uint64_t least_bytes = 24000;
   voxel::need_disk(folder, least_bytes);
 }
@@ -429,9 +429,10 @@ void ResultFolder::put_in_place(const std::function<void()>& then) {
   fs::path old;
   {
     const voxel::NamesChange change;
-    // From the exchange on, the hidden folder holds other people's files: no ending may remove it.
+    // After the exchange, the hidden folder may contain the user's files, so ending the process must not
+    // remove it.
     old = staged_->keep();
-    // An empty folder is replaced, never a file or a folder with something in it.
+    // Replaces only an empty folder, never a file or a folder with contents.
     const bool done = exchanges
                           ? ::renameat2(AT_FDCWD, old.c_str(), AT_FDCWD, final_.c_str(), RENAME_EXCHANGE) == 0
                           : ::rename(old.c_str(), final_.c_str()) == 0;

@@ -12,65 +12,64 @@
 
 namespace octotomy::planner {
 
-/// Refuses an output folder before the work. Throws voxel::Error (Input) naming the file and the way out if
-/// `folder`
-/// - is a file, or has files in it but no list `.octotomy-result` of what an earlier result wrote;
-/// - holds a file of that list that was changed since;
-/// - holds a file of somebody else under one of `names`, the paths that the result will write;
-/// - is the working folder or holds it, or is a mounted one: publishing replaces the folder itself;
-/// - cannot be made or written to;
-/// or (Resource) whose disk has no room for the barest page.
-/// A symbolic link to a folder stands for that folder.
+/// Refuses an output folder before the work starts. Throws voxel::Error (Input), which names the file and a
+/// remedy, if `folder`
+/// - is a file, or has files in it but no list `.octotomy-result` of an earlier result;
+/// - contains a file of that list that was changed since;
+/// - contains a file that is not in that list under one of `names`, the paths that the result will write;
+/// - is or contains the working folder, or is a mount point: publishing replaces the folder itself;
+/// - cannot be made or written to; or (Resource) if the disk has no room for the smallest page. A symbolic
+///   link to a folder counts as that folder.
 void need_result_folder(const std::filesystem::path& folder,
                         const std::vector<std::filesystem::path>& names = {});
 
-/// Whether a result may be put there by the look of it: nothing stands there, or a folder that is empty or
-/// has the list `.octotomy-result`. Reads no file but the list; need_result_folder() tells more.
+/// A quick check whether a result may be written there: the path does not exist, or is a folder that is empty
+/// or has the list `.octotomy-result`. Reads only the list; need_result_folder() checks completely.
 bool may_hold_result(const std::filesystem::path& folder);
 
-/// Whether the list of a result, in a folder above, names this file.
+/// Whether the list of a result in a parent folder contains this file.
 bool is_of_result(const std::filesystem::path& file);
 
 /// SHA-256 by path within the folder.
 using ResultList = std::map<std::string, std::string>;
-/// What `.octotomy-result` in a folder says was written there; empty without that list.
+/// The files in a folder's `.octotomy-result`; empty without that list.
 ResultList result_list(const std::filesystem::path& folder);
 
-/// A folder of results that appears whole or not at all. Files are written into a hidden folder beside the
-/// place; publish() exchanges the two in one step. The file `.octotomy-result` lists what was written with
-/// its SHA-256 (`sha256sum -c` reads it). The next result replaces the listed files; all others stay, as do
-/// permissions.
+/// A folder of results that appears completely or not at all. Files are written into a hidden folder beside
+/// the place; publish() exchanges the two in one step. The file `.octotomy-result` lists the written files
+/// with their SHA-256 (readable by `sha256sum -c`). The next result replaces the listed files; all other
+/// files and permissions are preserved.
 class ResultFolder {
  public:
-  /// Makes the hidden folder and removes those that killed runs left. Precondition: need_result_folder()
-  /// accepted the folder before the work. Does not check the folder again: publish() does, and keeps the
-  /// result if the check fails. Throws voxel::Error (Input, Resource) if the hidden folder cannot be made,
-  /// and std::filesystem::filesystem_error if the folder above cannot.
+  /// Makes the hidden folder and removes those of killed runs. Precondition: need_result_folder() accepted
+  /// the folder before the work. Does not check the folder again: publish() does, and preserves the result if
+  /// the check fails. Throws voxel::Error (Input, Resource) if the hidden folder cannot be made, and
+  /// std::filesystem::filesystem_error if the folder above cannot.
   explicit ResultFolder(const std::filesystem::path& folder);
   ResultFolder(const ResultFolder&) = delete;
   ResultFolder& operator=(const ResultFolder&) = delete;
 
   /// The folder to write into until publish(); exists.
   const std::filesystem::path& path() const { return staged_->path(); }
-  /// Copies the files of the earlier result that were not written anew; for a result that is written again
-  /// with more in it. Cost: a copy of these files.
+  /// Copies the files of the earlier result that were not written again, for a result that is rewritten with
+  /// additions. Cost: a copy of these files.
   void copy_rest();
-  /// Puts the result in its place. A process that is killed before or within leaves the earlier result whole
-  /// under its name; after, the new one. Throws voxel::Error (Input) if a file of the place was changed or
-  /// put in the way during the work; the result then stays complete beside it, under the name in the message.
-  /// Cost: one reading of all files, old and new.
+  /// Publishes the result at its place. If the process is killed before or during this, the earlier result is
+  /// complete under its name; afterwards, the new one. Throws voxel::Error (Input) if a file of the place was
+  /// changed or added in the way during the work; the result is then complete beside it, under the name in
+  /// the message. Cost: one reading of all files, old and new.
   void publish();
-  /// Whether anything stands in its place by now but an empty folder.
+  /// Whether its place now contains anything but an empty folder.
   bool replaces() const;
-  /// As publish(), for a first part of the result that says what it lacks; not where it replaces(),
-  /// since an earlier result is worth more than a part of the next: then it does nothing and returns null.
-  /// The answer takes the files out again, unless a later result has replaced them by then.
+  /// Publishes a first part of the result, which states what is missing. Does nothing and returns null if
+  /// replaces(), because an earlier complete result is worth more. The returned object removes the files
+  /// again, unless a later result has replaced them.
   std::unique_ptr<voxel::Undo> publish_early();
 
  private:
-  /// Calls `then` before any ending can come between.
+  /// Publishes and calls `then` before the process can end in between.
   void put_in_place(const std::function<void()>& then);
-  /// `hidden` is where the staged files are once they were kept.
+  /// `hidden` is the folder of the staged files after keep().
   [[noreturn]] void keep_beside(const std::string& reason, const std::filesystem::path& hidden = {});
 
   std::filesystem::path final_;                      ///< absolute, without links at its end

@@ -14,7 +14,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// Told apart by readers with any colour vision and in grey print (after Okabe and Ito 2008).
+/// Distinguishable with any colour vision and in grey print (after Okabe and Ito 2008).
 constexpr std::array<glm::vec3, 5> accents{{{0.20f, 0.56f, 0.72f},
                                             {0.87f, 0.49f, 0.20f},
                                             {0.16f, 0.60f, 0.47f},
@@ -27,7 +27,7 @@ std::string without_blanks(std::string text) {
   return text;
 }
 
-/// The names of `a | b | c`; none where the expression is anything else.
+/// The names of `a | b | c`; empty for any other expression.
 std::vector<std::string> pieces_of_union(const std::string& expression) {
   const std::string text = without_blanks(expression);
   std::vector<std::string> pieces{""};
@@ -40,7 +40,8 @@ std::vector<std::string> pieces_of_union(const std::string& expression) {
       return {};
     }
   }
-  // Each piece is drawn by itself, so each name counts once, and more than people tell apart are one object.
+  // Each piece is drawn separately, so each name counts once. More pieces than readers can distinguish are
+  // drawn as one object.
   constexpr std::size_t most_pieces = 64;
   std::set<std::string> seen;
   std::erase_if(pieces, [&](const std::string& piece) { return !seen.insert(piece).second; });
@@ -56,14 +57,14 @@ std::vector<std::string> final_pieces(const Plan& plan, const Evaluation& evalua
   return {};
 }
 
-/// The object that a chain of moves began with.
+/// The original object of a chain of moves.
 std::string still_of(const Evaluation& evaluation, std::string id) {
   while (const auto& moved = evaluation.object(id).moved) id = moved->object;
   return id;
 }
 
-/// The first piece that an object is made of, where something has moved on the way: then the object as it
-/// was before its own move shows no untouched patient. Null where nothing has.
+/// The first piece from which an object is made, if something has moved on the way: the object before its own
+/// move would then not show the untouched patient. Null if nothing has moved.
 const Object* untouched(const Plan& plan, const Evaluation& evaluation, const std::string& id) {
   const std::set<std::string> needed = needed_for(plan, {id});
   const Object* first = nullptr;
@@ -76,7 +77,7 @@ const Object* untouched(const Plan& plan, const Evaluation& evaluation, const st
   return moved ? first : nullptr;
 }
 
-/// Whether a piece is bone that the patient has not there: a flap's, or what a mirror made.
+/// Whether a piece is bone that the patient does not have there: of a flap, or mirrored.
 bool is_added(const Plan& plan, const std::string& id) {
   const std::set<std::string> needed = needed_for(plan, {id});
   return std::any_of(plan.steps.begin(), plan.steps.end(), [&](const Step& step) {
@@ -85,7 +86,7 @@ bool is_added(const Plan& plan, const std::string& id) {
   });
 }
 
-/// What a piece was first made of, masks apart.
+/// The first object from which a piece was made, ignoring masks.
 const Object& origin_of(const Plan& plan, const Evaluation& evaluation, const std::string& id) {
   const std::set<std::string> needed = needed_for(plan, {id});
   for (const Object& object : evaluation.objects)
@@ -98,7 +99,7 @@ struct Frame {
   double width_mm = 1.0;
 };
 
-/// The square about the boxes of all objects, seen in a view.
+/// The square around the boxes of all objects in a view.
 Frame loose_frame(const std::vector<voxel::DrawnObject>& objects, const voxel::View& view) {
   glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
   for (const voxel::DrawnObject& object : objects) {
@@ -125,9 +126,9 @@ voxel::RenderOptions options_of(const voxel::View& view, const Frame& frame, int
   return options;
 }
 
-/// The square about what is seen of the objects, a sixth wider for scales and letters. A box seen from a
-/// corner says little about what is in it, so a small picture is drawn first; its pixels are the frame's
-/// precision.
+/// The square around the visible parts of the objects, a sixth wider for scales and letters. Seen from a
+/// corner, a box is much larger than its contents, so a small picture is drawn first; its pixel size is the
+/// frame's precision.
 Frame frame_of(const std::vector<voxel::DrawnObject>& objects, const voxel::View& view) {
   constexpr int probe_px = 96;
   constexpr double margin = 7.0 / 6.0;

@@ -13,7 +13,7 @@ std::string unit_of(const Json& doubt) {
   return unit == "deg" ? "\u00b0" : unit == "mm3" ? " mm\u00b3" : " " + unit;
 }
 
-/// A source's share, "–" where it has none.
+/// The half-width of a source; "–" if there is none.
 std::string of_source(const Json& doubt, const char* name) {
   for (const Json& source : doubt.at("sources"))
     if (source.at("name") == name) return three_figures(source.at("half_width").get<double>());

@@ -6,8 +6,8 @@
 
 namespace octotomy::planner {
 
-/// What trials with errors of landmarks, saw, segmentation and seating leave of a plan's numbers, as HTML;
-/// nothing where no step asked for it.
+/// The uncertainty of a plan's numbers from trials with errors of landmarks, saw, segmentation and seating,
+/// as HTML; empty if no step requested trials.
 std::string trial_tables(const nlohmann::ordered_json& measurements);
 
 }  // namespace octotomy::planner

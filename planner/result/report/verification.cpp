@@ -28,7 +28,8 @@ verify::Verdict verdict_of(const Json& judged) {
   return verify::Verdict::Fail;
 }
 
-/// A quantity's difference as a share of its tolerance; infinite where a difference meets no tolerance.
+/// A quantity's difference as a share of its tolerance; infinite if there is a difference but the tolerance
+/// is zero.
 struct Share {
   double value = 0.0;
   verify::Verdict verdict = verify::Verdict::Pass;
@@ -44,8 +45,8 @@ std::optional<Share> share_of(const Json& comparison) {
   return Share{share, verdict_of(comparison)};
 }
 
-/// By quantity, over all certificates of objects that voxels resolve; the exact tier as a quantity of its
-/// own.
+/// Shares by quantity, over all certificates of objects that voxels resolve; the exact tier is a quantity of
+/// its own.
 using Shares = std::map<std::string, std::vector<Share>>;
 
 Shares shares_of(const Json& certificates) {
@@ -78,8 +79,8 @@ std::string share_text(double share) {
   return std::isfinite(share) ? three_figures(share) : "\u221e";
 }
 
-/// A row of bars: how many differences have which share of what is allowed, on a logarithmic scale from a
-/// thousandth to ten; what is smaller or larger stands at the ends.
+/// A histogram of differences by their share of the tolerance, on a logarithmic scale from a thousandth to
+/// ten; smaller and larger ones are counted at the ends.
 std::string histogram(const std::vector<Share>& shares) {
   constexpr int bins = 64;
   constexpr double low = -3.0, high = 1.0, width = 640.0, height = 34.0;
@@ -177,7 +178,7 @@ std::string certificate_row(const Json& certificate) {
          figure_cell(share_text(worst_of(certificate))) + "</tr>";
 }
 
-/// All where they are few, else those that take up most of what is allowed.
+/// All certificates if there are few, else those with the largest shares of their tolerances.
 std::string certificates(const Json& all) {
   constexpr std::size_t most_shown = 30;
   std::vector<const Json*> shown;
@@ -215,7 +216,7 @@ std::string value_text(const Json& value) {
   return all;
 }
 
-/// A list of objects of one shape, a row each.
+/// A table of JSON objects with the same keys, one row each.
 std::string table_of(const std::string& title, const Json& entries) {
   if (!entries.is_array() || entries.empty() || !entries.front().is_object()) return "";
   std::string head, rows;
@@ -260,7 +261,7 @@ std::string not_covered(const Verification& verification) {
   if (verification.answer.contains("not_recomputed"))
     for (const Json& gap : verification.answer.at("not_recomputed"))
       lines.push_back(gap.at("where").get<std::string>() + ": " + gap.at("why").get<std::string>());
-  // From what the certificates carry: who made both answers, and what both took from one place.
+  // The code that made both answers and their shared inputs, from the certificates.
   std::map<std::string, int> shared;
   if (verification.answer.contains("certificates"))
     for (const Json& certificate : verification.answer.at("certificates"))

@@ -12,22 +12,22 @@
 
 namespace octotomy::planner {
 
-/// What was verified and what came of it.
+/// The subject and results of a verification.
 struct Verification {
   std::string subject;  ///< a plan, two files and their operation, or a suite
   VerdictCounts counts;
-  Json answer;  ///< whole: "certificates", "counts", "timings_ms" and what a suite adds
-  /// What was asked and has no certificate, a sentence each.
+  Json answer;  ///< complete: "certificates", "counts", "timings_ms" and members that a suite adds
+  /// Requests without a certificate, one sentence each.
   std::vector<std::string> not_covered;
-  std::optional<verify::Contested> worst;  ///< the objects that take up most of a tolerance
+  std::optional<verify::Contested> worst;  ///< the objects with the largest share of a tolerance
 };
 
-/// One HTML page: verdicts, the differences as shares of what is allowed for each quantity, pictures of the
-/// worst, the suite's own tables, and what was not covered.
+/// One HTML page: verdicts, the differences as shares of the tolerance of each quantity, pictures of the
+/// worst, the suite's own tables, and requests that were not covered.
 std::string verification_html(const Verification& verification);
 
-/// Writes a folder with report.html and result.json, whole or not at all. Precondition and errors: as of
-/// ResultFolder.
+/// Writes a folder with report.html and result.json, completely or not at all. Precondition and errors are
+/// those of ResultFolder.
 void write_verification(const Verification& verification, const std::filesystem::path& folder);
 
 }  // namespace octotomy::planner
