@@ -192,7 +192,7 @@ Json without_steps_of(const Procedure& procedure, const Json& plan) {
   Json kept = plan;
   kept["steps"] = Json::array();
   for (const Json& step : plan.at("steps"))
-    if (!step["id"].get<std::string>().starts_with(procedure.name + "_")) kept["steps"].push_back(step);
+    if (!is_chained_step_of(procedure, step["id"])) kept["steps"].push_back(step);
   return kept;
 }
 

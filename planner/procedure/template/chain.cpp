@@ -209,6 +209,17 @@ std::optional<std::string> outcome_of(const Plan& plan) {
   return std::nullopt;
 }
 
+bool is_chained_step_of(const Procedure& procedure, const std::string& id) {
+  const std::string prefix = procedure.name + "_";
+  if (!id.starts_with(prefix)) return false;
+  std::string own = id.substr(prefix.size());
+  if (const std::size_t digits = own.find_first_not_of("0123456789");
+      digits != 0 && digits != std::string::npos && own[digits] == '_')
+    own = own.substr(digits + 1);
+  return std::any_of(procedure.steps.begin(), procedure.steps.end(),
+                     [&](const Json& step) { return step.at("id") == own; });
+}
+
 Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& procedure,
                 const ProcedureInput& input) {
   const std::optional<std::string> outcome = outcome_of(plan);

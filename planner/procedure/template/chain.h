@@ -17,6 +17,9 @@ namespace octotomy::planner {
 /// alone or after the name of a procedure and "_". None: the plan has no such step.
 std::optional<std::string> outcome_of(const Plan& plan);
 
+/// Whether chained() has given a step this name for the procedure.
+bool is_chained_step_of(const Procedure& procedure, const std::string& id);
+
 struct Chained {
   nlohmann::ordered_json plan;       ///< JSON, to be parsed in the folder of the plan before
   std::vector<std::string> made;     ///< ids of the added steps

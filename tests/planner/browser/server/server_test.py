@@ -405,6 +405,17 @@ class Desk(Served):
         self.assertIn("forward 5.0 mm", words)
         with self.assertRaisesRegex(RuntimeError, "input: .*buttress_left"):
             self.window.ask("procedure", name="le_fort_i", landmarks={"incisor": [0, 0, 0]})
+        chin = {"foramen_left": [22, -74, -82], "foramen_right": [-22, -74, -82], "border_left": [33, -55, -91],
+                "border_right": [-33, -55, -91], "pogonion": [0, -87, -93], "menton": [0, -82, -101]}
+        for forward_mm in (4, 6):  # the second time in place of the first
+            state = self.window.ask("procedure", name="genioplasty", landmarks=chin,
+                                    values={"forward_mm": forward_mm, "bone_low": 300})
+            steps = {step["id"]: step for step in state["plan"]["steps"]}
+            self.assertEqual(len(steps), len(state["plan"]["steps"]))
+            self.assertEqual(steps["genioplasty_chin"]["expression"], "planned & genioplasty_below_cut")
+            self.assertEqual(steps["genioplasty_chin_moved"]["by"]["forward_mm"], forward_mm)
+            self.assertIn("maxilla_moved", steps)
+        self.assertTrue(all(entry["evaluated"] for entry in self.window.ask("evaluate")["objects"]))
         file = self.folder / "mine.procedure.json"
         file.write_text('{"secret": 1}')
         with self.assertRaisesRegex(RuntimeError, "there is no procedure"):

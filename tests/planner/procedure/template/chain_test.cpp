@@ -111,6 +111,15 @@ TEST_F(Chain, EachProcedureHasNamesOfItsOwnAndEachStaysEditable) {
   EXPECT_EQ(kept, Json::parse(first.text)["steps"]);
 }
 
+TEST(ChainedSteps, AreKnownByTheProceduresNameAndTheirOwn) {
+  const Procedure procedure = read_procedure("le_fort_i");
+  EXPECT_TRUE(is_chained_step_of(procedure, "le_fort_i_maxilla"));
+  EXPECT_TRUE(is_chained_step_of(procedure, "le_fort_i_2_maxilla"));
+  EXPECT_FALSE(is_chained_step_of(procedure, "maxilla"));
+  EXPECT_FALSE(is_chained_step_of(procedure, "le_fort_i_two_piece_maxilla"));
+  EXPECT_FALSE(is_chained_step_of(procedure, "le_fort_i_mine"));
+}
+
 TEST_F(Chain, WhatCannotBeChainedIsRefusedWithAReason) {
   const auto refusal = [&](const Plan& plan, const char* name, std::map<std::string, double> values,
                            std::vector<brep::Landmark> landmarks = chin) {
