@@ -55,7 +55,7 @@ def build_page(page, site):
 
 def build_reference(site, manual=MANUAL):
     site.mkdir(parents=True, exist_ok=True)
-    write_html("reference", "[TOC]\n\n".join(reference().split("\n\n", 1)[0:0]) + reference(), site, manual)
+    write_html("reference", reference().replace("\n", "\n\n[TOC]\n", 1), site, manual)
 
 
 def main(site, manual=MANUAL):
