@@ -43,8 +43,8 @@ def type_of(field):
     if kind != "array":
         return kind
     least, most = field.get("minItems"), field.get("maxItems")
-    count = f" of {least}" if least == most and least else f" of {least} or more" if least else " of"
-    return f"list{count}: {type_of(field['items'])}"
+    count = f" of {least}" if least == most and least else f" of {least} or more" if least else ""
+    return f"list{count} ({type_of(field['items'])})"
 
 
 def limits_of(field):
