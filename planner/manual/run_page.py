@@ -3,7 +3,7 @@
 
     run_page.py PAGE.md FOLDER      octotomy is $OCTOTOMY_PROGRAM, else the one on PATH
 
-- "`NAME`:" before a json block: the block is written as the file NAME.
+- "`NAME`:" before a block of json, csv or python: the block is written as the file NAME.
 - A console block: each line behind "$ " runs in bash and has to end with status 0. The lines below it are output that
   has to appear in this order; "..." stands for any text.
 - A number in bold has to stand in the output of a command above it.
@@ -11,12 +11,15 @@
 """
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
-PARTS = re.compile(r"`([\w.]+)`:\n\n```json\n(.*?)```|```console\n(.*?)```|\*\*([^*\n]*\d[^*\n]*)\*\*|!\[[^]]*\]\(([^)]+)\)",
-                   re.DOTALL)
+PARTS = re.compile(r"`([\w.]+)`:\n\n```(?:json|csv|python)\n(.*?)```|```console\n(.*?)```|\*\*([^*\n]*\d[^*\n]*)\*\*"
+                   r"|!\[[^]]*\]\(([^)]+)\)", re.DOTALL)
+# Programs of others that some pages run.
+OTHERS = ["ccx"]
 
 
 def plain(text):
@@ -24,10 +27,21 @@ def plain(text):
     return " ".join(text.split())
 
 
-def run(command, folder):
+def missing_programs(page):
+    """The programs of others that the page's commands need and that are not installed."""
+    commands = "".join(part[2] for part in PARTS.findall(Path(page).read_text()))
+    return [name for name in OTHERS if re.search(rf"\b{name}\b", commands) and not shutil.which(name)]
+
+
+def environment():
+    """With octotomy on PATH."""
     program = os.environ.get("OCTOTOMY_PROGRAM")
     path = (f"{Path(program).parent}:" if program else "") + os.environ["PATH"]
-    done = subprocess.run(["bash", "-c", command], cwd=folder, env={**os.environ, "PATH": path}, text=True,
+    return {**os.environ, "PATH": path}
+
+
+def run(command, folder):
+    done = subprocess.run(["bash", "-c", command], cwd=folder, env=environment(), text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
     if done.returncode != 0:
         raise AssertionError(f"$ {command}\nended with status {done.returncode}:\n{done.stdout}")

@@ -317,7 +317,9 @@ struct Schema {
   }
   template <typename Value>
   Json operator()(const std::vector<Value>*) const {
-    Json schema{{"type", "array"}, {"items", (*this)(static_cast<const Value*>(nullptr))}};
+    Field entry = field;  // `least` and `most` count the entries and bound none of them
+    entry.least = entry.most = std::nullopt;
+    Json schema{{"type", "array"}, {"items", Schema{entry}(static_cast<const Value*>(nullptr))}};
     if (field.least) schema["minItems"] = static_cast<int>(*field.least);
     if (field.most) schema["maxItems"] = static_cast<int>(*field.most);
     return schema;
