@@ -205,7 +205,7 @@ void PictureStatements::report(Scene& scene, bool is_stated) const {
     scene.audit.push_back(
         {"picture_count", Verdict::Fail,
          print("the file states %g images and %zu were found: ImageJ writes stacks over 4 GB as one picture "
-               "with the others behind it; save it as NIfTI or NRRD, or a picture a slice",
+               "followed by raw samples; save it as NIfTI or NRRD, or as one picture per slice",
                first_.images, count_)});
   std::array<std::optional<double>, 3> stated_mm = first_.size_mm;
   for (int axis = 0; axis < 2 && first_.page_mm; ++axis)

@@ -70,7 +70,7 @@ int explain(const Program& program, const ProcedureText& text) {
 ProcedureInput input_of(const ProcedureText& text) {
   if (text.scan.empty() || text.landmarks.empty() || text.out.empty())
     throw std::runtime_error(
-        "to plan it, give --scan, --landmarks and -o; without all three it is explained");
+        "to plan it, give --scan, --landmarks and -o; without all three its inputs are listed");
   std::vector<fs::path> inputs = text.landmarks;
   inputs.push_back(text.name);
   need_extension(text.out, {".json"}, "a plan is");
@@ -126,7 +126,8 @@ void add_procedure(Program& program) {
   const auto text = std::make_shared<ProcedureText>();
   CLI::App& verb = program.verb(
       "procedure",
-      "Plans an operation by its name, from landmarks and a few values; alone it lists what there is",
+      "Plans an operation by its name, from landmarks and a few values; without a name it lists all "
+      "procedures",
       "octotomy procedure le_fort_i\n"
       "  octotomy procedure le_fort_i --scan head.nrrd --landmarks marks.mrk.json --set forward_mm=6 "
       "--set up_mm=2 -o my.plan.json\n"
@@ -148,7 +149,7 @@ void add_procedure(Program& program) {
       ->allow_extra_args(false)
       ->type_name("NAME=NUMBER");
   verb.add_option("--voxel", text->voxel_mm, "Edge of the plan's voxels, mm; default 1")->check(above_zero());
-  verb.add_option("-o,--out", text->out, "The .plan.json, which stands alone and may be edited");
+  verb.add_option("-o,--out", text->out, "The .plan.json, which is self-contained and may be edited");
   verb.add_option("--report", text->report, "Replays the plan into this folder at once, as run does");
   add_certify(verb, text->certify);
   add_anonymous(verb, text->anonymous);

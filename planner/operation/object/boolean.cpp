@@ -121,8 +121,8 @@ Operation boolean_operation() {
                    "Further meshes: all are united, intersected, or taken from the first."))
       .takes(field("exact", &Boolean::exact,
                    "New points as exact numbers, and proof that the volumes add up as rationals; slower."))
-      .takes(field("mend", &Boolean::mend,
-                   "Meshes that are no solids are mended first, as repair --solid does."))
+      .takes(
+          field("mend", &Boolean::mend, "Repair meshes that are not solids first, as repair --solid does."))
       .takes(field("out", &Boolean::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.").required())
       .example(
           R"({"id": "rest", "do": "boolean", "a": "skull", "op": "difference", "b": "cut",

@@ -17,8 +17,9 @@ struct Import {
 
 void check(const Import& import, const Place& place) {
   if (import.frame && !brep::frame_named(*import.frame))
-    place.at("frame").refuse("'" + *import.frame +
-                             "' is no frame: give three letters for where x, y and z point, LPS or RAS");
+    place.at("frame").refuse(
+        "'" + *import.frame +
+        "' is not a frame: give three letters for the directions of x, y and z, LPS or RAS");
 }
 
 std::string definition(const Import& import, const Objects&) {
