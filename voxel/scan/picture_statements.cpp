@@ -215,7 +215,7 @@ void PictureStatements::report(Scene& scene, bool is_stated) const {
     if (const auto& size = stated_mm[static_cast<std::size_t>(axis)];
         size && !is_near(*size, spacing_mm[axis]))
       warn("picture_spacing", "the pictures state " + print(what[static_cast<std::size_t>(axis)], *size) +
-                                  print(", and %.6g mm is taken as --spacing gives it", spacing_mm[axis]));
+                                  print(", but --spacing states %.6g mm, which is used", spacing_mm[axis]));
   if (differs_)
     warn("picture_spacing", "the pictures state different sizes of their pixels: one is taken for all");
   if (!first_.further_axis.empty())

@@ -99,7 +99,7 @@ void need_options_fit(const CLI::App& verb, const std::vector<std::string>& file
     const CLI::Option* option = verb.get_option_no_throw(name);
     if (option == nullptr || option->count() == 0) return;
     throw std::runtime_error(files.front() + ": is " + (is_octree(files.front()) ? "an octree" : "a mesh") +
-                             ", and " + name + " is of " + of + ": leave it out");
+                             ", and " + name + " applies to " + of + ": leave it out");
   };
   for (const char* name :
        {"--series", "--join", "--slices", "--spacing", "--raw", "--big-endian", "--offset"})

@@ -182,7 +182,8 @@ FileAnswer on_files(const Compare& asked, const FileBench& bench) {
         " is a label map and the other a surface: make surfaces of the labels by octotomy surfaces");
   if (is_label_map(asked.a.name)) {
     if (!asked.out.empty() || !asked.picture.empty())
-      throw std::runtime_error("--out and --picture are of surfaces: leave them out of two label maps");
+      throw std::runtime_error(
+          "--out and --picture are for surfaces: leave them out where two label maps are compared");
     return compare_label_maps(asked.a.name, asked.b.name, asked.other_identity, bench);
   }
   if (!asked.out.empty()) need_extension(asked.out, {".ply", ".vtp", ".glb"}, "the coloured mesh is");

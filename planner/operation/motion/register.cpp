@@ -101,7 +101,7 @@ Laid by_landmarks(const std::filesystem::path& moving, const std::filesystem::pa
 void by_surfaces(const brep::Mesh& moving, const brep::Mesh& fixed, const Register& asked, bool is_laid,
                  const voxel::Progress& progress, Timings& timings, Laid& laid) {
   if (asked.motion == "similarity")
-    throw std::runtime_error("surfaces are registered rigidly; a similarity takes --landmarks-only");
+    throw std::runtime_error("surfaces are registered rigidly; a similarity needs --landmarks-only");
   const Stopwatch watch(timings, "register");
   brep::SurfaceFitOptions options;
   if (is_laid) options.start = laid.onto_from_object;
