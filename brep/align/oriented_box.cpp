@@ -26,7 +26,7 @@ std::vector<Kernel::Point_3> points_of(const Mesh& mesh) {
 
 OrientedBox oriented_box(const Mesh& mesh) {
   const std::vector<Kernel::Point_3> points = points_of(mesh);
-  if (points.empty()) throw std::invalid_argument("oriented_box: there are no triangles to lay a box about");
+  if (points.empty()) throw std::invalid_argument("oriented_box: there are no triangles for a box");
   std::array<Kernel::Point_3, 8> corners;
   // Uses a fixed seed, because the default generator would continue from the previous call.
   CGAL::oriented_bounding_box(points, corners, CGAL::parameters::use_convex_hull(true).random_seed(1));

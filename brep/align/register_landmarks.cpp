@@ -158,8 +158,8 @@ LandmarkFit register_landmarks(const std::vector<Landmark>& moving, const std::v
                                    motion == Motion::three_points ? pairs.begin() + 3 : pairs.end());
   if (on_a_line(deciding, &Pair::from) || on_a_line(deciding, &Pair::to))
     throw std::invalid_argument(
-        "register: the landmarks found in both sets lie on one line, about which the turn is open: add one "
-        "beside it");
+        "register: the landmarks found in both sets lie on one line, so the rotation about it is "
+        "undetermined: add a landmark beside it");
 
   const glm::dmat3 turn = motion == Motion::three_points
                               ? frame_of(pairs, &Pair::to) * glm::transpose(frame_of(pairs, &Pair::from))
@@ -171,7 +171,8 @@ LandmarkFit register_landmarks(const std::vector<Landmark>& moving, const std::v
   }
   if (motion == Motion::similarity) fit.scale = along / spread;
   if (!(fit.scale > 0.0))
-    throw std::invalid_argument("register: no positive scale fits these landmarks: are names interchanged?");
+    throw std::invalid_argument(
+        "register: no positive scale fits these landmarks: check whether names are interchanged");
   const glm::dmat3 linear = fit.scale * turn;
   fit.fixed_from_moving = glm::dmat4(linear);
   fit.fixed_from_moving[3] = glm::dvec4(anchor.to - linear * anchor.from, 1.0);

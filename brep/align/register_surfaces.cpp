@@ -447,8 +447,8 @@ SurfaceFit fit_cloud(const Cloud& cloud, const OrientedSurface& fixed, const glm
                               " rounds: start it nearer, by landmarks, or allow more by --rounds");
   if (fit.stiffness < sliding_stiffness())
     answer.findings.emplace_back(
-        "the surfaces slide on each other, as spheres and planes do: a part of the motion is open; add "
-        "landmarks");
+        "the surfaces can slide on each other, as spheres and planes can, so a part of the motion is "
+        "undetermined: add landmarks");
   if (answer.kept_share < 0.9 * options.overlap)
     answer.findings.push_back("only " + short_text(100.0 * answer.kept_share) +
                               " % of the surface found a counterpart, less than the overlap asked for");

@@ -43,7 +43,7 @@ void check_operand(const Solid& solid, const std::string& name) {
   const double volume_mm3 = solid.size().volume_mm3;
   if (!std::isfinite(volume_mm3) || volume_mm3 < 0.0)
     throw std::invalid_argument("operand " + name + " has volume " + std::to_string(volume_mm3) +
-                                " mm3: its triangles face inward; turn them round first");
+                                " mm3: its triangles face inward; reverse them first");
 }
 
 double extent_mm(const Size& a, const Size& b) {
@@ -162,8 +162,8 @@ Attempt whole_attempt(const Question& question, const Solid& b) {
   attempt.flat = corefined.flat;
   if (corefined.meets_itself)
     attempt.findings.emplace_back(
-        "an operand meets itself where the other cuts it; the volumes vouch for the result, its health may "
-        "not");
+        "an operand intersects itself where the other cuts it; the result's volumes add up, but check its "
+        "health");
   return attempt;
 }
 
@@ -171,7 +171,7 @@ Attempt near_attempt(const Question& question, const Solid& b) {
   Attempt attempt;
   NearBoolean answer = near_boolean(question.a, b, question.wanted, question.stop);
   attempt.failure = answer.obstacle;
-  if (answer.meets_itself) attempt.failure = "an operand meets itself where the other cuts it";
+  if (answer.meets_itself) attempt.failure = "an operand intersects itself where the other cuts it";
   attempt.results = std::move(answer.results);
   attempt.volumes_mm3 = answer.volumes_mm3;
   attempt.widest = std::move(answer.widest);
@@ -247,10 +247,9 @@ void tell_films(const Question& question, Attempt& attempt) {
 
 void tell_flat(Attempt& attempt) {
   if (attempt.flat > 0)
-    attempt.findings.push_back("triangles without area were taken out of the operands by " +
-                               std::to_string(attempt.flat) +
-                               (attempt.flat == 1 ? " other diagonal" : " other diagonals") +
-                               "; their surfaces stayed where they were");
+    attempt.findings.push_back(
+        "triangles without area were taken out of the operands by " + std::to_string(attempt.flat) +
+        (attempt.flat == 1 ? " other diagonal" : " other diagonals") + "; their surfaces are unchanged");
 }
 
 /// The wanted results, before meshes are made of them.
@@ -295,7 +294,7 @@ Answer answer(const Question& question) {
   throw Error(ErrorCode::Geometry,
               "no Boolean: " + first_failure + ", and moving " + question.names.second + " by up to " +
                   short_text(glm::length(shift_mm(attempt_count - 1, extent))) +
-                  " mm did not help; ask for the health of both operands and repair them, or move one");
+                  " mm did not help; check the health of both operands and repair them, or move one");
 }
 
 /// An order of meshes that does not depend on the order of the arguments.

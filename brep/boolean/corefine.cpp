@@ -74,7 +74,7 @@ bool is_outward_oriented(const Mesh&, const Parameters&) {
 }
 // Where surfaces nearly coincide, CGAL may link halfedges into rings that its loops never leave.
 inline void take_step() {
-  if (StepBudget::left == 0) throw std::runtime_error("its walk along the surface does not end");
+  if (StepBudget::left == 0) throw std::runtime_error("its loop along the surface does not end");
   constexpr std::size_t between_looks = 1 << 12;
   if (StepBudget::left % between_looks == 0 && StepBudget::stop.stop_requested()) throw BooleanStopped();
   --StepBudget::left;
@@ -316,7 +316,7 @@ Corefined corefine(const Mesh& a, const Mesh& b, const Wanted& wanted, const std
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const pmp::Corefinement::Self_intersection_exception&) {
-      failed.failure = "an operand meets itself where the other cuts it";
+      failed.failure = "an operand intersects itself where the other cuts it";
     } catch (const std::exception& e) {
       failed.failure = std::string("corefinement broke off: ") + e.what();
     }

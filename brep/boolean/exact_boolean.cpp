@@ -27,7 +27,7 @@ using Rational = Kernel::Exact_kernel::FT;
 
 Surface surface_of(const Solid& solid, const std::string& name) {
   if (volume_mm3(solid) < 0.0)
-    throw std::invalid_argument("operand " + name + "'s triangles face inward; turn them round first");
+    throw std::invalid_argument("operand " + name + "'s triangles face inward; reverse them first");
   return surface_mesh_of<Kernel::Point_3>(solid.triangles());
 }
 
@@ -83,7 +83,7 @@ void prove(const Rational& whole, const Rational& parts, const std::string& iden
   if (whole == parts) return;
   throw Error(ErrorCode::Geometry, "exact volumes do not add up: " + identity + " misses by " +
                                        std::to_string(mm3_of(whole - parts)) +
-                                       " mm3; an operand meets itself: ask for its health");
+                                       " mm3; an operand intersects itself: check its health");
 }
 
 Triangles rounded(const ExactTriangles& exact, std::size_t& moved) {
@@ -162,10 +162,9 @@ ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b, 
   const bool by_differences = !results[of_union];
   if (!results[wanted] || !results[of_intersection] ||
       (by_differences && (wanted == of_union || !results[of_a_minus_b] || !results[of_b_minus_a])))
-    throw Error(
-        ErrorCode::Geometry,
-        "no exact Boolean: a result would not be manifold, as the surfaces only touch; without exactness "
-        "one is moved by far less than matters");
+    throw Error(ErrorCode::Geometry,
+                "no exact Boolean: a result would not be manifold, as the surfaces only touch; the inexact "
+                "Boolean moves one of them by a negligible length");
 
   progress.at(0.9);
   correct_contrary_shells(made.a, made.b, results, Kernel().less_xyz_3_object());
@@ -187,7 +186,7 @@ ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b, 
   checked[wanted] = true;
   if (const auto wrong = disagreement_along_lines(a, b, answer, checked))
     throw Error(ErrorCode::Geometry, "no exact Boolean: the result" + text_of(*wrong) +
-                                         "; ask for the health of both operands and repair them");
+                                         "; check the health of both operands and repair them");
   const double rounding = solid.empty() ? 0.0 : volume_mm3(solid) - mm3_of(result);
   return {solid, mm3_of(of_a), mm3_of(of_b), mm3_of(united), mm3_of(common), mm3_of(result), rounding, moved};
 }

@@ -157,7 +157,7 @@ void find_parts(const Operand& operand, Side& side) {
     if (first == none && !side.touching[v]) first = v;
   }
   if (std::find(side.first.begin(), side.first.end(), none) != side.first.end())
-    throw Obstacle("a part of an operand touches the other surface with all its points");
+    throw Obstacle("all points of a part of an operand touch the other surface");
   side.inside.assign(side.first.size(), 0);
   side.known.assign(side.first.size(), 0);
 }
@@ -272,7 +272,7 @@ Seam seam_of(const Triangles& result, const Side& a, const Side& b) {
     const auto [place, ends] = placed(result, edge);
     const auto in_a = a.border_edges.find(place), in_b = b.border_edges.find(place);
     const bool is_a = in_a != a.border_edges.end(), is_b = in_b != b.border_edges.end();
-    if (is_a == is_b) throw Obstacle("a result ends where no border is");
+    if (is_a == is_b) throw Obstacle("a result ends where there is no border");
     const Edge& known = is_a ? in_a->second : in_b->second;
     know(is_a ? seam.on_a : seam.on_b, ends.first, known.first);
     know(is_a ? seam.on_a : seam.on_b, ends.second, known.second);

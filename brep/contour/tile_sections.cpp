@@ -263,7 +263,7 @@ TiledSections tile_sections(const std::vector<Section>& sections, const TileSect
     }
   }
   throw Error(ErrorCode::Geometry,
-              "tile_sections: " + trouble + " wherever they are moved to: move one by hand");
+              "tile_sections: " + trouble + " at every shift that was tried: move one manually");
 }
 
 }  // namespace octotomy::brep

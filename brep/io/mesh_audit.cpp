@@ -55,7 +55,7 @@ std::string unit_advice(double side_mm, double other_mm) {
   for (const auto& [name, words] : tried)
     if (const double right_mm = side_mm * length_unit(name)->mm; is_likely(right_mm, other_mm))
       return std::string("; read as ") + words + " it is " + short_text(right_mm) + " mm: try --unit " + name;
-  return "; no usual unit makes it fit: is it the right file?";
+  return "; it fits in no usual unit: check that it is the right file";
 }
 
 }  // namespace

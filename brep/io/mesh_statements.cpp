@@ -70,7 +70,7 @@ void MeshStatements::read_text(std::string_view text, const std::string& where) 
     else if (each.kind == TextStatement::Kind::Unclear)
       unclear("unit", each);
     else
-      warn("unit", "'" + printable(each.words) + "' in " + where + " is no unit of length that is known");
+      warn("unit", "'" + printable(each.words) + "' in " + where + " is not a known unit of length");
 }
 
 MeshStatements::Resolved MeshStatements::resolved(const std::optional<std::string>& frame,
@@ -104,8 +104,8 @@ MeshStatements::Resolved MeshStatements::resolved(const std::optional<std::strin
     const std::optional<std::string> named = frame_named(*frame);
     if (!named)
       throw Error(ErrorCode::Input, "'" + *frame +
-                                        "' is no frame: give three letters for where x, y and z "
-                                        "point, for example LPS or RAS");
+                                        "' is not a frame: give three letters for the directions of x, y and "
+                                        "z, for example LPS or RAS");
     override_by("frame", made.frame = *named, frames_);
   } else if (const Statement* other = contradicts(frames_)) {
     throw Error(ErrorCode::Input, both(frames_.front().words, other->words) + ": choose one by --frame");
@@ -119,16 +119,18 @@ MeshStatements::Resolved MeshStatements::resolved(const std::optional<std::strin
                                     : ": turned to LPS") +
              (is_mirrored ? ", and the triangles' sides with it, as this frame is left-handed" : ""));
   } else {
-    guess("frame", !silent_frame_.empty() ? silent_frame_
-                   : is_doubted("frame")
-                       ? "no frame could be taken from the file: LPS is assumed; --frame RAS where its "
-                         "program means that"
-                       : "the file names no frame: LPS is assumed; --frame RAS where its program means that");
+    guess("frame",
+          !silent_frame_.empty() ? silent_frame_
+          : is_doubted("frame")
+              ? "no frame could be taken from the file: LPS is assumed; use --frame RAS if its program "
+                "writes RAS"
+              : "the file names no frame: LPS is assumed; use --frame RAS if its program writes RAS");
   }
 
   if (unit) {
     const std::optional<LengthUnit> named = length_unit(*unit);
-    if (!named) throw Error(ErrorCode::Input, "'" + *unit + "' is no unit: give um, mm, cm, m, inch or foot");
+    if (!named)
+      throw Error(ErrorCode::Input, "'" + *unit + "' is not a unit: give um, mm, cm, m, inch or foot");
     made.unit = *named;
     override_by("unit", named->name, units_);
   } else if (const Statement* other = contradicts(units_)) {

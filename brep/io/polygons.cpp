@@ -308,7 +308,8 @@ std::vector<MeshFinding> PolygonCounts::findings(double unit_mm) const {
          ": the file does not say where the surface between the corners lies");
   if (crossing > 0)
     warn(count(crossing, "polygon crosses itself", "polygons cross themselves") + first(first_crossing) +
-         ": no triangles fill it, the ones from its first corner are taken; mend it in its program");
+         ": no triangulation fills it, so the fan from its first corner is used; mend it in the program that "
+         "made it");
   if (without_area > 0)
     warn(count(without_area, "polygon has", "polygons have") + " no area" + first(first_without_area));
   return made;

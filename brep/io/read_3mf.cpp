@@ -231,12 +231,11 @@ class Reader3mf {
     made_.says.add_unit(root.unit, "3MF's unit " + root.unit.substr(0, 40));
     made_.says.silent_frame(
         "3MF's frame is the printer's, z up and y to the back, which LPS is of a standing "
-        "patient seen from the front: assumed; --frame RAS where its program means that");
+        "patient seen from the front: assumed; use --frame RAS if its program writes RAS");
     made_.says.add_writer(root.application);
     unit_ = root.unit;
     std::vector<Placed> items = root.items.empty() ? unplaced(path) : root.items;
-    if (root.items.empty())
-      made_.says.warn("file", "its build places no object: each is read as it was drawn");
+    if (root.items.empty()) made_.says.warn("file", "its build places no object: each is read untransformed");
     for (const Placed& item : items) add(item, 0);
     if (left_out_ > 0)
       made_.says.tell("file", std::to_string(left_out_) + " support structures are left out");
@@ -315,7 +314,7 @@ class Reader3mf {
   void spend(std::size_t count) {
     const std::size_t most = 10'000'000 + 1100 * bytes_.size();
     if ((spent_ += count) > most)
-      refuse_file("places its objects more often than can be held: export one mesh");
+      refuse_file("places its objects so often that the result is too large: export one mesh");
   }
 
   std::string_view bytes_;

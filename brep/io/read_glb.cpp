@@ -28,7 +28,7 @@ std::size_t whole(const Json& object, const char* key, std::size_t otherwise,
   const auto found = object.find(key);
   if (found == object.end()) return otherwise;
   if (!found->is_number_unsigned() || found->get<std::uint64_t>() > most)
-    refuse_file("'" + std::string(key) + "' is no whole number that can be there");
+    refuse_file("'" + std::string(key) + "' is not a valid whole number here");
   return found->get<std::size_t>();
 }
 
@@ -56,7 +56,7 @@ std::optional<std::array<double, Count>> numbers_of(const Json& object, const ch
   if (list.size() != Count)
     refuse_file("'" + std::string(key) + "' has " + std::to_string(list.size()) + " numbers");
   for (std::size_t i = 0; i < Count; ++i) {
-    if (!list[i].is_number()) refuse_file("'" + std::string(key) + "' holds what is no number");
+    if (!list[i].is_number()) refuse_file("'" + std::string(key) + "' contains something other than numbers");
     made[i] = list[i].get<double>();
   }
   return made;
@@ -277,7 +277,7 @@ class GlbReader {
   void spend(std::size_t count) {
     const std::size_t most = 10'000'000 + 8 * bytes_.size();
     if (count > most || spent_ > most - count)
-      refuse_file("places its meshes more often than can be held: export one mesh");
+      refuse_file("places its meshes so often that the result is too large: export one mesh");
     spent_ += count;
   }
 

@@ -19,7 +19,7 @@ namespace {
 
 /// Refuses glTF as text: its points are in another file beside it, or in its text as base64.
 MeshContent refuse_gltf_text(std::string_view /*bytes*/) {
-  throw Error(ErrorCode::Input, "is glTF as text, which is not read: save it as .glb, its binary form");
+  throw Error(ErrorCode::Input, "is glTF as text, which cannot be read: save it as .glb, its binary form");
 }
 
 struct Format {
@@ -50,10 +50,10 @@ std::string bytes_of(const std::filesystem::path& path) {
   std::error_code error;
   // Refuses a pipe or a device, which may never end.
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-    throw Error(ErrorCode::Input, "is no regular file: copy it into one first");
+    throw Error(ErrorCode::Input, "is not a regular file: copy it into one first");
   std::ifstream file(path, std::ios::binary);
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!file || error) throw Error(ErrorCode::Input, "cannot be read; check its name and rights");
+  if (!file || error) throw Error(ErrorCode::Input, "cannot be read; check its name and permissions");
   std::string bytes(size, '\0');
   if (!file.read(bytes.data(), static_cast<std::streamsize>(size)))
     throw Error(ErrorCode::Input, "reading broke off");
@@ -145,8 +145,8 @@ MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& opt
   try {
     const Format* format = format_of(path);
     if (format == nullptr)
-      throw Error(ErrorCode::Input,
-                  "'" + lower_extension(path) + "' is no mesh format that is read; use " + mesh_formats_read);
+      throw Error(ErrorCode::Input, "'" + lower_extension(path) +
+                                        "' is not a mesh format that can be read; use " + mesh_formats_read);
     return read_bytes(bytes_of(path), *format, options);
   } catch (const std::runtime_error& e) {
     throw Error(ErrorCode::Input, path.string() + ": " + e.what());

@@ -41,7 +41,7 @@ Scalar scalar_of(std::string_view name, const MeshScanner& scanner) {
   if (name == "uint" || name == "uint32") return Scalar::Uint32;
   if (name == "float" || name == "float32") return Scalar::Float32;
   if (name == "double" || name == "float64") return Scalar::Float64;
-  scanner.fail("'" + std::string(name.substr(0, 40)) + "' is no type that PLY knows");
+  scanner.fail("'" + std::string(name.substr(0, 40)) + "' is not a type of PLY");
 }
 
 std::size_t byte_count(Scalar type) {
@@ -75,7 +75,7 @@ Header read_header(MeshScanner& scanner, MeshStatements& says) {
       } else if (format == "binary_big_endian") {
         header.binary = std::endian::big;
       } else if (format != "ascii") {
-        scanner.fail("'" + std::string(format.substr(0, 40)) + "' is no format that PLY knows");
+        scanner.fail("'" + std::string(format.substr(0, 40)) + "' is not a format of PLY");
       }
       has_format = true;
     } else if (key == "element") {
@@ -99,7 +99,7 @@ Header read_header(MeshScanner& scanner, MeshStatements& says) {
       scanner.line();
       return header;
     } else if (key != "comment" && key != "obj_info") {
-      scanner.fail("'" + std::string(key.substr(0, 40)) + "' is no key that PLY knows");
+      scanner.fail("'" + std::string(key.substr(0, 40)) + "' is not a keyword of PLY");
     }
     const std::string_view rest = scanner.line();
     if (key == "comment" || key == "obj_info") {
@@ -220,7 +220,8 @@ void read_lists(MeshScanner& scanner, const Header& header, const Element& eleme
             lists.ends.push_back(lists.corners.size());
             continue;
           }
-          if (!(value >= 0.0 && value < 4294967296.0)) scanner.fail("a corner that is no point's number");
+          if (!(value >= 0.0 && value < 4294967296.0))
+            scanner.fail("a corner that is not the number of a point");
           lists.corners.push_back(static_cast<long long>(value));
         }
         lists.ends.push_back(lists.corners.size());

@@ -51,7 +51,7 @@ std::size_t triangles_held(std::string_view bytes, MeshStatements& says) {
   });
   if (count > held && is_text)
     throw Error(ErrorCode::Input,
-                "is text that is no STL, and begins with '" +
+                "is text but not STL, and begins with '" +
                     std::string(header.substr(0, std::min(header.find_first_of("\r\n"), std::size_t{40}))) +
                     "': give it the extension of its format");
   if (count > held)

@@ -138,12 +138,11 @@ std::vector<MeshFinding> weld_seams(Triangles& triangles) {
       const EdgeState after = edge_state(joined);
       if (after.crowded <= before.crowded && after.contrary <= before.contrary &&
           after.open.size() < before.open.size()) {
-        findings.push_back(
-            {"points", MeshVerdict::Pass,
-             std::to_string(triangles.points_mm.size() - joined.points_mm.size()) +
-                 " points that the file repeats, as for normals, colours or textures, became one "
-                 "with those at their places: " +
-                 std::to_string(paired) + " open sides close"});
+        findings.push_back({"points", MeshVerdict::Pass,
+                            std::to_string(triangles.points_mm.size() - joined.points_mm.size()) +
+                                " points that the file repeats, as for normals, colours or textures, were "
+                                "merged with those at the same positions: " +
+                                std::to_string(paired) + " open sides close"});
         left_out += closed_up;
         triangles = std::move(joined);
       }

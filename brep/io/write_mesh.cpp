@@ -191,7 +191,7 @@ void check(const VertexData& data, std::size_t vertex_count) {
                        std::all_of(data.scalar_name.begin(), data.scalar_name.end(),
                                    [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
   if (!data.scalars.empty() && !is_word)
-    throw std::invalid_argument("write_mesh: '" + data.scalar_name + "' is no name for scalars");
+    throw std::invalid_argument("write_mesh: '" + data.scalar_name + "' is not a name for scalars");
 }
 
 }  // namespace
@@ -246,7 +246,7 @@ void write_mesh(const Triangles& triangles, const std::filesystem::path& path, c
   if (extension == ".off") return replace_file(path, [&](Sink& sink) { write_off(triangles, sink); });
   throw Error(ErrorCode::Input,
               path.string() + ": '" + extension +
-                  "' is no mesh format that is written; use .stl, .ply, .obj, .off, .vtp or .glb");
+                  "' is not a mesh format that can be written; use .stl, .ply, .obj, .off, .vtp or .glb");
 }
 
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const VertexData& data) {

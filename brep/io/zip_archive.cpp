@@ -34,7 +34,7 @@ std::pair<std::size_t, std::size_t> directory_of(std::string_view bytes) {
   // A comment of up to 64 kB may follow the end record.
   const std::size_t at = bytes.rfind("PK\x05\x06");
   if (at == std::string_view::npos || bytes.size() - at < end_bytes)
-    refuse_file("is no zip archive, or is cut short: its end is missing");
+    refuse_file("is not a zip archive, or is cut short: its end is missing");
   std::size_t count = number_at<std::uint16_t>(bytes, at + 10),
               begin = number_at<std::uint32_t>(bytes, at + 16);
   if ((begin == 0xffffffff || count == 0xffff) && at >= 20 &&
@@ -119,7 +119,7 @@ std::string ZipArchive::read(const std::string& name) const {
     refuse_file(place + "is packed by method " + std::to_string(entry->method) + ", which is not read");
   if (entry->header > bytes_.size() || bytes_.size() - entry->header < local_bytes ||
       number_at<std::uint32_t>(bytes_, entry->header) != 0x04034b50)
-    refuse_file(place + "is not where the directory says");
+    refuse_file(place + "is not at the offset that the directory states");
   const std::size_t begin = entry->header + local_bytes +
                             number_at<std::uint16_t>(bytes_, entry->header + 26) +
                             number_at<std::uint16_t>(bytes_, entry->header + 28);

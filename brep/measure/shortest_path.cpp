@@ -116,8 +116,7 @@ SurfacePath shortest_path(const Mesh& mesh, const glm::dvec3& from_mm, const glm
   need_near(to_mm, ends[1].p_mm, all);
   const double bound_mm = length_along_edges(mesh, all, ends[0], ends[1]);
   if (!std::isfinite(bound_mm))
-    throw Error(ErrorCode::Geometry,
-                "shortest_path: the two points lie on pieces of the surface that nothing connects");
+    throw Error(ErrorCode::Geometry, "shortest_path: the two points lie on separate pieces of the surface");
   // The margin covers the rounding of sums over thousands of edges.
   const Triangles triangles =
       triangles_of(part_of(mesh, within_reach(all, ends[0], ends[1], bound_mm * (1.0 + 0x1p-40))));

@@ -388,7 +388,7 @@ struct SurfaceTree::Tree {
   void check_not_empty() const {
     if (nodes.empty())
       throw std::invalid_argument(
-          "there is no distance to a surface without triangles; ask whether it is empty first");
+          "there is no distance to a surface without triangles; check whether it is empty first");
   }
 
   /// The least distance of all triangles, independent of the triangle at which the search starts. Among

@@ -101,7 +101,7 @@ std::vector<std::uint32_t> pair_sides(const Triangles& triangles) {
   if (offender != none)
     refuse(offender,
            too_many ? "is the third along one of its edges" : "runs along an edge the same way as another",
-           "ask for the health of the triangles and repair or separate them first");
+           "check the health of the triangles and repair or separate them first");
   return opposite;
 }
 

@@ -197,8 +197,8 @@ Mesh decimate(const Mesh& mesh, const DecimateOptions& options) {
   }
   throw Error(ErrorCode::Geometry,
               "decimate: " + std::to_string(intersections) +
-                  " pairs of triangles intersect and stay: does the mesh intersect itself before, by "
-                  "its health? If not, allow less error or more rounds");
+                  " pairs of triangles still intersect: check whether the input intersects itself (octotomy "
+                  "info); if not, allow less error or more rounds");
 }
 
 }  // namespace octotomy::brep

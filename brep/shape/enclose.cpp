@@ -52,8 +52,7 @@ Triangles sound_triangles(const Triangles& surface) {
   if (sound.faces.empty())
     throw Error(
         ErrorCode::Geometry,
-        "nothing is left to enclose anything: there are only sheets, lone triangles or points that are "
-        "not finite");
+        "nothing encloses a volume: there are only sheets, single triangles or points that are not finite");
   return sound;
 }
 
@@ -456,10 +455,9 @@ Enclosed enclose(const Triangles& given, const EncloseOptions& options) {
         add_triangles(cell, field.about(cell), made);
       });
   if (triangles.empty())
-    throw Error(
-        ErrorCode::Geometry,
-        "the triangles enclose nothing that cells of " + short_text(lattice.cell_mm) +
-            " mm see: the surface is a sheet, inside out, or thinner; orient it, or take smaller cells");
+    throw Error(ErrorCode::Geometry,
+                "the triangles enclose nothing that is resolved by cells of " + short_text(lattice.cell_mm) +
+                    " mm: the surface is a sheet, inside out, or thinner; orient it, or use smaller cells");
   const std::vector<LatticeEdge> edges = edges_of(triangles);
   EdgePoints points = points_on(edges, passages, surface, lattice, field);
   options.progress.at(0.9);

@@ -221,8 +221,9 @@ class Mender {
     change(
         "solid",
         "made anew of " + std::to_string(repair_.surface.faces.size()) +
-            " triangles about what the surface winds round, in cells of " + short_text(made.cell_mm) +
-            " mm; " + std::to_string(made.points_across_holes) + " points lie across holes" +
+            " triangles around the region that the surface encloses, in cells of " +
+            short_text(made.cell_mm) + " mm; " + std::to_string(made.points_across_holes) +
+            " points lie across holes" +
             (made.cavities_filled > 0 ? ", " + std::to_string(made.cavities_filled) + " shells within filled"
                                       : ""),
         {});
@@ -280,7 +281,7 @@ class Mender {
           own.is_closed && std::abs(own.volume_mm3) <= film_share() * std::pow(own.area_mm2, 1.5);
       if (!is_film && own.faces.size() > 1) return true;
       change("films",
-             "triangle " + name(f) + (is_film ? " of a shell that holds nothing" : " without neighbours") +
+             "triangle " + name(f) + (is_film ? " of a shell that encloses nothing" : " without neighbours") +
                  ": taken out",
              centre(f));
       return false;

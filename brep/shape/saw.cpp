@@ -56,7 +56,7 @@ Solid saw_blade(const SawCut& cut) {
   }
   if (line.size() < 2)
     throw std::invalid_argument(
-        "saw_blade: the line needs two points that lie apart as seen along the direction");
+        "saw_blade: the line needs two points that are distinct as seen along the direction");
   prism.to_mm = prism.from_mm + cut.depth_mm;
 
   std::vector<glm::dvec2> outline = moved_aside(line, -0.5 * cut.kerf_mm);

@@ -62,10 +62,10 @@ Mesh smooth(const Mesh& mesh, const SmoothOptions& options) {
   }
   const double volume = volume_mm3(mesh), now = volume_mm3(smoothed);
   if (!(std::abs(now - volume) <= options.max_volume_share * std::abs(volume)))
-    throw Error(ErrorCode::Geometry, "smooth: the volume went from " + std::to_string(volume) + " to " +
-                                         std::to_string(now) +
-                                         " mm3, more than its share: ask for fewer rounds or a "
-                                         "wider pass band, or allow a larger share");
+    throw Error(
+        ErrorCode::Geometry,
+        "smooth: the volume went from " + std::to_string(volume) + " to " + std::to_string(now) +
+            " mm3, more than its share: use fewer rounds or a wider pass band, or allow a larger share");
   return smoothed;
 }
 

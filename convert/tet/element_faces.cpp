@@ -23,7 +23,7 @@ struct Sided {
 template <typename Visit>
 void for_each_corners(const Tetrahedra& tetrahedra, const Visit& visit) {
   constexpr std::size_t faces_at_once = std::size_t{1} << 22;
-  // Three faces of an element have its smallest corner, and one the next.
+  // Three faces of an element contain its smallest corner; the fourth contains the second smallest.
   const auto two_smallest = [](std::array<std::uint32_t, 4> tet) {
     std::partial_sort(tet.begin(), tet.begin() + 2, tet.end());
     return std::pair(tet[0], tet[1]);

@@ -124,7 +124,8 @@ class Round {
     }
   }
 
-  /// Halves a triangle at its longest side, then the halves at the marked ones of the other sides.
+  /// Halves a triangle whose longest side is marked; then halves each half whose other side of the triangle
+  /// is marked.
   void add(const Face& face, std::vector<Face>& faces) const {
     const std::size_t i = longest(face);
     const std::uint32_t a = face.at(i), b = face.at((i + 1) % 3), c = face.at((i + 2) % 3);

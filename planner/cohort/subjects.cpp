@@ -329,7 +329,7 @@ std::vector<std::string> doubts_of_cohort(const fs::path& input, const Plan& pla
     if (!read.contains(i)) passed_over += (passed_over.empty() ? "'" : ", '") + header[i] + "'";
   if (!passed_over.empty())
     doubts.push_back(
-        input.string() + ": nothing reads the columns " + passed_over +
+        input.string() + ": unused columns " + passed_over +
         ": how a scan is read, as its unit, frame or series, stands beside its path in the plan");
   return doubts;
 }

@@ -196,12 +196,12 @@ class Evaluator {
       if (!best || best->verdict == voxel::Verdict::Pass) continue;
       if (is_label && best->verdict == voxel::Verdict::Fail && !plan_.scans.at(laid.name).other_identity)
         throw std::runtime_error(best->detail +
-                                 "; where that is meant, \"other_identity\": true beside the path of '" +
-                                 laid.name + "' goes on and reports it as a FAIL");
+                                 "; if this is intended, \"other_identity\": true beside the path of '" +
+                                 laid.name + "' continues and reports it as a FAIL");
       if (!is_label && best->verdict != voxel::Verdict::Fail) continue;
       if (!is_label) {
         best->verdict = voxel::Verdict::Warn;
-        best->detail += "; objects of both lie in one place only where a step moves them there";
+        best->detail += "; a step must move objects of one to the other before they are combined";
       }
       laid.audit.push_back(std::move(*best));
     }

@@ -69,7 +69,7 @@ constexpr const char* tables = R"(
   if (code == SQLITE_NOMEM) throw voxel::Error(voxel::ErrorCode::Resource, what);
   if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
     throw std::runtime_error(path.string() +
-                             ": is no history of a plan: move it away, and a new one is begun");
+                             ": is not the history of a plan: move it away, and a new one is begun");
   if (code == SQLITE_READONLY) refuse_read_only(path);
   if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
     throw std::runtime_error(path.string() + ": another program is writing this plan's history: try again");
@@ -329,7 +329,7 @@ class PlanHistory::Database {
     if (can_write(plan_)) return;
     const bool is_folder = ::access(plan_.parent_path().c_str(), W_OK) != 0;
     throw std::runtime_error((is_folder ? plan_.parent_path() : path_).string() +
-                             ": cannot be written, so that the plan's states cannot be kept there: copy the "
+                             ": cannot be written, so the plan's states cannot be stored there: copy the "
                              "plan and its .history to a folder of yours");
   }
   /// Called if an edit does not follow its parent, or its text does not have the stored checksum.

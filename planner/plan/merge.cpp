@@ -125,7 +125,8 @@ Merged merge(const Plan& base_plan, const Plan& a_plan, const Plan& b_plan) {
   try {
     parse_plan(text, a_plan.folder);
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(std::string("merged, the changes of both make no plan: ") + error.what());
+    throw std::runtime_error(std::string("the merged changes of both plans are not a valid plan: ") +
+                             error.what());
   }
   return {text, {}};
 }

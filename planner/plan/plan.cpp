@@ -285,7 +285,7 @@ Json plan_schema() {
               {"additionalProperties", false}}},
             {"steps", {{"type", "array"}, {"minItems", 1}, {"items", {{"anyOf", steps}}}}},
             {"signatures",
-             {{"description", "Readers who stand by the plan, as octotomy plan sign writes them."},
+             {{"description", "Readers who have approved the plan, as written by octotomy plan sign."},
               {"type", "array"},
               {"items",
                {{"type", "object"},

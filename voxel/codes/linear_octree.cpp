@@ -39,7 +39,8 @@ class LinearSource {
     return Status::Full;
   }
   void close(bool homogeneous) const {
-    if (homogeneous) refuse(next_ - 1, "is the last of eight children that are one Full node");
+    if (homogeneous)
+      refuse(next_ - 1, "is the last of eight full children, which have to be one code of their parent");
   }
   [[noreturn]] void refuse(std::size_t index, const std::string& why) const {
     throw std::invalid_argument("linear octree, code " + std::to_string(index + 1) + ", " +

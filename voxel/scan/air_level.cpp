@@ -164,12 +164,11 @@ std::optional<Finding> lost_sign_finding(const Scene& scene, bool is_ct) {
   const double low = static_cast<double>(least), high = static_cast<double>(most);
   return Finding{
       "sign", is_ct ? Verdict::Fail : Verdict::Warn,
-      print(
-          "%zu samples from %.9g to %.9g lie far above all others (up to %.9g), as numbers below 0 do whose "
-          "16 bits are read without a sign: they would be %.9g to %.9g, which is air or padding; if so, "
-          "every window without an upper bound takes them for bone: correct the type in the header to 16 "
-          "bits with a sign",
-          count, low, high, static_cast<double>(others), low - 65536.0, high - 65536.0)};
+      print("%zu samples from %.9g to %.9g lie far above all others (up to %.9g), as negative 16-bit numbers "
+            "do if they are read as unsigned: they would be %.9g to %.9g, which is air or padding; if so, "
+            "every window without an upper bound takes them for bone: correct the type in the header to 16 "
+            "bits with a sign",
+            count, low, high, static_cast<double>(others), low - 65536.0, high - 65536.0)};
 }
 
 void take_unstated_padding(Scene& scene) {
@@ -201,7 +200,7 @@ void take_unstated_padding(Scene& scene) {
         scene.audit.push_back(
             {"padding", Verdict::Warn,
              print("%zu samples (%.3g %%) hold %.9g, below air and apart from all other values, and the file "
-                   "does not name it as padding: they are taken as padding, in no window and in no "
+                   "does not name it as padding: they are taken as padding, not used by windows and "
                    "interpolation",
                    padded, 100.0 * static_cast<double>(padded) / static_cast<double>(samples.size()),
                    value)});

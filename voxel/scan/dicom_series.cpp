@@ -126,7 +126,7 @@ class SeriesAssembler {
       skip(name_of(staged), {"files that another run did not finish or still writes"});
     if (found.empty() && !is_folder(path_) && is_directory_of_dicom(headers.front()))
       refuse(path_,
-             "is a DICOM directory, which lists images and holds none: give the folder that it lies in");
+             "is a DICOM directory, which lists images but contains none: give the folder that contains it");
     if (found.empty() && !is_folder(path_))
       refuse(path_, "is not a readable scan: " + std::get<NoSlice>(headers.front()).reason +
                         "; scans are DICOM, .nii, .nii.gz, .nrrd, .nhdr, .mha and .mhd");
@@ -176,9 +176,9 @@ class SeriesAssembler {
            some->second.names);
     };
     tell("stray_files", NoSlice::Kind::Stray, Verdict::Warn, "every file is a DICOM image",
-         " skipped that are no DICOM slices: ");
+         " skipped that are not DICOM slices: ");
     tell("unusable_images", NoSlice::Kind::Unusable, Verdict::Warn, "none",
-         " skipped whose images have no place in a volume: ");
+         " skipped whose images cannot be part of a volume: ");
     tell("damaged_files", NoSlice::Kind::Damaged, Verdict::Fail, "none",
          " left out that are damaged or cannot be read; copy them again: ");
   }
@@ -551,7 +551,7 @@ class SeriesAssembler {
                  row, column));
     else if (error >= 1e-3)
       find("orientation_rounded", Verdict::Warn,
-           print("ImageOrientationPatient is no more exact than %.2g: directions may be off by %.2g degrees",
+           print("ImageOrientationPatient is accurate only to %.2g: directions may be wrong by %.2g degrees",
                  error, error * 180.0 / 3.14159265358979323846));
     stack.along_row = along_row / row;
     stack.along_column =
@@ -617,8 +617,8 @@ class SeriesAssembler {
     if (shared.empty()) return;
     find("instance_uids", Verdict::Warn,
          slices(shared.size()) +
-             " with the SOP Instance UID of another image, which must be unique: what "
-             "refers to it, as a segmentation does, is ambiguous: " +
+             " with the SOP Instance UID of another image, which must be unique: references to it, such as "
+             "those of a segmentation, are ambiguous: " +
              listed(shared),
          shared);
   }

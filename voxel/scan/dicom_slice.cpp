@@ -335,7 +335,7 @@ std::optional<NoSlice> unknown_syntax(const DicomFile& file, const DicomPixels& 
   if (!pixels.is_compressed && file.raw_pixels() && syntax.starts_with("1.2.840.10008.1.2"))
     return std::nullopt;
   return NoSlice{"pixels in transfer syntax " + syntax +
-                     ", which nothing here decodes: convert the file, for example by gdcmconv --raw",
+                     ", which octotomy cannot decode: convert the file, for example by gdcmconv --raw",
                  NoSlice::Kind::Unusable};
 }
 
@@ -521,8 +521,9 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
   slice.size_px = {*columns, *rows};
   constexpr auto unusable = NoSlice::Kind::Unusable;
   if (file.length(0x7fe00008) || file.length(0x7fe00009))
-    return NoSlice{"pixels of floating point, which nothing here decodes: convert the file to NIfTI or NRRD",
-                   unusable};
+    return NoSlice{
+        "pixels of floating point, which octotomy cannot decode: convert the file to NIfTI or NRRD",
+        unusable};
   if (file.unsigned_short(0x00280002).value_or(1) != 1) return NoSlice{"a colour image", unusable};
   const std::string photometric = file.readable_text(0x00280004);
   if (!photometric.empty() && !photometric.starts_with("MONOCHROME"))
@@ -592,7 +593,7 @@ std::optional<NoSlice> take_frame(const DicomFile& file, const Attributes& attri
     slice.rescale_type = file.text(0x30040002);
   }
   if (!is_rescale_finite(slice))
-    return NoSlice{"values that RescaleSlope takes beyond single precision", NoSlice::Kind::Unusable};
+    return NoSlice{"values that exceed single precision after RescaleSlope", NoSlice::Kind::Unusable};
   for (std::size_t i = 0; i < dicom_traits.size(); ++i)
     for (const DicomTag tag : dicom_traits[i].tags)
       if (tag != 0 && slice.traits[i].empty()) slice.traits[i] = attributes.trait(tag);
@@ -736,7 +737,7 @@ std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlic
     if (!time.empty() && named.tag == 0x00180050)
       return NoSlice{
           "a multi-frame image whose frames follow each other in time (FrameIncrementPointer names " + time +
-              ") and have no distance: a film is no volume. If its frames are slices, state "
+              ") and have no distance: a film is not a volume. If its frames are slices, state "
               "SpacingBetweenSlices",
           NoSlice::Kind::Unusable};
     for (std::size_t i = 0; i < frames; ++i) offsets_mm.push_back(step_mm * place(i));

@@ -179,7 +179,7 @@ std::string read_page(OIIO::ImageInput& in, int page, std::uint32_t largest_samp
   // With such a tile size, TIFF's reader would loop forever.
   const bool has_tiles = spec.tile_width != 0 || spec.tile_height != 0;
   if (has_tiles && (spec.tile_width < 1 || spec.tile_height < 1 || spec.tile_depth > 1))
-    return "tiles of no size that a picture may have";
+    return "tiles of an invalid size";
   const auto bytes_of = [&](int width, int height) {
     return static_cast<double>(width) * height * static_cast<double>(channels * type.size());
   };

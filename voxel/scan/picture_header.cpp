@@ -118,7 +118,7 @@ void check_bitmap(std::string_view bytes) {
   const std::uint32_t packing = has_packing ? little_endian_at(bytes, packing_at) : 0;
   if (packing == 1 || packing == 2)
     throw std::invalid_argument(
-        "is a BMP picture packed as runs, which would be read wrongly: write it unpacked");
+        "is a run-length-encoded BMP picture, which would be read wrongly: save it uncompressed");
 }
 
 /// The largest sample of a PNM: the third number behind its two letters, which comments may interrupt.
@@ -136,7 +136,7 @@ std::uint32_t read_pnm(std::string_view bytes) {
     at = static_cast<std::size_t>(end - bytes.data());
   }
   if (number < 1 || number > 65535)
-    throw std::invalid_argument("is a PNM picture whose largest sample is none of 1 to 65535");
+    throw std::invalid_argument("is a PNM picture whose largest sample is not from 1 to 65535");
   return number;
 }
 
@@ -170,7 +170,7 @@ PictureHeader read_picture_header(std::string_view bytes, std::size_t most_bytes
   if (begins("P2") || begins("P3") || begins("P5") || begins("P6")) return {"pnm", read_pnm(bytes)};
   if (begins("P1") || begins("P4") || begins("PF") || begins("Pf")) return {"pnm"};
   throw std::invalid_argument(
-      "is no picture of a known format: give PNG, TIFF, JPEG, WebP, BMP, PGM, EXR or JPEG 2000");
+      "is not a picture in a known format: give PNG, TIFF, JPEG, WebP, BMP, PGM, EXR or JPEG 2000");
 }
 
 std::string picture_header_bytes(const std::filesystem::path& path) {

@@ -205,7 +205,7 @@ void PictureStatements::report(Scene& scene, bool is_stated) const {
     scene.audit.push_back(
         {"picture_count", Verdict::Fail,
          print("the file states %g images and %zu were found: ImageJ writes stacks over 4 GB as one picture "
-               "with the others behind it; save it as NIfTI or NRRD, or a picture a slice",
+               "followed by raw samples; save it as NIfTI or NRRD, or as one picture per slice",
                first_.images, count_)});
   std::array<std::optional<double>, 3> stated_mm = first_.size_mm;
   for (int axis = 0; axis < 2 && first_.page_mm; ++axis)
@@ -215,7 +215,7 @@ void PictureStatements::report(Scene& scene, bool is_stated) const {
     if (const auto& size = stated_mm[static_cast<std::size_t>(axis)];
         size && !is_near(*size, spacing_mm[axis]))
       warn("picture_spacing", "the pictures state " + print(what[static_cast<std::size_t>(axis)], *size) +
-                                  print(", and %.6g mm is taken as --spacing gives it", spacing_mm[axis]));
+                                  print(", but --spacing states %.6g mm, which is used", spacing_mm[axis]));
   if (differs_)
     warn("picture_spacing", "the pictures state different sizes of their pixels: one is taken for all");
   if (!first_.further_axis.empty())

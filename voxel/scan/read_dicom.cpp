@@ -521,7 +521,7 @@ class SeriesReader {
              (values && values->high >= measured.low && values->low <= measured.high
                   ? print("; measured values from %g to %g lie around it", measured.low, measured.high)
                   : "") +
-             ": no measurement, in no window and in no interpolation");
+             ": no measurement, not used by windows and interpolation");
   }
 
   fs::path path_;

@@ -235,8 +235,8 @@ class SegReader {
     if (stated && stated->holds()) {
       if (gaps.front() > 1.5 * stated->step_mm)
         warn_spacing(
-            print("the file states planes %.6g mm apart, and the nearest lie %.6g mm apart: those "
-                  "between them are taken as empty",
+            print("the file states planes %.6g mm apart, and the nearest lie %.6g mm apart: the planes "
+                  "between them are assumed to be empty",
                   stated->step_mm, gaps.front()));
       return *stated;
     }

@@ -86,7 +86,7 @@ std::string skipped(const SliceNames& names) {
   const auto at = static_cast<std::size_t>(wider - steps.begin());
   return print("%.0f", missing) + " numbers are skipped, first between " +
          names.files[at].filename().string() + " and " + names.files[at + 1].filename().string() +
-         ": if slices are missing there, those above them lie too low";
+         ": if slices are missing there, the slices above are placed too low";
 }
 
 }  // namespace

@@ -111,8 +111,8 @@ Scene read_raw(const fs::path& path, const ReadOptions& options) {
   if (is_smoother_swapped(samples, layout.dims, stored))
     scene.audit.push_back({"byte_order", Verdict::Warn,
                            std::string("read as ") + (stored.big_endian ? "big" : "little") +
-                               "-endian, neighbouring samples differ as if by chance, and far less in the "
-                               "other byte order: it is probably the right one"});
+                               "-endian, neighbouring samples differ as much as random numbers, and much "
+                               "less in the other byte order, which is probably right"});
   return scene;
 }
 

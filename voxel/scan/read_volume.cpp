@@ -80,11 +80,10 @@ SmallNumbers read_samples(const fs::path& path, const SampleFiles& from, const R
     behind = is_told ? read_slices(scene, options.slices_final, read) : read({});
   });
   if (behind > 0)
-    scene.audit.push_back(
-        {"samples", Verdict::Warn,
-         std::to_string(behind) +
-             " bytes stand behind the samples and were not read: compare the sizes, the type and "
-             "the offset of the samples in the header with the data"});
+    scene.audit.push_back({"samples", Verdict::Warn,
+                           std::to_string(behind) +
+                               " bytes follow the samples and were not read: compare the sizes, the type and "
+                               "the offset of the samples in the header with the data"});
   return small;
 }
 
@@ -241,7 +240,7 @@ bool take_segments(const std::vector<SlicerSegment>& segments, Scene& scene) {
                              "'" + known->second + "' and '" + segment.name + "' both have the value " +
                                  std::to_string(segment.value) + " in layer " +
                                  std::to_string(segment.layer) +
-                                 ": nothing tells their samples apart, and they are taken as one label"});
+                                 ": their samples cannot be distinguished, and they are read as one label"});
   }
   return true;
 }
@@ -299,10 +298,9 @@ void take_padding_below_all(std::optional<double> stated, Scene& scene) {
     scene.audit.push_back({"padding", Verdict::Pass,
                            print("samples of %.9g are padding: the scanner measured nothing there", least)});
   } else if (least < *stated) {
-    scene.audit.push_back(
-        {"padding", Verdict::Warn,
-         "samples below the padding that the file states show that it is none: every sample is "
-         "taken as measured"});
+    scene.audit.push_back({"padding", Verdict::Warn,
+                           "some samples are below the padding that the file states, so it is not padding: "
+                           "every sample counts as measured"});
   }
 }
 

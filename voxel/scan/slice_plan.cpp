@@ -242,8 +242,8 @@ class Layer {
     const bool is_small = even_->worst_mm <= noise_share() * even_->step_mm;
     find(
         "slice_spacing", is_rounding && is_small && hole_gaps_.empty() ? Verdict::Pass : Verdict::Warn,
-        print("%zu slices %.6g mm apart; their positions%s lie up to %.3g mm beside that, less than "
-              "interpolation would blur: every slice is copied",
+        print("%zu slices %.6g mm apart; their positions%s lie up to %.3g mm away from that, which is less "
+              "than the blur of interpolation: every slice is copied",
               plan_.sources.size(), plan_.step_mm,
               is_rounding ? print(", rounded to %.3g mm,", 2.0 * rounding_mm).c_str() : "", even_->worst_mm) +
             (hole_gaps_.empty() ? "" : ", except at the gaps that missing_slices lists") +
@@ -524,11 +524,11 @@ class Layer {
                  plan_.size_px.y));
     else if (tag_deg > 0.5)  // files state the tag to half a degree or better
       find("gantry_tilt", Verdict::Warn,
-           print("the header names a tilt of %.3g degrees, but by their positions the slices stand straight "
+           print("the header names a tilt of %.3g degrees, but by their positions the slices lie straight "
                  "above each other: the tilt is ignored",
                  tag_deg));
     else
-      find("gantry_tilt", Verdict::Pass, "slices stand straight above each other");
+      find("gantry_tilt", Verdict::Pass, "slices lie straight above each other");
   }
 
   const DicomStack& stack_;

@@ -453,11 +453,10 @@ void audit_join(const DicomStack& stack, std::vector<Finding>& audit) {
     }
     apart = print("%.4g to %.4g mm apart", least_mm, most_mm);
   }
-  audit.push_back(
-      {"join", Verdict::Fail,
-       "joined as asked: " + slices(stack.slices.size()) + " of " + of + ", " + apart +
-           ". Their headers do not say that their positions count from one origin: check the pictures for "
-           "steps between slices"});
+  audit.push_back({"join", Verdict::Fail,
+                   "joined as requested: " + slices(stack.slices.size()) + " of " + of + ", " + apart +
+                       ". Their headers do not state that their positions have a common origin: check the "
+                       "pictures for steps between slices"});
 }
 
 void audit_counts(const DicomStack& stack, std::vector<Finding>& audit) {

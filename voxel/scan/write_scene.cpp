@@ -69,9 +69,11 @@ void need_own_data_file(const std::filesystem::path& path) {
   const std::optional<std::filesystem::path> data = data_file_beside(path);
   if (!data) return;
   if (std::filesystem::is_symlink(std::filesystem::symlink_status(path)))
-    refuse(path, "is a link, beside which its samples would lie apart from the header: name the file itself");
+    refuse(path,
+           "is a link, so the samples would be written beside the link and not beside the header: name the "
+           "file itself");
   if (!is_there(*data) || own_data_file(path)) return;
-  refuse(path, "the name of its samples is taken by " + data->string() +
+  refuse(path, "the name of its samples is used by " + data->string() +
                    ", which is not this header's: move that file away, or choose another name");
 }
 

@@ -209,7 +209,8 @@ struct Search {
   Origins origins;
   Int outside;            ///< at the entry
   Int faces;              ///< rays that meet their voxel's face
-  Int crossed;            ///< with a crossing between the last two probes, of which the entry is the first
+  Int crossed;            ///< rays whose surface lies between their last two probes; the entry counts as a
+                          ///< probe
   Float near_mm, far_mm;  ///< from the entry to these two
   Float near_value, far_value;  ///< there
 };

@@ -197,7 +197,7 @@ Sheet curved_sheet(const CurveOptions& options) {
   }
   if (flat.size() < 2 || !(length_mm.back() > 0.0))
     throw std::invalid_argument(
-        "a curved slice needs at least two points that do not lie above each other along its up");
+        "a curved slice needs at least two points that differ in a direction other than its up");
   Sheet sheet;
   sheet.down = -up;
   sheet.pixel_mm = options.pixel_mm;

@@ -215,7 +215,7 @@ class MetaReader {
     if ((slope && (*slope == 0.0 || !std::isfinite(*slope))) || (offset && !std::isfinite(*offset))) {
       header_.audit.push_back(
           {"rescale", Verdict::Warn,
-           "the file's ElementToIntensityFunction would leave no values: it is not applied"});
+           "the file's ElementToIntensityFunction would map all values to one: it is not applied"});
       return;
     }
     stored.slope = slope.value_or(1.0);

@@ -142,10 +142,10 @@ class NiftiReader {
   VolumeHeader read() {
     const auto axes = static_cast<std::size_t>(std::clamp(fields_.dim[0], 0.0, 8.0));
     require(axes >= 2 && axes <= 7,
-            print("dim[0] is %g, where the number of axes, 2 to 7, stands", fields_.dim[0]));
+            print("dim[0] is %g, which is not a number of axes from 2 to 7", fields_.dim[0]));
     for (std::size_t axis = 1; axis <= axes; ++axis)
       require(fields_.dim[axis] >= 1.0,
-              print("dim[%zu] is %g, and an axis has a sample at least", axis, fields_.dim[axis]));
+              print("dim[%zu] is %g, but an axis has at least one sample", axis, fields_.dim[axis]));
     header_.geometry.dims = dims_of(
         path_, {fields_.dim.begin() + 1, fields_.dim.begin() + 1 + static_cast<std::ptrdiff_t>(axes)});
     take_unit();
@@ -215,8 +215,8 @@ class NiftiReader {
     const glm::dvec3 length = glm::abs(spacing);
     const double least = 1e-6 / header_.geometry.mm_per_unit.x;  // no voxel is smaller than a nanometre
     require(are_lengths({length}) && length.x >= least && length.y >= least && length.z >= least,
-            print("pixdim %g %g %g is no spacing: set it, or save the volume again", spacing.x, spacing.y,
-                  spacing.z));
+            print("pixdim %g %g %g is not a valid spacing: set it, or save the volume again", spacing.x,
+                  spacing.y, spacing.z));
     if (spacing != length)
       header_.audit.push_back(
           {"spacing", Verdict::Warn,
@@ -281,9 +281,9 @@ class NiftiReader {
     if (fields_.sform_code > 0 && !has_sform) {
       if (fields_.qform_code <= 0)
         refuse(path_, "its NIfTI header is damaged: its sform spans no volume, and it has no qform");
-      header_.audit.push_back({"forms", Verdict::Warn,
-                               "the header's sform spans no volume or has numbers that are none: its "
-                               "qform was taken"});
+      header_.audit.push_back(
+          {"forms", Verdict::Warn,
+           "the header's sform spans no volume or has invalid numbers: its qform was taken"});
     }
     if (has_sform) {
       geometry.frame = ras;
@@ -447,7 +447,7 @@ class NiftiReader {
       offset = least;
     }
     require(offset >= (pair_ ? 0.0 : static_cast<double>(header_bytes_)) && offset <= 1e9,
-            print("vox_offset is %g, which is no place of its samples", offset));
+            print("vox_offset is %g, which is not a valid position of its samples", offset));
     const bool is_packed = is_gzip(samples.files.front());
     samples.encoding = is_packed ? SampleFiles::Encoding::Deflated : SampleFiles::Encoding::Raw;
     samples.byte_skip = static_cast<std::uintmax_t>(offset);
@@ -466,7 +466,7 @@ class NiftiReader {
       return;
     }
     if (!std::isfinite(intercept))
-      refuse(path_, print("its slope is %g, but its intercept is no finite number: which values are meant is "
+      refuse(path_, print("its slope is %g, but its intercept is no finite number: the values are therefore "
                           "unknown; save the volume again",
                           slope));
     stored.slope = slope;
@@ -483,7 +483,7 @@ class NiftiReader {
                                                   {DT_RGBA32, "colours"},
                                                   {DT_FLOAT128, "numbers of 128 bits"}};
     const auto name = names.find(fields_.datatype);
-    if (name == names.end()) require(false, print("datatype %d is no type of samples", fields_.datatype));
+    if (name == names.end()) require(false, print("datatype %d is not a type of samples", fields_.datatype));
     refuse(path_, std::string("its samples are ") + name->second +
                       "; a scan has one number of at most 64 bits a sample: convert it first");
   }

@@ -267,10 +267,9 @@ class NrrdReader {
     for (const char* name : {"axismins", "axismaxs"}) {
       const std::vector<double> ends = numbers_an_axis(name);
       if (std::none_of(ends.begin(), ends.end(), [](double end) { return std::isfinite(end); })) continue;
-      header_.audit.push_back(
-          {"origin", Verdict::Warn,
-           "the file states where its axes begin or end (axis mins, axis maxs) beside space "
-           "origin and directions, which are taken"});
+      header_.audit.push_back({"origin", Verdict::Warn,
+                               "the file states both where its axes begin or end (axis mins, axis maxs) and "
+                               "space origin and directions: the latter are used"});
       return;
     }
   }

@@ -157,7 +157,7 @@ std::string_view parse(const fs::path& path, std::string_view text, char* to, st
     }
     const auto used = static_cast<std::size_t>(end - text.data());
     if (error != std::errc() || !is_end(end))
-      refuse(path, "sample " + std::to_string(i + 1) + " of its text is no number of its type: '" +
+      refuse(path, "sample " + std::to_string(i + 1) + " of its text is not a number of its type: '" +
                        shown(std::string(text.substr(0, 20))) + "'");
     std::memcpy(to + i * sizeof(Number), &number, sizeof(Number));
     text.remove_prefix(used);

@@ -49,7 +49,7 @@ void need_bytes(const fs::path& path, const glm::ivec3& dims, const SampleFiles&
   const std::uintmax_t count = static_cast<std::uintmax_t>(dims.x) * static_cast<std::uintmax_t>(dims.y) *
                                static_cast<std::uintmax_t>(dims.z);
   if (count % samples.files.size() != 0)
-    refuse(path, std::to_string(count) + " samples cannot be parted among its " +
+    refuse(path, std::to_string(count) + " samples cannot be divided among its " +
                      std::to_string(samples.files.size()) +
                      " data files: compare their number with the header");
 }
@@ -127,7 +127,7 @@ void take_padding(const std::optional<std::string>& text, VolumeHeader& header) 
   } else {
     header.audit.push_back(
         {"padding", Verdict::Warn,
-         "the file states a padding that is no number: every sample is taken as measured"});
+         "the file states a padding that is not a number: every sample counts as measured"});
   }
 }
 

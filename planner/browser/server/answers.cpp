@@ -31,14 +31,14 @@ namespace fs = std::filesystem;
 
 constexpr const char* asked_step = "asked_of_the_page";
 
-/// How far from a pointed place a landmark looks for bone.
+/// Largest distance from a pointed position at which a landmark snaps to bone.
 constexpr double snap_mm = 8.0;
 
 [[noreturn]] void refuse(const std::string& why) {
   throw voxel::Error(voxel::ErrorCode::Input, why);
 }
 
-/// The answer of one more step of the plan that measures; its "do" is measure where it has none.
+/// The result of an additional measuring step in the plan; without a "do" it is a measure step.
 Json measured(Desk& desk, Json step, const std::vector<std::string>& needed, bool certify,
               const Watched& watched) {
   step["id"] = asked_step;
@@ -47,7 +47,7 @@ Json measured(Desk& desk, Json step, const std::vector<std::string>& needed, boo
       desk.with_document([&](const Document& document) { return document.with_steps(Json::array({step})); });
   std::vector<std::string> wanted = needed;
   Plan alone = plan;
-  // Without objects only the scans matter.
+  // If no objects are needed, evaluates only the step itself.
   if (wanted.empty())
     alone.steps = {plan.steps.back()};
   else
@@ -65,7 +65,7 @@ std::vector<std::string> names_of(const Json& value) {
   return value.get<std::vector<std::string>>();
 }
 
-/// Points with landmarks' places for their names.
+/// Replaces names of landmarks by their positions.
 Json points_mm(const Json& points, const Plan& plan) {
   Json typed = Json::array();
   for (const Json& point : points) {
@@ -79,8 +79,8 @@ Json points_mm(const Json& points, const Plan& plan) {
   return typed;
 }
 
-/// The middle of the voxel face nearest to a point, on the surface of all bones or of one; none within
-/// snap_mm.
+/// The centre of the voxel face nearest to a point, on the surface of all bones or of one; none if there is
+/// none within snap_mm.
 std::optional<glm::dvec3> snapped(const Evaluation& evaluation, const glm::dvec3& p_mm,
                                   const std::string& only) {
   const voxel::Lattice lattice = evaluation.universe.lattice();
@@ -144,7 +144,7 @@ Json measure(Desk& desk, const Json& said, const Watched& watched) {
   }
   if (kind != "distance" && kind != "angle")
     refuse("kind: must be distance, angle, surface_distance, volume or area");
-  // A landmark that goes with an object needs the object's motion.
+  // A landmark attached to an object needs the object's motion.
   std::vector<std::string> needed;
   for (const Json& point : points) {
     if (!point.is_string()) continue;
@@ -307,7 +307,7 @@ Json report(Desk& desk, const Json& said, const Watched& watched) {
   result.evaluation = *made.evaluation;
   result.anonymous = said.value("anonymous", false);
   result.pictures = plan_pictures(result.plan, result.evaluation);
-  // The result appears as a whole by itself.
+  // write_result() makes the folder appear completely or not at all.
   fs::create_directories(folder.parent_path());
   write_result(result, folder, {watched.stop, watched.progress, true});
   Json left_out = Json::array();
@@ -347,7 +347,7 @@ Json outcome(Desk& desk, const Json& said, const Watched& watched) {
 
 namespace {
 
-/// A word of a shell.
+/// Quotes a word for a shell.
 std::string quoted(const std::string& text) {
   std::string safe = "'";
   for (const char symbol : text) {
@@ -359,14 +359,14 @@ std::string quoted(const std::string& text) {
   return safe + "'";
 }
 
-/// The plan that makes this step and what it needs, and is evaluated in the same voxels.
+/// The plan with this step and the steps on which it depends, evaluated in the same voxels.
 Json plan_to(const std::string& id, const Plan& plan) {
   std::set<std::string> kept = needed_for(plan, {id});
   bool has_first_scan = false;
   for (const Step& step : plan.steps) {
     const std::string& word = verb(step);
     if (word == "landmarks" || word == "head_position") kept.insert(step.id);
-    // The first scan that any step uses fixes the voxels.
+    // The first scan that any step uses determines the voxels, so its step is kept.
     if (!has_first_scan && !scans_used(step.action).empty()) {
       kept.insert(step.id);
       has_first_scan = true;

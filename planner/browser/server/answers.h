@@ -4,11 +4,11 @@
 #include "planner/browser/server/desk.h"
 #include "planner/browser/server/message.h"
 
-// Requests that ask for numbers, proofs and files of the plan's objects; those of requests.h that change or
-// show the document stand there.
+// Requests for numbers, certificates and files of the plan's objects. Those that change or show the document
+// are in requests.h.
 namespace octotomy::planner::serve {
 
-/// {"kind", "points" or "object"} -> {"value", "unit", "half_width", "sentence"}, as a step "measure" has it.
+/// {"kind", "points" or "object"} -> {"value", "unit", "half_width", "sentence"}, as for a step "measure".
 Json measure(Desk& desk, const Json& said, const Watched& watched);
 /// {"object"} -> {"verdict", "sentence", "place", "detection_limit", "rows"}.
 Json certify(Desk& desk, const Json& said, const Watched& watched);
@@ -17,24 +17,25 @@ Json overlap(Desk& desk, const Json& said, const Watched& watched);
 /// {"object"} -> {"parts", "mm3", "at_mm"}: its connected parts, and the centroid of the largest; null where
 /// it is empty.
 Json largest_part(Desk& desk, const Json& said, const Watched& watched);
-/// {"path", "frame", "unit"} -> {"audit"}: what a mesh file says of its frame and unit, and how its size and
-/// place fit the plan's first scan. The path is a plan's.
+/// {"path", "frame", "unit"} -> {"audit"}: a mesh file's statements on its frame and unit, and how its size
+/// and position fit the plan's first scan. The path is relative as in a plan.
 Json mesh_audit(Desk& desk, const Json& said, const Watched& watched);
 /// {"object"} -> {"rows"}: its movement in words.
 Json movement(Desk& desk, const Json& said, const Watched& watched);
-/// {"name", "point", "snap"} -> {"point", "snapped"}: names a point, on the nearest bone where it snaps and
-/// one is near.
+/// {"name", "point", "snap"} -> {"point", "snapped"}: names a point; with "snap", moves it to the nearest
+/// bone if one is near.
 Json place_landmark(Desk& desk, const Json& said, const Watched& watched);
-/// {"object"} -> {"landmarks", "missing", "findings"}: a first guess, which places none.
+/// {"object"} -> {"landmarks", "missing", "findings"}: proposed landmarks; does not place them.
 Json find_landmarks(Desk& desk, const Json& said, const Watched& watched);
-/// {"object", "path"} -> {"file"}, which is written into the plan's folder of exports.
+/// {"object", "path"} -> {"file"}, writes the file into the plan's folder of exports.
 Json export_file(Desk& desk, const Json& said, const Watched& watched);
-/// {"anonymous"} -> {"folder", "file", "counts", "left_out"}: a report of all that has an answer. Steps that
-/// failed, and those that need them, are left out, each with a finding.
+/// {"anonymous"} -> {"folder", "file", "counts", "left_out"}: a report of all steps with results. Steps that
+/// failed, and those that depend on them, are left out, each with a finding.
 Json report(Desk& desk, const Json& said, const Watched& watched);
-/// {"path", "low", "unmoved"} -> the outcome's JSON: what a later scan shows of the plan.
+/// {"path", "low", "unmoved"} -> the outcome's JSON: compares a later scan with the plan.
 Json outcome(Desk& desk, const Json& said, const Watched& watched);
-/// {"step"} -> {"shell", "python"}: what makes the step and what it needs, and adds it to a plan.
+/// {"step"} -> {"shell", "python"}: commands that make the step and those on which it depends, and add it to
+/// a plan.
 Json command_of_step(Desk& desk, const Json& said, const Watched& watched);
 
 /// Where the open plan's exports and reports are written: "NAME files" beside it.

@@ -23,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Answers that a session keeps, and their memory, of objects and of scans. A certification of a head takes
-/// 400 MB: the last two are kept, so that undo and redo find theirs.
+/// Limits of a session's cache: number and memory of results, for objects and for scans. A certified head
+/// takes 400 MB, so the last two are stored and undo and redo find theirs.
 constexpr std::size_t most_answers = 512;
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
 
@@ -32,7 +32,7 @@ bool makes_object(const Step& step) {
   return step.action.operation().makes == Makes::Object;
 }
 
-/// Keys of steps that tell whether an answer is still that of the plan.
+/// Keys of steps, by which a result is recognised as that of the current plan.
 std::map<std::string, std::string> keys_of(const Plan& plan) {
   return step_keys(plan, plan.voxel_mm ? std::to_string(*plan.voxel_mm) : "", [&](const std::string& scan) {
     return state_of_path(scan_path(plan, plan.scans.at(scan)));
@@ -74,7 +74,7 @@ Json certificate_json(const verify::Certificate& certificate) {
 /// A measure step of an object, for its recommended sizes.
 constexpr const char* size_of = "size_of_";
 
-/// The measurements of a plan; of steps that cannot be answered `errors` has the reason, by their ids.
+/// The measurements of a plan. For steps that fail, `errors` gets the reason by their ids.
 Json answered(const Plan& plan, const Evaluation& evaluation, std::map<std::string, std::string>& errors) {
   try {
     return measurements_json(plan, evaluation);
@@ -95,7 +95,7 @@ Json answered(const Plan& plan, const Evaluation& evaluation, std::map<std::stri
   return list;
 }
 
-/// The plan's steps that measure what is there, each as a page shows it; `errors` as of answered().
+/// The measurements of existing objects, each as a page shows it; `errors` as in answered().
 Json measurements_of(Plan plan, const Evaluation& evaluation, std::map<std::string, std::string>& errors) {
   const auto is_there = [&](const std::string& id) {
     return std::any_of(evaluation.objects.begin(), evaluation.objects.end(),
@@ -122,7 +122,7 @@ Json measurements_of(Plan plan, const Evaluation& evaluation, std::map<std::stri
   return list;
 }
 
-/// The steps that are wanted and need none of those that failed.
+/// The wanted steps that do not depend on a failed one.
 std::vector<std::string> steps_without(const Plan& plan, const std::vector<std::string>& wanted,
                                        const std::map<std::string, std::string>& errors) {
   std::vector<std::string> kept;
@@ -161,7 +161,7 @@ void Desk::open(const fs::path& path, const Watched& watched) {
     snapshot_ = {};
     certified_.clear();
   }
-  // The scans, so that the page has their audit and slices before any object.
+  // Evaluates the scans first, so that the page has their audit and slices before any object.
   Plan without_steps = with_document([](const Document& opened) { return *opened.plan(); });
   without_steps.steps.clear();
   Snapshot scans;
@@ -210,13 +210,13 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
     const std::lock_guard lock(mutex_);
     made.plan = need_document().plan();
     opened = opened_;
-    // A window that asked before an undo reached it names steps that have gone.
+    // A window may request steps that an undo has removed in the meantime.
     std::erase_if(wanted, [&](const std::string& id) {
       const auto& all = made.plan->steps;
       return !certify &&
              std::none_of(all.begin(), all.end(), [&](const Step& step) { return step.id == id; });
     });
-    // What pictures show already stays in them.
+    // Objects in the current snapshot stay in it.
     if (!steps.empty() && !certify && snapshot_.evaluation)
       for (const Step& step : made.plan->steps)
         if (makes_object(step) && object_json(snapshot_, step.id)["evaluated"] == true)
@@ -224,7 +224,7 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
   }
   if (steps.empty())
     for (const Step& step : made.plan->steps)
-      // Of a certification measurements and files are wanted too, and what they need.
+      // A certification also needs measurements and files, and the steps on which they depend.
       if (certify || makes_object(step) || step.action.operation().makes == Makes::Scan)
         wanted.push_back(step.id);
   std::string doing;
@@ -242,7 +242,7 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
       break;
     } catch (const std::exception& error) {
       if (fault_of(error) == Fault::Cancelled) throw;
-      // Progress tells the step that is done as its verb and id.
+      // Progress reports the current step as its verb and id.
       const std::string id = doing.substr(doing.find(' ') + 1);
       const auto& all = made.plan->steps;
       const bool is_step =
@@ -254,7 +254,7 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
   made.measurements = measurements_of(*made.plan, *made.evaluation, made.errors);
   made.bone_lows = bone_lows_of(*made.evaluation);
   const std::lock_guard lock(mutex_);
-  // What was certified of an earlier state of the plan is no picture of the present one.
+  // Certificates of an earlier state of the plan do not belong to the present one.
   const bool is_present = document_ && opened == opened_ && (!certify || document_->plan() == made.plan);
   if (is_present && (!certify || steps.empty())) snapshot_ = made;
   return made;

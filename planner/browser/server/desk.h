@@ -21,14 +21,14 @@
 
 namespace octotomy::planner::serve {
 
-/// How long work is watched and stopped.
+/// The stop token and progress function of a task.
 struct Watched {
   std::stop_token stop;
   std::function<void(const std::string& doing, double share)> progress;
 };
 
-/// A plan as it was evaluated last. It never changes, so that pictures are drawn of it while the plan goes
-/// on.
+/// The last evaluation of a plan. It is immutable, so that pictures can be drawn from it while the plan
+/// changes.
 struct Snapshot {
   std::shared_ptr<const Plan> plan;
   std::shared_ptr<const Evaluation> evaluation;
@@ -37,7 +37,7 @@ struct Snapshot {
   Json measurements = Json::array();          ///< of the plan's steps that measure
 };
 
-/// Whether a path is a plan's, by its name; any other is taken for a scan's.
+/// Whether a path is a plan, by its name; any other path counts as a scan.
 bool is_plan(const std::filesystem::path& path);
 
 /// The one plan that all windows work on, its objects and its files. All members may be called from any
@@ -50,36 +50,36 @@ class Desk {
   ObjectCache cache;
 
   const std::filesystem::path& working_folder() const { return working_folder_; }
-  /// Opens a plan, or a scan with a plan of its own (new_plan.h), in place of what is open.
+  /// Opens a plan, or a scan with a plan of its own (new_plan.h), and closes the open one.
   void open(const std::filesystem::path& path, const Watched& watched);
 
-  /// Closes the document once the edit that is under way has ended, so that its history is whole. Does
-  /// nothing where that takes longer than `most`.
+  /// Closes the document after the current edit has ended, so that its history is complete. Does nothing if
+  /// that takes longer than `most`.
   void close_within(std::chrono::milliseconds most);
 
-  /// Does something with the document while nobody else does; returns what it returns. Throws voxel::Error,
-  /// Input, where none is open.
+  /// Calls `work` with exclusive access to the document and returns its result. Throws voxel::Error, Input,
+  /// if no document is open.
   template <typename Work>
   auto with_document(const Work& work) const {
     const std::lock_guard lock(mutex_);
     return work(need_document());
   }
 
-  /// Evaluates steps of the plan and those that they need; none named: all. Without `certify` in voxels
-  /// alone; then what comes of it is the snapshot, and a name that the plan lacks is passed over. A step that
-  /// cannot be evaluated is left out, with those that need it. Throws Stopped, and what evaluate() throws
-  /// where no step is at fault.
+  /// Evaluates steps of the plan and those on which they depend; all steps if none are named. Without
+  /// `certify`, only in voxels; the result then becomes the snapshot, and unknown names are ignored. A step
+  /// that cannot be evaluated is left out, with those that depend on it. Throws Stopped, and exceptions of
+  /// evaluate() that no step has caused.
   Snapshot evaluate(const std::vector<std::string>& steps, bool certify, const Watched& watched);
-  /// The same of another plan, which is no snapshot; `only_look_up` as in EvaluateOptions.
+  /// The same for another plan, which does not become the snapshot; `only_look_up` as in EvaluateOptions.
   Evaluation evaluate(const Plan& plan, const std::vector<std::string>& steps, bool certify,
                       const Watched& watched, bool only_look_up = false);
   Snapshot snapshot() const;
 
-  /// A scan in a universe about itself: that of a donor lies elsewhere than the patient's. The newest is
-  /// kept.
+  /// A scan in a universe around itself, for example a donor's, which lies elsewhere than the patient's.
+  /// Caches the newest one.
   voxel::GreyOctree alone(const Snapshot& snapshot, const std::string& scan);
 
-  /// A plan's object moved as a step "move" would, in voxels alone, and what of it lies in other objects.
+  /// A plan's object moved as by a step "move", in voxels only, and its overlap with other objects.
   struct Preview {
     std::shared_ptr<const Evaluation> evaluation;
     static constexpr const char* moved = "dragged_piece";
@@ -88,9 +88,9 @@ class Desk {
   Preview preview(const std::string& object, const Json& move, const std::vector<std::string>& with,
                   const std::stop_token& stop);
 
-  /// What a page shows of the plan; null where none is open.
+  /// The plan's state for a page; null if none is open.
   Json state() const;
-  /// What it shows of one object.
+  /// The state of one object for a page.
   Json object_json(const Snapshot& snapshot, const std::string& id) const;
 
  private:
@@ -102,9 +102,9 @@ class Desk {
   void keep_certified(const Plan& plan, const Evaluation& evaluation);
 
   std::filesystem::path working_folder_;
-  mutable std::timed_mutex mutex_;  ///< of all below
+  mutable std::timed_mutex mutex_;  ///< protects all members below
   std::unique_ptr<Document> document_;
-  std::uint64_t opened_ = 0;  ///< documents so far: what is evaluated of an earlier one is not kept
+  std::uint64_t opened_ = 0;  ///< number of documents opened so far; results of an earlier one are discarded
   Snapshot snapshot_;
   /// Of a step: what decides its answer, and what was certified of it.
   struct Certified {
@@ -120,7 +120,8 @@ class Desk {
   std::optional<std::pair<std::shared_ptr<const voxel::Scene>, voxel::GreyOctree>> alone_;
 
   std::mutex preview_mutex_;
-  /// The newest last, by the text of their plans: panes of one window ask for the same.
+  /// By the text of their plans, newest last. Cached because the panes of one window request the same
+  /// preview.
   std::deque<std::pair<std::string, Preview>> previews_;
 };
 

@@ -12,7 +12,7 @@
 namespace octotomy::planner::serve {
 namespace {
 
-/// Edits that a page lists.
+/// Largest number of edits that a page lists.
 constexpr std::int64_t most_listed = 200;
 
 Json::iterator find_step(Json& steps, const std::string& id) {
@@ -24,7 +24,7 @@ Json::iterator find_step(Json& steps, const std::string& id) {
   throw std::runtime_error("the plan has no step '" + id + "'" + suggestion(id, ids));
 }
 
-/// The points of the plan's first step that types landmarks; one is begun where there is none.
+/// The points of the plan's first landmarks step with typed points; adds one if there is none.
 Json& points_in(Json& steps) {
   auto found = std::find_if(steps.begin(), steps.end(), [](const Json& step) {
     return step.value("do", "") == "landmarks" && step.contains("points");
@@ -54,7 +54,8 @@ void change_steps(Json& steps, const Json& said) {
   if (said.contains("landmarks")) set_landmarks(steps, said["landmarks"]);
 }
 
-/// A landmarks step reads its file while it is parsed: a refusal that quotes the file would come too late.
+/// A landmarks step reads its file while it is parsed, so a later check could already quote the file in an
+/// error.
 void need_landmarks_within(const Json& plan, const std::filesystem::path& folder, const Folders& folders) {
   const auto steps = plan.find("steps");
   if (steps == plan.end() || !steps->is_array()) return;
@@ -64,14 +65,14 @@ void need_landmarks_within(const Json& plan, const std::filesystem::path& folder
       folders.need_readable(folder / step["file"].get<std::string>());
 }
 
-/// Refuses a plan that reads what the page may not: its path is no permission.
+/// Refuses a plan that reads files which the page may not read: a path in a plan grants no permission.
 void need_readable_files(const Plan& plan, const Folders& folders) {
   for (const auto& [name, scan] : plan.scans) folders.need_readable(scan_path(plan, scan));
   for (const Step& step : plan.steps)
     for (const std::filesystem::path& file : files_read(step)) folders.need_readable(plan.folder / file);
 }
 
-/// Refuses names that are new and that no list could show; those of the plan stay as they are.
+/// Refuses new names that a list could not show; names already in the plan are accepted.
 void need_short_names(const std::vector<NamedPoint>& landmarks, const std::vector<NamedPoint>& known) {
   constexpr std::size_t longest_name = 200;  // in bytes, as of a branch
   for (const NamedPoint& landmark : landmarks) {
@@ -90,7 +91,7 @@ void need_short_names(const std::vector<NamedPoint>& landmarks, const std::vecto
 
 Document::Document(const std::filesystem::path& path, const Folders& folders)
     : path_(path), folders_(folders) {
-  // What is no plan, and what reads a file that it may not, is refused before a history is begun.
+  // Refuses an invalid plan, or one that reads forbidden files, before a history is begun.
   need_landmarks_within(Json(read_json(path_)), path_.parent_path(), folders_);
   need_readable_files(read_plan(path_), folders_);
   history_ = std::make_unique<PlanHistory>(path_);
@@ -104,7 +105,7 @@ void Document::read_again() {
 }
 
 Plan Document::readable(const std::string& text) const {
-  // A text that is no JSON is refused by parse_plan(), which then has read no file.
+  // parse_plan() refuses a text that is not JSON, before it reads any file.
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_object()) need_landmarks_within(json, path_.parent_path(), folders_);
   Plan plan = parse_plan(text, path_.parent_path());

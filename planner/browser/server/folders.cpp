@@ -20,10 +20,10 @@ bool holds(const fs::path& folder, const fs::path& path) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// The path that a write reaches: links are followed, also those to nothing, which fs::weakly_canonical()
-/// leaves as they are. None where links lead in a circle.
+/// The path to which a write goes: resolves links, including broken ones, which fs::weakly_canonical() does
+/// not resolve. None if links are cyclic.
 std::optional<fs::path> reached(fs::path path) {
-  constexpr int most_links = 40;  // as Linux follows
+  constexpr int most_links = 40;  // the limit of Linux
   for (int links = 0; links <= most_links; ++links) {
     std::error_code failed, absent;
     path = fs::weakly_canonical(path, failed);
@@ -47,7 +47,8 @@ bool is_taken(const fs::path& path) {
   return fs::exists(fs::symlink_status(path));
 }
 
-/// Whether an export would replace neither a file of its name nor one that is written beside it.
+/// Whether an export would replace no file, neither under its own name nor under those of files written with
+/// it.
 bool is_free_for_export(const fs::path& path) {
   for (const fs::path& file : convert::is_deck(path) ? convert::deck_files(path) : std::vector{path})
     if (is_taken(file)) return false;
@@ -59,7 +60,7 @@ bool is_free_for_export(const fs::path& path) {
   return true;
 }
 
-/// The endings of a file's name that say its kind.
+/// The extensions of a file's name that identify its kind.
 std::string endings_of(const std::string& name) {
   for (const char* both : {".plan.json", ".nii.gz"})
     if (name.ends_with(both)) return both;
@@ -77,7 +78,7 @@ fs::path first_free(const fs::path& path, const Test& is_free) {
   return tried;
 }
 
-/// The path without links, made absolute against the first of `places`. Throws where it is in none of them.
+/// The path without links, made absolute against the first of `places`. Throws if it is in none of them.
 fs::path need_below(const std::vector<fs::path>& places, const fs::path& path) {
   if (path.native().find('\0') == std::string::npos && path.native().size() < 4096 && !places.empty()) {
     const std::optional<fs::path> real = reached(places.front() / path);
@@ -132,7 +133,7 @@ void need_readable_samples(const Folders& folders, const fs::path& scan) {
   try {
     files = voxel::read_volume_header(scan, *format).samples.files;
   } catch (const voxel::Error&) {
-    return;  // whoever reads the scan refuses it, and says why
+    return;  // the reader of the scan will refuse it with a reason
   }
   const fs::path beside = fs::weakly_canonical(fs::absolute(scan)).parent_path();
   for (const fs::path& file : files) {

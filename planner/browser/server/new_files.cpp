@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder, or the nearest one above that is there.
+/// The folder, or its nearest existing parent.
 fs::path present(fs::path folder) {
   while (!fs::exists(folder)) folder = folder.parent_path();
   return folder;

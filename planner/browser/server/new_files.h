@@ -7,17 +7,17 @@
 
 namespace octotomy::planner::serve {
 
-/// Files for a folder that is made only once they are whole: work that ends before leaves neither. Until then
-/// they lie in a hidden folder beside the outermost folder that is missing.
+/// Files for a folder that is created only when all are complete; if the work ends earlier, neither exists.
+/// Until then they are in a hidden folder beside the outermost missing folder.
 class NewFiles {
  public:
-  /// Throws voxel::Error, Input or Resource, where nothing can be written there.
+  /// Throws voxel::Error, Input or Resource, if nothing can be written there.
   explicit NewFiles(const std::filesystem::path& folder);
 
-  /// Where files and folders are written, under their own names.
+  /// The folder into which files and folders are written, under their own names.
   const std::filesystem::path& hidden() const { return staged_.folder(); }
-  /// Makes the folder and moves all into it, `last` at the end. Throws voxel::Error, Input, where one of the
-  /// names is taken; then none is moved.
+  /// Creates the folder and moves all files into it, `last` at the end. Throws voxel::Error, Input, if one of
+  /// the names is taken; then none is moved.
   void commit(const std::filesystem::path& last);
 
  private:

@@ -38,7 +38,7 @@ double bone_low(const voxel::Scene& scene) {
   try {
     return thresholds_of(scene).upper;
   } catch (const std::runtime_error&) {
-    return voxel::range(scene).high;  // the samples are all alike: no threshold parts them
+    return voxel::range(scene).high;  // all samples are equal, so no threshold divides them
   }
 }
 

@@ -8,18 +8,17 @@
 
 namespace octotomy::planner::serve {
 
-/// Where bone begins in a scan's own samples, to begin with: 300 HU, or the brightest of three classes where
-/// samples are no Hounsfield units; 1 in a label map. Cost: one pass over the samples that are none.
+/// An initial lower bound of bone in a scan's samples: 300 HU, or the brightest of three classes if samples
+/// are not Hounsfield units; 1 in a label map. Cost: one pass over samples that are not Hounsfield units.
 double bone_low(const voxel::Scene& scene);
 
-/// The plan with which work on a scan begins: the scan "ct", and its bone as the object "bone", from
-/// bone_low() on. It is written as NAME.plan.json in `folder`; where a plan of that name begins with this
-/// very scan it is the one that is gone on with, and any other is left alone. Returns the plan's path. Throws
-/// as voxel::read_scene().
+/// An initial plan for a scan: the scan "ct", and its bone from bone_low() on as the object "bone". Writes it
+/// as NAME.plan.json in `folder`. If a plan of that name for this scan exists, uses that one; does not
+/// replace any other file. Returns the plan's path. Throws as voxel::read_scene() does.
 std::filesystem::path plan_of_scan(const std::filesystem::path& scan, const std::filesystem::path& folder,
                                    const voxel::Progress& progress = {});
 
-/// The head phantom as a scan at `path`, where it is made once. Returns the path.
+/// Writes the head phantom as a scan to `path` if it does not exist. Returns the path.
 std::filesystem::path phantom_at(const std::filesystem::path& path, const voxel::Progress& progress = {});
 
 }  // namespace octotomy::planner::serve

@@ -6,14 +6,14 @@
 
 namespace octotomy::planner::serve {
 
-/// A file of the page, which is in the program.
+/// A file of the page, embedded in the program.
 struct PageFile {
   std::string_view path;  ///< "/app.js"
   std::string_view type;  ///< its media type
   std::string_view bytes;
 };
 
-/// Made of planner/browser/page when the program is built; "/index.html" is the page itself.
+/// Generated from planner/browser/page when the program is built; "/index.html" is the page itself.
 const std::vector<PageFile>& page_files();
 
 }  // namespace octotomy::planner::serve

@@ -8,19 +8,20 @@
 #include "planner/browser/server/message.h"
 #include "voxel/space/view.h"
 
-// What requests for pictures say.
+// Members of requests for pictures.
 namespace octotomy::planner::serve {
 
 /// The most pixels along a pane's side.
 inline constexpr int most_pane_px = 4096;
 
-/// [w, h] of a request's "size". Throws std::runtime_error where it is none, or too large.
+/// [w, h] of a request's "size". Throws std::runtime_error if it is absent, invalid or too large.
 glm::ivec2 size_px_of(const Json& said);
-/// [x, y, z] of finite numbers; none where the key is missing or null. Throws std::runtime_error.
+/// [x, y, z] of finite numbers; none if the key is missing or null. Throws std::runtime_error for other
+/// values.
 std::optional<glm::dvec3> point_of(const Json& said, const char* key);
-/// A finite number; none where the key is missing or null. Throws std::runtime_error.
+/// A finite number; none if the key is missing or null. Throws std::runtime_error for other values.
 std::optional<double> number_of(const Json& said, const char* key);
-/// A number as short as it reads back to the same.
+/// The shortest text that reads back to the same number.
 std::string exact(double value);
 
 /// {"right", "up", "look", "centre_mm", "pixel_mm"}.

@@ -22,10 +22,10 @@ struct PaneName {
   auto operator<=>(const PaneName&) const = default;
 };
 
-/// What is to be drawn next. Of each pane only the newest request waits; a moving pane waits, too, while
-/// most_in_flight of its frames are not yet on the screen, so that a slow page gets fewer frames and no old
-/// ones. Panes take turns. A picture that is being drawn is asked to stop once nobody wants it. All members
-/// may be called from any thread.
+/// The queue of pictures to draw. Each pane has at most one waiting request, the newest. A moving pane also
+/// waits while most_in_flight of its frames are not yet on the screen, so that a slow page receives fewer
+/// frames instead of outdated ones. Panes take turns. A picture that is no longer needed is stopped while it
+/// is drawn. All members may be called from any thread.
 class PaneQueue {
  public:
   static constexpr std::size_t most_in_flight = 2;
@@ -34,37 +34,38 @@ class PaneQueue {
     PaneName name;
     Request request;
     bool is_moving = false;
-    std::stop_source stop{};  ///< of drawing it
+    std::stop_source stop{};  ///< stops drawing it
   };
 
-  /// Lets a request wait in the place of an older one. Whoever must answer the older one calls withdraw()
-  /// before: here it would go without a word. Stops the pane's picture that is drawn, unless both move:
-  /// frames come also where requests do so faster.
+  /// Queues a request in place of the pane's older one. The caller must first call withdraw() to answer the
+  /// older one; otherwise it is dropped without an answer. Stops the pane's current picture, unless both
+  /// requests are moving, so that frames appear even if requests arrive faster.
   void ask(Asked asked);
-  /// Takes a pane's waiting request out.
+  /// Removes a pane's waiting request.
   std::optional<Asked> withdraw(const PaneName& name);
   /// The same by the request's number.
   std::optional<Asked> withdraw(std::uint64_t window, std::int64_t id);
-  /// Stops a request that is drawn; whether it is.
+  /// Stops a request while it is drawn; returns whether it was.
   bool stop(std::uint64_t window, std::int64_t id);
   /// The next request whose pane is free; waits for one. None: stopped.
   std::optional<Asked> next(const std::stop_token& stop);
-  /// The page shows a frame.
+  /// Records that the page has shown a frame.
   void shown(const PaneName& name, std::int64_t frame);
-  /// The panes that share the time of drawing: those with a moving request or frames in flight, at least 1.
+  /// The number of panes that share the drawing time: those with a moving request or frames in flight, at
+  /// least 1.
   int moving_panes() const;
-  /// Forgets a pane, and stops its picture that is drawn; what waited of it.
+  /// Removes a pane and stops its current picture. Returns its waiting request.
   std::optional<Asked> close(const PaneName& name);
-  /// Forgets all panes of a window that has gone, and stops its picture that is drawn.
+  /// Removes all panes of a closed window and stops its current picture.
   void close_window(std::uint64_t window);
 
  private:
   struct Pane {
     std::optional<Asked> waiting;
     std::set<std::int64_t> in_flight;  ///< moving frames that the page has not shown yet
-    std::uint64_t served = 0;          ///< when, by turns
+    std::uint64_t served = 0;          ///< turn in which it was served last
   };
-  /// What next() gave last, until it is called again.
+  /// The last result of next(), until its next call.
   struct Drawn {
     PaneName name;
     std::int64_t id = 0;
@@ -72,7 +73,7 @@ class PaneQueue {
     std::stop_source stop;
   };
   std::map<PaneName, Pane>::iterator ready();
-  /// Stops what is drawn if it passes a test; whether it does.
+  /// Stops the current picture if `test` is true for it; returns whether it is.
   template <typename Test>
   bool stop_if(const Test& test);
 

@@ -77,7 +77,7 @@ Json open(Desk& desk, const Json& said, const Watched& watched) {
   return nullptr;
 }
 
-/// Whether a file is no scan: a plan's history, or records of something else.
+/// Whether a file is not a scan: a plan's history, or another JSON file.
 bool is_beside(const std::string& name) {
   return name.find(".plan.json.") != std::string::npos || name.ends_with(".json");
 }
@@ -105,7 +105,7 @@ Json list(Desk& desk, const Json& said, const Watched&) {
   return {{"folder", folder.string()}, {"entries", entries}};
 }
 
-/// A change of the document.
+/// A request that changes the document.
 template <typename Change>
 auto change(const Change& work) {
   return [work](Desk& desk, const Json& said, const Watched&) -> Json {
@@ -139,13 +139,14 @@ Json evaluate(Desk& desk, const Json& said, const Watched& watched) {
       {"objects", state.at("objects")}, {"measurements", made.measurements}, {"scans", state.at("scans")}};
 }
 
-/// Whether a step names what later ones use: it stands before them, and there is one of its kind.
+/// Whether a step defines names or directions for later steps. It precedes these, and there is only one of
+/// its kind.
 bool is_of_names(const Json& step) {
   return step["do"] == "landmarks" || step["do"] == "head_position";
 }
 
-/// The steps of a plan and those of a procedure, whose scan is called "ct". One of the procedure takes the
-/// place of the one of its id, or of its kind where it is of names; landmarks of other names stay.
+/// The steps of a plan and those of a procedure, whose scan is called "ct". A step of the procedure replaces
+/// the step with its id, or the one of its kind if it defines names; landmarks of other names are kept.
 Json joined(const Json& steps, const Json& of_procedure, const std::string& scan) {
   Json names = Json::array(), kept = Json::array(), others = Json::array();
   for (Json step : of_procedure) {
@@ -303,7 +304,7 @@ const Word& find_word(const std::string& name) {
     if (word.name == name) return word;
     names.push_back(word.name);
   }
-  // Looking for the nearest word takes time by the name's length.
+  // The time to find the nearest word grows with the name's length.
   constexpr std::size_t longest_typed = 60;
   throw voxel::Error(
       voxel::ErrorCode::Input,

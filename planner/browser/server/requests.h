@@ -8,20 +8,21 @@
 #include "planner/browser/server/desk.h"
 #include "planner/browser/server/message.h"
 
-// What a page may ask of the desk, a function a word. All throw what the rooms throw that they call.
+// The requests of a page to the desk, one function per word. All pass on exceptions of the functions that
+// they call.
 namespace octotomy::planner::serve {
 
-/// Which of the server's threads answers: edits wait for no long work, and of some words only the newest
-/// request is wanted. An evaluation that certifies has a thread of its own, so that the quick one that
-/// follows an edit does not stop it.
+/// The server's thread that handles a request: edits do not wait for long tasks, and for some words only the
+/// newest request is needed. A certifying evaluation has its own thread, so that the quick evaluation after
+/// an edit does not stop it.
 enum class Lane { Desk, Evaluate, Certify, Overlap, Long };
 
 struct Word {
   std::string name;
   Lane lane = Lane::Desk;
-  bool changes_plan = false;  ///< the answer is the plan's state, which all windows are told
+  bool changes_plan = false;  ///< the answer is the plan's state, which is sent to all windows
   std::function<Json(Desk& desk, const Json& said, const Watched& watched)> answer;
-  bool changes_objects = false;  ///< all windows are told the plan's state
+  bool changes_objects = false;  ///< the plan's state is sent to all windows
 };
 
 const std::vector<Word>& words();

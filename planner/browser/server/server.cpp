@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// All of Boost.Beast is in this source: it takes twelve seconds to compile. One thread moves bytes; answers
-// are made by the service's threads and posted here.
+// SPDX-License-Identifier: AGPL-3.0-or-later Only this source includes Boost.Beast, which takes twelve
+// seconds to compile. One thread transfers bytes; the service's threads compute answers and post them here.
 #include "planner/browser/server/server.h"
 
 #include <boost/asio/ip/tcp.hpp>
@@ -28,22 +27,23 @@ namespace net = boost::asio;
 namespace fs = std::filesystem;
 using Tcp = net::ip::tcp;
 
-/// A step may hold a mask of many polygons; nothing that a page says is longer.
+/// The longest message of a page is a step with a mask of many polygons.
 constexpr std::uint64_t most_message_bytes = std::uint64_t{4} << 20;
 constexpr std::uint64_t most_upload_bytes = std::uint64_t{4} << 30;
 constexpr std::uint32_t most_header_bytes = 16384;
-/// Bytes that wait for a slow page before it is read from no more.
+/// If more bytes than this wait for a slow page, its messages are no longer read.
 constexpr std::size_t most_unsent_bytes = std::size_t{64} << 20;
 constexpr std::chrono::seconds patience{30};
 constexpr std::chrono::seconds upload_patience{3600};
-/// Until callers are looked at again where files or memory gave out, which takes a caller that goes.
+/// If file descriptors or memory are exhausted, new callers are accepted again after this time, when others
+/// may have left.
 constexpr std::chrono::milliseconds want_pause{100};
 
 constexpr const char* page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
     "'self'; "
     "worker-src 'self' blob:; frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-/// Of files that were made, as reports, which hold styles and pictures and no script.
+/// Content policy for output files such as reports, which contain styles and pictures but no scripts.
 constexpr const char* file_policy =
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox; base-uri 'none'; "
     "frame-ancestors 'self'";
@@ -65,7 +65,7 @@ Caller caller_of(const http::request<Body>& request, const Target& target) {
           token == target.query.end() ? "" : token->second};
 }
 
-/// One page's socket. Lives as long as something of it is under way.
+/// One page's socket. Exists as long as one of its operations is pending.
 class Socket : public std::enable_shared_from_this<Socket> {
  public:
   Socket(beast::tcp_stream stream, Context& context) : stream_(std::move(stream)), context_(context) {}
@@ -263,7 +263,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     write(response);
   }
 
-  /// The body goes to the disk as it comes, into a hidden folder until it is whole.
+  /// Writes the body to disk while it arrives, in a hidden folder until it is complete.
   void upload(const Target& target) {
     const auto named = target.query.find("name");
     const fs::path name = need_plain_name(named == target.query.end() ? "" : named->second);
@@ -298,7 +298,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::optional<http::request_parser<http::file_body>> upload_;
 };
 
-/// Whether a caller could not be taken for want of what another's end gives back.
+/// Whether a caller could not be accepted because a resource is exhausted that others will release.
 bool is_want(const beast::error_code& failed) {
   namespace errc = boost::system::errc;
   return failed == errc::too_many_files_open || failed == errc::too_many_files_open_in_system ||
@@ -362,7 +362,7 @@ void Server::run(Service& service, Desk& desk, const std::stop_token& stop) {
   if (address.is_loopback()) hosts.push_back("localhost:" + port);
   if (address.is_unspecified()) hosts.clear();
   Context context{service, desk, Gate(options_.token, hosts)};
-  // Connections end with it, before what they refer to.
+  // Connections end with it, before the objects to which they refer.
   const std::unique_ptr<Port> opened = std::move(port_);
   net::io_context& io = opened->io;
   accept(opened->acceptor, context);
@@ -374,7 +374,7 @@ void Server::run(Service& service, Desk& desk, const std::stop_token& stop) {
     try {
       io.run();
     } catch (const std::exception&) {
-      // Of one connection, which is gone by now; memory may have given out.
+      // An error of one connection, which has already ended; memory may be exhausted.
     }
   }
 }

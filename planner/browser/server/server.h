@@ -11,25 +11,25 @@
 namespace octotomy::planner::serve {
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";  ///< of the interface to listen on
+  std::string address = "127.0.0.1";  ///< address of the interface on which to listen
   int port = 0;                       ///< 0: a free one
   std::string token;
-  /// Called once with the page's address, token included, when it can be opened.
+  /// Called once with the page's address, including the token, when it can be opened.
   std::function<void(const std::string& url)> ready;
 };
 
-/// A server that listens before it runs: who calls meanwhile waits, and no work is done for an address that
-/// cannot be had.
+/// A server that listens before it runs: callers wait in the meantime, and an unavailable address is detected
+/// before other work is done.
 class Server {
  public:
-  /// Throws std::runtime_error where it cannot listen there.
+  /// Throws std::runtime_error if it cannot listen there.
   explicit Server(ServerOptions options);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// Serves the page, its files and its WebSockets until the stop token is set; once. What one caller sends
-  /// ends at most that caller's connection.
+  /// Serves the page, its files and its WebSockets until a stop is requested. May be called once. Invalid
+  /// data from a caller end only that caller's connection.
   void run(Service& service, Desk& desk, const std::stop_token& stop);
 
  private:

@@ -13,15 +13,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What all moving panes together may take of a thirtieth of a second; the page draws in the rest.
+/// Time for drawing all moving panes, out of a thirtieth of a second; the page needs the rest.
 constexpr double most_round_ms = 24.0;
-/// A single pane is no coarser for the sake of more frames than screens show.
+/// A single pane may take this time: a shorter one would only produce more frames than screens show.
 constexpr double most_frame_ms = 14.0;
 
-/// Progress is told at most so often.
+/// The least time between reports of progress.
 constexpr std::chrono::milliseconds tell_every{100};
 
-/// Runs work and gives every error, of whatever kind, to `refuse`.
+/// Runs work and passes every exception to `refuse`.
 template <typename Work, typename Refuse>
 void guarded(const Work& work, const Refuse& refuse) noexcept {
   try {
@@ -33,7 +33,7 @@ void guarded(const Work& work, const Refuse& refuse) noexcept {
       refuse(std::runtime_error("an error without a message: please report it"));
     }
   } catch (...) {
-    // Not even the refusal could be sent: the window has gone, or memory has.
+    // The refusal could not be sent either: the window is closed or memory is exhausted.
   }
 }
 
@@ -104,7 +104,7 @@ void Service::take(std::uint64_t window, Request request) {
   const Json& said = request.said;
   const auto pane = [&] { return PaneName{window, said.value("pane", 0)}; };
   if (request.what == "shown") return panes_.shown(pane(), said.value("frame", std::int64_t{0}));
-  // So that a page knows a silent line from a cut one.
+  // Allows a page to distinguish an idle connection from a broken one.
   if (request.what == "alive") return send(window, answer_to(request.id, Json::object()));
   if (request.what == "cancel") {
     const std::int64_t target = said.value("target", std::int64_t{0});
@@ -122,7 +122,7 @@ void Service::take(std::uint64_t window, Request request) {
     const int number = said.value("pane", 0);
     if (number < 0 || number > 15) throw voxel::Error(voxel::ErrorCode::Input, "pane: must be 0 to 15");
     const bool is_moving = said.value("dragging", false);
-    // The older request is refused before the newer can be drawn: a pane's answers come in their order.
+    // Refuses the older request before the newer one can be drawn, so that a pane's answers are in order.
     if (const auto older = panes_.withdraw(pane())) drop(*older, "a newer picture of the pane was asked for");
     return panes_.ask({pane(), std::move(request), is_moving});
   }
@@ -209,7 +209,7 @@ void Service::draw(const std::stop_token& over) {
           panes_.shown(asked->name, asked->request.id);
           refuse(asked->name.window, asked->request.id, error);
         });
-    // Windows that have gone leave their drawers.
+    // Removes the views of closed windows.
     guarded(
         [&] { std::erase_if(views_, [&](const auto& view) { return find(view.first.window) == nullptr; }); },
         [](const auto&) {});

@@ -19,15 +19,15 @@
 
 namespace octotomy::planner::serve {
 
-/// The windows that look at one desk, and the threads that answer them: one draws, one edits, one evaluates,
-/// one certifies, one tells overlaps, one does long work. Every request is answered once, also where it
+/// The windows on one desk and the threads that handle their requests: one each for drawing, edits,
+/// evaluation, certificates, overlaps and long tasks. Every request is answered exactly once, even if it
 /// fails. All members may be called from any thread.
 class Service {
  public:
-  /// Takes a message for a window's socket; may be called from any thread and must not wait.
+  /// Sends a message to a window's socket; may be called from any thread and must not block.
   using Send = std::function<void(Message message)>;
 
-  /// `line_of` makes the messages of refusals.
+  /// `line_of` formats error messages.
   Service(Desk& desk, LineOf line_of);
   ~Service();
   Service(const Service&) = delete;
@@ -36,11 +36,11 @@ class Service {
   const LineOf& line_of() const { return line_of_; }
   std::uint64_t open_window(Send send);
   void close_window(std::uint64_t window);
-  /// Takes a message of a window; what it asks is answered later.
+  /// Receives a window's message; it is answered later.
   void receive(std::uint64_t window, const std::string& text);
 
  private:
-  /// The most requests of a window that wait: a page asks far fewer.
+  /// The largest number of waiting requests per window; a page has far fewer.
   static constexpr int most_waiting = 500;
   struct Window {
     Send send;
@@ -53,7 +53,7 @@ class Service {
   void take(std::uint64_t window, Request request);
   void answer(std::uint64_t window, const Request& request, const Word& word, const std::stop_token& stop);
   void refuse(std::uint64_t window, std::int64_t id, const std::exception& error);
-  /// Answers a picture that waited and is not drawn.
+  /// Answers a waiting request for a picture that is not drawn.
   void drop(const PaneQueue::Asked& asked, const char* why);
   void draw(const std::stop_token& over);
 
@@ -63,7 +63,7 @@ class Service {
   std::map<std::uint64_t, std::shared_ptr<Window>> windows_;
   std::uint64_t last_window_ = 0;
   PaneQueue panes_;
-  std::map<PaneName, std::unique_ptr<ViewPane>> views_;  ///< of the drawing thread alone
+  std::map<PaneName, std::unique_ptr<ViewPane>> views_;  ///< used by the drawing thread only
   std::map<Lane, std::unique_ptr<LaneQueue>> lanes_;
   std::jthread drawing_;
 };

@@ -19,7 +19,7 @@ namespace {
 constexpr glm::vec3 threshold_tint{255.0f, 196.0f, 0.0f};
 constexpr float tint_share = 0.45f;
 
-/// The picture as the operation `slice` has it.
+/// The request as a value of the operation `slice`.
 Slice slice_asked(const Json& said, const voxel::Scene& scene) {
   Slice slice;
   const glm::ivec2 size_px = size_px_of(said);
@@ -69,7 +69,7 @@ void set_pixel(std::vector<std::uint8_t>& rgb, std::size_t pixel, const glm::vec
   }
 }
 
-/// Tints what lies between two samples; null: no bound.
+/// Tints samples between two bounds; null: no bound.
 void draw_threshold(const Json& threshold, SlicePicture& picture) {
   if (!threshold.is_array() || threshold.size() != 2) return;
   for (std::size_t i = 0; i < picture.samples.inside.size(); ++i) {
@@ -80,7 +80,7 @@ void draw_threshold(const Json& threshold, SlicePicture& picture) {
   }
 }
 
-/// Where the pixels lie; of a curve those at its middle.
+/// The position of the pixels; for a curve, of those at its middle.
 Json frame_of(const voxel::Sheet& sheet) {
   const glm::ivec2 size_px = sheet.size_px();
   const std::size_t left = static_cast<std::size_t>((size_px.x - 1) / 2);

@@ -9,8 +9,8 @@
 namespace octotomy::planner::serve {
 
 /// A frame for a request "pane" of the kind "slice": a plane of the scan in grey tones with the outlines of
-/// objects, and, in `threshold`, tinted. While something moves a JPEG; at rest a PNG with the samples under
-/// the pixels. Throws std::runtime_error for what cannot be read; Stopped.
+/// objects, with samples in `threshold` tinted. During a motion a JPEG; at rest a PNG with the samples of the
+/// pixels. Throws std::runtime_error for an invalid request; Stopped.
 Message draw_slice(Desk& desk, const Request& request, const std::stop_token& stop);
 
 }  // namespace octotomy::planner::serve

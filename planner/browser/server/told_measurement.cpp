@@ -8,7 +8,7 @@
 namespace octotomy::planner::serve {
 namespace {
 
-/// Behind a number.
+/// The text of a unit after a number.
 std::string unit_text(const std::string& unit) {
   if (unit == "deg") return "\u00b0";
   if (unit == "mm2") return " mm\u00b2";
@@ -16,7 +16,7 @@ std::string unit_text(const std::string& unit) {
   return unit == "mm3" ? " mm\u00b3" : " mm";
 }
 
-/// A question that only the mesh kernel's surface answers, and which of its answers is shown first.
+/// A measure that only the mesh kernel's surface has, and its number to show first.
 struct SurfaceQuestion {
   const char* key;
   nlohmann::json::json_pointer number;
@@ -24,8 +24,8 @@ struct SurfaceQuestion {
   std::string words;
 };
 
-/// Null where the measurement asks for no surface. A surface that is not made yet leaves the answer null: the
-/// object's volume, which stands beside it, is then no answer.
+/// Null if the measurement needs no surface. If the surface is not computed yet, its result is null and must
+/// not be replaced by the object's volume.
 const SurfaceQuestion* surface_question(const Json& measured) {
   using Pointer = nlohmann::json::json_pointer;
   static const SurfaceQuestion questions[] = {

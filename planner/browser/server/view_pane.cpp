@@ -23,10 +23,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Coarser than this share along each side, a moving picture shows nothing of a plan.
+/// The smallest scale of a moving picture's sides: a coarser picture is useless.
 constexpr double least_scale = 0.375;
 
-/// Distances of a pane that are kept, of both objects for a few ranges.
+/// Number of cached distance fields of a pane: for both objects and a few ranges.
 constexpr std::size_t most_scalars = 8;
 /// Stops of the legend's ramp.
 constexpr int legend_colours = 9;
@@ -42,7 +42,7 @@ std::string view_text(const Json& view) {
   return exact(azimuth) + "," + exact(elevation);
 }
 
-/// The picture as the operation `render` has it.
+/// The request as a value of the operation `render`.
 Render render_of(const Json& said) {
   Render render;
   const glm::ivec2 size_px = size_px_of(said);
@@ -74,7 +74,7 @@ const Object* find(const Evaluation& evaluation, const std::string& id) {
   return nullptr;
 }
 
-/// A picture without depths. One at rest holds its frame, as those of the verbs do.
+/// A picture without depths. At rest it contains its frame, like pictures of the verbs.
 Part flat_part(bool is_moving, const glm::ivec2& size_px, const std::vector<std::uint8_t>& rgb,
                const std::optional<PictureFrame>& frame = {}) {
   if (is_moving) return {"jpeg", jpeg_of(size_px, rgb)};
@@ -82,7 +82,7 @@ Part flat_part(bool is_moving, const glm::ivec2& size_px, const std::vector<std:
   return {"png", std::string(png.begin(), png.end())};
 }
 
-/// The verb's command for one window of a scan as it was read, where the picture is that.
+/// The equivalent command line, if the picture shows one window of a scan as it was read.
 Json command_of(const Plan& plan, const Render& render, const Object* object) {
   const Step* step = nullptr;
   for (const Step& each : plan.steps)
@@ -106,7 +106,7 @@ Json command_of(const Plan& plan, const Render& render, const Object* object) {
   return text;
 }
 
-/// The header's lines of a picture's size and frame.
+/// Sets a picture's size and frame in the header.
 void set_frame(Json& header, bool is_moving, const glm::ivec2& size_px, const voxel::View& view,
                const glm::dvec3& centre_mm, double pixel_mm) {
   header["quality"] = is_moving ? "moving" : "rest";
@@ -122,7 +122,7 @@ glm::dvec3 on_plane(const voxel::View& view, const glm::dvec2& p_mm) {
 
 }  // namespace
 
-/// What is drawn, and how it is said.
+/// The objects to draw, and the header for the page.
 struct ViewPane::Drawing {
   Snapshot snapshot;
   Render render;
@@ -130,7 +130,7 @@ struct ViewPane::Drawing {
   bool is_moving = false;
   bool is_of_plan = true;  ///< a step of the plan could draw the same
   std::vector<voxel::DrawnObject> objects;
-  const Object* last = nullptr;            ///< of the plan's that are drawn
+  const Object* last = nullptr;            ///< the last drawn object that belongs to the plan
   std::shared_ptr<const Evaluation> held;  ///< keeps the objects of a preview
   Json header = Json::object();
 
@@ -150,7 +150,7 @@ struct ViewPane::Drawing {
     header["objects"].push_back(id);
   }
 
-  /// Nothing to draw is a picture, too.
+  /// An empty picture, if there is nothing to draw.
   Message blank() {
     const glm::ivec2 size_px = size_of(render);
     const glm::ivec3 colour(glm::round(255.0f * background));
@@ -164,7 +164,7 @@ struct ViewPane::Drawing {
     return packed(header, {flat_part(is_moving, size_px, rgb)});
   }
 
-  /// What lies along rays through the first object's samples.
+  /// A picture of values along rays through the first object's samples.
   Message along_rays(const std::stop_token& stop) {
     Timings timings;
     const auto first = std::find_if(objects.begin(), objects.end(),
@@ -298,7 +298,7 @@ void ViewPane::colour(const Json& colour_by, Drawing& drawing) {
                          (is_mutual ? ", and the reverse" : "") + ", positive outside of it"}};
   drawing.render.colour_by = "distance:" + reference;
   drawing.render.range_mm = range_mm;
-  // The operation colours its first object.
+  // The operation `render` colours only its first object.
   if (is_mutual || drawing.objects.front().name != of) drawing.is_of_plan = false;
 }
 
@@ -322,14 +322,14 @@ Message ViewPane::draw(Desk& desk, const Request& request, double most_ms, const
     colour(colour_by, drawing);
   if (stop.stop_requested()) throw Stopped("stopped before the picture was drawn");
   if (!drawing.is_moving) return drawing.at_rest();
-  // A piece that is dragged is moved first; what that takes is left out of drawing.
+  // The time for moving a dragged piece is subtracted from the time for drawing.
   return moving(drawing, std::max(0.3 * most_ms, most_ms - ms_since(start)));
 }
 
 Message ViewPane::moving(Drawing& drawing, double most_ms) {
   voxel::RenderOptions options = drawing.options();
   options.antialias = false;
-  // In eighths, so that frames do not change their size all the time.
+  // Scales in steps of an eighth, so that the size of frames does not change constantly.
   const double scale =
       full_frame_ms_ > most_ms
           ? std::max(least_scale, std::floor(8.0 * std::sqrt(most_ms / full_frame_ms_)) / 8.0)

@@ -11,26 +11,26 @@
 
 namespace octotomy::planner::serve {
 
-/// Draws one pane's views, frame after frame. One thread at a time may use it.
+/// Draws one pane's views, frame after frame. Only one thread at a time may use it.
 class ViewPane {
  public:
-  /// A frame for a request "pane" of the kind "view". While something moves a JPEG, of fewer pixels where
-  /// frames of all would take longer than `most_ms`; at rest the PNG that `octotomy render` writes, with the
-  /// depth and the object of every pixel. Throws std::runtime_error for what cannot be read; Stopped.
+  /// A frame for a request "pane" of the kind "view". During a motion a JPEG, with fewer pixels if all would
+  /// take longer than `most_ms`; at rest the PNG of `octotomy render`, with the depth and the object of every
+  /// pixel. Throws std::runtime_error for an invalid request; Stopped.
   Message draw(Desk& desk, const Request& request, double most_ms, const std::stop_token& stop);
 
  private:
   struct Drawing;
-  /// The objects of a request, one that is dragged in its new place.
+  /// Adds the objects of a request; a dragged one at its new position.
   void add_objects(Desk& desk, const Json& said, Drawing& drawing, const std::stop_token& stop);
   /// Colours one of them by its distance to another; "mutual": both by each other.
   void colour(const Json& colour_by, Drawing& drawing);
-  /// A window of a scan that is no step yet; with "alone" about the scan itself, wherever it lies.
+  /// A window of a scan that is not a step yet; with "alone", in a universe around the scan.
   voxel::DrawnObject threshold(Desk& desk, const Snapshot& snapshot, const Json& window);
   Message moving(Drawing& drawing, double most_ms);
 
   voxel::Renderer renderer_;
-  double full_frame_ms_ = 0.0;  ///< of a frame of all pixels, as the last ones took
+  double full_frame_ms_ = 0.0;  ///< time of a frame with all pixels, from the last frames
   std::string threshold_of_;
   std::shared_ptr<const voxel::Octree> threshold_;
   std::shared_ptr<const Evaluation> scalar_evaluation_;

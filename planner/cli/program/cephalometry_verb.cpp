@@ -35,7 +35,7 @@ struct Face {
 Face face_of_files(const CephalometryText& text) {
   if (!text.out.empty())
     throw std::runtime_error(
-        "-o: landmarks alone have no radiograph: give a plan that holds them and a scan");
+        "-o: landmarks alone have no radiograph: give a plan with these landmarks and a scan");
   Face face;
   for (const brep::Landmark& landmark : read_landmarks(text.plan))
     face.landmarks.push_back({{landmark.name, landmark.p_mm}, glm::dmat4(1.0)});
@@ -49,10 +49,10 @@ Face face_of_files(const CephalometryText& text) {
 
 Face face_of_plan(Program& program, const CephalometryText& text) {
   if (!text.after.empty())
-    throw std::runtime_error("--after: a plan says itself where its landmarks go: leave it out");
+    throw std::runtime_error("--after: the plan already states where its landmarks move: leave it out");
   const Plan plan = plan_of(program, text);
   if (plan.landmarks.empty())
-    throw std::runtime_error(text.plan.string() + ": names no landmarks: add a step that does landmarks");
+    throw std::runtime_error(text.plan.string() + ": names no landmarks: add a landmarks step");
   EvaluateOptions options = evaluate_options(program);
   options.certify = options.meshes = false;
   Face face;
@@ -72,7 +72,8 @@ void write_cephalogram(const Program& program, const CephalometryText& text, con
     voxel::write_image(text.out, drawn.size_px, drawn.rgb);
     return;
   }
-  throw std::runtime_error("-o: no object of the plan comes of a scan's window, so there is no radiograph");
+  throw std::runtime_error(
+      "-o: no object of the plan comes from a window of a scan, so there is no radiograph");
 }
 
 std::string table_of(const CephalometricResults& found) {
@@ -153,15 +154,16 @@ void add_cephalometry(Program& program) {
       [&program, text, lists] {
         if (*lists) return list_landmarks(program, *text);
         if (text->plan.empty())
-          throw std::runtime_error("name a .plan.json or a file of landmarks; --list says which landmarks");
+          throw std::runtime_error(
+              "name a .plan.json or a file of landmarks; --list prints the known landmarks");
         return cephalometry(program, *text);
       });
   verb.add_option("plan", text->plan,
                   "A .plan.json, or a file of landmarks: JSON, or 3D Slicer's .mrk.json or .fcsv")
       ->check(CLI::ExistingFile);
   add_plan_options(verb, *text);
-  verb.add_flag("--list", *lists, "Say the landmarks and the measures that there are");
-  verb.add_option("--after", text->after, "The same landmarks later, where no plan moves them")
+  verb.add_flag("--list", *lists, "List the known landmarks and measures");
+  verb.add_option("--after", text->after, "The same landmarks at a later time, if no plan moves them")
       ->check(CLI::ExistingFile);
   verb.add_option("--definitions", text->definitions,
                   "Measures: a name, or a .json file of definitions; default lateral");
@@ -169,7 +171,7 @@ void add_cephalometry(Program& program) {
                   "Standard deviation of a landmark's placement along each axis, mm; default 1")
       ->check(between(0.0, 20.0))
       ->type_name("MM");
-  verb.add_option("--seed", text->doubt.seed, "Of the trials that the intervals come from; default 1");
+  verb.add_option("--seed", text->doubt.seed, "Seed of the random trials behind the intervals; default 1");
   verb.add_option("-o,--out", text->out, "A .png of the tracing on the plan's radiograph");
   verb.add_option("--size", text->size_px, "Pixels of the picture's side; default 900")
       ->check(CLI::Range(64, 8192))

@@ -43,7 +43,7 @@ struct CohortText {
 Plan plan_of(const CohortText& text) {
   const fs::path path = text.plan.empty() ? cohort_plan(text.out) : text.plan;
   if (text.plan.empty() && !fs::exists(path))
-    throw std::runtime_error("--plan is missing: name the plan that every subject's scans go through");
+    throw std::runtime_error("--plan is missing: name the plan to run on every subject's scans");
   const Plan plan = read_plan(path);
   // The scans come from the subjects, so a plan whose steps read no file is stored unchanged.
   const bool reads_files = std::any_of(plan.steps.begin(), plan.steps.end(),
@@ -194,12 +194,12 @@ int dry_run(const Program& program, const CohortText& text, const std::vector<Su
   json["findings"] = Json::array();
   if (!knows)
     json["findings"].push_back(
-        "nothing is known of time and memory yet: run three subjects of different size first");
+        "time and memory cannot be estimated yet: run three subjects of different size first");
   program.say(
       json, lines({{"to do", std::to_string(to_do) + " of " + std::to_string(subjects.size()) + " subjects"},
                    {"scans", grouped(static_cast<double>(bytes) / 1e9, 2) + " GB"},
                    {"time", knows ? grouped(seconds / 3600.0 / jobs, 2) + " h with " + std::to_string(jobs) +
-                                        " at a time, learnt from " + std::to_string(forecast.learnt_from)
+                                        " at a time, estimated from " + std::to_string(forecast.learnt_from)
                                   : "not known: run three subjects of different size first"},
                    {"memory", knows ? grouped(peak_mb / 1024.0, 2) + " GB each" : "not known"}}));
   return done;
@@ -298,7 +298,7 @@ int table(Program& program, const TableText& text) {
 void add_cohort(Program& program) {
   const auto text = std::make_shared<CohortText>();
   CLI::App& verb =
-      program.verb("cohort", "One plan over many scans: a subject at a time, then the group's tables",
+      program.verb("cohort", "Runs one plan on the scans of many subjects, then writes the group's tables",
                    "octotomy cohort scans.csv out participant --plan le_fort_i.plan.json",
                    [&program, text] { return cohort(program, *text); });
   verb.add_option("in", text->in, "A BIDS folder, or a .csv with the columns participant_id and scan")
@@ -309,31 +309,32 @@ void add_cohort(Program& program) {
   verb.add_option("level", text->level, "participant: evaluates; group: merges")
       ->required()
       ->check(CLI::IsMember({"participant", "group"}));
-  verb.add_option("--plan", text->plan, "The plan that every subject's scans go through")
-      ->check(CLI::ExistingFile);
+  verb.add_option("--plan", text->plan, "The plan to run on every subject's scans")->check(CLI::ExistingFile);
   verb.add_option("--participant-label", text->labels, "Only these subjects, with or without 'sub-'");
   verb.add_option("--engine", text->engine, "serial, parallel (GNU parallel) or slurm")
       ->check(CLI::IsMember({"serial", "parallel", "slurm"}));
   verb.add_option("--jobs", text->jobs,
-                  "Processes at a time of parallel; of --dry-run those on the partition")
+                  "Processes at a time with --engine parallel; with --dry-run, those on the partition")
       ->check(CLI::Range(1, 100000));
   verb.add_option("--slurm", text->slurm, "Options for sbatch, such as --slurm=--mem=8G");
   verb.add_flag("--again", text->again, "Evaluates what is done, too");
   verb.add_flag("--reports", text->reports, "Writes each subject's report and files as well");
-  verb.add_flag("--dry-run", text->dry_run, "Only says what it would take, by the subjects that are done");
+  verb.add_flag("--dry-run", text->dry_run,
+                "Only estimates time and memory, from the subjects that are done");
   verb.add_option("--against", text->against,
-                  "Of the group: the same cohort by another observer, for agreement")
+                  "For group: the same cohort by another observer, to compare both")
       ->check(CLI::ExistingDirectory);
 
   const auto of = std::make_shared<TableText>();
-  CLI::App& table_verb = program.verb("table", "Measurements of many results as a table, a row each",
-                                      "octotomy table report_1 report_2 -o measurements.csv",
-                                      [&program, of] { return table(program, *of); });
+  CLI::App& table_verb = program.verb(
+      "table", "Writes the measurements of many results as a table, one row each",
+      "octotomy table report_1 report_2 -o measurements.csv", [&program, of] { return table(program, *of); });
   table_verb.add_option("results", of->results, "Results' folders, or result.json files")
       ->required()
       ->check(CLI::ExistingPath);
   table_verb.add_option("-o,--out", of->out, "A .csv")->required();
-  table_verb.add_flag("--wide", of->wide, "A row a result and a column a number, not a row a number");
+  table_verb.add_flag("--wide", of->wide,
+                      "One row per result and one column per number, instead of one row per number");
 }
 
 }  // namespace octotomy::planner::cli

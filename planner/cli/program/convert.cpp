@@ -97,7 +97,7 @@ void need_on_source(const ConvertText& text, const voxel::DicomSource& source, c
                              three_figures(beside_mm) +
                              " mm: was it made of another scan, or is its frame wrong (--frame)?";
     if (!text.other_identity)
-      throw std::runtime_error(said + " Where that is meant, --other-identity goes on and reports a FAIL");
+      throw std::runtime_error(said + " If this is intended, --other-identity continues and reports a FAIL");
     findings.push_back("FAIL: " + said);
   } else if (beyond_mm > std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z})) {
     // Less than a voxel is normal for objects whose voxels differ from those of the images.
@@ -117,7 +117,7 @@ void need_used(const ConvertText& text, bool writes_dicom, bool writes_segments)
   need(!text.source.empty(), "--source", writes_dicom, "DICOM (a folder or .dcm)");
   need(text.other_identity, "--other-identity", writes_dicom, "DICOM (a folder or .dcm)");
   if (text.other_identity && text.source.empty())
-    throw std::runtime_error("--other-identity is about --source: give it, or leave both out");
+    throw std::runtime_error("--other-identity needs --source: give it, or leave both out");
 }
 
 /// Adds findings to the JSON and prints them as warnings.
@@ -134,7 +134,7 @@ int convert_octree(const Program& program, const ConvertText& text) {
         "other forms");
   if (text.dicom)
     throw std::runtime_error(text.in.string() +
-                             ": an octree is no series of images: leave --dicom out and write a .dcm");
+                             ": an octree is not a series of images: leave --dicom out and write a .dcm");
   need_used(text, true, true);
   need_folder_of(text.out);
   Timings timings;
@@ -153,7 +153,7 @@ int convert_octree(const Program& program, const ConvertText& text) {
     const Stopwatch watch(timings, "source");
     options.source = source_of(program, text, false, {}, findings);
   }
-  if (!options.source) warn("no --source: the segmentation is of a study of its own and refers to no images");
+  if (!options.source) warn("no --source: the segmentation gets a study of its own and refers to no images");
   if (options.source) need_on_source(text, *options.source, box_around({{options.label, *octree}}), findings);
   {
     const Stopwatch watch(timings, "write");
@@ -180,7 +180,7 @@ int convert_labels(const Program& program, const ConvertText& text) {
   constexpr std::size_t most_labels = 1024;
   if (labels.empty() || labels.size() > most_labels)
     throw std::runtime_error(text.in.string() + ": holds " + std::to_string(labels.size()) +
-                             " labels, which is no label map: octotomy segment makes objects of a scan");
+                             " labels, so it is not a label map: octotomy segment makes objects from a scan");
   std::set<int> occurring;
   for (const voxel::Label& label : labels) occurring.insert(label.number);
   const LabelTable table = label_table_of(text.in, occurring);
@@ -204,7 +204,7 @@ int convert_labels(const Program& program, const ConvertText& text) {
   options.series_description = "Octotomy, segmented";
   options.progress.stop = program.stop.get_token();
   options.source = source_of(program, text, false, scene.identity, findings);
-  if (!options.source) warn("no --source: the segmentation is of a study of its own and refers to no images");
+  if (!options.source) warn("no --source: the segmentation gets a study of its own and refers to no images");
   if (options.source) need_on_source(text, *options.source, box_around(segments), findings);
   {
     const Stopwatch watch(timings, "write");
@@ -281,7 +281,7 @@ void add_convert(Program& program) {
   const auto text = std::make_shared<ConvertText>();
   CLI::App& verb =
       program.verb("convert",
-                   "Writes a scan in another format, straightened to a lattice where it has to be; an octree "
+                   "Writes a scan in another format, resampled to a regular lattice if necessary; an octree "
                    "or a label map as a DICOM segmentation",
                    "octotomy convert dicom_folder -o head.nii.gz\n"
                    "  octotomy convert 'slices/*.tif' --spacing 0.5,0.5,1 -o head.nrrd\n"
@@ -300,12 +300,12 @@ void add_convert(Program& program) {
       ->required();
   verb.add_flag("--dicom", text->dicom, "Write a DICOM series into the folder");
   verb.add_option("--source", text->source,
-                  "The DICOM series that DICOM written here refers to; default: the scan, where it is DICOM")
+                  "The DICOM series to which written DICOM refers; default: the scan, if it is DICOM")
       ->check(CLI::ExistingPath);
   verb.add_flag("--other-identity", text->other_identity,
-                "Take a source that states another patient, study or frame of reference than the scan, or "
+                "Accept a source that states another patient, study or frame of reference than the scan, or "
                 "whose images lie elsewhere, and report a FAIL");
-  verb.add_option("--label", text->label, "Of a segmentation; default: the octree's name");
+  verb.add_option("--label", text->label, "Label of a segmentation; default: the octree's name");
   add_scan_options(verb, text->scan);
 }
 

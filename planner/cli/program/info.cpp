@@ -102,7 +102,7 @@ void add_info(Program& program) {
   const auto self = std::make_shared<CLI::App*>(nullptr);
   CLI::App& verb = program.verb(
       "info",
-      "What a file is: a scan's geometry, range and audit; an octree's levels; a mesh's counts and health",
+      "Describes a file: a scan's geometry, range and audit; an octree's levels; a mesh's counts and health",
       "octotomy info head.nrrd --json", [&program, path, in, self] {
         choose_mesh_options(**self);
         need_options_fit(**self, {path->string()});

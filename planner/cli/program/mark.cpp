@@ -15,14 +15,15 @@ namespace {
 voxel::SightLine line_of(const std::string& text) {
   const auto colon = text.find(':');
   if (colon == std::string::npos)
-    throw CLI::ValidationError("--in", "'" + text + "' is no mark: give VIEW:U,V, for example left:-20,16.5");
+    throw CLI::ValidationError("--in",
+                               "'" + text + "' is not a mark: give VIEW:U,V, for example left:-20,16.5");
   const auto position = numbers_of<2>("--in", text.substr(colon + 1), "-20,16.5");
   return voxel::sight_line(voxel::parse_view(text.substr(0, colon)), {position[0], position[1]});
 }
 
 int mark(const Program& program, const std::vector<std::string>& marks) {
   if (marks.size() != 2)
-    throw CLI::ValidationError("--in", "give it twice: a point in space takes two views");
+    throw CLI::ValidationError("--in", "give it twice: a point in space needs two views");
   const voxel::SpaceMark found = voxel::mark_between(line_of(marks[0]), line_of(marks[1]));
   Json json = answer({});
   json["point_mm"] = to_json(found.point_mm);
@@ -43,7 +44,7 @@ void add_mark(Program& program) {
                                 [&program, marks] { return mark(program, *marks); });
   verb.add_option("--in", *marks,
                   "VIEW:U,V, twice: a view and a position in it, mm along its right and up; render --pick "
-                  "says a pixel's as view_mm")
+                  "prints a pixel's position as view_mm")
       ->required()
       ->expected(1)
       ->take_all();

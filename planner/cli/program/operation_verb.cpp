@@ -64,7 +64,7 @@ class OperationRun {
     if (text_.certify && !operation_.voxel)
       throw std::runtime_error(
           operation_.name +
-          " is done by the mesh kernel alone: there is no certificate, leave --certify out");
+          " is done only by the mesh kernel, so there is no certificate: leave --certify out");
     read_objects();
     const bool with_voxels = operation_.voxel && (wants_octree || text_.certify);
     if (with_voxels) choose_universe();
@@ -264,9 +264,9 @@ void add_object_options(CLI::App& verb, const Operation& operation, OperationTex
                   std::string("Edge of an octree's voxels, mm; default: a 128th of the ") +
                       (by_both ? "objects' extent" : "answer's extent"))
       ->check(above_zero());
-  verb.add_flag("--mend", text.mend, "Meshes that are no solids are mended first, as repair --solid does");
-  CLI::Option* certify =
-      verb.add_flag("--certify", text.certify, "Let both kernels answer and tell their certificate");
+  verb.add_flag("--mend", text.mend, "Repair meshes that are not solids first, as repair --solid does");
+  CLI::Option* certify = verb.add_flag("--certify", text.certify,
+                                       "Compute the answer in both kernels and print the certificate");
   if (!by_both) certify->group("");  // hidden: it is refused with a reason
 }
 

@@ -26,7 +26,7 @@ std::string text_of(const Outcome& outcome) {
            grouped(half_width, 2);
   };
   std::string text =
-      "both scans laid on each other by " + outcome.unmoved + ", rms " + grouped(outcome.rms_mm, 2) + " mm\n";
+      "both scans aligned by " + outcome.unmoved + ", rms " + grouped(outcome.rms_mm, 2) + " mm\n";
   for (const PieceOutcome& piece : outcome.pieces) {
     text += piece.object + ", rms " + grouped(piece.rms_mm, 2) + " mm\n";
     std::vector<std::pair<std::string, std::string>> rows{
@@ -62,7 +62,7 @@ int judge(Program& program, const OutcomeText& text) {
   OutcomeOptions options;
   options.unmoved = text.unmoved;
   options.low = text.low;
-  options.progress = {program.stop.get_token(), program.progress("lay pieces on the later scan")};
+  options.progress = {program.stop.get_token(), program.progress("fit pieces to the later scan")};
   Outcome outcome;
   {
     const Stopwatch watch(timings, "register");
@@ -82,18 +82,18 @@ int judge(Program& program, const OutcomeText& text) {
 void add_outcome(Program& program) {
   const auto text = std::make_shared<OutcomeText>();
   CLI::App& verb = program.verb(
-      "outcome", "What an operation achieved of its plan, from a scan after it, with intervals",
+      "outcome", "Compares a scan after the operation with the plan: achieved movements with intervals",
       "octotomy outcome my.plan.json postoperative.nrrd", [&program, text] { return judge(program, *text); });
   verb.add_option("plan", text->plan, "A .plan.json")->required()->check(CLI::ExistingFile);
-  verb.add_option("after", text->after, "The scan after the operation, in any place of its scanner")
+  verb.add_option("after", text->after, "The scan after the operation, in any position")
       ->required()
       ->check(scan_path());
   add_scan_paths(verb, *text);
   verb.add_option("--unmoved", text->unmoved,
-                  "The object that stayed, by which both scans are laid on each other; default: the largest "
-                  "that shares no bone with a piece");
+                  "The object that did not move, by which both scans are aligned; default: the largest that "
+                  "shares no bone with a piece");
   verb.add_option("--low", text->low,
-                  "The lowest sample of the later scan that is bone; default: the plan's");
+                  "Lower bound of bone in the later scan, in sample units; default: that of the plan");
   add_scan_options(verb, text->after_in, "scan after the operation");
 }
 

@@ -189,7 +189,7 @@ int phantom(const Program& program, const PhantomText& text) {
     const bool is_idle = is_scan ? group == solid_group || (group == head_group && text.kind != "head")
                                  : group == head_group || group == scan_group;
     if (is_idle && option->count() > 0)
-      throw CLI::ValidationError(option->get_name(), "means nothing for " + text.kind + ": leave it out");
+      throw CLI::ValidationError(option->get_name(), "has no effect for " + text.kind + ": leave it out");
   }
   const bool is_folder = is_scan && (text.dicom || !text.out.has_extension());
   need_folder_of(text.out, is_folder ? Output::Folder : Output::File);
@@ -254,7 +254,7 @@ void add_solid_options(CLI::App& verb, PhantomText& text) {
 void add_phantom(Program& program) {
   const auto text = std::make_shared<PhantomText>();
   CLI::App& verb =
-      program.verb("phantom", "Writes a scan or a solid whose truth is known",
+      program.verb("phantom", "Writes a scan or a solid whose true shape and size are known",
                    "octotomy phantom head -o head.nrrd --json\n"
                    "  octotomy phantom sphere -o sphere.octree --voxels 256 --radius 64 --digitise partial",
                    [&program, text] { return phantom(program, *text); });

@@ -58,7 +58,7 @@ int merge_plans(const Program& program, const Paths& paths) {
   }
   if (!merged.conflicts.empty()) {
     if (program.json) program.say(json, "");
-    warn("nothing was written, as both plans changed the same: " + conflicts +
+    warn("nothing was written, because both plans changed the same values: " + conflicts +
          "; make one of them agree and merge again");
     return bad_input;
   }
@@ -112,9 +112,9 @@ int history_of(const Program& program, const HistoryText& text) {
   PlanHistory history(text.plan, only_lists ? PlanHistory::Access::Read : PlanHistory::Access::Write);
   if (only_lists && history.text() != plan.text)
     warn(text.plan.string() + ": was changed after state " + std::to_string(history.current()) +
-         ", which is not recorded, as its history cannot be written: copy both to a folder of yours");
+         ", and its history cannot be written to record that: copy both to a folder of yours");
   if (text.undo && !history.undo())
-    throw std::runtime_error("this is the first state: there is none to undo");
+    throw std::runtime_error("this is the first state: there is nothing to undo");
   if (text.redo && !history.redo())
     throw std::runtime_error("no state was undone on branch '" + history.branch() + "'");
   if (!text.go_to.empty()) history.go_to(text.go_to);
@@ -128,17 +128,18 @@ void add_history(Program& program) {
   const auto text = std::make_shared<HistoryText>();
   CLI::App& verb = program.verb(
       "plan history",
-      "The states of a plan: each call records what an editor changed, and may go to another one",
+      "Lists the states of a plan; each call records changes made in an editor and can switch to another "
+      "state",
       "octotomy plan history my.plan.json --name approved\n  octotomy plan history my.plan.json --undo",
       [&program, text] { return history_of(program, *text); });
   add_plan(verb, "plan", text->plan, "A .plan.json; its history is the file beside it that ends in .history");
-  verb.add_flag("--undo", text->undo, "Make the state before this one current, in the file, too");
-  verb.add_flag("--redo", text->redo, "Make the state current that was undone");
+  verb.add_flag("--undo", text->undo, "Make the previous state current, also in the plan's file");
+  verb.add_flag("--redo", text->redo, "Make the state that was undone current again");
   verb.add_option("--go-to", text->go_to, "Make a state current: its number, a version or a branch")
       ->type_name("STATE");
   verb.add_option("--branch", text->branch, "Begin a branch here")->type_name("NAME");
   verb.add_option("--name", text->name, "Name the current state")->type_name("NAME");
-  verb.add_option("--most", text->most, "States that are listed, newest first; default 20")
+  verb.add_option("--most", text->most, "Number of states to list, newest first; default 20")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
 }
@@ -185,36 +186,36 @@ int sign_plan(const Program& program, const SignText& text) {
 void add_sign(Program& program) {
   const auto text = std::make_shared<SignText>();
   CLI::App& verb = program.verb(
-      "plan sign", "Signs a plan and its scans as they are; without --by it says which signatures hold",
+      "plan sign", "Signs the current plan and scans; without --by, lists which signatures are valid",
       "octotomy plan sign my.plan.json --by \"A. Reader\" --as \"second reader\"",
       [&program, text] { return sign_plan(program, *text); });
   add_plan(verb, "plan", text->plan, "A .plan.json");
   verb.add_option("--by", text->by, "Who signs")->type_name("NAME");
-  verb.add_option("--as", text->as, "In which role; default: reader")->type_name("ROLE");
+  verb.add_option("--as", text->as, "Role of the reader; default: reader")->type_name("ROLE");
   verb.add_option("--note", text->note, "What the reader adds")->type_name("TEXT");
 }
 
 }  // namespace
 
 void add_plan_document(Program& program) {
-  program.app.add_subcommand("plan", "Compares, merges and remembers plans")
+  program.app.add_subcommand("plan", "Compares, merges and signs plans and records their history")
       ->require_subcommand(1)
       ->footer("Example:\n  octotomy plan diff before.plan.json after.plan.json");
   const auto paths = std::make_shared<Paths>();
   CLI::App& compared =
-      program.verb("plan diff", "What differs between two plans, step by step and field by field",
+      program.verb("plan diff", "Lists the differences between two plans, step by step and field by field",
                    "octotomy plan diff before.plan.json after.plan.json",
                    [&program, paths] { return diff(program, *paths); });
   add_plan(compared, "a", paths->a, "A .plan.json");
   add_plan(compared, "b", paths->b, "Another .plan.json");
   CLI::App& merged = program.verb(
       "plan merge",
-      "Merges what two plans changed of one that both come from; conflicts are named, exit status 2",
+      "Merges the changes of two plans to a common original; lists conflicts, with exit status 2",
       "octotomy plan merge base.plan.json mine.plan.json theirs.plan.json -o merged.plan.json",
       [&program, paths] { return merge_plans(program, *paths); });
-  add_plan(merged, "base", paths->base, "The .plan.json that both come from");
-  add_plan(merged, "a", paths->a, "A .plan.json that was made of it");
-  add_plan(merged, "b", paths->b, "Another .plan.json that was made of it");
+  add_plan(merged, "base", paths->base, "The common original .plan.json");
+  add_plan(merged, "a", paths->a, "A .plan.json changed from it");
+  add_plan(merged, "b", paths->b, "Another changed .plan.json");
   merged
       .add_option("-o,--out", paths->out,
                   "The merged .plan.json; relative paths in it name the same files from its folder")

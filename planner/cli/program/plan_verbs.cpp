@@ -108,7 +108,7 @@ int run(Program& program, const RunText& text, Plan plan, const std::function<vo
         {"certificates", voxel::Verdict::Warn,
          text.certify == Certify::Later
              ? "not made yet (--certify later): no number here is checked until this page is written again"
-             : "left out as asked (--certify never): no number here is checked"});
+             : "left out as requested (--certify never): no number here is checked"});
   result.pictures = plan_pictures(result.plan, result.evaluation);
   Json json = written(program, result, text.out);
   if (beside) beside();
@@ -139,10 +139,9 @@ void add_certify(CLI::App& verb, Certify& certify) {
 }
 
 void add_anonymous(CLI::App& verb, bool& anonymous) {
-  verb.add_flag(
-      "--anonymous", anonymous,
-      "The report names no patient, and audits quote none; names of files stay. Default: the report "
-      "states name, number, birth date and study date where the scan does");
+  verb.add_flag("--anonymous", anonymous,
+                "The report and its audits do not name the patient; file names are unchanged. Default: the "
+                "report states name, number, birth date and study date if the scan does");
 }
 
 void add_plan_verbs(Program& program) {
@@ -164,7 +163,7 @@ void add_plan_verbs(Program& program) {
       ->required();
   add_certify(verb, text->certify);
   verb.add_flag("--pdf", text->as_pdf,
-                "Print the report as report.pdf, too; takes WeasyPrint or Chromium on the PATH");
+                "Also print the report as report.pdf; needs WeasyPrint or Chromium on the PATH");
   add_anonymous(verb, text->anonymous);
   const auto seen = std::make_shared<PreviewText>();
   CLI::App& draws =

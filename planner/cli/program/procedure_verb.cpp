@@ -150,7 +150,8 @@ void add_procedure(Program& program) {
   const auto text = std::make_shared<ProcedureText>();
   CLI::App& verb = program.verb(
       "procedure",
-      "Plans an operation by its name, from landmarks and a few values; alone it lists what there is",
+      "Plans an operation by its name, from landmarks and a few values; without a name it lists all "
+      "procedures",
       "octotomy procedure le_fort_i\n"
       "  octotomy procedure le_fort_i --scan head.nrrd --landmarks marks.mrk.json --set forward_mm=6 "
       "--set up_mm=2 -o my.plan.json\n"

@@ -226,7 +226,7 @@ void check_text(const SegmentText& text, const Segment& asked) {
                                "give one of --window, --otsu, --tolerance with --seed, --label, --named");
   if (ways == 0 && text.objects.empty())
     throw CLI::ValidationError("--window",
-                               "say what is meant: --window bone, --otsu 3, --seed X,Y,Z --tolerance T, "
+                               "choose the objects: --window bone, --otsu 3, --seed X,Y,Z --tolerance T, "
                                "--label N, --named NAME or --object FILE");
   if (text.out.empty() && text.contours.empty() && !asked.otsu)
     throw CLI::ValidationError("--out", "only --otsu and --contours need none");
@@ -311,7 +311,8 @@ void add_segment(Program& program) {
   const auto text = std::make_shared<SegmentText>();
   CLI::App& verb = program.verb(
       "segment",
-      "Makes objects of a scan: by window or tissue, by suggestion, from seeds; parts chosen, filled",
+      "Makes objects from a scan: by window or tissue, by suggested thresholds, from seeds; chooses and "
+      "fills parts",
       "octotomy segment head.nrrd -o skull.octree --window bone --largest\n"
       "  octotomy segment head.nrrd -o tissues.nii.gz --window bone --window soft_tissue --window fat\n"
       "  octotomy segment dicom_folder -o tissues.dcm --window bone --window soft_tissue\n"

@@ -96,7 +96,7 @@ int run(Program& program, ServeText& text) {
   serve::Server server(text.options);
   if (text.options.address != "127.0.0.1" && text.options.address != "::1")
     warn("--listen " + text.options.address +
-         ": others on the network reach this server, and read what they send and get: nothing is encrypted");
+         ": others on the network can reach this server and read all traffic, because nothing is encrypted");
   serve::Desk desk(fs::current_path());
   for (const fs::path& path : text.paths) desk.folders.open(path);
   if (beginning && serve::is_plan(*beginning)) allow_reading_of(read_plan(*beginning), desk.folders);
@@ -123,8 +123,8 @@ void add_serve(Program& program) {
   verb.add_option("--port", text->options.port, "Port to listen on; default: a free one")
       ->check(CLI::Range(0, 65535));
   verb.add_option("--token-file", text->token_file,
-                  "Keeps the address's token in this file: with the same --port, pages that are open find a "
-                  "server that was started again");
+                  "Stores the address's token in this file: with the same --port, open pages reconnect to a "
+                  "restarted server");
   verb.add_flag("--open", text->open, "Opens the desktop's browser");
   verb.add_option("--listen", text->options.address,
                   "Address of another interface, so that other machines reach the server; default 127.0.0.1");

@@ -146,10 +146,10 @@ SuiteAnswer run_faults(Program& program, const VerifyText& text) {
   answer.text =
       table(verify::detection_power(trials)) + table(alterations) +
       "unaltered answers: " + std::to_string(doubted) + " of " + std::to_string(twins) +
-      " doubted\nalterations by chance over the detection limit: " + std::to_string(passed) + " of " +
+      " doubted\nrandom alterations over the detection limit: " + std::to_string(passed) + " of " +
       std::to_string(over) + " passed\n" +
       (answer.held
-           ? "every fault that must be caught is, from 64\u00b3 on, and no clean twin is doubted"
+           ? "from 64\u00b3 on, every fault that must be detected is, and every clean twin passes"
            : "NOT HELD: a fault was missed from 64\u00b3 on, or a clean twin did not pass; see --json") +
       "\n";
   return answer;
@@ -158,10 +158,10 @@ SuiteAnswer run_faults(Program& program, const VerifyText& text) {
 CLI::Option* add_faults(CLI::App& verb, VerifyText& text) {
   CLI::Option* flag = verb.add_flag(
       "--faults", text.faults,
-      "A suite: seeded faults in either kernel, each of which a certificate must show. With --scan "
+      "A suite: seeded faults in either kernel, each of which a certificate must detect. With --scan "
       "NAME=PATH, once or several times, answers to objects of these scans are altered");
   verb.add_option("--alterations", text.alterations,
-                  "Of --faults: errors drawn by chance in kind, place and size; default 60")
+                  "For --faults: number of errors of random kind, place and size; default 60")
       ->check(CLI::Range(1, 1000000))
       ->needs(flag);
   return flag;

@@ -355,7 +355,7 @@ Json row_of(const Question& asked, const Answered& found) {
 
 void need_evidence(SuiteAnswer& answer, const VerifyText& text) {
   if (answer.counts.without_evidence == 0 || text.accept_unresolved) return;
-  warn("a PASS without evidence: voxels do not resolve the object (--accept-unresolved lets it be)");
+  warn("a PASS without evidence: voxels do not resolve the object (--accept-unresolved accepts it)");
   answer.held = false;
 }
 
@@ -422,11 +422,11 @@ SuiteAnswer verify_operands(Program& program, const VerifyText& text) {
 void add_operand_options(CLI::App& verb, VerifyText& text) {
   verb.add_option(
           "--voxel", text.operand_voxel_mm,
-          "Edge of the voxels that two meshes, or a mesh and a label map or octree, are compared in, mm")
+          "Edge of the voxels in which two meshes, or a mesh and a label map or octree, are compared, mm")
       ->check(above_zero());
   verb.add_option(
           "--answer", text.answer,
-          "Of A OP B: somebody's result, a mesh, label map or octree, to be judged against both kernels")
+          "For A OP B: a result of another program (mesh, label map or octree) to compare with both kernels")
       ->check(CLI::ExistingFile);
 }
 

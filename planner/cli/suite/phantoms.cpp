@@ -161,12 +161,12 @@ SuiteAnswer run_phantoms(Program& program, const VerifyText& text) {
 
 CLI::Option* add_phantoms(CLI::App& verb, VerifyText& text) {
   verb.add_option("--poses", text.poses,
-                  "Of --phantoms: poses of each solid, spacing and sampling; default 6")
+                  "For --phantoms: poses of each solid, spacing and sampling; default 6")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
   verb.add_option("--solids", text.solids,
-                  "Of --phantoms: solids whose intervals of volume and area are held against the truth; "
-                  "default 400")
+                  "For --phantoms: number of solids whose intervals of volume and area are compared with the "
+                  "truth; default 400")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
   return verb.add_flag("--phantoms", text.phantoms,

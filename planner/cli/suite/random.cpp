@@ -88,7 +88,7 @@ CLI::Option* add_random(CLI::App& verb, VerifyText& text) {
                                        "A suite: N random questions to both kernels in each tier")
                            ->check(CLI::Range(1, 1000000))
                            ->type_name("N");
-  verb.add_option("--seed", text.seed, "Of the first random question; question i has this seed plus i")
+  verb.add_option("--seed", text.seed, "Seed of the first random question; question i has this seed plus i")
       ->needs(named)
       ->capture_default_str();
   static const std::map<std::string, RandomTier> tiers = [] {
@@ -96,15 +96,16 @@ CLI::Option* add_random(CLI::App& verb, VerifyText& text) {
     for (const RandomTier tier : RandomSuiteOptions().tiers) all.emplace(name_of(tier), tier);
     return all;
   }();
-  verb.add_option("--tier", text.random_tiers,
-                  "Of the random questions: exact (sets of voxels in general position), as_given (small sets "
-                  "whose faces coincide) or bounded (plans on scans); default all three")
+  verb.add_option(
+          "--tier", text.random_tiers,
+          "Tier of the random questions: exact (sets of voxels in general position), as_given (small sets "
+          "whose faces coincide) or bounded (plans on scans); default all three")
       ->needs(named)
       ->transform(CLI::Transformer(tiers))
       ->delimiter(',')
       ->type_name("NAME");
   verb.add_option("--failures", text.failures,
-                  "Folder for the plans of random questions that the kernels disagree on")
+                  "Folder for the plans of random questions on which the kernels disagree")
       ->needs(named)
       ->capture_default_str();
   return named;

@@ -146,7 +146,7 @@ SuiteAnswer run_self(Program& program, const VerifyText&) {
 
 CLI::Option* add_self(CLI::App& verb, VerifyText& text) {
   return verb.add_flag("--self", text.self,
-                       "A suite: whether the installed parts are of one build, start and work");
+                       "A suite: checks that the installed parts are of one build, start and work");
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ SuiteAnswer run_thesis(Program&, const VerifyText&) {
 
 CLI::Option* add_thesis(CLI::App& verb, VerifyText& text) {
   return verb.add_flag("--thesis", text.thesis,
-                       "A suite: tables and worked examples of the thesis, ours beside the printed");
+                       "A suite: compares the thesis's tables and worked examples with computed ones");
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
                                                               : object.findings.front()));
   }
   if (!uncertified.empty())
-    warn("no certificate of " + uncertified + ": nothing was verified of these, the findings say why");
+    warn("no certificate of " + uncertified +
+         ": nothing was verified of these, for the reasons in the findings");
   return answer;
 }
 
@@ -115,9 +116,8 @@ void add_verify_verbs(Program& program) {
       ->type_name("PLAN | A OP B | FOLDER");
   add_plan_options(verb, *text);
   add_operand_options(verb, *text);
-  verb.add_flag(
-      "--accept-unresolved", text->accept_unresolved,
-      "Status 0 although a verdict is PASS for lack of evidence alone: voxels too coarse for the object");
+  verb.add_flag("--accept-unresolved", text->accept_unresolved,
+                "Exit status 0 even if a PASS has no evidence, because voxels are too coarse for the object");
   verb.add_option("--report", text->report,
                   "A folder for report.html, one page with verdicts, plots and pictures, and result.json")
       ->type_name("FOLDER");

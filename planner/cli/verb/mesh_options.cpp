@@ -26,11 +26,13 @@ void add_mesh_options(CLI::App& verb) {
         ->group("mesh");
   };
   add("--frame",
-      "Where x, y and z of mesh files point, whatever the files say: LPS, RAS, or three other letters of L "
+      "Directions of x, y and z of mesh files, overriding the files' own statements: LPS, RAS, or three "
+      "other letters of L "
       "or "
       "R, A or P, S or I; of one file as FILE=RAS");
   add("--unit",
-      "Unit of mesh files, whatever they say: um, mm, cm, m, inch or foot; of one file as FILE=inch");
+      "Unit of mesh files, overriding their own statements: um, mm, cm, m, inch or foot; of one file as "
+      "FILE=inch");
 }
 
 void choose_mesh_options(const CLI::App& verb) {

@@ -15,7 +15,7 @@ glm::dvec3 spacing_of(const std::string& text) {
   const auto mm = parse_numbers<3>(text);
   if (!mm || !std::all_of(mm->begin(), mm->end(), [](double length) { return length > 0.0; }))
     throw CLI::ValidationError("--spacing",
-                               "'" + text + "' is no spacing: give X,Y,Z in mm, for example 0.5,0.5,1");
+                               "'" + text + "' is not a spacing: give X,Y,Z in mm, for example 0.5,0.5,1");
   return {(*mm)[0], (*mm)[1], (*mm)[2]};
 }
 
@@ -45,11 +45,11 @@ voxel::RawLayout layout_of(const ScanIn& in) {
           3 ||
       layout.dims.x < 1 || layout.dims.y < 1 || layout.dims.z < 1)
     throw CLI::ValidationError("--raw",
-                               "'" + in.raw[0] + "' are no dims: give XxYxZ, for example 512x512x300");
+                               "'" + in.raw[0] + "' are not dims: give XxYxZ, for example 512x512x300");
   const std::optional<voxel::SampleType> type = voxel::sample_type(in.raw[1]);
   if (!type)
     throw CLI::ValidationError("--raw", "'" + in.raw[1] +
-                                            "' is no type of samples: int8, uint8, int16, uint16, int32, "
+                                            "' is not a type of samples: int8, uint8, int16, uint16, int32, "
                                             "uint32, int64, uint64, float or double");
   layout.type = *type;
   layout.big_endian = in.big_endian;
@@ -61,13 +61,12 @@ voxel::RawLayout layout_of(const ScanIn& in) {
 
 void add_scan_options(CLI::App& verb, ScanIn& in, const std::string& heading) {
   verb.add_option("--series", in.series,
-                  "Of a folder with several DICOM series: its number as octotomy info lists it (2, or 2.1 of "
-                  "several stacks in one series), its UID, or a part of its description or kernel")
+                  "Series of a folder with several DICOM series: its number in octotomy info (2, or 2.1 for "
+                  "one of several stacks), its UID, or a part of its description or kernel")
       ->group(heading);
-  verb.add_flag(
-          "--join", in.join,
-          "Join all DICOM series of the folder, of one patient and modality: for an export that gave each "
-          "image a series, study or frame of reference of its own. The audit then holds a FAIL")
+  verb.add_flag("--join", in.join,
+                "Join all DICOM series of the folder, of one patient and modality: for an export in which "
+                "each image has a series, study or frame of reference of its own. The audit then has a FAIL")
       ->group(heading);
   verb.add_option("--slices", in.slices,
                   "FROM:TO of the DICOM series' images to keep, 1 the lowest along their normal, for example "
@@ -76,12 +75,12 @@ void add_scan_options(CLI::App& verb, ScanIn& in, const std::string& heading) {
   verb.add_option(
           "--frame", in.frame,
           "RAS, LPS, LAS, ...: the patient's directions along the axes of a volume file's coordinates, "
-          "whatever it states; also of images and raw files. DICOM states its own")
+          "overriding its own statement; also for images and raw files. Not for DICOM, which states its own")
       ->group(heading);
   verb.add_option("--unit", in.unit,
-                  "mm, cm, m, um or inch: the unit of a volume file's lengths, whatever it states")
+                  "mm, cm, m, um or inch: the unit of a volume file's lengths, overriding its own statement")
       ->group(heading);
-  verb.add_option("--spacing", in.spacing, "X,Y,Z in mm, of raw files and of images that do not state it")
+  verb.add_option("--spacing", in.spacing, "X,Y,Z in mm, for raw files and for images that do not state it")
       ->group(heading);
   verb.add_option("--raw", in.raw, "XxYxZ TYPE: the file is raw samples, for example 512x512x300 int16")
       ->expected(2)
@@ -100,7 +99,7 @@ void need_options_fit(const CLI::App& verb, const std::vector<std::string>& file
     const CLI::Option* option = verb.get_option_no_throw(name);
     if (option == nullptr || option->count() == 0) return;
     throw std::runtime_error(files.front() + ": is " + (is_octree(files.front()) ? "an octree" : "a mesh") +
-                             ", and " + name + " is of " + of + ": leave it out");
+                             ", and " + name + " applies to " + of + ": leave it out");
   };
   for (const char* name :
        {"--series", "--join", "--slices", "--spacing", "--raw", "--big-endian", "--offset"})
@@ -128,7 +127,7 @@ voxel::ReadOptions read_options(const Program& program, const ScanIn& in) {
   options.unit = parsed("--unit", in.unit, voxel::parse_unit);
   if (!in.raw.empty()) options.raw = layout_of(in);
   if (in.raw.empty() && (in.big_endian || in.offset != 0))
-    throw CLI::ValidationError("--offset", "--offset and --big-endian are of raw files: give --raw too");
+    throw CLI::ValidationError("--offset", "--offset and --big-endian apply to raw files: also give --raw");
   options.progress.stop = program.stop.get_token();
   options.progress.report = program.progress("reading");
   return options;

@@ -56,10 +56,10 @@ CLI::App& Program::verb(const std::string& name, const std::string& does, const 
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
   sub.add_option("--time-limit", time_limit_s,
-                 "Give up after so many seconds, with exit status 3 and nothing written")
+                 "Stop after this number of seconds, with exit status 3 and nothing written")
       ->check(above_zero())
       ->type_name("S");
-  sub.add_option("--memory", memory_gb, "Take at most so many GB of memory, else exit status 3")
+  sub.add_option("--memory", memory_gb, "Use at most this many GB of memory, else exit status 3")
       ->check(above_zero())
       ->type_name("GB");
   sub.footer("Example:\n  " + example);
@@ -127,7 +127,7 @@ void Program::say(const Json& answer, const std::string& text) const {
     for (const MeshRecord& file : *files)
       for (const std::string& line : warnings_of(file.audit)) warn(file.path.string() + ": WARN, " + line);
   for (const std::string& choice : unused_choices())
-    warn(choice + ": no mesh of that name was read, so that the choice changes nothing");
+    warn(choice + ": no mesh of that name was read, so the option has no effect");
   for (const std::string& name : *tissues_) {
     const voxel::Tissue tissue = *voxel::tissue(name);
     warn(voxel::described(tissue) + ": " + std::string(tissue.source));

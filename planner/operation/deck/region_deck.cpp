@@ -20,7 +20,7 @@ namespace {
 struct Regions {
   std::vector<std::string> names;
   std::vector<voxel::Octree> octrees;
-  double voxels_mm3 = 0.0;  ///< of all, what overlaps more than once
+  double voxels_mm3 = 0.0;  ///< volume of all regions; overlaps are counted more than once
 };
 
 Regions regions_of(const Objects& objects, const Object& object, const Deck& step,
@@ -36,7 +36,7 @@ Regions regions_of(const Objects& objects, const Object& object, const Deck& ste
   return regions;
 }
 
-/// In a universe of larger voxels.
+/// Resamples the regions and holders in a universe of larger voxels.
 void coarsen(double voxel_mm, Regions& regions, std::vector<Holder>& holders) {
   const voxel::Lattice fine = regions.octrees.front().universe().lattice();
   const voxel::Universe coarse = voxel::universe_around(voxel::bounds(fine), voxel_mm);
@@ -60,7 +60,7 @@ void check_and_count(Regions& regions) {
 
 void fill_by_voxels(const Regions& regions, const Deck& step, const voxel::Progress& progress,
                     RegionDeck& deck) {
-  // What holds a boundary ends at voxels' corners.
+  // The boundaries of holders end at voxels' corners.
   const auto cells = step.is_held() ? convert::BoundaryCells::Voxels : convert::BoundaryCells::Nodes;
   if (regions.octrees.size() == 1) {
     deck.tetrahedra = convert::tetrahedra_of(regions.octrees.front(), cells, progress);
@@ -142,12 +142,12 @@ void add_materials(const Regions& regions, const Deck& step, RegionDeck& deck) {
   deck.options.material_of_tet = deck.tetrahedra.region_of_tet;
   if (!unknown.empty())
     deck.findings.push_back(
-        "no material is given of " + unknown +
-        ": cortical bone's stiffness is taken; \"materials\" of the step gives each its own");
+        "no material is stated for " + unknown +
+        ": the stiffness of cortical bone is used; \"materials\" of the step states another");
 }
 
-/// Pairs of regions that slide, by their numbers, the lower first: those that the step lists, in its order,
-/// and all where it wants contact everywhere.
+/// Pairs of regions that slide, by number, the lower number first: those that the step lists, in its order,
+/// and all pairs where the step has contact everywhere.
 std::vector<convert::RegionPair> sliding_pairs(const Regions& regions, const Deck& step) {
   const auto number_of = [&](const std::string& name) {
     const auto found = std::find(regions.names.begin(), regions.names.end(), name);
@@ -187,7 +187,7 @@ void add_free_surfaces(const Regions& regions, RegionDeck& deck) {
     if (!surface.faces.empty()) deck.options.surfaces.push_back(std::move(surface));
 }
 
-/// Parts the regions that slide, and names where regions touch.
+/// Separates the regions that slide, and adds the surfaces where regions touch.
 void add_interfaces(const Regions& regions, const Deck& step, RegionDeck& deck) {
   convert::DeckOptions& options = deck.options;
   std::vector<convert::Interface> touching = convert::interfaces(deck.tetrahedra);

@@ -11,28 +11,30 @@
 
 namespace octotomy::planner {
 
-/// Several objects as regions of one deck, or one that others hold and move.
+/// A deck whose regions are several objects, or one object that others hold and move.
 struct RegionDeck {
   convert::Tetrahedra tetrahedra;
-  convert::DeckOptions options;  ///< materials, sets, surfaces, contacts and what is prescribed
-  bool fallback = false;         ///< the elements are the voxels', where smooth ones were asked for
+  convert::DeckOptions options;  ///< materials, sets, surfaces, contacts and prescribed displacements
+  bool fallback = false;         ///< smooth elements were requested, but the elements are the voxels'
   std::vector<std::string> findings;
 };
 
-/// Fills an object and the step's regions: by their voxels' elements, or by smooth ones of the size that the
-/// step asks for (convert::smooth_tetrahedra_of()), and by the former, marked, where that fails and the step
-/// allows the fallback. A region that the step lists as moved is taken as it lay before its motions.
+/// Fills an object and the step's regions with elements: those of their voxels, or smooth ones of the step's
+/// size (convert::smooth_tetrahedra_of()). Where the smooth ones fail and the step allows the fallback, the
+/// voxels' elements are used and `fallback` is set. A region that the step lists as moved lies where it was
+/// before its motions.
 ///
-/// Each has the step's material for it; without, an object that others hold is soft tissue, and so are the
-/// regions beside it that hold nothing; whatever else there is is cortical bone, which is a finding but of
-/// what moves as a whole. Surfaces are FREE_<object> where nothing touches it, FREE where it is alone, and
-/// <one>_TO_<other> where they touch, as the first's faces. Where the step wants contact, or its pairs slide,
-/// regions have nodes of their own there, the other's faces are the surface <other>_TO_<one>, and the two are
-/// a contact pair of the first's name, the softer one its slave; faces at a slit's end, which share a node,
-/// are in neither. Who holds and moves it, and how, is attach()'s.
+/// Each region has the material that the step states for it. Without one, a held object is soft tissue, and
+/// so are its neighbours that hold nothing. Every other region is cortical bone; this is a finding, unless
+/// the region holds the object and therefore moves as a rigid body.
+/// The surface FREE_<object>, or FREE for a single object, is where the object touches no other. The surface
+/// <one>_TO_<other> is where two objects touch, as faces of the first. Where the two slide, each has its own
+/// nodes there; the second's faces are the surface <other>_TO_<one>, and the two surfaces are a contact pair
+/// with the name of the first, whose slave is the softer side. Faces that share a node, at the end of a slit,
+/// are in neither surface. attach() adds what holds and moves the object.
 ///
-/// Throws std::runtime_error where there is no filling, a pair that is to slide does not touch, or a holder
-/// holds nothing, Stopped where `progress` asks for it.
+/// Throws std::runtime_error where the filling fails, a sliding pair does not touch, or a holder holds
+/// nothing; Stopped where `progress` requests it.
 RegionDeck region_deck(const Objects& objects, const Object& object, const Deck& step,
                        const voxel::Progress& progress = {});
 

@@ -374,7 +374,7 @@ int LabelTable::label(const std::string& name) const {
     std::string list;
     for (const int number : numbers) list += (list.empty() ? "" : ", ") + std::to_string(number);
     refuse(file.string(), "has " + std::to_string(numbers.size()) + " labels '" + name +
-                              "', of the numbers " + list + ": choose one by its number, 'label'");
+                              "', with the numbers " + list + ": select one by its number, 'label'");
   }
   std::vector<std::string> known;
   for (const auto& [number, label] : names) known.push_back(label);

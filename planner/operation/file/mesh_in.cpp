@@ -58,13 +58,14 @@ std::optional<std::string> chosen(const std::vector<std::string>& words, const s
 void choose_mesh_reading(const std::vector<std::string>& frames, const std::vector<std::string>& units) {
   for (const std::string& word : frames)
     if (!brep::frame_named(choice_of(word)))
-      throw std::runtime_error("--frame: '" + word +
-                               "' is no frame: give three letters for where x, y and z point, LPS or RAS, or "
-                               "FILE=RAS for one file");
+      throw std::runtime_error(
+          "--frame: '" + word +
+          "' is not a frame: give three letters for the directions of x, y and z, LPS or RAS, or "
+          "FILE=RAS for one file");
   for (const std::string& word : units)
     if (!brep::length_unit(choice_of(word)))
       throw std::runtime_error("--unit: '" + word +
-                               "' is no unit: give um, mm, cm, m or inch, or FILE=inch for one file");
+                               "' is not a unit: give um, mm, cm, m or inch, or FILE=inch for one file");
   MeshReading& now = mesh_reading();
   const std::lock_guard lock(now.mutex);
   now.frames = frames;

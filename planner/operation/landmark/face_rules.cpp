@@ -13,7 +13,7 @@ constexpr double rim_step = 8.0;           ///< by which a rim stands before wha
 constexpr double rim_reach = 3.0;          ///< along which a rim goes on
 constexpr double above_spine = 4.0;        ///< where the piriform rim is taken, over the nasal spine
 constexpr double below_rim = 8.0;          ///< where the buttress is taken, under the piriform rim
-constexpr double deepest_buttress = 42.0;  ///< behind the nasal spine; a ramus stands deeper
+constexpr double deepest_buttress = 42.0;  ///< behind the nasal spine; a surface behind this is the ramus
 constexpr double broken = 4.0;             ///< a surface falls back farther where it ends
 constexpr double most_hole = 9.0;          ///< of thin bone, across which it may go on
 constexpr double small_hole = 1.1;         ///< of a voxel
@@ -83,8 +83,8 @@ class Face {
     const int row = maps_.front.row(ans->z + above_spine + higher_mm_);
     const double rim = rim_at(row);
     if (rim < 0.0) {
-      miss("piriform", "no rim stands before the nose's inside");
-      return miss("buttress", "no rim stands before the nose's inside");
+      miss("piriform", "no rim stands out before the inside of the nose");
+      return miss("buttress", "no rim stands out before the inside of the nose");
     }
     // Another rule: where the surface steps back most within a millimetre and a half.
     double step_back = rim, most = 0.0;

@@ -19,7 +19,8 @@ constexpr double crown = 9.0;             ///< of an incisor
 constexpr double receding = 28.0;         ///< a chin's, at most, behind the nasal spine
 constexpr double least_mandible = 20.0;   ///< its height in the mid-line
 constexpr double chin = 22.0;             ///< its height
-constexpr double between_chins = 3.0;     ///< a chin's foremost point and that before its line, half way
+constexpr double between_chins = 3.0;     ///< half the distance between a chin's foremost point and the point
+                                          ///< farthest before its chord
 constexpr double hollow = 1.0;            ///< least depth of a concavity between its neighbours
 constexpr double most_nasal_bone = 25.0;  ///< above the opening
 constexpr double widest_end = 25.0;  ///< of bone that ends by itself, from front to back, in its lowest row

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// How far two objects' surfaces lie apart, both ways, and how much they have in common.
+// SPDX-License-Identifier: AGPL-3.0-or-later The distances between two objects' surfaces, in both directions,
+// and their common volume.
 #include "brep/io/write_mesh.h"
 #include "brep/measure/difference.h"
 #include "brep/mesh/line_volume.h"
@@ -22,7 +22,7 @@ struct Compare {
   std::optional<double> spacing_mm;
   int bins = static_cast<int>(brep::DifferenceOptions{}.bins);
   bool no_dice = false;
-  // Of the verb.
+  // Options of the verb only.
   std::filesystem::path out, picture;
   std::optional<double> range_mm;
   bool other_identity = false;
@@ -40,18 +40,18 @@ Json one_way_json(const brep::OneWay& way, const std::vector<double>& tolerances
           {"bands", bands}};
 }
 
-/// Twice the common volume by the sum of both.
+/// Twice the common volume, divided by the sum of both volumes.
 struct Dice {
   double value = 0.0, half_width = 0.0;
   std::size_t lines = 0;
 };
 
-/// Lines through holes are left out; above this share of them there is no inside to speak of.
+/// Lines through holes are left out. If their share exceeds this, the surface has no meaningful inside.
 constexpr double most_open_lines() {
   return 0.01;
 }
 
-/// None with a finding where the surfaces have no inside.
+/// None, with a finding, if the surfaces have no inside.
 std::optional<Dice> dice(const brep::Triangles& a, const brep::Triangles& b,
                          std::vector<std::string>& findings) {
   const brep::LineVolumes volumes = brep::line_volumes(a, b);
@@ -82,7 +82,7 @@ Json definitions(const brep::Difference& difference, const std::optional<Dice>& 
                    std::to_string(dice ? dice->lines : 0) + " parallel lines"}};
 }
 
-/// Both surfaces held against each other.
+/// The results of comparing both surfaces.
 struct Compared {
   brep::Difference difference;
   std::optional<Dice> dice;
@@ -129,7 +129,7 @@ Json comparison_json(const Compare& asked, const Compared& made) {
             {"shares", difference.histogram.shares}}}};
 }
 
-/// The distances of the mesh kernel's answers; null with a finding where one has none.
+/// The distances between the mesh kernel's answers; null, with a finding, if an object has none.
 Json measure(const Compare& asked, const AnswerBench& bench) {
   Json json{{"a", asked.a.name}, {"b", asked.b.name}};
   for (const ObjectName& name : {asked.a, asked.b}) {
@@ -182,7 +182,8 @@ FileAnswer on_files(const Compare& asked, const FileBench& bench) {
         " is a label map and the other a surface: make surfaces of the labels by octotomy surfaces");
   if (is_label_map(asked.a.name)) {
     if (!asked.out.empty() || !asked.picture.empty())
-      throw std::runtime_error("--out and --picture are of surfaces: leave them out of two label maps");
+      throw std::runtime_error(
+          "--out and --picture are for surfaces: leave them out where two label maps are compared");
     return compare_label_maps(asked.a.name, asked.b.name, asked.other_identity, bench);
   }
   if (!asked.out.empty()) need_extension(asked.out, {".ply", ".vtp", ".glb"}, "the coloured mesh is");

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A label map with what is asked of it label by label.
+/// A label map, with data for each of its labels.
 struct Side {
   fs::path path;
   voxel::Scene scene;
@@ -35,7 +35,7 @@ struct Side {
   }
 };
 
-/// Whether two lattices have the same field and differ in the order or direction of their axes.
+/// Whether two lattices cover the same field but differ in the order or direction of their axes.
 bool is_stored_otherwise(const voxel::Lattice& a, const voxel::Lattice& b) {
   constexpr double nearly = 1e-3;
   if (a == b || a.sample_count() != b.sample_count()) return false;
@@ -48,7 +48,7 @@ bool is_stored_otherwise(const voxel::Lattice& a, const voxel::Lattice& b) {
   return true;
 }
 
-/// `onto` has the order that samples are stored in: it changes no object, though triangles of an octree
+/// `onto` determines the storage order of samples. It changes no object, but the triangles of an octree
 /// follow its axes.
 Side side_of(const fs::path& path, const FileBench& bench, std::vector<std::string>& findings,
              const voxel::Lattice* onto = nullptr) {
@@ -79,7 +79,7 @@ voxel::Lattice covering(const voxel::Lattice& a, const voxel::Lattice& b) {
     low = glm::min(low, a.voxel(b.lps_mm(p_voxel)));
     high = glm::max(high, a.voxel(b.lps_mm(p_voxel)));
   }
-  // Rounding of coordinates adds no row.
+  // A tolerance, so that rounding of coordinates adds no row.
   constexpr double rounding = 1e-6;
   low = glm::floor(low + rounding);
   high = glm::ceil(high - rounding);
@@ -90,7 +90,7 @@ voxel::Lattice covering(const voxel::Lattice& a, const voxel::Lattice& b) {
 
 /// Sums over all labels that both maps have.
 struct Totals {
-  double common_mm3 = 0.0, both_mm3 = 0.0;  ///< both_mm3 of all labels of either map
+  double common_mm3 = 0.0, both_mm3 = 0.0;  ///< both_mm3 sums all labels of both maps
   double hausdorff_mm = 0.0, hausdorff95_mm = 0.0, mean_mm = 0.0;
   std::size_t compared = 0;
 };
@@ -167,7 +167,8 @@ Names names_of(const Side& side, std::vector<std::string>& findings) {
   return std::move(table.names);
 }
 
-/// The numbers of a map's labels by name, or by "label 5" without one; refuses a name that two labels have.
+/// The numbers of a map's labels by name, or by "label 5" if there is none; refuses a name that two labels
+/// have.
 std::map<std::string, int> numbers_of(const Side& side, const Names& names) {
   std::map<std::string, int> numbers;
   for (const auto& [label, samples] : side.samples)
@@ -178,7 +179,7 @@ std::map<std::string, int> numbers_of(const Side& side, const Names& names) {
   return numbers;
 }
 
-/// Pairs labels by name where both maps have names, else by number; reports where these contradict.
+/// Pairs labels by name if both maps have names, else by number; reports contradictions.
 std::vector<Pair> pairs_of(const Side& a, const Side& b, std::vector<std::string>& findings) {
   const Names names_a = names_of(a, findings), names_b = names_of(b, findings);
   const bool by_name = !names_a.empty() && !names_b.empty();

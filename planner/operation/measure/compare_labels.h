@@ -7,15 +7,15 @@
 
 namespace octotomy::planner {
 
-/// Whether a file holds samples, by its extension: a label map or segmentation, and no surface.
+/// Whether a file contains samples, by its extension: a label map or segmentation, not a surface.
 bool is_label_map(const std::filesystem::path& path);
 
-/// Holds the labels of two label maps against each other, by name where both maps have names, else by number
-/// (findings say where these contradict): volumes, Dice, and distances of
-/// the surfaces that lie half-way between samples, point to triangle. Maps of different lattices are compared
-/// at the first one's samples, continued over both. Refuses maps that state different patients, studies or
-/// frames of reference unless `other_identity`. Throws std::runtime_error where a scene is no label map or
-/// two labels share a name. Cost: that of brep::difference() a label.
+/// Compares the labels of two label maps, paired by name if both maps have names, else by number
+/// (contradictions are findings): volumes, Dice, and distances, point to triangle, between surfaces half way
+/// between samples. Maps of different lattices are compared at the first one's samples, extended over both.
+/// Refuses maps that state different patients, studies or frames of reference unless `other_identity`. Throws
+/// std::runtime_error if a scene is not a label map or two labels share a name. Cost: that of
+/// brep::difference() per label.
 FileAnswer compare_label_maps(const std::filesystem::path& a, const std::filesystem::path& b,
                               bool other_identity, const FileBench& bench);
 

@@ -48,7 +48,7 @@ voxel::Samples<Sample> averaged(const voxel::Samples<Sample>& samples, glm::ivec
   return made;
 }
 
-/// The numbers of a window's samples that are outermost along each axis.
+/// The number of a window's samples in the outermost planes across each axis.
 glm::dvec3 outermost(const voxel::Scene& scan, double low, double high) {
   low = voxel::above_padding(scan, low);
   const glm::ivec3 dims = scan.lattice.dims;

@@ -28,7 +28,7 @@ Digitised digitised_of(const AnswerBench& bench, const Object& object) {
   std::set<std::pair<std::string, double>> known;
   for (const Shown& window : object.bound.windows) {
     if (!known.emplace(window.scan, window.threshold).second) continue;
-    // The whole window's surface, which a part's is a piece of.
+    // Uses the surface of the whole window, of which a part's surface is a piece.
     const std::optional<double> shift_mm =
         window.samples ? window_shift_mm(*window.samples, window.threshold, window.high)
                        : window_shift_mm(voxel::window_of(window.grey, window.threshold));

@@ -9,18 +9,18 @@
 
 namespace octotomy::planner {
 
-/// How finely the plan's universe and its scans tell places apart.
+/// The resolution of the plan's universe and scans.
 Digitised digitised_of(const AnswerBench& bench);
 
-/// What the object's scans, windows and flat parts make doubtful. A part is no surer than the windows that
-/// its whole was made of.
+/// The resolution and uncertainties of an object by its scans, windows and flat parts. A part has at least
+/// the uncertainty of the windows of its whole.
 Digitised digitised_of(const AnswerBench& bench, const Object& object);
 
-/// What the mesh kernel sees of an object, against which its voxels' count is held; none without a mesh.
+/// The mesh kernel's size of an object, with which the voxel count is compared; none without a mesh.
 std::optional<SeenSize> seen_size_of(const Object& object);
-/// Why an object without voxels has none: "'plate' is empty", or that they are too coarse for its mesh.
+/// The reason why an object has no voxels: "'plate' is empty", or that they are too coarse for its mesh.
 std::string why_no_voxels(const Object& object);
-/// What is told of an object's counted volume where it is_too_coarse; none where it is not.
+/// The finding on an object's counted volume if it is_too_coarse; else none.
 std::optional<std::string> too_coarse_finding(const Object& object, const HalfWidth& width);
 
 }  // namespace octotomy::planner

@@ -13,11 +13,11 @@ namespace octotomy::planner {
 namespace {
 
 constexpr glm::ivec2 size_px(900, 480);
-/// Of the field that the bars stand in.
+/// Corners of the field with the bars.
 constexpr glm::dvec2 field_low(70.0, 60.0), field_high(870.0, 410.0);
 constexpr double cap_px = 11.0;
 
-/// 1, 2 or 5 times a power of ten: some five of them make the extent.
+/// 1, 2 or 5 times a power of ten, such that about five steps make up the extent.
 double tick_step(double extent) {
   const double rough = extent / 5.0, power = std::pow(10.0, std::floor(std::log10(rough)));
   const double share = rough / power;
@@ -71,7 +71,7 @@ class Sheet {
           std::max(low.x + 1, static_cast<int>(std::lround(x_of(from + histogram.width_mm)))),
           std::lround(field_high.y));
       if (low.y >= high.y) continue;
-      // White bars about zero would not be seen without a rim.
+      // Draws a rim, because bars near zero are white.
       voxel::fill_rectangle(canvas_, low, high, glm::vec3(0.45f));
       if (high.x - low.x > 2 && high.y - low.y > 1)
         voxel::fill_rectangle(canvas_, low + glm::ivec2(1), high - glm::ivec2(1, 0),

@@ -9,8 +9,8 @@
 
 namespace octotomy::planner {
 
-/// The colour of a signed distance: white at zero, red outside, blue inside; full at the range. The ends are
-/// of like lightness, so that neither side looks the larger.
+/// The colour of a signed distance: white at zero, red outside, blue inside; saturated at the range. Both
+/// ends have similar lightness, so that neither side looks larger.
 glm::u8vec3 distance_colour(double distance_mm, double range_mm);
 
 struct HistogramPicture {
@@ -18,8 +18,8 @@ struct HistogramPicture {
   std::vector<std::uint8_t> rgb;  ///< sRGB, row by row from the top left
 };
 
-/// The histogram of signed distances in those colours, with its scales and the figures that sum it up.
-/// Precondition: the histogram has a bin.
+/// The histogram of signed distances in these colours, with scales and summary figures. Precondition: the
+/// histogram has a bin.
 HistogramPicture draw_histogram(const brep::Difference& difference, double range_mm);
 
 }  // namespace octotomy::planner

@@ -10,9 +10,9 @@ namespace octotomy::planner {
 
 /// The least distance between two objects, in both kernels.
 struct Gap {
-  double voxel_mm = 0.0;          ///< between voxels' faces; 0 where the objects share a voxel or touch
-  std::optional<double> mesh_mm;  ///< between triangles; 0 where the solids overlap or touch
-  /// What they share; a gap of 0 says how much.
+  double voxel_mm = 0.0;          ///< between voxels' faces; 0 if the objects share a voxel or touch
+  std::optional<double> mesh_mm;  ///< between triangles; 0 if the solids overlap or touch
+  /// The common volume, for a gap of 0.
   double overlap_mm3 = 0.0;
   glm::dvec3 from_mm{0.0}, to_mm{0.0};  ///< the nearest voxels' centres
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1. Signed distances to the other surface at the points of the first: corners of triangles, which are split
-//    where they are large and may be near, or voxels of the boundary.
-// 2. Points within the distance that are near each other are one place (single linkage by a grid).
-// 3. Each triangle gives its share within the distance, by linear interpolation, to the place of its nearest
-//    corner.
+// 1. Compute signed distances to the other surface at points of the first: corners of triangles, which are
+// split if they are large and may be near, or voxels of the boundary.
+// 2. Group points within the distance that are near each other into places (single linkage by a grid).
+// 3. Add each triangle's area within the distance, by linear interpolation, to the place of its nearest
+// corner.
 #include "planner/operation/measure/near_surfaces.h"
 
 #include <algorithm>
@@ -25,9 +25,9 @@ struct Points {
   std::vector<std::array<std::uint32_t, 3>> faces = {};
 };
 
-/// Halves triangles at their longest edges until those that are wanted are no longer than the spacing. Each
-/// has its halves' points of its own: no triangle but covers the same surface. `wanted` is asked by a
-/// triangle's corners and its longest edge, `add` is told of new points in each round.
+/// Halves triangles at their longest edges until the wanted ones are no longer than the spacing. New points
+/// are not shared between triangles, but the surface is unchanged. Calls `wanted` with a triangle's corners
+/// and its longest edge, and `add` with the new points of each round.
 template <typename Wanted, typename Add>
 void refine(std::vector<glm::dvec3>& points, std::vector<std::array<std::uint32_t, 3>>& faces,
             double spacing_mm, const Wanted& wanted, const Add& add) {
@@ -74,13 +74,13 @@ Points voxel_points(const voxel::Octree& one, const voxel::Octree& other) {
                                             static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(v.z));
     points.p_mm.push_back(lattice.lps_mm(face.voxel));
     points.normals.push_back(glm::normalize(axes[face.axis]) * static_cast<double>(face.side));
-    // The surface of the first lies half a voxel beyond its centres.
+    // The first surface is half a voxel outside the voxels' centres.
     points.distances_mm.push_back(static_cast<double>(distances[index]) - 0.5 * glm::length(axes[face.axis]));
   }
   return points;
 }
 
-/// Fine where the distance may be at most `within_mm`, or the least of all.
+/// Points of the mesh, dense where the distance may be at most `within_mm` or the least of all.
 Points mesh_points(const brep::Solid& one, const brep::Solid& other, double within_mm, double spacing_mm) {
   const brep::Triangles& triangles = one.triangles();
   Points points{triangles.points_mm, {}, signed_distances_mm(other, triangles.points_mm), triangles.faces};
@@ -89,7 +89,7 @@ Points mesh_points(const brep::Solid& one, const brep::Solid& other, double with
       points.p_mm, points.faces, spacing_mm,
       [&](const std::array<std::uint32_t, 3>& face, double longest) {
         const std::vector<double>& d = points.distances_mm;
-        // No distance changes faster than place.
+        // A distance changes at most as much as the position.
         return std::min({d[face[0]], d[face[1]], d[face[2]]}) - longest <= std::max(within_mm, least);
       },
       [&] {
@@ -109,7 +109,7 @@ Points mesh_points(const brep::Solid& one, const brep::Solid& other, double with
   return points;
 }
 
-/// The place of each point that is within the distance, numbered from 0; -1 of all others.
+/// The number of the place of each point within the distance, from 0; -1 for all others.
 std::vector<int> places_of(const Points& points, double within_mm, double apart_mm, int& count) {
   std::map<std::array<int, 3>, std::vector<std::size_t>> cells;
   std::vector<std::size_t> near, root(points.p_mm.size());
@@ -186,7 +186,8 @@ double least_distance_mm(const brep::Solid& one, const brep::Solid& other, doubl
 }
 
 std::vector<NearPoint> near_points(const brep::Solid& one, const brep::Solid& other, double spacing_mm) {
-  // Errors of planning move pieces by some millimetres: what is farther does not come nearest.
+  // Planning errors move pieces by a few millimetres, so points farther away than this do not become the
+  // nearest.
   constexpr double reach_mm = 5.0;
   constexpr std::size_t most_points = 400;
   const double least_mm = least_distance_mm(one, other, spacing_mm);
@@ -207,7 +208,8 @@ std::vector<NearPoint> near_points(const brep::Solid& one, const brep::Solid& ot
     places.push_back(points.p_mm[i]);
   }
   const std::vector<brep::Foot> feet = other.tree().feet(places);
-  // Nearer than that a foot's direction is rounding; there the two surfaces face each other.
+  // At smaller distances the direction to the nearest point is only rounding; there the surfaces face each
+  // other.
   constexpr double touching_mm = 1e-6;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!(feet[i].distance_mm > touching_mm)) continue;
@@ -259,7 +261,7 @@ Contacts contacts_between(const voxel::Octree& one, const voxel::Octree& other,
   const double half_voxel_mm = 0.5 * std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   const Points points =
       made.by_mesh ? mesh_points(*solid_one, *solid_other, options.within_mm, half_voxel_mm) : voxels;
-  // Neighbouring points are one place, however near to each other places may be.
+  // Neighbouring points always belong to one place, whatever `apart_mm` is.
   const double between_points_mm =
       made.by_mesh ? half_voxel_mm : std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   int count = 0;
@@ -284,7 +286,7 @@ Contacts contacts_between(const voxel::Octree& one, const voxel::Octree& other,
   }
   if (made.by_mesh) add_areas(points, places, options.within_mm, made.contacts);
   made.voxel_nearest_mm = *std::min_element(voxels.distances_mm.begin(), voxels.distances_mm.end());
-  // Two voxels away the voxel kernel speaks of another place.
+  // Beyond two voxels, the voxel kernel's distance belongs to another place.
   const double about_mm = 2.0 * glm::length(spacing_mm);
   for (Contact& contact : made.contacts)
     for (std::size_t i = 0; i < voxels.p_mm.size(); ++i)

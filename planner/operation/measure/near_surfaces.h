@@ -9,34 +9,35 @@
 
 namespace octotomy::planner {
 
-/// A place where one surface comes near another one.
+/// A place at which one surface is near another one.
 struct Contact {
-  glm::dvec3 at_mm{0.0};           ///< of the first surface, where it is nearest or deepest
-  glm::dvec3 normal{0.0, 0, 1};    ///< of the first surface there, outward
-  double nearest_mm = 0.0;         ///< the least signed distance, negative where it overlaps
-  std::optional<double> area_mm2;  ///< of the first surface within the distance; none by voxels alone
-  std::optional<double>
-      voxel_nearest_mm;  ///< the voxel kernel's answer about that place; none if it has none
+  glm::dvec3 at_mm{0.0};                   ///< point of the first surface that is nearest or deepest
+  glm::dvec3 normal{0.0, 0, 1};            ///< outward normal of the first surface there
+  double nearest_mm = 0.0;                 ///< the least signed distance, negative if they overlap
+  std::optional<double> area_mm2;          ///< of the first surface within the distance; none by voxels alone
+  std::optional<double> voxel_nearest_mm;  ///< the voxel kernel's distance at that place; none if it has none
 };
 
 struct Contacts {
   std::vector<Contact> contacts;  ///< nearest first
-  glm::dvec3 nearest_at_mm{0.0};  ///< of all of the first surface
+  glm::dvec3 nearest_at_mm{0.0};  ///< nearest point of the whole first surface
   double nearest_mm = 0.0;        ///< there
-  double voxel_nearest_mm = 0.0;  ///< of the voxel kernel
+  double voxel_nearest_mm = 0.0;  ///< least distance by the voxel kernel
   bool by_mesh = false;           ///< the mesh kernel answered
 };
 
 struct ContactOptions {
-  double within_mm = 0.5;  ///< what is nearer is a contact
-  double apart_mm = 2.0;   ///< places nearer are one; at least half a voxel, of voxels alone a whole one
+  double within_mm = 0.5;  ///< points nearer than this are contacts
+  double apart_mm = 2.0;   ///< places nearer than this are merged; at least half a voxel, or a whole voxel
+                           ///< without meshes
 };
 
-/// Where one object comes near another one: by the triangles of both where both solids are given, else by
-/// voxels. Distances are signed, negative inside the other, at points half a voxel apart or nearer. Areas are
-/// of triangles, those that the distance passes through in part. Preconditions: neither octree is empty, both
-/// are of one universe; distances are positive. The same bits on any number of threads. Cost: a search in the
-/// other's tree for every vertex; a distance map over the first one's extents, 12 bytes a voxel.
+/// The places at which one object is near another one: by triangles if both solids are given, else by voxels.
+/// Distances are signed, negative inside the other, at points at most half a voxel apart. Areas are those of
+/// triangles, with partial areas where the distance limit crosses a triangle. Preconditions: neither octree
+/// is empty, both are of one universe; distances are positive. The same bits on any number of threads. Cost:
+/// a search in the other's tree for every vertex; a distance map over the first one's extents, 12 bytes per
+/// voxel.
 Contacts contacts_between(const voxel::Octree& one, const voxel::Octree& other,
                           const std::optional<brep::Solid>& solid_one,
                           const std::optional<brep::Solid>& solid_other, const ContactOptions& options);
@@ -51,15 +52,16 @@ double least_distance_mm(const brep::Solid& one, const brep::Solid& other, doubl
 /// A point of one surface that may come nearest to another one.
 struct NearPoint {
   glm::dvec3 p_mm{0.0};
-  glm::dvec3 away{0.0};      ///< unit, along which its distance grows fastest
+  glm::dvec3 away{0.0};      ///< unit vector along which its distance grows fastest
   double distance_mm = 0.0;  ///< signed
-  double area_mm2 = 0.0;     ///< of the surface that it stands for, seen along `away`
+  double area_mm2 = 0.0;     ///< area of the surface that it represents, seen along `away`
 };
-/// The nearest points of a surface to another one, those of each place, and all that overlap; a place is as
-/// wide as the spacing or, where there are more than some hundred, wider. Preconditions: neither is empty.
+/// The points of a surface nearest to another one, one for each cell of the spacing, and all that overlap.
+/// Cells are wider if there would be more than some hundred points. Preconditions: neither is empty.
 std::vector<NearPoint> near_points(const brep::Solid& one, const brep::Solid& other, double spacing_mm);
 
-/// Points of a surface within a radius about a place, no farther apart than the spacing, corners included.
+/// Points of a surface within a radius around a position, no farther apart than the spacing, corners
+/// included.
 std::vector<glm::dvec3> points_about(const brep::Solid& solid, const glm::dvec3& place_mm, double radius_mm,
                                      double spacing_mm);
 

@@ -20,8 +20,8 @@ Json levels_of(const std::vector<voxel::LevelCount>& counts) {
   return levels;
 }
 
-/// Full nodes of all levels, each the voxels of its cube: of a tree none of whose levels is Partial, 8^n are
-/// left to the root, which no level counts.
+/// The voxels of Full nodes on all levels. If no level has nodes, the root itself is Full, which no level
+/// counts.
 std::uint64_t voxels_of(const std::vector<voxel::LevelCount>& counts, int depth) {
   std::uint64_t voxels = 0;
   for (const voxel::LevelCount& count : counts) voxels += count.full << (3 * (depth - count.level));
@@ -100,7 +100,7 @@ Json doubts_of(const std::vector<voxel::Finding>& audit) {
 std::vector<std::string> told_doubts(const Json& answer) {
   constexpr std::size_t most = 32;
   std::vector<std::string> lines;
-  // The file may be of another program: nothing is promised of its metadata.
+  // The file may be from another program, so its metadata may have any form.
   const auto text_at = [](const Json& object, const char* key) {
     const bool has = object.is_object() && object.contains(key) && object[key].is_string();
     return has ? object[key].get<std::string>() : std::string();

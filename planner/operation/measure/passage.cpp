@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1. Ways through the voxels from the beginning, by Dijkstra over 26 neighbours.
-// 2. The middles of shells of equal way are the centre line; a Gaussian as wide as the passage smooths it.
-// 3. At even steps the plane square to the line is cut in both kernels; the part about the line is kept.
+// 1. Compute path lengths through the voxels from the beginning, by Dijkstra over 26 neighbours.
+// 2. The centres of shells of equal path length form the centre line; it is smoothed by a Gaussian as wide as
+// the passage.
+// 3. At even steps, cut the plane perpendicular to the line in both kernels and keep the part around the
+// line.
 #include "planner/operation/measure/passage.h"
 
 #include <algorithm>
@@ -46,7 +48,7 @@ class Ways {
     return best;
   }
 
-  /// The way from a voxel to every other one.
+  /// Computes the path length from a voxel to every other one.
   void walk_from(const glm::ivec3& start) {
     const glm::dmat3 axes(octree_.universe().lps_from_voxel);
     using Entry = std::pair<double, std::size_t>;
@@ -103,7 +105,7 @@ class Ways {
   std::vector<double> ways_mm_;
 };
 
-/// Middles of shells of equal way, and the passage's mean width along them.
+/// Centres of shells of equal path length, and the passage's mean width along them.
 struct RawLine {
   std::vector<glm::dvec3> points_mm;
   double apart_mm = 1.0, width_mm = 1.0;
@@ -138,8 +140,8 @@ RawLine raw_line(const voxel::Octree& octree, const glm::dvec3& from_mm, const g
   return line;
 }
 
-/// The weighted line of best fit about each point, by a Gaussian: point and direction, without the pull
-/// inwards that plain means have at ends.
+/// The line of best fit around each point, weighted by a Gaussian: point and direction. Unlike plain means,
+/// it is not shifted inwards at the ends.
 struct Station {
   glm::dvec3 at_mm{0.0}, direction{0.0};
 };
@@ -156,7 +158,7 @@ Station fitted(const RawLine& line, double place) {
   return {(w2 * p0 - w1 * p1) / determinant, glm::normalize((w0 * p1 - w1 * p0) / determinant)};
 }
 
-/// The part of a voxel section about its middle.
+/// Adds the part of a voxel section around its middle.
 void cut_voxels(const voxel::Octree& octree, const brep::Plane& plane, double reach_mm,
                 PassageSection& made) {
   const glm::dvec3 spacing_mm = octree.universe().lattice().spacing_mm();
@@ -173,7 +175,7 @@ void cut_voxels(const voxel::Octree& octree, const brep::Plane& plane, double re
   const auto at = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x);
   };
-  // The nearest pixel inside: the line may pass beside a thin or bent section.
+  // Starts from the nearest pixel inside, because the line may miss a thin or bent section.
   std::optional<glm::ivec2> seed;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x)
@@ -200,11 +202,12 @@ void cut_voxels(const voxel::Octree& octree, const brep::Plane& plane, double re
     }
   }
   made.voxel_mm2 = static_cast<double>(pixels) * sheet.pixel_mm * sheet.pixel_mm;
-  // Pixels' edges overstate a round outline by 4 / pi.
+  // Pixels' edges overestimate a round outline by 4 / pi.
   made.perimeter_mm = static_cast<double>(edges) * sheet.pixel_mm * std::numbers::pi / 4.0;
 }
 
-/// Of a mesh's section: the contour about the middle, or else the nearest, without the holes in it.
+/// The area of a mesh's section: of the contour around the middle, or else of the nearest one, minus its
+/// holes.
 std::optional<double> cut_mesh(const brep::Solid& solid, const brep::Plane& plane) {
   const brep::CrossSection section = brep::cross_section(solid, plane);
   const brep::Contour* about = nullptr;
@@ -265,8 +268,8 @@ Passage passage(const voxel::Octree& octree, const std::optional<brep::Solid>& s
 
 HalfWidth section_half_width(const PassageSection& section, const Digitised& digitised) {
   HalfWidth width;
-  // 99 % of a normal distribution lie within so many deviations; a place within a step has a twelfth of its
-  // square as variance.
+  // 99 % of a normal distribution are within 2.576 deviations; a uniform position within a step has a twelfth
+  // of the step's square as variance.
   const auto add_steps = [&](const char* name, const glm::dvec3& step_mm) {
     const double h = std::max({step_mm.x, step_mm.y, step_mm.z});
     width.terms.push_back(

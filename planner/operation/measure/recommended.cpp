@@ -44,7 +44,8 @@ verify::SizeIntervals intervals_of_one(const brep::Solid& solid, const SurfaceSa
   from.sample_at_mm = glm::dvec3(lps_from_scan[3]);
   from.window_shift_mm = samples.window_shift_mm;
   from.along_lps_mm = samples.along_lps_mm;
-  // Between two bounds samples rise and fall again, which shows no blur: seven tenths of a sample are usual.
+  // In a window with two bounds samples rise and fall again, so the blur cannot be measured; assumes the
+  // usual 0.7 samples.
   constexpr double usual_blur2 = 0.5;
   if (samples.has_upper()) {
     from.blur_samples2 = usual_blur2;
@@ -56,7 +57,7 @@ verify::SizeIntervals intervals_of_one(const brep::Solid& solid, const SurfaceSa
     double coarsest = 0.0;
     for (int axis = 0; axis < 3; ++axis)
       coarsest = std::max(coarsest, voxel_mm[axis] / glm::length(from.sample_edges[axis]));
-    // Voxels between samples were interpolated once before.
+    // Voxels between samples were already interpolated once.
     const double interpolation = samples.voxels_are_samples ? 1.0 / 6.0 : (1.0 + coarsest * coarsest) / 6.0;
     from.blur_samples2 = verify::blur_of(solid, from.sample_edges,
                                          sampler_of(*samples.grey, samples.moved_from_still), interpolation);
@@ -64,9 +65,9 @@ verify::SizeIntervals intervals_of_one(const brep::Solid& solid, const SurfaceSa
   return verify::size_intervals(solid, from);
 }
 
-/// The shares of the surface that the sources show: of each face among some thousand, the source in whose
-/// samples it lies nearest to a bound of the window, as far as that is within a sample. A face further off is
-/// a cut's. Equal shares where all are.
+/// The shares of the surface that belong to each source. Each of a few thousand faces is assigned to the
+/// source in whose samples it is nearest to a bound of the window, if within a sample. Other faces are cuts.
+/// If all are cuts, shares are equal.
 std::vector<double> shares_of(const brep::Solid& solid, const std::vector<SurfaceSamples>& sources) {
   constexpr std::size_t most_faces = 2000;
   std::vector<double> shares(sources.size(), 0.0);
@@ -168,7 +169,7 @@ void add_counting(double doubt_mm3, verify::SizeIntervals& found) {
   volume.sources.push_back(
       {"samples", "2.8 of Gundersen and Jensen's deviation, 3 * 0.26 v sqrt(F)", doubt_mm3});
   if (!(volume.value > 0.0)) return;
-  // Sections that miss part of an object miss its surface, too.
+  // Sections that miss part of an object's volume also miss its surface.
   const double missed_mm2 = area.value * doubt_mm3 / volume.value;
   area.half_width += missed_mm2;
   area.sources.push_back({"samples", "S of the volume's share in doubt", missed_mm2, true});
@@ -181,7 +182,7 @@ verify::SizeIntervals intervals_of_labels(const voxel::Scene& scan, double low, 
   by_surface.volume_mm3 = {counted_mm3, 0.0, {}};
   add_counting(counting_doubt_mm3(scan, low, high), by_surface);
   if (!(counted_mm3 > 0.0)) return by_surface;
-  // Triangles that lose part of what samples count lose its surface.
+  // Triangles that lose part of the counted volume also lose its surface.
   const double lost_mm2 = by_surface.area_mm2.value * lost_mm3 / counted_mm3;
   by_surface.area_mm2.half_width += lost_mm2;
   by_surface.area_mm2.sources.push_back({"surface", "S of the share that triangles lose", lost_mm2, true});
@@ -209,8 +210,8 @@ void add_thickness(const Thickness& thickness, double share, verify::SizeInterva
   add(found.volume_mm3, "thickness", "|V - V of samples twice as thick|",
       share * std::abs(thickness.volume_change_mm3));
   add(found.volume_mm3, "border", "half a sample beyond the scan's border", share * thickness.border_mm3);
-  // What every doubling takes by this share was larger by its inverse; below a quarter nothing is left to
-  // conclude from.
+  // If each doubling of the thickness leaves this share, the original was larger by its inverse. Below a
+  // quarter the estimate is meaningless.
   const double kept = std::max(1.0 + thickness.area_change_share, 0.25);
   add(found.area_mm2, "thickness", "|S / S of samples twice as thick - 1| S",
       std::max(kept, 1.0 / kept) * found.area_mm2.value - found.area_mm2.value);
@@ -268,7 +269,8 @@ verify::SizeIntervals intervals_of_count(const voxel::Measures& measures, const 
   const double area_mm2 = measures.area_crofton13_mm2 + glm::dot(digitised.flat_mm2, 1.0 - shares);
   const double oblique_mm2 =
       (1.0 - std::min({shares.x, shares.y, shares.z})) * std::max(area_mm2 - flat_mm2, 0.0);
-  // A flat part that is half an edge off takes that from the walls around it; parts count as two squares.
+  // If a flat part is displaced by half an edge, the walls around it change by that; parts are assumed to be
+  // two squares.
   const double rims_mm2 = 4.0 * glm::dot(glm::sqrt(0.5 * digitised.flat_mm2), digitised.voxel_mm);
   HalfWidth area{std::hypot(oblique_mm2, rims_mm2),
                  {{"directions", "(1 - least share of a plane seen) (S - flats)", oblique_mm2},

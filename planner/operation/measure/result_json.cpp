@@ -6,7 +6,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// JSON knows no infinity: a number that is none is null.
+/// JSON has no infinity and no NaN; these become null.
 Json finite(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -237,7 +237,7 @@ Json to_json(const Object& object) {
 
 namespace {
 
-/// As DICOM states it; null where the file does not.
+/// The identity as in DICOM; null for values that the file does not state.
 Json identity_json(const voxel::Identity& identity) {
   const auto or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
   const auto first = [](const std::vector<std::string>& uids) {

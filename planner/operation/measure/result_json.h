@@ -11,15 +11,15 @@
 #include "voxel/measure/measure.h"
 #include "voxel/space/scene.h"
 
-// What the program answers as JSON. Keys end in their unit; a number that is missing is null.
+// The program's answers as JSON. Keys end in their unit; a missing number is null.
 namespace octotomy::planner {
 
-/// {"octotomy": version, "timings_ms": {...}}: what every answer begins with.
+/// {"octotomy": version, "timings_ms": {...}}: the beginning of every answer.
 Json answer(const Timings& timings);
 
 Json to_json(const glm::dvec3& value);
 Json to_json(const std::optional<glm::dvec3>& value);
-/// Row by row.
+/// A matrix row by row.
 Json to_json(const glm::dmat3& matrix);
 Json to_json(const glm::dmat4& matrix);
 Json to_json(const std::vector<voxel::Finding>& audit);
@@ -33,10 +33,10 @@ Json to_json(const HalfWidth& width);
 Json to_json(const ScanRecord& scan);
 Json to_json(const Object& object);
 
-/// A scan's geometry, range and audit, as `info` says it.
+/// A scan's geometry, range and audit, as printed by `info`.
 Json scan_answer(const voxel::Scene& scene, const Timings& timings);
 
-/// "PASS", "WARN" or "FAIL" of an audit's line.
+/// The verdict of an audit's line: "PASS", "WARN" or "FAIL".
 using verify::to_string;
 
 inline constexpr const char* voxel_area_estimator = "Crofton formula, 13 directions";

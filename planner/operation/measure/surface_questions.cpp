@@ -46,7 +46,7 @@ Json box_json(const brep::Mesh& mesh) {
           {"volume_mm3", box.volume_mm3()}};
 }
 
-/// Area-weighted; all null where nothing is known.
+/// Area-weighted statistics; all null if there are no values.
 Json summary(std::vector<std::pair<double, double>> value_and_area, const std::string& unit) {
   const auto key = [&](const char* what) { return std::string(what) + "_" + unit; };
   Json json;
@@ -95,7 +95,7 @@ std::vector<brep::Thickness> thickness_of(const voxel::Progress& progress, const
   return brep::thickness(solid, points, options);
 }
 
-/// At vertices, where a picture shows it.
+/// Computes the thickness at vertices, where a picture shows it.
 Json thickness_json(const voxel::Progress& progress, const brep::Solid& solid, AtVertices& shown) {
   const brep::Mesh& mesh = solid.mesh();
   const brep::Curvature surface = brep::curvature(mesh);

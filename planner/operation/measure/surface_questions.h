@@ -11,7 +11,7 @@
 
 namespace octotomy::planner {
 
-/// What can be asked of a closed surface beyond its size.
+/// Measures of a closed surface besides its size.
 struct SurfaceQuestions {
   std::vector<glm::dvec3> section = {};   ///< a point and a normal
   std::vector<glm::dvec3> distance = {};  ///< two points
@@ -27,12 +27,12 @@ struct AtVertices {
   std::vector<double> values;
 };
 
-/// Answers them, each under a key of its own and timed; `shown` becomes the last of thickness and curvature.
-/// Throws std::runtime_error where an angle has no leg.
+/// Computes the measures, each under its own key and timed. Sets `shown` to the last of thickness and
+/// curvature. Throws std::runtime_error if a leg of an angle has no length.
 Json surface_answers(const SurfaceQuestions& questions, const brep::Solid& solid,
                      const voxel::Progress& progress, Timings& timings, AtVertices& shown);
 
-/// The answers that are there, as rows for people.
+/// The existing answers as rows of text.
 std::vector<std::pair<std::string, std::string>> surface_rows(const Json& answers);
 
 }  // namespace octotomy::planner

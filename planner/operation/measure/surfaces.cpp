@@ -28,7 +28,7 @@ struct Surfaces {
   fs::path path;
   std::vector<int> labels;
   int smooth = convert::LabelSurfaceOptions{}.smooth_voxels;
-  // Of the verb.
+  // Options of the verb only.
   fs::path out, names;
 };
 
@@ -41,10 +41,10 @@ void check(const Surfaces& surfaces, const Place& place) {
       place.at("labels").refuse("a label is from 1 to " + std::to_string(voxel::most_label));
 }
 
-/// Of labels.
+/// Names of labels.
 using Names = std::map<int, std::string>;
 
-/// What `work` makes of a scene; refuses a scene that is no label map.
+/// Calls `work` with a scene; refuses a scene that is not a label map.
 template <typename Work>
 auto of_label_map(const voxel::Scene& scene, const Work& work) {
   try {
@@ -54,7 +54,7 @@ auto of_label_map(const voxel::Scene& scene, const Work& work) {
   }
 }
 
-/// The names of the labels that have a surface; "label 5" where the table has none.
+/// The names of the labels that have a surface; "label 5" if the table has none.
 Names names_of(const Surfaces& asked, const voxel::Scene& scene, const LabelTable& table) {
   const std::set<int> wanted(asked.labels.begin(), asked.labels.end());
   Names names;
@@ -100,7 +100,7 @@ Sizes sizes_of(const brep::PartedSurface& parted) {
   Sizes sizes;
   for (std::size_t f = 0; f < parted.sides.size(); ++f) {
     const auto& [a, b, c] = parted.triangles.faces[f];
-    // About the first point, as six times a volume far from the origin loses digits.
+    // Sums relative to the first point, because volumes far from the origin lose digits.
     const glm::dvec3 &origin = parted.triangles.points_mm[0], p = parted.triangles.points_mm[a] - origin,
                      q = parted.triangles.points_mm[b] - origin, r = parted.triangles.points_mm[c] - origin;
     const double volume_mm3 = glm::dot(glm::cross(p, q), r) / 6.0,
@@ -137,8 +137,8 @@ Json parted_json(const brep::PartedSurface& made, const Sizes& sizes, const voxe
   return json;
 }
 
-/// Parts whose surface holds another volume than their samples: layers between others, which are thin.
-/// Before them the files that are no table of names, and labels stored with a fraction.
+/// Findings on files that are not a table of names, on labels stored with a fraction, and on parts whose
+/// surface encloses another volume than their samples, which are thin layers between others.
 std::vector<std::string> findings_of(const Json& json, const LabelTable& table, const voxel::Scene& scene) {
   constexpr double told_share = 0.1;
   constexpr std::size_t most_told = 8;
@@ -161,7 +161,7 @@ std::vector<std::string> findings_of(const Json& json, const LabelTable& table, 
   return findings;
 }
 
-/// The name as part of a file's: letters, digits, dots and dashes, in any writing.
+/// The name as part of a file name: letters of any script, digits, dots and dashes.
 std::string file_word(const std::string& name) {
   std::string word;
   for (const char letter : name) {
@@ -171,8 +171,8 @@ std::string file_word(const std::string& name) {
   return word;
 }
 
-/// A file a part: `out` with the part's name in place of {name}. Two parts of one name have their numbers,
-/// too.
+/// One file per part: `out` with the part's name in place of {name}. Parts with the same name also get their
+/// numbers.
 std::map<int, fs::path> files_of_parts(const Names& names, const fs::path& out) {
   std::map<int, fs::path> files;
   std::set<std::string> used;
@@ -190,7 +190,7 @@ bool is_of_parts(const fs::path& out) {
   return out.filename().string().find(name_mark) != std::string::npos;
 }
 
-/// The files that the verb writes; refuses those that nobody typed and that cannot be written.
+/// The files that the verb writes; refuses generated names that cannot be written.
 std::vector<fs::path> need_files(const Surfaces& asked, const Names& names) {
   if (!is_of_parts(asked.out)) return {asked.out};
   std::vector<fs::path> files;

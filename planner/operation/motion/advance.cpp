@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A piece moved in one direction until it meets another one, or up to a gap before. The distance is settled
-// first, on voxels, so that both kernels move by the same one.
+// SPDX-License-Identifier: AGPL-3.0-or-later Moves a piece in one direction until it touches another one, or
+// until a gap remains. The distance is determined first, on voxels, so that both kernels use the same
+// distance.
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -19,7 +19,7 @@ struct Advance {
   std::optional<std::string> towards;
   std::optional<glm::dvec3> direction;
   double gap_mm = 0.0, most_mm = 30.0;
-  // Settled.
+  // Determined before the kernels run.
   double contact_after_mm = 0.0;
   glm::dmat4 moved_from_still{1.0};
   std::optional<glm::dvec3> contact_mm;

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The mandible turned about its condyles to first contact. The angle is settled first, on voxels, so that
-// both kernels turn by the same one.
+// SPDX-License-Identifier: AGPL-3.0-or-later Rotates the mandible about its condyles until first contact. The
+// angle is determined first, on voxels, so that both kernels use the same angle.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,14 +18,14 @@ struct Autorotate {
   ObjectName object, against;
   std::vector<Mark> condyles;
   double most_deg = 15.0;
-  // Settled.
+  // Determined before the kernels run.
   double closed_deg = 0.0;
   glm::dmat4 moved_from_still{1.0};
   std::optional<glm::dvec3> contact_mm;
 };
 
-/// The turn about the axis from the left condyle to the right one, which is right-handed where the front goes
-/// up.
+/// The rotation about the axis from the left condyle to the right one. A positive angle is right-handed and
+/// moves the front upwards.
 glm::dmat4 turn(const std::array<glm::dvec3, 2>& right_left_mm, double degrees) {
   voxel::Motion motion;
   motion.degrees = degrees;

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// How the head is held: the directions that views, and words as "forward", mean in all later steps.
+// SPDX-License-Identifier: AGPL-3.0-or-later The position of the head. It defines the directions of views,
+// and of words such as "forward", for all later steps.
 #include <cmath>
 
 #include "planner/operation/anatomy/head_directions.h"
@@ -13,8 +13,8 @@ struct HeadPosition {
   double pitch_deg = 0.0, yaw_deg = 0.0, roll_deg = 0.0;
 };
 
-/// The shortest side of a triangle of landmarks that still fixes a plane: landmarks are placed to about a
-/// millimetre, which over ten turns the plane by six degrees.
+/// The shortest side of a triangle of landmarks that determines a plane well enough. Landmarks are placed to
+/// about 1 mm, and 1 mm over 10 mm tilts the plane by 6 degrees.
 constexpr double shortest_mm = 10.0;
 
 glm::dvec3 direction(const glm::dvec3& vector, const Place& place, const char* of) {
@@ -38,7 +38,7 @@ glm::dmat3 of_frankfort(const std::vector<Mark>& marks, const Place& place) {
   return {to_left, -forward, glm::cross(forward, to_left)};
 }
 
-/// The frame turned about its own up, so that its mid-plane lies along the points.
+/// The frame rotated about its own up axis, so that its mid-plane is parallel to the line of the points.
 glm::dmat3 along_midline(const glm::dmat3& frame, const std::vector<Mark>& marks, const Place& place) {
   // The mean direction between points, without its part along up: longer differences count for more.
   const glm::dvec3 up = frame[2];
@@ -63,7 +63,8 @@ void check(const HeadPosition& position, const Place& place) {
   if (!position.frankfort.empty()) frame = of_frankfort(position.frankfort, place.at("frankfort"));
   if (!position.midline.empty()) frame = along_midline(frame, position.midline, place.at("midline"));
   const Turns held{position.pitch_deg, position.yaw_deg, position.roll_deg};
-  // The head as it is held, seen from the room: what was along the frame is turned.
+  // The fields state the head's rotation relative to the room, so the frame is multiplied by the inverse
+  // rotation.
   frame = frame * glm::transpose(rotation_of(held, glm::dmat3(1.0)));
   if (place.scope != nullptr) place.scope->hold_head(place.where, frame);
 }

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// An object's mirror image about a plane: one that is given, or the one that fits the object's mesh best. A
-// fit is settled first, so that both kernels mirror about the same plane.
+// SPDX-License-Identifier: AGPL-3.0-or-later An object's mirror image about a plane: a stated plane, or the
+// plane that fits the object's mesh best. A fit runs first, so that both kernels mirror about the same plane.
 #include "brep/align/mirror.h"
 
 #include <array>
@@ -24,13 +23,13 @@ struct Mirror {
   double overlap = brep::MirrorFitOptions{}.overlap;
   int rounds = brep::MirrorFitOptions{}.max_rounds;
   std::optional<double> rest_mm;
-  // Of the verb.
+  // Of the command only.
   std::vector<glm::dvec3> plane;
   bool exactly = false;
   std::filesystem::path out;
 };
 
-/// The plane as it is given; the patient's mid-plane where it is not.
+/// The stated plane; the patient's mid-plane where none is stated.
 brep::MirrorPlane plane_of(const Mirror& mirror) {
   return {mirror.point_mm.value_or(glm::dvec3(0.0)),
           glm::normalize(mirror.normal.value_or(glm::dvec3(1, 0, 0)))};
@@ -47,7 +46,7 @@ brep::MirrorFit fit(const brep::Mesh& mesh, const Mirror& mirror, const voxel::P
   return brep::fit_mirror_plane(mesh, options);
 }
 
-/// What is told of a fit; null values where there was none.
+/// The results of a fit; null values where none ran.
 Json fit_json(const brep::MirrorPlane& plane, const std::optional<brep::MirrorFit>& found) {
   const auto of_fit = [&](double brep::MirrorFit::*value) {
     return found ? Json((*found).*value) : Json(nullptr);
@@ -72,10 +71,10 @@ void check(const Mirror& mirror, const Place& place) {
     place.at("through").refuse("says the plane, as 'point_mm' and 'normal' do: keep one of the two");
 }
 
-/// The plane through three marks. Throws std::runtime_error where they stand on one line.
+/// Stores the plane through three marks. Throws std::runtime_error where they are collinear.
 void take_plane_through(const std::array<glm::dvec3, 3>& p_mm, Mirror& mirror) {
   const glm::dvec3 a = p_mm[1] - p_mm[0], b = p_mm[2] - p_mm[0], across = glm::cross(a, b);
-  // A hundredth of the sides is a tenth of a millimetre in ten, which nobody places better.
+  // 1/100 of the sides is 0.1 mm in 10 mm. Nobody places marks more precisely.
   if (!(glm::length(across) > 0.01 * glm::length(a) * glm::length(b)))
     throw std::runtime_error(
         "the three points of 'through' stand on one line: take one that is farther off it");
@@ -129,8 +128,7 @@ void triangles(const Mirror& mirror, const MeshBench& bench, MeshSide& made) {
 
 void bound(const Mirror& mirror, const BoundBench& bench, Object& made) {
   carry(mirror.object.name, reflection_of(mirror), bench, made);
-  // A mirror image has not moved: nothing in a deck takes it along, and no picture shows it as the same
-  // piece.
+  // A mirror image is not a moved object: no deck moves with it, and no picture shows it as the same piece.
   made.moved.reset();
   made.shown.reset();
 }

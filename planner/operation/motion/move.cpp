@@ -1,8 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A rigid motion. A motion is said in one of four ways:
+// SPDX-License-Identifier: AGPL-3.0-or-later A rigid motion, stated in one of four ways:
 //   a turn, then a translation: numbers in LPS, in words of the head, or from one mark to another;
-//   points and where each is wanted (Ong 1992, 8.3);
-//   a matrix, as register tells it;
+//   points and their target positions (Ong 1992, 8.3);
+//   a matrix, as `register` prints it;
 //   the motion of an earlier step.
 #include "planner/operation/motion/move.h"
 
@@ -94,7 +93,7 @@ glm::dmat4 about_point(const glm::dmat3& turn, const glm::dvec3& p_mm) {
   return motion;
 }
 
-/// The turn about its own axis or pivot.
+/// The rotation about the move's own axis or pivot.
 glm::dmat4 turn_of(const Move& move, const MarkPlaces& places) {
   if (move.turn)
     return about_point(rotation_of(*move.turn, places.lps_from_head), places.mark_mm(move.turn->about_mm));
@@ -111,7 +110,7 @@ glm::dmat4 turn_of(const Move& move, const MarkPlaces& places) {
   return voxel::moved_from_still(motion);
 }
 
-/// Throws std::invalid_argument where points or an axis leave the motion open.
+/// Throws std::invalid_argument where points or an axis do not determine the motion.
 glm::dmat4 motion_of(const Move& move, const MarkPlaces& places) {
   if (move.matrix) return *move.matrix;
   if (move.with) return places.motion_of(move.with->name);
@@ -121,7 +120,7 @@ glm::dmat4 motion_of(const Move& move, const MarkPlaces& places) {
   if (move.by) by_mm += lps_mm(*move.by, directions_of(move, places));
   if (move.from) by_mm += places.mark_mm(*move.to) - places.mark_mm(*move.from);
   if (!is_turned(move) || (move.rotate && move.rotate->through.empty())) {
-    // One call, so that a plan of numbers alone keeps its bits.
+    // One call, so that the results of plans with numbers only stay the same to the bit.
     voxel::Motion motion;
     motion.translate_mm = by_mm;
     if (move.rotate) {
@@ -134,7 +133,7 @@ glm::dmat4 motion_of(const Move& move, const MarkPlaces& places) {
   return glm::translate(glm::dmat4(1.0), by_mm) * turn_of(move, places);
 }
 
-/// The largest part by which a matrix may miss a rigid motion: its numbers are copied with six decimals.
+/// The largest deviation of a matrix from a rigid motion: its numbers are copied with six decimals.
 constexpr double rigid_to = 1e-5;
 
 void check_matrix(const glm::dmat4& matrix, const Place& place) {
@@ -188,7 +187,7 @@ void check(const Move& move, const Place& place) {
                               "', which moves nothing: name the result of a step that moves an object");
     return;
   }
-  // What depends on earlier steps' motions is known once those are.
+  // Marks that move with objects are known only when the earlier motions are.
   std::vector<Mark> marks{move.from.value_or(Mark{}), move.to.value_or(Mark{})};
   if (move.turn) marks.push_back(move.turn->about_mm);
   if (move.rotate) marks.push_back(move.rotate->about_mm);
@@ -240,7 +239,7 @@ void triangles(const Move& move, const MeshBench& bench, MeshSide& made) {
   move_triangles(move.object.name, motion_of(move, places_of(bench.objects)), bench, made);
 }
 
-/// Where each point was wanted, where it comes, and what is left between.
+/// Each point's target, its position after the motion, and the remaining distance.
 Json points_json(const Move& move, const Objects& objects) {
   const std::vector<WantedPoint> wanted = wanted_points(move, places_of(objects));
   const PointMotion found = motion_of_points(wanted, fit_of(move));

@@ -33,12 +33,12 @@ struct Occlude {
   double deepest_mm = 0.0;
 };
 
-/// Contacts are no surer than a part of a voxel; the search ends below that.
+/// The tolerance: contacts are not more precise than a fraction of a voxel.
 double tolerance_mm(const Object& object) {
   return 0.02 * voxel_mm(object);
 }
 
-/// A surface's points about a wanted place.
+/// A surface's points around a target contact.
 struct Seat {
   glm::dvec3 place_mm;
   std::vector<glm::dvec3> points_mm;
@@ -56,8 +56,8 @@ glm::dvec3 direction_of(const std::string& word, const glm::dmat3& lps_from_head
   return lps_mm(by, lps_from_head);
 }
 
-/// The small rigid motion that displaces each place along the direction by its distance, in least squares; of
-/// those that do, the one that turns least.
+/// The small rigid motion that displaces each place along the direction by its distance, in least squares. Of
+/// several, it is the one with the smallest rotation.
 glm::dmat4 step_of(const std::vector<glm::dvec3>& places_mm, const std::vector<double>& distances_mm,
                    const glm::dvec3& along) {
   glm::dvec3 middle(0.0);
@@ -65,7 +65,8 @@ glm::dmat4 step_of(const std::vector<glm::dvec3>& places_mm, const std::vector<d
   for (std::size_t i = 0; i < places_mm.size(); ++i)
     middle += places_mm[i] / static_cast<double>(places_mm.size()),
         lift += distances_mm[i] / static_cast<double>(places_mm.size());
-  // Slopes across the direction: a 2 x 2 system, which a small ridge keeps solvable where places are in line.
+  // The slopes across the direction: a 2 x 2 system. A small ridge term makes it solvable where the places
+  // are collinear.
   const glm::dvec3 u =
       glm::normalize(glm::cross(along, std::abs(along.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
   const glm::dvec3 v = glm::cross(along, u);
@@ -80,7 +81,7 @@ glm::dmat4 step_of(const std::vector<glm::dvec3>& places_mm, const std::vector<d
   const glm::dvec2 slope = glm::inverse(normal + glm::dmat2(ridge)) * right;
   const glm::dvec3 turn = glm::cross(slope.x * u + slope.y * v, along);
   glm::dmat4 motion = glm::translate(glm::dmat4(1.0), lift * along);
-  // A place that stands far out turns it no more than a tenth at once.
+  // A place far from the others would cause a large rotation. One step rotates by at most 0.1 rad.
   if (const double angle = glm::length(turn); angle > 1e-12)
     motion = motion * glm::translate(glm::dmat4(1.0), middle) *
              glm::rotate(glm::dmat4(1.0), std::min(angle, 0.1), turn / angle) *

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// An object laid on another one by a rigid motion, which is found by surfaces, named landmarks or both. The
-// motion is settled first, so that both kernels move by the same one.
+// SPDX-License-Identifier: AGPL-3.0-or-later Registers an object to another one by a rigid motion, from
+// surfaces, named landmarks or both. The motion is determined first, so that both kernels use the same
+// motion.
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
@@ -28,11 +28,11 @@ struct Register {
   int samples = static_cast<int>(brep::SurfaceFitOptions{}.samples);
   int rounds = brep::SurfaceFitOptions{}.max_rounds;
   std::optional<double> rest_mm;
-  std::filesystem::path out;         ///< of the verb
-  glm::dmat4 onto_from_object{1.0};  ///< settled
+  std::filesystem::path out;         ///< of the command only
+  glm::dmat4 onto_from_object{1.0};  ///< determined before the kernels run
 };
 
-/// The motion that was found, and what is told of it.
+/// The resulting motion, with its results for the report.
 struct Laid {
   glm::dmat4 onto_from_object{1.0};
   double rms_mm = 0.0;
@@ -40,7 +40,7 @@ struct Laid {
   std::vector<std::string> findings = {};
 };
 
-/// The turn of a motion, its scale aside.
+/// The rotation of a motion, without its scale.
 struct Turn {
   double degrees = 0.0;
   glm::dvec3 axis{0, 0, 1};
@@ -48,7 +48,7 @@ struct Turn {
 Turn turn_of(const glm::dmat4& motion) {
   glm::dmat3 m(motion);
   for (int k = 0; k < 3; ++k) m[k] = glm::normalize(m[k]);
-  // Twice the sine along the axis; near a half turn the quaternion keeps digits that it has not.
+  // From the quaternion: the matrix's antisymmetric part loses digits near a half turn.
   const glm::dquat q = glm::normalize(glm::quat_cast(m));
   const glm::dvec3 v = q.w < 0.0 ? -glm::dvec3(q.x, q.y, q.z) : glm::dvec3(q.x, q.y, q.z);
   const double sine = glm::length(v);
@@ -62,10 +62,11 @@ bool is_json(const std::filesystem::path& path) {
   return is_landmarks_file(path);
 }
 
-/// Why the landmarks may be mirrored; none where they are not. Three points have no sides.
+/// The reason why the landmarks may be mirrored; none where they are not. Three points cannot show it: they
+/// are congruent to their mirror image.
 std::optional<std::string> mirrored(std::vector<brep::Landmark> moving,
                                     const std::vector<brep::Landmark>& fixed, const brep::LandmarkFit& fit) {
-  constexpr double most_mm = 3.0;  // hands place landmarks so on a head
+  constexpr double most_mm = 3.0;  // the error of landmarks placed by hand on a head
   if (fit.rms_mm <= most_mm) return std::nullopt;
   for (brep::Landmark& mark : moving) mark.p_mm.x = -mark.p_mm.x;
   const double rms_mm = brep::register_landmarks(moving, fixed, brep::Motion::similarity).rms_mm;
@@ -97,11 +98,11 @@ Laid by_landmarks(const std::filesystem::path& moving, const std::filesystem::pa
   return laid;
 }
 
-/// Refines `laid`, or searches where nothing is laid yet.
+/// Refines the motion in `laid`, or searches for one where there is none yet.
 void by_surfaces(const brep::Mesh& moving, const brep::Mesh& fixed, const Register& asked, bool is_laid,
                  const voxel::Progress& progress, Timings& timings, Laid& laid) {
   if (asked.motion == "similarity")
-    throw std::runtime_error("surfaces are registered rigidly; a similarity takes --landmarks-only");
+    throw std::runtime_error("surfaces are registered rigidly; a similarity needs --landmarks-only");
   const Stopwatch watch(timings, "register");
   brep::SurfaceFitOptions options;
   if (is_laid) options.start = laid.onto_from_object;
@@ -169,7 +170,7 @@ void bound(const Register& asked, const BoundBench& bench, Object& made) {
   carry(asked.object.name, asked.onto_from_object, bench, made);
 }
 
-/// The mesh at its new place; a similarity's scale too.
+/// Writes the mesh at its new position, with a similarity's scale.
 void write_moved(const Register& asked, const glm::dmat4& moved_from_still, Timings& timings) {
   brep::Mesh mesh = read_surface(asked.object.name, timings);
   for (const auto v : mesh.vertices()) {

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// An object moved as a solved deck moved: the face after the operation. Only the mesh kernel moves by a field
-// of displacements; its answer is voxelised, and has no certificate of its own.
+// SPDX-License-Identifier: AGPL-3.0-or-later Moves an object by the displacements of a solved deck: the face
+// after the operation. Only the mesh kernel applies a field of displacements; its result is digitised, and
+// therefore has no certificate of its own.
 #include <algorithm>
 
 #include "convert/deck/calculix_result.h"
@@ -22,7 +22,7 @@ struct Warp {
   std::filesystem::path result, out;
 };
 
-/// The displacements of a solved deck, and what is told of them.
+/// The displacements of a solved deck, with their results for the report.
 struct Displaced {
   convert::DisplacementField field;
   Json details;

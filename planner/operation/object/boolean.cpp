@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The Boolean of meshes in files, by corefinement; in a plan it is combine's mesh kernel.
+// SPDX-License-Identifier: AGPL-3.0-or-later The Boolean of meshes in files, by corefinement. In a plan, the
+// mesh kernel of `combine` does this.
 #include "brep/boolean/boolean.h"
 
 #include "brep/boolean/exact_boolean.h"
@@ -22,7 +22,7 @@ struct Boolean {
   std::filesystem::path out;
 };
 
-/// What the proof says, and the mesh in place of the result's.
+/// The proof as JSON. Replaces the result's solid by the proven mesh.
 Json proven(const FileBench& bench, const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
             brep::BooleanResult& result) {
   const voxel::Progress progress = bench.progress("exact");
@@ -75,7 +75,7 @@ FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
       proof = proven(bench, operands[0], operation, operands[1], result);
     else
       result = brep::boolean(operands, operation, bench.stop);
-    // What rounded points make nothing of may only be thinner than their rounding.
+    // An empty result may be due to rounding: a body thinner than the rounding of points vanishes.
     if (!asked.exact && result.solid.empty() && operands.size() == 2 &&
         boxes_meet(operands[0], operands[1])) {
       proof = proven(bench, operands[0], operation, operands[1], result);
@@ -121,8 +121,8 @@ Operation boolean_operation() {
                    "Further meshes: all are united, intersected, or taken from the first."))
       .takes(field("exact", &Boolean::exact,
                    "New points as exact numbers, and proof that the volumes add up as rationals; slower."))
-      .takes(field("mend", &Boolean::mend,
-                   "Meshes that are no solids are mended first, as repair --solid does."))
+      .takes(
+          field("mend", &Boolean::mend, "Repair meshes that are not solids first, as repair --solid does."))
       .takes(field("out", &Boolean::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.").required())
       .example(
           R"({"id": "rest", "do": "boolean", "a": "skull", "op": "difference", "b": "cut",

@@ -11,8 +11,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// The witness ends with the universe, as the answers have been cut there. Booleans on the way may have moved
-/// surfaces.
+/// The witness is cut at the universe's border, as both results were. It is loosened by the distance that
+/// Booleans may have moved surfaces.
 verify::Witness within_universe(const Object& made) {
   const voxel::Box world = voxel::bounds(made.voxel.octree.universe().lattice());
   const verify::Witness within = verify::both(made.witness, verify::witness_of_box(world));
@@ -36,7 +36,7 @@ void certify(Object& made, const std::string& title, const voxel::Progress& prog
   inputs.operation = title;
   inputs.voxel_lineage = made.voxel.lineage;
   inputs.mesh_lineage = made.mesh.lineage;
-  // What verbs make of files has not been measured.
+  // Objects that commands make from files have no measures yet.
   if (made.voxel.measures.voxel_count > 0 &&
       made.voxel.measures.voxel_count == made.voxel.octree.voxel_count())
     inputs.voxel_measures = made.voxel.measures;

@@ -8,7 +8,7 @@
 
 namespace octotomy::planner {
 
-/// Told of an object that only the mesh kernel makes.
+/// The note on an object that only the mesh kernel makes.
 inline constexpr const char* mesh_alone =
     "no certificate: only the mesh kernel does this, and its voxels are its mesh's";
 
@@ -18,9 +18,9 @@ inline bool has_certificate(const Object& made) {
   return made.mesh.within || made.witness;
 }
 
-/// Holds both kernels' answers to one another, within what the object's bound terms allow; of an object
-/// without a mesh the voxels to their witness (verify::certify_alone()). Preconditions: the operation's
-/// bound() has run, and has_certificate(). Throws Stopped.
+/// Compares both kernels' results within the bound of the object's terms; for an object without a mesh,
+/// compares the voxels with their witness (verify::certify_alone()). Preconditions: the operation's bound()
+/// has run, and has_certificate(). Throws Stopped.
 void certify(Object& made, const std::string& title, const voxel::Progress& progress = {});
 
 }  // namespace octotomy::planner

@@ -29,7 +29,8 @@ std::string definition(const Combine& combine, const Objects&) {
 void voxels(const Combine& combine, const VoxelBench& bench, VoxelSide& made) {
   voxel::Names operands, symbols;
   operands.object = [&](std::string_view name) {
-    // A mask decides voxels by their centre just as its octree does, and needs no walk over a tree.
+    // A mask's expression selects the same voxel centres as its octree, and is evaluated without traversing a
+    // tree.
     const VoxelSide& operand = bench.object(std::string(name));
     return bench.is_tool(std::string(name)) ? *operand.symbol : voxel::Expression(operand.octree);
   };
@@ -58,7 +59,7 @@ void triangles(const Combine& combine, const MeshBench& bench, MeshSide& made) {
   made.lineage = "corefinement of meshes";
 }
 
-/// Whether a point is in an expression, where bit i of `held` is whether it is in object i.
+/// Whether a point is in an expression. Bit i of `held` states whether it is in object i.
 bool holds(const verify::ExpressionTree& tree, unsigned held) {
   if (tree.parts.empty()) return ((held >> static_cast<unsigned>(tree.leaf)) & 1U) != 0;
   bool made = holds(tree.parts.front(), held);
@@ -73,8 +74,8 @@ bool holds(const verify::ExpressionTree& tree, unsigned held) {
   return made;
 }
 
-/// Whether an expression is empty whatever its objects are, as a - a: no row of its truth table holds. Of
-/// more objects than a table is made for the answer is no.
+/// Whether an expression is empty for all objects, as a - a: no row of its truth table is true. Returns false
+/// for expressions of more than 10 objects.
 bool is_empty_of_any(const std::string& expression) {
   constexpr std::size_t most_objects = 10;
   std::vector<std::string> names;
@@ -85,7 +86,7 @@ bool is_empty_of_any(const std::string& expression) {
   return true;
 }
 
-/// Says where a mask holds nothing of an object that it is to cut, or all of it.
+/// Adds a finding where a mask contains nothing, or all, of an object of the expression.
 void tell_idle_masks(const std::vector<std::string>& names, const BoundBench& bench, Object& made) {
   for (const std::string& tool : names) {
     if (!bench.objects.at(tool).is_tool) continue;
@@ -116,7 +117,7 @@ void bound(const Combine& combine, const BoundBench& bench, Object& made) {
   for (const std::string& name : names) inherit(bench.objects.at(name), made);
   made.witness = verify::witness_of_expression(
       combine.expression, [&](const std::string& name) { return bench.objects.at(name).witness; });
-  // An expression ends with the universe, in both kernels alike, also when it moves on.
+  // Both kernels cut the result of an expression at the universe's border. Later motions move the cut object.
   made.ends_with_universe = true;
 }
 

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Contours on a scan's slices as a file that masks read: followed, thinned, smoothed, moved out or in,
-// edited.
+// SPDX-License-Identifier: AGPL-3.0-or-later Writes contours on a scan's slices as a file that masks read:
+// traced, thinned, smoothed, moved outwards or inwards, edited.
 #include "brep/contour/contour.h"
 #include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/output_path.h"
@@ -21,7 +20,7 @@ struct Contours {
   std::optional<SampleWindow> window;
   double least_area_mm2 = 0.0, thin_mm = 0.0, by_mm = 0.0;
   std::optional<int> harmonics;
-  // Of the verb.
+  // Of the command only.
   std::filesystem::path out, edits, codes;
   double code_spacing_mm = 1.0;
 };
@@ -53,7 +52,7 @@ voxel::SliceMask finished(const Contours& asked, const voxel::SliceMask& mask, T
   return done;
 }
 
-/// Per slice, and sums for people; holes count against areas.
+/// Sizes per slice, and sums for the printed text. Holes are subtracted from areas.
 struct Sizes {
   Json slices = Json::array();
   std::size_t contours = 0, points = 0;

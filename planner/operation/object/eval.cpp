@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A Boolean expression of octrees in files; in a plan it is combine's voxel kernel.
+// SPDX-License-Identifier: AGPL-3.0-or-later A Boolean expression of octrees in files. In a plan, the voxel
+// kernel of `combine` does this.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -37,7 +37,7 @@ voxel::Resampling resampling_of(const Eval& asked) {
                                          : Interpolation::Linear};
 }
 
-/// NAME=VALUE texts by name; refuses others, and names said twice.
+/// Parses NAME=VALUE texts into values by name; refuses other texts and repeated names.
 std::map<std::string, std::string> bound(const std::vector<std::string>& texts, const std::string& option,
                                          const std::string& value) {
   std::map<std::string, std::string> values;
@@ -84,7 +84,7 @@ glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
 struct Operand {
   voxel::Expression expression;
   voxel::Universe universe;
-  std::optional<voxel::ShareBracket> shares;  // of a file of filled shares
+  std::optional<voxel::ShareBracket> shares;  // of a file that stores the filled shares of voxels
 };
 
 Operand operand_of(const std::string& name, const fs::path& path,
@@ -109,13 +109,13 @@ Operand operand_of(const std::string& name, const fs::path& path,
   return {octree, octree.universe(), std::nullopt};
 }
 
-/// A result of shares and what its bounds make of the volume.
+/// A result of filled shares, and the volume with its bounds.
 struct ShareResult {
   voxel::PartialOctree tree;
   Json said;
 };
 
-/// Operands that know the shares of their voxels; one of whole voxels among them counts as such.
+/// Combines operands that have filled shares of voxels. An operand of whole voxels has shares of 0 and 1.
 ShareResult combine_shares(const voxel::Expression& expression,
                            const std::map<std::string, Operand>& operands) {
   std::vector<voxel::ShareOperand> known;
@@ -166,7 +166,7 @@ FileAnswer on_files(const Eval& asked, const FileBench& bench) {
     if (!lets.contains(name))
       throw std::runtime_error("--window: '" + name + "' is not bound by --let" + suggestion(name, known));
 
-  // Read what the expression names, and no more.
+  // Only the files that the expression names are read.
   const std::vector<std::string> used = voxel::names_in(asked.expression);
   std::vector<std::string> findings;
   for (const std::string& name : known)

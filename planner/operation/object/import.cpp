@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A mesh of any program as an object. Its voxels are made of it, so that it has no certificate of its own;
-// the objects made with it have.
+// SPDX-License-Identifier: AGPL-3.0-or-later A mesh of any program as an object. Its voxels are digitised
+// from it, so that it has no certificate of its own; objects that are made with it have one.
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/error.h"
 #include "planner/operation/file/mesh_in.h"
@@ -17,8 +16,9 @@ struct Import {
 
 void check(const Import& import, const Place& place) {
   if (import.frame && !brep::frame_named(*import.frame))
-    place.at("frame").refuse("'" + *import.frame +
-                             "' is no frame: give three letters for where x, y and z point, LPS or RAS");
+    place.at("frame").refuse(
+        "'" + *import.frame +
+        "' is not a frame: give three letters for the directions of x, y and z, LPS or RAS");
 }
 
 std::string definition(const Import& import, const Objects&) {

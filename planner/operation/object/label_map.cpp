@@ -33,7 +33,8 @@ void write(const LabelMap& wanted, const AnswerBench& bench, Exported& made) {
   map.scene.source = object.id;
   const std::filesystem::path file = output_file(bench.folder, made.path);
   voxel::write_scene(map.scene, file);
-  // The plan's other files are kept where the table of another label map has its name.
+  // An existing file with the name of the table of labels is not overwritten: it may belong to another label
+  // map.
   const std::map<int, std::string> names{{1, object.id}};
   const std::filesystem::path table = label_table_path(file);
   if (!std::filesystem::exists(table))

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Names for points, which later steps use in the place of coordinates.
+// SPDX-License-Identifier: AGPL-3.0-or-later Names for points, which later steps use in place of coordinates.
 #include <algorithm>
 
 #include "planner/operation/file/landmarks_file.h"

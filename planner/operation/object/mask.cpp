@@ -26,8 +26,8 @@ voxel::RegionMask mask_of(const Mask& mask) {
   return made;
 }
 
-/// A region's prism reaches beyond both ends of the universe by more than its size, so that no end of it
-/// comes into the universe, not even after a motion.
+/// A region's prism extends beyond both ends of the universe by more than the universe's size, so that no end
+/// of the prism lies in the universe, even after a motion.
 brep::Prism prism_of(const Mask::Region& region, const glm::dvec3& low_mm, const glm::dvec3& high_mm) {
   const voxel::View view = voxel::parse_view(region.view);
   const double size_mm = glm::length(high_mm - low_mm);
@@ -80,8 +80,9 @@ std::string definition(const Mask& mask, const Objects&) {
          mask.slices.filename().string();
 }
 
-/// The scan that slices were drawn on: of a structure set, which a plan may read beside several scans, the
-/// first that it agrees with, or the first at all; of other files the only one. Null where there is none.
+/// The scan that slices were drawn on, of the scans that no step made. For a structure set, which a plan may
+/// read beside several scans, it is the first scan whose identity agrees best; for other files it is the only
+/// scan. Null where there is none.
 const ScanRecord* drawn_on(const std::optional<voxel::Identity>& of_set,
                            const std::vector<ScanRecord>& scans) {
   const ScanRecord* nearest = nullptr;
@@ -98,7 +99,7 @@ const ScanRecord* drawn_on(const std::optional<voxel::Identity>& of_set,
   return nearest;
 }
 
-/// What slices and the scan that they were drawn on say of each other; refuses those of another patient.
+/// Findings on how the slices agree with the scan that they were drawn on. Refuses slices of another patient.
 std::vector<std::string> findings_of_slices(const Mask& mask, const DrawnSlices& drawn,
                                             const std::vector<ScanRecord>& scans) {
   std::vector<std::string> findings;
@@ -158,7 +159,7 @@ void triangles(const Mask& mask, const MeshBench& bench, MeshSide& made) {
   made.lineage = "prisms of the regions";
 }
 
-/// Contours as the plan's reader returns them. What they enclose is read anew.
+/// Contours as the plan's reader returns them. The witness determines by itself what they enclose.
 verify::Witness witness_of(const voxel::SliceMask& mask) {
   verify::DrawnStack stack{mask.view.look,
                            mask.view.up,
@@ -235,7 +236,7 @@ Operation mask_operation() {
       .verb_takes(field("edit", &Mask::edit, "A mask's .octree that the regions cut further.").a_file())
       .verb_takes(field("like", &Mask::like, "A scan or .octree whose voxels the mask has."))
       .verb_takes(field("voxel_mm", &Mask::voxel_mm,
-                        "Edge of a voxel, around a scan or the regions. Default: the scan's, or 1.")
+                        "Edge of a voxel of the mask, mm. Default: the scan's, or 1 for regions.")
                       .greater_than(0.0))
       .verb_takes(field("out", &Mask::out, "An .octree file.").required())
       .on_files(

@@ -10,20 +10,21 @@
 
 namespace octotomy::planner {
 
-/// A volume of interest: the intersection of the back-projections of regions drawn in views, and of what
-/// regions on slices enclose.
+/// A volume of interest: the intersection of the back-projections of regions drawn in views and of the volume
+/// that regions on slices enclose.
 struct Mask {
   struct Region {
-    std::string view;  ///< as the views of pictures are called: "anterior", "35,15"
+    std::string view;  ///< a view's name or angles as for pictures: "anterior", "35,15"
     Polygons polygons_mm;
   };
   std::vector<Region> regions;
-  std::string views_of = "head";    ///< as it is held; or "scan", whatever holds the head
-  std::filesystem::path slices;     ///< a file of regions on parallel slices, which cut the others
+  std::string views_of = "head";    ///< "head": views of the head as it is positioned; "scan": views along
+                                    ///< the scan's axes
+  std::filesystem::path slices;     ///< a file of regions on parallel slices; the mask is within them as well
   std::string structure;            ///< the region of a structure set in that file
   std::optional<double> bridge_mm;  ///< gaps between the structure's planes that are filled
   bool other_identity = false;  ///< the structure set may be of another patient, study or frame of reference
-  // Of the verb.
+  // Of the command only.
   std::vector<std::string> region_files;   ///< VIEW:FILE
   std::vector<std::string> region_pixels;  ///< PICTURE.png:X,Y X,Y X,Y
   std::filesystem::path edit, like, out;

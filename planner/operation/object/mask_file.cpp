@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The mask's bounds along the patient's axes, from views along them.
+/// The mask's bounds along the patient's axes, from the views along these axes.
 class Bounds {
  public:
   void add(const glm::dvec3& direction, double low_mm, double high_mm) {
@@ -55,7 +55,7 @@ class Bounds {
   voxel::Box box_{glm::dvec3(-far), glm::dvec3(far)};
 };
 
-/// Whose voxels the mask has; an octree states no identity and no end of its samples.
+/// The file whose voxels the mask has. An octree states neither an identity nor the end of its samples.
 struct Like {
   voxel::Universe universe;
   voxel::Identity identity = {};
@@ -72,7 +72,7 @@ Like like_file(const fs::path& path, const std::optional<double>& voxel_mm, cons
   return {universe_of(scene, voxel_mm), scene.identity, scene.lattice};
 }
 
-/// The slices that cut the mask; refuses those of another patient than the scan.
+/// The regions on slices that bound the mask. Refuses slices of another patient than the scan's.
 voxel::SliceMask slices_of(const Mask& asked, const std::optional<Like>& like,
                            std::vector<std::string>& findings) {
   DrawnSlices drawn = read_slices(asked.slices, SlicesOptions{asked.structure, asked.bridge_mm});
@@ -97,7 +97,7 @@ voxel::SliceMask slices_of(const Mask& asked, const std::optional<Like>& like,
   return std::move(drawn.mask);
 }
 
-/// The universe about what regions and slices enclose.
+/// The universe around the volume that regions and slices enclose.
 voxel::Universe universe_around(const voxel::RegionMask& regions,
                                 const std::optional<voxel::SliceMask>& slices, double voxel_mm) {
   Bounds bounds;
@@ -115,8 +115,8 @@ voxel::Universe universe_around(const voxel::RegionMask& regions,
   return voxel::universe_around(bounds.box(), voxel_mm);
 }
 
-/// The regions as a step that encloses the same in any plan of the scan, however it holds the head; null
-/// where no step does.
+/// The regions as a step of a plan that encloses the same volume in any plan of the scan, whatever the head's
+/// position; null where no step can.
 Json step_of(const std::vector<DrawnRegion>& drawn, bool is_cut_further) {
   Json regions = Json::array();
   for (const DrawnRegion& each : drawn) {

@@ -6,7 +6,7 @@
 
 namespace octotomy::planner {
 
-/// A mask of files of regions as an octree's file, around the regions or on another file's voxels.
+/// Writes a mask from files of regions as an octree, around the regions or on another file's voxels.
 FileAnswer mask_file(const Mask& asked, const FileBench& bench);
 
 }  // namespace octotomy::planner

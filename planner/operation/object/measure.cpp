@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The size of an object, the gap between two, the distance of two points or the angle of three; every number
-// with its half-width and the terms that make it.
+// SPDX-License-Identifier: AGPL-3.0-or-later The size of an object, the gap between two objects, the distance
+// between two points or the angle of three; each number with its half-width and the terms of that half-width.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -40,13 +39,14 @@ void check(const Measure& measure, const Place& place) {
     points.refuse("has its second point twice: an angle needs two legs");
 }
 
-/// A recommended volume and area, and what is told of them.
+/// A recommended volume and area, with their findings.
 struct Recommended {
   verify::SizeIntervals intervals;
   bool is_of_phases = false, has_core = false;
 };
 
-/// What the samples of a window's scan show of two densities; kept, as several objects come from one window.
+/// The two-phase estimate from the samples of a window's scan. It is cached, because several objects may come
+/// from one window.
 const std::optional<verify::TwoPhase>& phases_of(const AnswerBench& bench, const Shown& window) {
   std::shared_ptr<const void>& kept =
       bench.kept["phases of " + window.scan + " from " + std::to_string(window.threshold)];
@@ -59,20 +59,22 @@ const std::optional<verify::TwoPhase>& phases_of(const AnswerBench& bench, const
   return *static_cast<const std::optional<verify::TwoPhase>*>(kept.get());
 }
 
-/// Whether the object is all that a window shows, moved or not.
+/// Whether the object is the whole selection of a window, moved or not.
 bool is_whole_window(const Objects& objects, const Object& object) {
   return still_of(objects, object).kind == "window" && (!object.image || object.image->is_whole);
 }
 
-/// The window of a label map that an object is all of; none: it is of other samples or made of several.
+/// The window of a label map, where the object is that whole window; none where the object comes from other
+/// samples or from several objects.
 const Shown* label_window_of(const AnswerBench& bench, const Object& object) {
   if (object.bound.windows.empty() || !is_whole_window(bench.objects, object)) return nullptr;
   const Shown& window = object.bound.windows.front();
   return window.samples && window.samples->meaning == voxel::Meaning::Label ? &window : nullptr;
 }
 
-/// What the sum of the samples says beyond the surface: of a whole window, its numbers; of a part, doubt by
-/// its share of the window's surface, as nothing says where thin walls are.
+/// Adds what the sum of the samples shows beyond the surface. For a whole window, these are its numbers; for
+/// a part of one, a doubt in proportion to its share of the window's surface, since the position of thin
+/// walls is not known.
 void take_phases(const AnswerBench& bench, const Object& object, Recommended& found) {
   std::vector<const Shown*> windows;
   for (const Shown& window : object.bound.windows)
@@ -104,7 +106,7 @@ void take_phases(const AnswerBench& bench, const Object& object, Recommended& fo
   }
 }
 
-/// What thicker samples would change in a window; kept as phases_of() are.
+/// The change of a window's size with thicker samples; cached as in phases_of().
 const std::optional<Thickness>& kept_thickness(const AnswerBench& bench, const Shown& window) {
   std::shared_ptr<const void>& kept =
       bench.kept["thickness of " + window.scan + " from " + std::to_string(window.threshold) + " to " +
@@ -118,7 +120,8 @@ const std::optional<Thickness>& kept_thickness(const AnswerBench& bench, const S
   return *static_cast<const std::optional<Thickness>*>(kept.get());
 }
 
-/// Of the windows that no sum of samples speaks for, by the object's share of their surface.
+/// Adds the doubt of thicker samples for windows without a two-phase estimate, in proportion to the object's
+/// share of their surface.
 void take_thickness(const AnswerBench& bench, const Object& object, Recommended& found) {
   std::set<std::tuple<std::string, double, double>> known;
   for (const Shown& window : object.bound.windows) {
@@ -134,8 +137,8 @@ void take_thickness(const AnswerBench& bench, const Object& object, Recommended&
   }
 }
 
-/// What counting may be off of an object of voxels alone, by its scan's samples; a motion keeps it. None: it
-/// comes from no scan.
+/// The counting error of an object without a mesh, from its scan's samples; a motion does not change it. None
+/// where the object comes from no scan.
 std::optional<double> counting_doubt_of(const AnswerBench& bench, const Object& object) {
   const Object& still = still_of(bench.objects, object);
   for (const ScanRecord& scan : bench.scans)
@@ -155,7 +158,7 @@ Recommended of_voxels_alone(const AnswerBench& bench, const Object& object, cons
   return found;
 }
 
-/// A mesh that comes from no scan is what it is, but for the rounding of its points.
+/// A mesh that comes from no scan is exact up to the rounding of its points.
 Recommended of_mesh_alone(const brep::Solid& mesh) {
   constexpr double rounding = 1e-6;  // points of single precision, as files have them
   const brep::Size& size = mesh.size();
@@ -170,7 +173,7 @@ Recommended of_mesh_alone(const brep::Solid& mesh) {
   return found;
 }
 
-/// As intervals_of(), of the object's own surface.
+/// As intervals_of(), from the object's own surface.
 Recommended own_intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
   const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
   if (object.is_surely_empty) return {};
@@ -218,7 +221,7 @@ Recommended own_intervals_of(const AnswerBench& bench, const Object& object, con
 
 Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised);
 
-/// Those of an object where it was made; kept, as several images may be of one.
+/// The intervals of an object where it was made; cached, because one object may have several images.
 const Recommended& kept_intervals_of(const AnswerBench& bench, const Object& still) {
   std::shared_ptr<const void>& kept = bench.kept["recommended size of " + still.id];
   if (!kept)
@@ -226,10 +229,10 @@ const Recommended& kept_intervals_of(const AnswerBench& bench, const Object& sti
   return *static_cast<const Recommended*>(kept.get());
 }
 
-/// The recommended volume and area. The mesh's, where there is one: cuts are exact in it, and parts share the
-/// doubt of their whole's windows. A motion or mirror changes no size, so an image of a whole object has that
-/// object's, where the universe holds both; its own voxels and points were rounded once more. What was made
-/// of another's surface is in doubt by as much as that surface may be off.
+/// The recommended volume and area. They are the mesh's where there is one: cuts are exact in it, and parts
+/// share the doubt of the windows of their whole. A motion or mirror changes no size: where the universe
+/// contains both objects, an image of a whole object has that object's values, because the image's own voxels
+/// and points were rounded once more. An object made from another's surface has the doubt of that surface.
 Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
   if (object.image && object.image->is_whole)
     return kept_intervals_of(bench, still_of(bench.objects, object));
@@ -334,8 +337,8 @@ Json size_json(const Measure& asked, const AnswerBench& bench) {
     const brep::Measures& measures = object.mesh.within->measures();
     const double mesh_mm3 = measures.volume_mm3;
     json["area_mm2"] = measures.area_mm2;
-    // The triangles lose what the recommended area gains, and have its doubt; which is that already where
-    // voxels are too coarse.
+    // The half-width of the triangles' area is the recommended area's half-width plus the difference of the
+    // two areas. Where voxels are too coarse, the recommended half-width already is that difference.
     const double off_mm2 = std::abs(recommended.area_mm2.value - measures.area_mm2);
     const double doubt_mm2 = recommended.area_mm2.half_width;
     json["area_half_width_mm2"] = doubt_mm2 == off_mm2 ? off_mm2 : doubt_mm2 + off_mm2;
@@ -349,7 +352,7 @@ Json size_json(const Measure& asked, const AnswerBench& bench) {
   return json;
 }
 
-/// What is asked of the mesh kernel's answer beyond its size; null with a finding where it has none.
+/// The requested measures of the object's mesh beyond its size; null with a finding where it has no mesh.
 Json surface_json(const Measure& asked, const AnswerBench& bench) {
   const Object& object = bench.objects.at(asked.object->name);
   Json json = size_json(asked, bench);

@@ -44,7 +44,7 @@ FileAnswer said(Json json) {
                           three_figures(found["half_width"].get<double>()) +
                           (found["unit"] == "mm3" ? " mm\u00b3" : " mm\u00b2") + " in 99 of 100 cases");
   }
-  // The doubt of one estimator is no interval that holds the truth: it says so.
+  // The doubt of a single estimator is not an interval that contains the true value; its entry states so.
   const auto doubtful = [&](const char* key, const char* half_width, const char* unit,
                             const char* estimator) {
     return value(key, 1) + unit + json[estimator].get<std::string>() +
@@ -67,7 +67,7 @@ FileAnswer said(Json json) {
   return {std::move(json), std::move(rows)};
 }
 
-/// What cannot be written is refused before anything is read.
+/// Requests that cannot be written are refused before any file is read.
 void need_scalars_of(const Measure& asked) {
   if (!asked.thickness && !asked.curvature)
     throw std::runtime_error(asked.out.string() + ": say what to write, --thickness or --curvature");
@@ -75,7 +75,7 @@ void need_scalars_of(const Measure& asked) {
   need_folder_of(asked.out);
 }
 
-/// What is asked of a closed mesh beyond its size, and the file that it is written to.
+/// The requested measures of a closed mesh beyond its size, and the file that they are written to.
 Json asked_of_surface(const Measure& asked, const brep::Solid& solid, const FileBench& bench) {
   const std::filesystem::path& out = asked.out;
   std::optional<brep::Mesh> other;
@@ -93,7 +93,7 @@ Json asked_of_surface(const Measure& asked, const brep::Solid& solid, const File
   return json;
 }
 
-/// What triangles have that enclose nothing: an area and a place.
+/// Measures triangles that enclose no volume: their area and position.
 FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& health) {
   if (health.faces == 0) throw std::runtime_error("there are no triangles to measure");
   const brep::Size size = brep::size_of(triangles);
@@ -151,7 +151,7 @@ FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked,
   return said(std::move(json));
 }
 
-/// What voxels alone tell of an object; its measures beside.
+/// Measures an object from its voxels only; also stores the measures in `measures`.
 Json of_voxels(const voxel::Octree& octree, Timings& timings, voxel::Measures& measures) {
   const Stopwatch watch(timings, "measure");
   measures = voxel::measure(octree);
@@ -163,13 +163,13 @@ Json of_voxels(const voxel::Octree& octree, Timings& timings, voxel::Measures& m
   return json;
 }
 
-/// Another estimator of what voxels counted, and how it is told.
+/// Another estimator of the size that was counted in voxels, with its texts.
 struct Seen {
   SeenSize size;
   std::string says, advice;
 };
 
-/// Of voxels whose flat parts are known.
+/// Adds the half-width of voxels whose flat parts are known.
 void add_half_width(const voxel::Measures& measures, const Digitised& digitised,
                     const voxel::Lattice& lattice, const std::optional<Seen>& seen, Json& json) {
   const std::optional<SeenSize> size = seen ? std::optional(seen->size) : std::nullopt;
@@ -184,7 +184,7 @@ void add_half_width(const voxel::Measures& measures, const Digitised& digitised,
   json["area"] = to_json(recommended.area_mm2, "mm2");
 }
 
-/// Of voxels alone; what more is known of them, beside.
+/// Adds the half-width of voxels whose flat parts are not known, with further knowledge of them as arguments.
 void add_half_width(const voxel::Octree& octree, const voxel::Measures& measures,
                     const std::optional<double>& shift_mm, const std::optional<Seen>& seen, Json& json) {
   const voxel::Lattice lattice = octree.universe().lattice();
@@ -211,7 +211,7 @@ voxel::Window window_of(const voxel::GreyOctree& grey, const std::filesystem::pa
   return window_on(grey, *asked.window);
 }
 
-/// What voxels that are too coarse for an object want.
+/// The advice where voxels are too coarse for an object.
 constexpr const char* remake = "make the octree with smaller ones, --voxel";
 
 FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure& asked,
@@ -256,7 +256,7 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
   return said(std::move(whole));
 }
 
-/// A scan, and its octree, which is built while the scan is read.
+/// A scan and its octree; the octree is built while the scan is read.
 struct ScanAndOctree {
   voxel::Scene scene;
   voxel::GreyOctree grey;
@@ -266,12 +266,12 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
                              const FileBench& bench) {
   std::optional<voxel::GreyOctreeBuild> build;
   std::optional<voxel::GreyOctree> grey;
-  std::optional<double> padding;  // as far as it was known to the build
+  std::optional<double> padding;  // as the build knew it
   bool has_failed = false;
   voxel::Scene scene = bench.read_scan(file, [&](const voxel::Scene& read, int count) {
     if (count == 0) return build.reset();
-    if (has_failed || asked.voxel_mm) return;  // finer voxels take long, which is told below
-    if (!std::holds_alternative<voxel::Int16Samples>(read.samples)) return;  // their step is not known yet
+    if (has_failed || asked.voxel_mm) return;  // finer voxels take long; a finding below states so
+    if (!std::holds_alternative<voxel::Int16Samples>(read.samples)) return;  // octree's step not known yet
     try {
       if (!build) {
         build.emplace(universe_of(read.lattice, asked.voxel_mm), read);
@@ -280,7 +280,7 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
       build->add(count);
       if (count == read.lattice.dims.z) grey = build->finished();
     } catch (...) {
-      // The reader has no part in it. It fails again below, after what the reader has to say.
+      // The error is not the reader's. The build fails again below, after the reader's own errors.
       has_failed = true;
       build.reset();
     }
@@ -293,7 +293,7 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
   return {std::move(scene), std::move(*grey)};
 }
 
-/// What a scan's window shows.
+/// A scan's window, with what was computed from it.
 struct WindowShown {
   const voxel::Scene& scene;
   double low = 0.0, high = 0.0;
@@ -329,7 +329,8 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   const voxel::GreyOctree& grey = read.grey;
   const voxel::Window window = window_of(grey, file, asked);
   const double low = asked.window->low;
-  // Labels are names: a voxel has that of its nearest sample, and surfaces lie half-way between samples.
+  // Labels are names and are not interpolated: a voxel has the label of its nearest sample, and surfaces lie
+  // half-way between samples.
   const bool is_labels = scene.meaning == voxel::Meaning::Label;
   const double high = asked.window->high_or_infinity();
   const std::optional<voxel::Scene> labelled =
@@ -352,7 +353,7 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
     brep::Triangles triangles =
         labelled ? convert::isosurface(*labelled, 0.5, std::numeric_limits<double>::infinity())
                  : convert::isosurface(scene, low, high);
-    // Both have parts that take one thread alone.
+    // They run in parallel because both have parts that use only one thread.
     tbb::parallel_invoke(
         [&] { isosurface = brep::trusted_solid(std::move(triangles), brep::Proof::Construction); },
         [&] {

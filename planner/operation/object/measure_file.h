@@ -12,20 +12,20 @@ struct Measure {
   std::vector<Mark> points_mm;
   std::vector<glm::dvec3> section, along;
   bool thickness = false, curvature = false;
-  // Of the verb.
+  // Of the command only.
   std::vector<glm::dvec3> distance, angle;
   std::optional<SampleWindow> window;
   std::optional<double> voxel_mm;
   std::filesystem::path out;
 
-  /// Whether anything is asked that only a surface has.
+  /// Whether a measure is requested that needs a surface.
   bool asks_surface() const {
     return !section.empty() || !along.empty() || !distance.empty() || !angle.empty() || thickness ||
            curvature || !out.empty();
   }
 };
 
-/// What is measured of a scan's window, an octree or a mesh in a file.
+/// Measures a scan's window, an octree or a mesh in a file.
 FileAnswer measure_file(const Measure& asked, const FileBench& bench);
 
 }  // namespace octotomy::planner

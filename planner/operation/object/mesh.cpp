@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The surface of a scan's window or of an octree, in files; in a plan it is the mesh kernel's side of window
-// and segment, and the step surface.
+// SPDX-License-Identifier: AGPL-3.0-or-later The surface of a scan's window or of an octree, in files. In a
+// plan, the mesh kernel of `window` and `segment` and the step `surface` do this.
 #include <limits>
 #include <utility>
 
@@ -35,7 +34,7 @@ struct Meshed {
   std::filesystem::path out;
 };
 
-/// A surface as its maker leaves it.
+/// A surface as it was extracted.
 struct Made {
   Made(brep::Triangles triangles) : surface(std::move(triangles)) {}  // NOLINT(google-explicit-constructor)
   /// An isosurface of the samples of a lattice.
@@ -43,7 +42,7 @@ struct Made {
       : surface(std::move(triangles)), stays_apart(convert::stays_apart(lattice)) {}
 
   brep::Triangles surface;
-  bool stays_apart = false;  ///< known to be free of self-intersection, which is dear to test
+  bool stays_apart = false;  ///< known to be free of self-intersections, which are expensive to search
 };
 
 brep::Triangles cuberille_of(const voxel::Octree& octree, const Meshed& asked) {
@@ -51,7 +50,7 @@ brep::Triangles cuberille_of(const voxel::Octree& octree, const Meshed& asked) {
       octree, asked.touching == "apart" ? convert::Touching::Apart : convert::Touching::Together));
 }
 
-/// The object of a file that holds samples: bone where nothing else is asked for.
+/// The window of a file that holds samples: bone where none is requested.
 SampleWindow window_of(const Meshed& asked, std::vector<std::string>& findings) {
   if (asked.window) return *asked.window;
   const voxel::Tissue bone = *voxel::tissue("bone");
@@ -118,7 +117,7 @@ Made of_scan(const FileBench& bench, const Meshed& asked, std::vector<std::strin
       to_string(window));
 }
 
-/// A surface that is to be written, and its size.
+/// The surface that is written, and its size.
 struct Finished {
   brep::Triangles surface;
   brep::Measures measures;
@@ -140,7 +139,7 @@ Finished finished(Made made, const Meshed& asked, Timings& timings) {
   }
   if (fewer) {
     const Stopwatch watch(timings, "decimate");
-    // The number is what was asked for: no bound on the error may end it before.
+    // The number of triangles was requested: no bound on the error may stop the reduction earlier.
     constexpr double no_bound_mm = 1e6;
     surface = brep::decimate(surface,
                              {.max_error_mm = no_bound_mm, .faces = static_cast<std::size_t>(*asked.faces)});

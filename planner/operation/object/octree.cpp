@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// An octree of a scan's window or of all its samples in a file, or one in another form; in a plan it is
-// window.
+// SPDX-License-Identifier: AGPL-3.0-or-later Writes an octree of a scan's window or of all its samples, or an
+// octree in another form. In a plan, `window` makes it.
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -135,8 +134,8 @@ FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::Oc
            {"bytes", std::to_string(content.size())}}};
 }
 
-/// Forms have no extension of their own. One of another kind is a slip of the hand, which must not replace a
-/// scan or a result.
+/// The other forms of octrees have no extension of their own. The extension of another kind of file is a
+/// typing error: the output must not replace a scan or a result.
 void need_form_name(const Build& asked) {
   constexpr std::array others{".json", ".csv", ".dcm",  ".png", ".jpg", ".jpeg",
                               ".webp", ".glb", ".html", ".svg", ".pdf"};

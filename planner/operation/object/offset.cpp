@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The solid within a distance of an object, or its points farther than that from its outside. Each kernel
-// measures distances to its own answer to the object: to points of the surface between its voxels, and to its
-// triangles.
+// SPDX-License-Identifier: AGPL-3.0-or-later The solid within a distance of an object, or the points of the
+// object that are farther than that from its outside. Each kernel measures distances to its own
+// representation of the object: to points of the surface between its voxels, or to its triangles.
 #include "brep/shape/offset.h"
 
 #include <algorithm>
@@ -29,15 +28,16 @@ void check(const Offset& offset, const Place& place) {
         "0 moves nothing: say how far outward, or inward as a number below 0, or use the object itself");
 }
 
-/// Fine enough for the offset's own roundness, and no finer than some 200 cells along the solid.
+/// The cell of the distance lattice: small enough for the rounding of edges by the offset, but not below
+/// about 1/200 of the solid's extent.
 double cell_for(const brep::Solid& solid, double by_mm) {
   const glm::dvec3 extent = solid.size().high_mm - solid.size().low_mm;
   return std::max(0.25 * std::abs(by_mm), std::max({extent.x, extent.y, extent.z}) / 200.0);
 }
 
-/// A lattice's surface without the triangles that flat parts do not need. Points stay where they are; the
-/// error is a fiftieth of a cell, above what the offset's own points are off by, and below what chords across
-/// cells are.
+/// A lattice's surface without the triangles that flat parts do not need. The remaining points do not move.
+/// The error is 1/50 of a cell: above the error of the offset's points and below that of the chords across
+/// cells.
 brep::Solid fewer(const brep::Solid& surface, double cell_mm, std::vector<std::string>& findings) {
   if (surface.empty()) return surface;
   brep::DecimateOptions options;
@@ -52,8 +52,8 @@ brep::Solid fewer(const brep::Solid& surface, double cell_mm, std::vector<std::s
   }
 }
 
-/// Tells of walls, or of inward clefts, that the lattice missed. Throws where they are more than a few
-/// needles.
+/// Adds a finding on walls or clefts that the lattice missed. Throws where they are more than 1 % of the
+/// surface.
 void tell_missed(const brep::Solid& solid, const brep::Solid& moved, const brep::OffsetOptions& options,
                  std::vector<std::string>& findings) {
   constexpr double most_share = 0.01;

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The connected parts of an object that are large enough, or that hold points.
+// SPDX-License-Identifier: AGPL-3.0-or-later The connected parts of an object that are large enough or
+// contain a point.
 #include "planner/operation/object/parts.h"
 
 #include <algorithm>
@@ -164,7 +164,7 @@ voxel::Octree pieces_apart(const voxel::Octree& set, const voxel::Octree& other)
                                                                set, common, voxel::Neighbours::Corners)));
 }
 
-/// Components of a solid by their least corner, which choosing among them leaves as it is.
+/// The least corner of a component. It identifies the component: selecting among components does not move it.
 using Corner = std::array<double, 3>;
 Corner corner_of(const brep::Triangles& triangles, const brep::Component& component) {
   Corner least{std::numeric_limits<double>::infinity()};
@@ -187,8 +187,8 @@ voxel::Octree digitised_part(const brep::Solid& solid, const brep::Component& co
                     .linked());
 }
 
-/// Components of a solid that hold a voxel of a set. Those of less than a quarter of its smallest part, or
-/// more than four of its largest one, do not count.
+/// Components of a solid that contain a voxel of a set. Components smaller than a quarter of the set's
+/// smallest part, or larger than four times its largest part, are left out.
 std::vector<std::size_t> components_in(const brep::Solid& solid, const voxel::Octree& set) {
   if (set.is_empty()) return {};
   const std::vector<std::uint64_t> counts = voxel::components(set).voxel_counts;
@@ -215,7 +215,7 @@ brep::Solid solid_of(const brep::Solid& whole, const std::vector<std::size_t>& c
                        : brep::trusted_solid(brep::part_of(whole, faces), brep::proof_of_part(whole.proof()));
 }
 
-/// Whether both kernels hold the same parts.
+/// Whether the voxels and the mesh are the same parts.
 bool is_same(const voxel::Octree& voxels, const brep::Solid& mesh, const verify::Witness& parts,
              const Object& made) {
   verify::BoundInputs inputs;
@@ -232,14 +232,14 @@ std::string size_and_place(const voxel::Octree& parts) {
   return voxel::rounded(measures.volume_mm3) + " mm\u00b3 about " + voxel::rounded(*measures.centroid_mm);
 }
 
-/// Parts that the kernels chose differently, each as voxels and as components of the whole mesh.
+/// Parts that only one of the kernels selected, as voxels and as components of the whole mesh.
 struct Differing {
-  voxel::Octree by_voxels, passed_over;  ///< kept by the voxels alone, and by the mesh alone
+  voxel::Octree by_voxels, passed_over;  ///< selected by the voxels only, and by the mesh only
   std::vector<std::size_t> wanted, unwanted;
 };
 
-/// Whether each kernel chose rightly by its own measure: of the largest parts the larger ones, of those of at
-/// least a volume the ones that reach it. Components are in the order of their volumes.
+/// Whether each kernel selected correctly by its own volumes: the larger parts, or with `least_mm3` the parts
+/// that reach it. Components are sorted by volume.
 bool is_by_measure(const Differing& parts, const std::vector<brep::Component>& all,
                    const std::optional<double>& least_mm3) {
   const auto counts = [](const voxel::Octree& set) { return voxel::components(set).voxel_counts; };
@@ -271,7 +271,7 @@ std::string doubt_of(const std::vector<Differing>& settled, const std::optional<
          left + ", as the voxels have it. Choose a volume that is not so close to a part's.";
 }
 
-/// The connected pieces of a set, each for itself; the set itself where they are many.
+/// Each connected piece of a set; the whole set as one piece where there are more than 32.
 std::vector<voxel::Octree> pieces_of(voxel::Octree set) {
   constexpr std::size_t most = 32;
   if (set.is_empty()) return {};
@@ -284,8 +284,8 @@ std::vector<voxel::Octree> pieces_of(voxel::Octree set) {
   return pieces;
 }
 
-/// What is settled together: with a least volume each part for itself, else all of them. `chosen` are the
-/// parts that the voxels keep.
+/// Groups of parts that are decided together: one part each with a least volume, otherwise all of them.
+/// `chosen` are the parts that the voxels keep.
 std::vector<Differing> differing(const WholeObject& whole, const brep::Solid& solid,
                                  const voxel::Octree& chosen, const voxel::Octree& by_voxels,
                                  const voxel::Octree& by_mesh, const std::optional<double>& least_mm3) {
@@ -299,8 +299,8 @@ std::vector<Differing> differing(const WholeObject& whole, const brep::Solid& so
     std::vector<std::size_t> wanted = components_in(solid, piece);
     all.push_back({std::move(piece), none, std::move(wanted), {}});
   }
-  // A thin part of the mesh may be several of voxels, each of which is too small. Components are in the order
-  // of their volumes.
+  // A thin part of the mesh may be several parts of voxels, each of which is too small. Components are sorted
+  // by volume.
   const double most_mm3 =
       4.0 * by_mesh.universe().lattice().voxel_mm3() * static_cast<double>(by_mesh.voxel_count());
   const std::vector<brep::Component>& components = solid.components();

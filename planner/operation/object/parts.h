@@ -18,28 +18,28 @@
 #include "voxel/space/lattice.h"
 #include "voxel/tree/octree.h"
 
-// Choosing connected parts in each kernel, for every operation that does.
+// Selects connected parts in each kernel, for every operation that does so.
 namespace octotomy::planner {
 
-/// Necks as points, LPS, each the middle of a cube along the axes.
+/// Decisions on thin necks between parts. Each neck is a point, LPS: the centre of a cube along the axes.
 struct BridgeDecisions {
   std::vector<glm::dvec3> keep_mm;  ///< the parts that reach into the cube stay, whatever their size
   std::vector<glm::dvec3> cut_mm;   ///< the object loses what lies within the cube
   double edge_mm = 5.0;             ///< of the cubes
-  /// Points of further parts that stay: those which one kernel alone joins by a neck that is too thin to
+  /// Points of further parts that stay: parts that only one of the kernels connects, by a neck too thin to
   /// measure.
   std::vector<glm::dvec3> agreed_mm = {};
 
   bool any() const { return !keep_mm.empty() || !cut_mm.empty(); }
   bool keeps() const { return !keep_mm.empty() || !agreed_mm.empty(); }
-  /// The places of all.
+  /// The points of all kept and cut necks.
   std::vector<glm::dvec3> decided_mm() const;
 };
 
-/// Refuses a point that is to be kept and cut.
+/// Refuses a point that is listed both as kept and as cut.
 void check(const BridgeDecisions& bridges, const Place& place);
 
-/// The object without the cubes of necks that are cut, in each kernel, as a symbol, and as a reading.
+/// The object without the cubes of the cut necks: as voxels, as an expression, as a solid and as a witness.
 voxel::Octree cut_bridges(const voxel::Octree& whole, const BridgeDecisions& bridges);
 voxel::Expression cut_bridges(voxel::Expression symbol, const BridgeDecisions& bridges);
 /// Adds to `shift_mm` how far operands were moved. Throws as brep::boolean().
@@ -47,17 +47,17 @@ brep::Solid cut_bridges(brep::Solid whole, const BridgeDecisions& bridges, const
                         double& shift_mm);
 verify::Witness cut_bridges(verify::Witness whole, const BridgeDecisions& bridges);
 
-/// The chosen parts and those that stay with them.
+/// The chosen parts, together with the parts that the decisions keep.
 voxel::Octree with_kept_parts(const voxel::Octree& chosen, const voxel::Octree& whole,
                               const BridgeDecisions& bridges, voxel::Neighbours neighbours);
-/// Whether a part, some of the triangles, stays with the chosen ones. The triangles are not read where no
-/// decision keeps anything.
+/// Whether the decisions keep a part, which is given by its triangles' indices. `triangles` is not read where
+/// no decision keeps a part.
 bool stays(const brep::Triangles& triangles, const std::vector<std::uint32_t>& faces,
            const BridgeDecisions& bridges);
 
-/// So many of the largest parts of voxels; of equal ones at the end of the row those whose first voxel comes
-/// first, x fastest. Where more than 64 equal ones are to be chosen from, all of them stay. Precondition: the
-/// object is not empty, `count` is positive.
+/// The `count` largest parts of voxels. Of parts as large as the last of them, those with the lowest first
+/// voxel are selected, x fastest; where more than 64 such parts are needed, all of them stay. Precondition:
+/// the object is not empty, `count` is positive.
 voxel::Octree largest_parts(const voxel::Octree& whole, std::size_t count,
                             voxel::Neighbours neighbours = voxel::Neighbours::Faces);
 
@@ -68,34 +68,37 @@ struct KeptParts {
   std::size_t kept = 0, of = 0;
 };
 
-/// The largest parts of a closed mesh, so many of them and of those the ones of at least a volume, each with
-/// its cavities; and the parts that reach a neck which is to be kept.
+/// The parts of a closed mesh that are among the `largest` largest and have at least a volume, each with its
+/// cavities; and the parts that the decisions keep.
 KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::optional<double> at_least_mm3,
                      const BridgeDecisions& bridges = {});
 
-/// An object that parts are chosen from; both answers are made only where the kernels chose different parts.
+/// An object that parts are selected from. Both functions are called only where the kernels selected
+/// different parts.
 struct WholeObject {
   std::function<voxel::Octree()> voxels;
   std::function<brep::Solid()> mesh;
   verify::Witness witness;
 };
 
-/// Of parts that are nearly as large as each other chance decides which each kernel finds larger, and of
-/// those that are nearly as large as `least_mm3`, which parts reach it; none: the largest ones were chosen.
-/// Where the kernels chose different parts, each rightly by its own measure, and hold each other's parts as
-/// well (verify::certify_bounded), the mesh takes those of the voxels, with a caveat that names both. Where a
-/// kernel chose wrongly, or lacks the other's part, nothing changes: the certificate fails. Cost: that of
-/// digitising the mesh; where the choices differ, of two certificates as well. Throws as its functions.
+/// Replaces the mesh's parts by those of the voxels where the kernels selected different parts only because
+/// their volumes differ slightly. Of two parts of nearly the same volume, the kernels may disagree on which
+/// is larger; of a part near `least_mm3`, on whether it reaches it. Without `least_mm3` the largest parts
+/// were selected.
+/// The mesh is changed where each kernel selected correctly by its own volumes and both objects contain each
+/// other's parts (verify::certify_bounded); a caveat then names both parts. Otherwise nothing changes and the
+/// certificate fails. Cost: digitising the mesh; where the selections differ, two certificates as well.
+/// Throws as its functions.
 void settle_choice(const WholeObject& whole, const voxel::Universe& universe,
                    const std::optional<double>& least_mm3, Object& made);
 
-/// What an object's symbol becomes where parts were chosen from its voxels: the samples about the parts still
-/// say where their surface lies within a voxel, so that a motion samples it there.
+/// The expression of the parts that were selected from an object's voxels. The samples around the parts
+/// remain in it: they place the surface within a voxel, and a motion samples that surface.
 voxel::Expression symbol_of_parts(const voxel::Expression& symbol, const voxel::Octree& object,
                                   const voxel::Octree& parts);
 
-/// The same where cavities were filled: the filling reaches into the voxels about it, so that a motion leaves
-/// no gap between them and the surface that the samples show.
+/// The expression of an object whose cavities were filled. The filling extends into the voxels around it, so
+/// that a motion leaves no gap between the filling and the surface of the samples.
 voxel::Expression symbol_of_filled(const voxel::Expression& symbol, const voxel::Octree& object,
                                    const voxel::Octree& filled);
 

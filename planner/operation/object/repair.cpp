@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A mesh of any program, mended in the ways that are asked for, as an object. Its voxels are made of it, so
-// that it has no certificate of its own.
+// SPDX-License-Identifier: AGPL-3.0-or-later A mesh of any program, repaired in the requested ways, as an
+// object. Its voxels are digitised from it, so that it has no certificate of its own.
 #include "brep/shape/repair.h"
 
 #include <algorithm>
@@ -76,7 +75,7 @@ Mended mended(const Repair& repair, const std::filesystem::path& path, const vox
   return made;
 }
 
-/// What was done and what came of it.
+/// The repairs and the resulting mesh as JSON.
 Json told(const Mended& made, const brep::RepairEffect& effect, const brep::KnownSolids& solids) {
   const auto estimator = [](bool is_solid) {
     return is_solid ? "divergence theorem over the mesh"
@@ -116,7 +115,7 @@ void triangles(const Repair& repair, const MeshBench& bench, MeshSide& made) {
 
 void bound(const Repair&, const BoundBench&, Object&) {}
 
-/// The triangles whose points are finite, which is all that health can be asked of.
+/// The triangles whose points are finite. brep::health() accepts no others.
 brep::Triangles without_wild_points(brep::Triangles triangles) {
   std::erase_if(triangles.faces, [&](const auto& face) {
     return std::any_of(face.begin(), face.end(), [&](std::uint32_t v) {
@@ -127,7 +126,7 @@ brep::Triangles without_wild_points(brep::Triangles triangles) {
   return triangles;
 }
 
-/// glTF is written for viewers and not read.
+/// glTF files are written for viewers; the product does not read them.
 bool readable(const std::filesystem::path& path) {
   return path.extension() != ".glb";
 }
@@ -149,7 +148,8 @@ FileAnswer on_files(const Repair& repair, const FileBench& bench) {
   brep::Health after;
   outputs.write(repair.out, [&](const std::filesystem::path& file) {
     write_surface(brep::mesh_of(repaired.surface), file, bench.timings);
-    // Of the file: formats round points, and some say nothing of which triangles share one.
+    // The health of the written file: formats round points, and some do not store which triangles share a
+    // point.
     after = timed("health", [&] {
       return readable(file) ? brep::health(brep::read_triangles(file)) : brep::health(repaired.surface);
     });

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Both kernels start from the scan: the voxel kernel from a window on its grey octree, the mesh kernel from
-// the isosurface of its own samples. Choices that only voxels know leave the mesh kernel without an answer.
+// SPDX-License-Identifier: AGPL-3.0-or-later Both kernels start from the scan: the voxel kernel from a window
+// on its grey octree, the mesh kernel from the isosurface of its own samples. A selection that is only
+// defined on voxels leaves the object without a mesh.
 #include "planner/operation/object/segment.h"
 
 #include <algorithm>
@@ -34,7 +34,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// A window for people: a tissue with its numbers.
+/// The text of a window: the tissue's name and its numbers.
 std::string words_of(const SampleWindow& window) {
   const std::optional<voxel::Tissue> tissue = voxel::tissue(window.tissue);
   return tissue ? voxel::described(*tissue) : to_string(window);
@@ -66,7 +66,8 @@ std::vector<glm::ivec3> seed_voxels(const Segment& segment, const voxel::Univers
   return seeds;
 }
 
-/// None where the samples are no labels: a number may be chosen of any scan.
+/// The labels of a scan; none where its samples are not labels. A label can be selected by number in any
+/// scan.
 std::vector<voxel::Label> labels_or_none(const voxel::Scene& scene) {
   try {
     return voxel::labels(scene);
@@ -75,7 +76,7 @@ std::vector<voxel::Label> labels_or_none(const voxel::Scene& scene) {
   }
 }
 
-/// Samples that are no whole number, as label_of() has it.
+/// The number of samples that are not whole numbers, by the rule of label_of().
 std::size_t samples_between_labels(const voxel::Scene& scene) {
   const auto* samples = std::get_if<voxel::FloatSamples>(&scene.samples);
   if (samples == nullptr) return 0;
@@ -84,7 +85,7 @@ std::size_t samples_between_labels(const voxel::Scene& scene) {
   }));
 }
 
-/// One object on its way.
+/// Makes one object, step by step.
 class Segmenter {
  public:
   Segmenter(const Segment& segment, const SegmentSource& source) : segment_(segment), source_(source) {}
@@ -97,7 +98,7 @@ class Segmenter {
     return std::move(made_);
   }
 
-  /// What choices begin with.
+  /// The selection before the further steps.
   const voxel::Octree& base() {
     begin();
     if (!segment_.regions.empty())
@@ -124,7 +125,7 @@ class Segmenter {
     return std::move(drawn.mask);
   }
 
-  /// What to do about an object without voxels.
+  /// Advice for a refusal of an object without voxels.
   std::string advice() const {
     if (made_.steps.size() > 1)
       return " after its " + std::to_string(made_.steps.size()) + " steps: leave some out";
@@ -167,7 +168,7 @@ class Segmenter {
                     {{"do", "grow"}, {"tolerance", *segment_.tolerance}});
     }
     const SampleWindow& window = *segment_.window;
-    // Beyond the scan is what no window means.
+    // No window selects what lies outside of the scan.
     const voxel::Octree within = voxel::combine(source_.universe, voxel::bounds(source_.scene.lattice));
     become(
         voxel::combine(source_.universe,
@@ -280,7 +281,7 @@ std::string definition(const Segment& segment, const Objects&) {
   return segment.fill ? text + ", filled" : text;
 }
 
-/// Why only voxels know the object; null where the mesh kernel does, too.
+/// The reason why the object has no mesh; null where the mesh kernel can make one.
 const char* why_voxels_alone(const Segment& segment) {
   if (segment.label || segment.named) return "a label map has no samples for an isosurface to run between";
   if (segment.tolerance) return "growing from seeds goes from voxel to voxel";
@@ -311,7 +312,7 @@ void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
     made.lineage = "voxels chosen in the scan";
     return;
   }
-  // The window still says where the surface lies within a voxel, so that a motion samples it there.
+  // The window still places the surface within a voxel, and a motion samples that surface.
   made.symbol = bench.within_universe(window_on(scan.grey, *segment.window)) &
                 voxel::Expression(voxel::bounds(scan.scene().lattice));
   made.symbol = cut_bridges(*made.symbol, bridges_of(segment));
@@ -322,7 +323,8 @@ void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
   if (segment.fill) made.symbol = symbol_of_filled(*made.symbol, kept, made.octree);
 }
 
-/// The mesh kernel's window, with bridges cut, before parts are chosen. Adds to `shift_mm` as cut_bridges().
+/// The mesh kernel's window, with bridges cut, before parts are selected. Adds to `shift_mm` as
+/// cut_bridges().
 brep::Solid window_mesh(const Segment& segment, const voxel::Scene& scene, const std::stop_token& stop,
                         double& shift_mm) {
   const brep::Solid whole = brep::trusted_solid(
@@ -355,7 +357,7 @@ void triangles(const Segment& segment, const MeshBench& bench, MeshSide& made) {
   made.lineage = "isosurface of the scan's own samples";
 }
 
-/// Settles which parts are kept, as settle_choice().
+/// Reconciles the parts that the kernels selected, as settle_choice().
 void settle_parts(const Segment& segment, const LoadedScan& scan, const voxel::Universe& universe,
                   Object& made) {
   const auto voxels = [&] {
@@ -374,7 +376,8 @@ void settle_parts(const Segment& segment, const LoadedScan& scan, const voxel::U
                 universe, segment.largest || segment.components ? std::nullopt : segment.at_least_mm3, made);
 }
 
-/// By how much a grey octree of these steps may have rounded a sample: 0 where all are whole numbers of steps.
+/// The largest rounding of a sample by a grey octree of this step: 0 where all samples are whole multiples of
+/// it.
 double rounding_of(const voxel::Scene& scene, double step) {
   const auto* const samples = std::get_if<voxel::FloatSamples>(&scene.samples);
   if (samples == nullptr) return 0.0;
@@ -385,8 +388,8 @@ double rounding_of(const voxel::Scene& scene, double step) {
   return is_rounded ? step : 0.0;
 }
 
-/// The samples that seeds choose, in a window or grown. Empty where other choices of voxels come between, and
-/// where voxels are no samples: what joins parts depends on the resampling then.
+/// The samples that seeds select, in a window or by growing. Empty where other selections of voxels precede
+/// them, and where voxels are not samples: the connection of parts then depends on the resampling.
 verify::Witness witness_of_seeds(const Segment& segment, const LoadedScan& scan, bool voxels_are_samples) {
   if (segment.seeds_mm.empty() || !voxels_are_samples || chooses_parts(segment) || segment.label ||
       segment.named || !segment.regions.empty() || segment.open_mm || segment.close_mm)
@@ -397,7 +400,7 @@ verify::Witness witness_of_seeds(const Segment& segment, const LoadedScan& scan,
     from.high = segment.window->high_or_infinity();
   }
   from.neighbours = segment.neighbours;
-  // The samples are flooded when the witness is first read: an evaluation without certificates needs none.
+  // The flood runs when the witness is first read: an evaluation without certificates does not need it.
   struct Flood {
     std::once_flag once;
     verify::Witness witness;
@@ -421,7 +424,8 @@ void bound(const Segment& segment, const BoundBench& bench, Object& made) {
   made.bound.scan_box_mm = voxel::bounds(lattice);
   made.bound.voxels_are_samples = on_samples(lattice, bench.universe.lattice());
   made.witness = witness_of_seeds(segment, scan, made.bound.voxels_are_samples);
-  // Depth is interpolated where samples pass the lower bound; an upper bound inside the object breaks that.
+  // The depth is interpolated where samples cross the lower bound. An upper bound inside the object would
+  // make it wrong.
   if (!segment.window || why_voxels_alone(segment) != nullptr) return;
   made.bound.windows = {{.grey = scan.grey,
                          .threshold = segment.window->low,
@@ -453,7 +457,7 @@ voxel::Octree on_own_samples(const Segment& segment, const SegmentSource& source
   const voxel::Lattice& lattice = source.scene.lattice;
   if (made.base)
     return voxel::chosen_samples(lattice, Segmenter(segment, source).base(), *made.base, made.octree);
-  // Nothing but voxels says where a grown object ends.
+  // Only its voxels define where a grown object ends.
   return voxel::chosen_samples(lattice, voxel::Octree::empty(source.universe),
                                voxel::Octree::empty(made.octree.universe()), made.octree);
 }

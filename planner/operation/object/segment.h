@@ -16,16 +16,17 @@
 
 namespace octotomy::planner {
 
-/// An object of a scan: by window, suggestion, seeds or label; then choices among what that holds, in the
-/// order of the fields.
+/// An object of a scan. A window, a suggested threshold, seeds or a label select its voxels; the fields that
+/// follow then reduce or fill that selection, in their order.
 struct Segment {
   ScanName scan;
   std::optional<SampleWindow> window;
   std::optional<int> otsu, otsu_class, label;
-  std::optional<std::string> named;  ///< of a label; `names` is its table
+  std::optional<std::string> named;  ///< the label's name; `names` is the file with the table of names
   std::filesystem::path names;
   std::optional<double> tolerance;
-  std::filesystem::path regions;  ///< drawn on slices; `structure` is the one meant of a structure set
+  std::filesystem::path regions;  ///< contours on slices; `structure` is the name of the contoured structure
+                                  ///< in a structure set
   std::string structure;
   bool other_identity = false;  ///< the structure set may be of another patient, study or frame of reference
   std::optional<double> open_mm;
@@ -45,13 +46,13 @@ struct SegmentSource {
   std::string name;  ///< of the scan, for refusals
   const voxel::Scene& scene;
   const voxel::Universe& universe;
-  std::function<const voxel::GreyOctree&()> grey;  ///< the samples in the universe; not asked for a label
+  std::function<const voxel::GreyOctree&()> grey;  ///< the samples in the universe; not called for a label
   std::filesystem::path folder = {};               ///< paths of files are relative to it
   std::stop_token stop = {};
 };
 
-/// The voxels, and each choice with what it left. `base` is what the choices began with: the window or label,
-/// within regions; growing has none.
+/// The voxels, and one entry per step with the volume that it left. `base` is the selection by window or
+/// label, within the regions, before the further steps; growing from seeds has none.
 struct Segmented {
   voxel::Octree octree;
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The pieces of a surface, each as a file or an object of its own. Nothing moves and nothing is mended, so
-// that any triangles can be separated; an object is a solid, so a step takes a solid apart.
+// SPDX-License-Identifier: AGPL-3.0-or-later Separates a surface into its pieces, each a file or an object.
+// No point moves and nothing is repaired, so that the command separates any triangles. An object of a plan is
+// a solid, so the step separates a solid.
 #include <algorithm>
 #include <map>
 
@@ -54,12 +54,12 @@ void bound(const Separate& separate, const BoundBench& bench, Object& made) {
 struct Piece {
   std::vector<std::uint32_t> faces;
   double area_mm2 = 0.0;
-  std::optional<double> volume_mm3;  ///< of a closed surface; cavities taken off
+  std::optional<double> volume_mm3;  ///< of a closed surface, without its cavities
   std::size_t cavities = 0;
 };
 
-/// Of a closed surface its bodies with their cavities, by volume; otherwise what triangles join by edges, by
-/// area.
+/// The pieces of a closed surface are its bodies with their cavities, sorted by volume. Those of an open one
+/// are the sets of triangles that are connected by edges, sorted by area.
 std::vector<Piece> pieces_of(const brep::Mesh& surface) {
   std::vector<Piece> pieces;
   const auto edges = surface.edges();
@@ -87,7 +87,7 @@ std::vector<Piece> pieces_of(const brep::Mesh& surface) {
   return pieces;
 }
 
-/// "parts.ply" as "parts-3.ply".
+/// "parts.ply" becomes "parts-3.ply".
 std::filesystem::path numbered(const std::filesystem::path& out, std::size_t number) {
   return out.parent_path() / (out.stem().string() + "-" + std::to_string(number) + out.extension().string());
 }

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The outer layer of an object: its points within a distance of its outside. Each kernel takes its own offset
-// inward from its own answer.
+// SPDX-License-Identifier: AGPL-3.0-or-later The outer layer of an object: its points within a distance of
+// its outside. Each kernel subtracts its own inward offset from its own representation of the object.
 #include "brep/boolean/boolean.h"
 #include "brep/shape/offset.h"
 #include "planner/operation/object/trace.h"
@@ -59,7 +58,7 @@ void bound(const Shell& shell, const BoundBench& bench, Object& made) {
                                         is_whole_voxels(object.voxel)};
     const verify::OffsetAsked asked{-shell.thickness_mm, cell_of(shell)};
     made.witness = verify::without(object.witness, verify::witness_of_offset(operand, asked));
-    // The outer surface is the operand's own, and only the inner one was found by distances.
+    // The outer surface is the operand's; only the inner surface was computed from distances.
     const double area_mm2 = made.mesh.whole->measures().area_mm2,
                  inner_mm2 = area_mm2 - object.mesh.whole->measures().area_mm2;
     if (inner_mm2 > 0.0)

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// An object's surface without its noise. Only the mesh kernel smooths: its answer is voxelised, so that later
-// steps find it in both kernels, and has no certificate of its own.
+// SPDX-License-Identifier: AGPL-3.0-or-later An object's surface without its noise. Only the mesh kernel
+// smooths: its result is digitised, so that later steps have it in both kernels, and therefore has no
+// certificate of its own.
 #include "brep/shape/smooth.h"
 
 #include <algorithm>
@@ -18,8 +18,9 @@ struct Smooth {
   double max_volume_share = brep::SmoothOptions{}.max_volume_share;
 };
 
-/// The surfaces are no farther apart than this, either way: smoothing moves points and keeps triangles, so
-/// that each place of one triangle has one of the other within the largest move of its corners.
+/// An upper bound of the distance between the surfaces, in both directions. Smoothing moves points and keeps
+/// the triangles, so that each point of one triangle has a point of the other within the largest move of its
+/// corners.
 double largest_move_mm(const brep::Solid& solid, const brep::Solid& smoothed) {
   const std::vector<glm::dvec3>&before = solid.triangles().points_mm, &after = smoothed.triangles().points_mm;
   double largest_mm = 0.0;

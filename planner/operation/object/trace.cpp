@@ -13,8 +13,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// The distance that a vertex on a plane may have from it after rigid motions of coordinates as large as
-/// `reach_mm`: a few roundings of a dot product of three terms.
+/// The distance that rounding may put between a plane and a vertex on it, after rigid motions of coordinates
+/// as large as `reach_mm`: a few roundings of a dot product of three terms.
 double on_plane_mm(double reach_mm) {
   return 64.0 * std::numeric_limits<double>::epsilon() * reach_mm;
 }
@@ -28,7 +28,7 @@ std::vector<CutPlane> moved_planes(std::vector<CutPlane> planes, const glm::dmat
   return planes;
 }
 
-/// Whether a mesh ends within a box, but for the rounding of its points.
+/// Whether a mesh lies within a box, up to the rounding of its points.
 bool is_within(const brep::Solid& mesh, const voxel::Box& box) {
   if (mesh.empty()) return true;
   const brep::Size& size = mesh.size();
@@ -37,8 +37,8 @@ bool is_within(const brep::Solid& mesh, const voxel::Box& box) {
          glm::all(glm::lessThanEqual(size.high_mm, box.high_mm + rounding_mm));
 }
 
-/// What `made` is an image of. A step that moves an image begins with all of it, also with what lies outside
-/// of the universe.
+/// The object that `made` is an image of, and the motion. A later motion of the image starts from the whole
+/// still object, including the part that the image has outside of the universe.
 Object::Image image_of(const Object& still, const glm::dmat4& moved_from_still, const BoundBench& bench,
                        const Object& made) {
   const Object& first = still_of(bench.objects, still);
@@ -157,8 +157,8 @@ double outside_mm3(const voxel::Octree& still, const glm::dmat4& image_from_stil
   const voxel::Universe universe = still.universe();
   const voxel::Box box = voxel::bounds(universe.lattice());
   const glm::dmat3 turn = glm::transpose(glm::dmat3(image_from_still));
-  // The universe's sides as the still object meets them. A matrix that was typed has unit vectors to a few
-  // decimals only, a half-space has them to the last.
+  // The universe's sides in the frame of the still object. A typed matrix has unit vectors to a few decimals
+  // only; a half-space needs them to full precision.
   voxel::Expression outside = voxel::Octree::empty(universe);
   for (int axis = 0; axis < 3; ++axis) {
     const double length = glm::length(turn[axis]), shift_mm = image_from_still[3][axis];
@@ -199,7 +199,7 @@ std::optional<std::string> border_finding_of(const Object& object) {
   double cut_mm2 = 0.0;
   for (int axis = 0; axis < 3; ++axis)
     for (const bool is_low : {true, false}) {
-      // A layer as thick as a voxel has the centres of one layer of voxels.
+      // A layer as thick as a voxel contains the centres of one layer of voxels.
       voxel::Box layer = scan;
       (is_low ? layer.high_mm : layer.low_mm)[axis] =
           is_low ? scan.low_mm[axis] + voxel_mm[axis] : scan.high_mm[axis] - voxel_mm[axis];
@@ -217,7 +217,7 @@ glm::dvec3 area_on_planes(const brep::Triangles& triangles, const std::vector<Cu
     const glm::dvec3 &a = triangles.points_mm[face[1]], &b = triangles.points_mm[face[2]],
                      &c = triangles.points_mm[face[0]];
     const auto sum = [](const glm::dvec3& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); };
-    // No less than the lengths' sum, without a root: enough for nearly all triangles.
+    // An upper bound of the sum of the lengths that needs no square root. It decides nearly all triangles.
     const double surely_off_mm = on_plane_mm(sum(a) + sum(b) + sum(c));
     for (const CutPlane& plane : planes) {
       const auto is_off = [&](const glm::dvec3& p) {

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// Octrees and label maps of meshes in files; in a plan it is the voxels of import.
+// SPDX-License-Identifier: AGPL-3.0-or-later Octrees and label maps of meshes in files. In a plan, `import`
+// digitises a mesh.
 #include "convert/voxel/voxelise.h"
 
 #include "brep/mesh/health.h"
@@ -36,13 +36,14 @@ struct Subject {
   brep::Health health;
 };
 
-/// Throws where it holds no triangles, or is to be shared out exactly and is no solid; tells what is guessed.
+/// Throws where the file holds no triangles, or where voxels' shares are requested and the surface is not a
+/// solid. Adds a finding where the inside is guessed.
 Subject read_subject(const std::filesystem::path& path, const std::string& digitise, Timings& timings,
                      std::vector<std::string>& findings) {
   Subject subject{path, {}, {}};
   {
     const Stopwatch watch(timings, "read");
-    // Welded, as each open edge is a rim that costs.
+    // Welded, because each open edge would be a rim, and rims cost time.
     subject.triangles = brep::joined_surface(read_mesh_in(path)).surface;
   }
   if (subject.triangles.faces.empty()) throw std::runtime_error(path.string() + ": holds no triangles");
@@ -56,8 +57,8 @@ Subject read_subject(const std::filesystem::path& path, const std::string& digit
                              "), so that the share of a voxel it fills is not known: mend it, or take the "
                              "voxels' centres by --digitise centre");
   findings.push_back("method: " + path.string() + " is not a solid (" + subject.health.findings.front() +
-                     "); voxels are those about whose centre it winds more than a half (generalised winding "
-                     "number), which guesses across holes");
+                     "); voxels are those whose centres have a generalised winding number above 1/2, which "
+                     "guesses the surface across holes");
   return subject;
 }
 
@@ -71,7 +72,7 @@ voxel::Box box_of(const std::vector<Subject>& subjects) {
   return box;
 }
 
-/// Meshes whose size or place does not suit the universe that they are to be combined in.
+/// Adds findings on meshes whose size or position does not fit the universe.
 void add_findings_beside(const ObjectName& like, const std::vector<Subject>& subjects, Timings& timings,
                          std::vector<std::string>& findings) {
   const voxel::Box all = voxel::bounds(voxel::universe(read_timed(like.name, timings)).lattice());
@@ -133,7 +134,7 @@ FileAnswer write_octree(const FileBench& bench, const Voxelise& asked, const Sub
   return octree_written(file, asked.out, bench.stop, bench.timings, findings);
 }
 
-/// The voxels of a universe that a box reaches, as a lattice of their own.
+/// The voxels of a universe that a box touches, as a separate lattice.
 voxel::Lattice lattice_of(const voxel::Universe& universe, const voxel::Box& box) {
   voxel::Lattice lattice = universe.lattice();
   const glm::ivec3 last = lattice.dims - 1;

@@ -81,7 +81,8 @@ void bound(const Window& window, const BoundBench& bench, Object& made) {
   made.bound.spacing_mm = lattice.spacing_mm();
   made.bound.scan_box_mm = voxel::bounds(lattice);
   made.bound.voxels_are_samples = on_samples(lattice, bench.universe.lattice());
-  // Depth is interpolated where samples pass the lower bound; an upper bound inside the object breaks that.
+  // The depth is interpolated where samples cross the lower bound. An upper bound inside the object would
+  // make it wrong.
   made.witness = verify::witness_of_window(scan.shared, window.low,
                                            window.high.value_or(std::numeric_limits<double>::infinity()),
                                            bench.universe, scan.grey.step());

@@ -79,7 +79,7 @@ class Reader {
          [&](const SortedJson& entry, const Place& at) { value->push_back(mark(entry, at)); });
   }
   void read(glm::dmat4* value) const {
-    const auto refuse = [&] { place_.refuse("must be four rows of four numbers, as register tells them"); };
+    const auto refuse = [&] { place_.refuse("must be four rows of four numbers, as printed by register"); };
     if (!json_.is_array() || json_.size() != 4) refuse();
     for (int row = 0; row < 4; ++row) {
       const SortedJson& numbers = json_[static_cast<std::size_t>(row)];

@@ -53,7 +53,7 @@ void need_shallow_json(std::string_view text) {
 
 void OneOfEachKey::add(const std::string& key) {
   if (!open_.back().insert(key).second)
-    refuse("", "the key '" + key + "' is said twice in one object: keep one");
+    refuse("", "the key '" + key + "' occurs twice in one object: keep one");
 }
 
 SortedJson read_json(const std::filesystem::path& path) {

@@ -48,7 +48,7 @@ glm::dvec3 mark_mm(const Mark& mark, const Objects& objects) {
 
 const brep::Solid& SettleBench::object(const std::string& name) const {
   const std::optional<brep::Solid>& mesh = objects.at(name).mesh.whole;
-  if (!mesh) throw std::runtime_error("'" + name + "' has no mesh, to which something is to be fitted");
+  if (!mesh) throw std::runtime_error("'" + name + "' has no mesh to fit to");
   return *mesh;
 }
 

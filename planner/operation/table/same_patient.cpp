@@ -29,11 +29,10 @@ std::vector<std::string> other_series(const IdentityOf& scan, const IdentityOf& 
   const std::vector<std::string>& referred = laid.identity.referred_series_uids;
   if (own.empty() || referred.empty() || std::find(referred.begin(), referred.end(), own) != referred.end())
     return {};
-  return {
-      "WARN: series: " + laid.name + " refers to images of the series " + joined(referred, " and ") +
-      ", and " + scan.name + " is of the series " + own +
-      ": they fit only where the patient lay the same in both; choose the series that it was drawn on, or "
-      "compare the contours with the images"};
+  return {"WARN: series: " + laid.name + " refers to images of the series " + joined(referred, " and ") +
+          ", and " + scan.name + " is of the series " + own +
+          ": they fit only if the patient lay in the same position in both; choose the series on which it "
+          "was drawn, or compare the contours with the images"};
 }
 
 }  // namespace
@@ -66,7 +65,7 @@ std::vector<std::string> need_same_patient(const IdentityOf& scan, const Identit
   const voxel::Finding finding = identity_finding(scan, laid);
   if (finding.verdict == voxel::Verdict::Fail && !is_allowed)
     throw std::runtime_error(finding.detail + "; where that is meant, " + option +
-                             " goes on and reports it as a FAIL");
+                             " continues and reports it as a FAIL");
   std::vector<std::string> lines;
   if (finding.verdict == voxel::Verdict::Fail) lines.push_back("FAIL: identity: " + finding.detail);
   if (finding.verdict == voxel::Verdict::Warn) lines.push_back("identity: " + finding.detail);

@@ -75,7 +75,8 @@ glm::dvec3 Scope::landmark_mm(const std::string& where, const std::string& name)
 }
 
 void Scope::hold_head(const std::string& where, const glm::dmat3& lps_from_head) {
-  if (lps_from_head_) Place{where}.refuse("an earlier step holds the head already: keep one of the two");
+  if (lps_from_head_)
+    Place{where}.refuse("an earlier step already sets the head's orientation: keep one of the two");
   lps_from_head_ = lps_from_head;
 }
 

@@ -17,10 +17,10 @@ struct Cephalogram {
   double pixel_mm = 0.0;
 };
 
-/// The patient's radiograph from the right, face to the right, in true scale and as the head is held, with
-/// the landmarks and the lines of the lateral measures: pale as the patient is, orange as planned where that
-/// differs. The square frames the landmarks with a margin of 25 mm. Throws Stopped. Cost: a ray a pixel, at
-/// most two a voxel.
+/// The patient's radiograph from the right, face to the right, in true scale and in the head's orientation,
+/// with the landmarks and the lines of the lateral measures: the patient pale, the plan orange where it
+/// differs. The picture is a square around the landmarks with a margin of 25 mm. Throws Stopped. Cost: one
+/// ray per pixel, at most two per voxel.
 Cephalogram draw_cephalogram(const voxel::GreyOctree& grey, const Cephalometry& definitions,
                              const std::vector<MovedLandmark>& landmarks, const glm::dmat3& lps_from_head,
                              int size_px, const voxel::Progress& progress = {});

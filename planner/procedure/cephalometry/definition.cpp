@@ -11,7 +11,7 @@
 
 namespace octotomy::planner {
 
-/// Names and texts of the definitions in this folder; made when the program is configured.
+/// Names and texts of the definitions in this folder; generated when the program is configured.
 const std::vector<std::pair<std::string, std::string>>& cephalometry_files();
 
 namespace {

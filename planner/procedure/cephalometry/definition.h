@@ -9,19 +9,21 @@
 
 namespace octotomy::planner {
 
-/// How a measure follows from its points. A line goes from its first point to its second.
+/// The definition of a measure by its points. A line runs from its first point to its second.
 enum class CephalometricKind {
   Angle,       ///< a, v, b: at v, 0 to 180 degrees
-  Bend,        ///< a, v, b: 180 degrees less the angle at v; negative where v lies behind the line a, b
+  Bend,        ///< a, v, b: 180 degrees minus the angle at v; negative if v lies behind the line a, b
   Lines,       ///< a, b, c, d: between the directions a to b and c to d, 0 to 180 degrees
-  Tilt,        ///< a, b: of a to b over the horizontal, degrees; positive where b is higher
+  Tilt,        ///< a, b: angle of a to b above the horizontal, degrees; positive if b is higher
   Distance,    ///< a, b: mm
   Along,       ///< a, b, p, q: from p to q along the line a, b, mm
-  Across,      ///< a, b, p, q: from p to q square to the line a, b, mm; upwards where a to b goes forward
-  Difference,  ///< of two measures: the first less the second
-  Share,       ///< of two measures: the first of the second, per cent
+  Across,      ///< a, b, p, q: from p to q perpendicular to the line a, b, mm; upward is positive if a to b
+               ///< points forward
+  Difference,  ///< of two measures: the first minus the second
+  Share,       ///< of two measures: the first as per cent of the second
 };
-/// Where a measure is taken: landmarks are projected along the head's left-right or front-back direction.
+/// The plane of a measure: landmarks are projected along the head's left-right or front-back direction, or
+/// not at all.
 enum class CephalometricPlane { Lateral, Frontal, Space };
 
 struct CephalometricMeasure {
@@ -30,9 +32,9 @@ struct CephalometricMeasure {
   CephalometricKind kind = CephalometricKind::Angle;
   CephalometricPlane plane = CephalometricPlane::Lateral;
   std::vector<std::string> points;  ///< landmarks
-  std::vector<std::string> of;      ///< measures, of Difference and Share
+  std::vector<std::string> of;      ///< measures, for Difference and Share
   std::optional<double> norm, deviation;
-  std::string source;  ///< of the norm
+  std::string source;  ///< source of the norm
 
   const char* unit() const;
 };
@@ -40,7 +42,7 @@ struct CephalometricMeasure {
 struct CephalometricLandmark {
   std::string name;
   std::string says;
-  /// It is the mean of these where it is not placed itself: both sides, upper and lower.
+  /// If the landmark is not placed itself, it is the mean of these, such as both sides.
   std::vector<std::string> mean_of;
 };
 
@@ -50,16 +52,16 @@ struct Cephalometry {
   std::vector<CephalometricMeasure> measures;
 };
 
-/// Landmarks' places by their names, in any frame.
+/// Landmarks' positions by their names, in any frame.
 using LandmarkPlaces = std::map<std::string, glm::dvec3>;
-/// The landmarks as placed, and those that are means of others and were not placed themselves.
+/// The placed landmarks, and those that were not placed but are means of others.
 LandmarkPlaces with_means(const Cephalometry& definitions, LandmarkPlaces points);
 
-/// Throws std::runtime_error with the place in it: an unknown key, kind, landmark or measure (one is used
-/// after it is defined), a wrong number of points.
+/// Throws std::runtime_error with the position in the text for an unknown key, kind, landmark or measure (a
+/// measure must be defined before it is used), or a wrong number of points.
 Cephalometry parse_cephalometry(const std::string& json);
-/// Definitions of the program by their name, or in a file that ends in .json. Throws std::runtime_error with
-/// the nearest name where there are none.
+/// Definitions of the program by their name, or in a file that ends in .json. Throws std::runtime_error, with
+/// the nearest name, if there are none.
 Cephalometry read_cephalometry(const std::string& name_or_path);
 std::vector<std::string> cephalometries();
 

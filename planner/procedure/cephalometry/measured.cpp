@@ -79,8 +79,8 @@ class Ruler {
   static double angle(const glm::dvec3& a, const glm::dvec3& b) {
     return degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
   }
-  /// How far `b` leads off to the upper side of a direction that goes forward; in the frontal plane, of one
-  /// that goes to the left. Of a line that goes down, that is its front.
+  /// The component of `b` perpendicular to a direction: upward for a direction that points forward (in the
+  /// frontal plane: to the left), and forward for one that points down.
   double across(const glm::dvec3& direction, const glm::dvec3& b) const {
     const double turn = measure_.plane == Plane::Lateral ? glm::cross(direction, b).x * -1.0
                                                          : glm::cross(direction, b).y * -1.0;
@@ -91,16 +91,16 @@ class Ruler {
   std::array<glm::dvec3, 4> points_{};
 };
 
-/// Of the measures that a chart has, in their order.
+/// Values of a chart's measures, in their order.
 using Values = std::vector<double>;
 
-/// A measure that has its landmarks: where these and its parts stand in the chart.
+/// A measure whose landmarks are all present, with the indices of these and of its parts in the chart.
 struct ChartedMeasure {
   const CephalometricMeasure* definition = nullptr;
   std::vector<std::size_t> points, of;
 };
 
-/// Definitions bound to landmarks: names are looked up once, and not in each trial.
+/// Definitions bound to landmarks, so that names are looked up only once and not in each trial.
 class Chart {
  public:
   Chart(const Cephalometry& definitions, const std::vector<MovedLandmark>& landmarks) {
@@ -117,8 +117,7 @@ class Chart {
 
   const std::vector<ChartedMeasure>& measures() const { return measures_; }
   const auto& lacking() const { return lacking_; }
-  /// Precondition: the landmarks of the chart, in their order. Landmarks that no measure uses are not looked
-  /// at.
+  /// Precondition: the landmarks of the chart, in their order. Landmarks that no measure uses are not read.
   Values values(const Points& landmarks_mm) const {
     Points points(places_.size());
     for (const std::size_t place : used_)
@@ -137,7 +136,7 @@ class Chart {
   }
 
  private:
-  /// A landmark that was placed, or the mean of places before it.
+  /// A placed landmark, or the mean of earlier places.
   struct Place {
     std::optional<std::size_t> landmark;
     std::vector<std::size_t> mean_of;
@@ -154,7 +153,7 @@ class Chart {
     places_.push_back(std::move(mean));
   }
 
-  /// A measure is defined after its parts, so that what these lack is known.
+  /// A measure is defined after its parts, so their missing landmarks are already known.
   void add(const CephalometricMeasure& measure) {
     std::set<std::string> missing;
     for (const std::string& name : measure.points)
@@ -209,7 +208,7 @@ class Trials {
     found_.resize(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) found_[i].push_back(values[i]);
   }
-  /// Half of the shortest interval about the value that holds the claimed share of the trials.
+  /// The half-width of the shortest interval around the value that contains the claimed share of trials.
   double half_width(std::size_t measure, double value) {
     std::vector<double>& found = found_[measure];
     for (double& each : found) each = std::abs(each - value);
@@ -236,7 +235,7 @@ class Placing {
         before_mm_(landmarks.size()),
         after_mm_(landmarks.size()) {}
 
-  /// Places those that are used.
+  /// Sets the positions of the landmarks that are used.
   void place(const Points& errors_mm) {
     for (const std::size_t i : used_) {
       const glm::dvec3 p_mm = landmarks_[i].landmark.p_mm + errors_mm[i];

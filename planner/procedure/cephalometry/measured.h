@@ -13,19 +13,20 @@
 
 namespace octotomy::planner {
 
-/// A value and the half-width of the interval that holds it in 99 of 100 cases.
+/// A value and the half-width of an interval that contains the true value in 99 of 100 cases.
 struct CephalometricValue {
   double value = 0.0, half_width = 0.0;
 };
 struct CephalometricResult {
   CephalometricMeasure measure;
   CephalometricValue before;
-  /// None where nothing moved. A landmark's error goes with it, so that a change is surer than both values.
+  /// None if nothing moved. A landmark's error is the same before and after, so a change is more accurate
+  /// than either value.
   std::optional<CephalometricValue> after, change;
 };
 struct CephalometricResults {
   std::vector<CephalometricResult> measured;  ///< in the order of their definitions
-  /// Measures that lack landmarks, and which.
+  /// Measures that cannot be computed, each with its missing landmarks.
   std::vector<std::pair<std::string, std::vector<std::string>>> lacking;
 };
 
@@ -35,10 +36,10 @@ struct LandmarkDoubt {
   std::uint64_t seed = 1;
 };
 
-/// The measures that the landmarks allow. Values are of the landmarks as placed; intervals come of `trials`
-/// in which each placed landmark is off by chance, normally distributed and independent of the others.
-/// Throws std::invalid_argument where a line's two points coincide, naming the measure. The same seed gives
-/// the same bits. Cost: under a microsecond a measure or landmark and trial.
+/// The measures that the landmarks allow. Values are those of the placed landmarks. Intervals come from
+/// `trials` trials in which each placed landmark has a random, independent, normally distributed error.
+/// Throws std::invalid_argument, which names the measure, if a line's two points coincide. The same seed
+/// produces the same bits. Cost: less than a microsecond per trial and measure or landmark.
 CephalometricResults measured(const Cephalometry& definitions, const std::vector<MovedLandmark>& landmarks,
                               const glm::dmat3& lps_from_head, const LandmarkDoubt& doubt = {});
 

@@ -16,7 +16,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// Parentheses within parentheses, at most: a formula is a line that people write.
+/// Largest depth of nested parentheses; formulas are single lines written by people.
 constexpr int deepest = 64;
 
 class Parser {

@@ -7,9 +7,9 @@
 
 namespace octotomy::planner {
 
-/// The value of a formula: numbers, names, + - * / and parentheses, min(a, b, ...), max(a, b, ...),
-/// hypot(a, b), abs(a), asin_deg(a). Throws std::runtime_error with the formula, the position and what was
-/// expected; with the nearest name for one that is not known; where it divides by zero.
+/// The value of a formula: numbers, names, + - * / and parentheses, min(a, b, ...), max(a, b, ...), hypot(a,
+/// b), abs(a), asin_deg(a). Throws std::runtime_error with the formula, the position and what was expected;
+/// for an unknown name with the nearest one; for a division by zero.
 double value_of(std::string_view formula, const std::map<std::string, double>& names);
 
 }  // namespace octotomy::planner

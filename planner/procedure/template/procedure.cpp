@@ -16,19 +16,19 @@
 
 namespace octotomy::planner {
 
-/// Names and texts of the procedures in this folder; made when the program is configured.
+/// Names and texts of the procedures in this folder; generated when the program is configured.
 const std::vector<std::pair<std::string, std::string>>& procedure_files();
 
 namespace {
 
 using Values = std::map<std::string, double>;
 
-/// Coordinates are kept to a tenth of a micrometre, so that a plan is read easily.
+/// Rounds coordinates to a tenth of a micrometre, so that a plan is easy to read.
 double rounded(double value) {
   return std::round(value * 1e4) / 1e4 + 0.0;
 }
 
-/// The value with each formula in it answered: "=" makes a number, "=?" whether it is other than 0.
+/// The value with all formulas evaluated: "=" yields a number, "=?" whether it differs from 0.
 Json answered(const Json& value, const Values& names) {
   if (value.is_string() && value.get_ref<const std::string&>().starts_with('=')) {
     const std::string_view formula = std::string_view(value.get_ref<const std::string&>()).substr(1);
@@ -95,7 +95,7 @@ Values values_of(const Procedure& procedure, const std::map<std::string, double>
   return values;
 }
 
-/// The steps that name the landmarks and hold the head.
+/// The steps that name the landmarks and set the head's orientation.
 Json first_steps(const std::vector<brep::Landmark>& landmarks) {
   Json points = Json::array();
   for (const brep::Landmark& landmark : landmarks)
@@ -116,7 +116,7 @@ Json first_steps(const std::vector<brep::Landmark>& landmarks) {
   return steps;
 }
 
-/// Another procedure of the program, whose landmarks or steps one takes.
+/// Another procedure of the program, whose landmarks or steps `borrower` uses.
 Procedure borrowed(const std::string& name, const Procedure& borrower) {
   if (name == borrower.name || name.ends_with(".json"))
     throw std::runtime_error("of '" + name + "': must be another procedure of the program");
@@ -252,7 +252,7 @@ Json plan_of(const Procedure& procedure, const ProcedureInput& input) {
             {"scans", scans_of(procedure, input)},
             {"universe", {{"voxel_mm", input.voxel_mm}}},
             {"steps", first_steps(input.landmarks)}};
-  // Read once for the head's directions, and to refuse landmarks that cannot be.
+  // Parses the plan so far for the head's directions, and to refuse invalid landmarks.
   const Plan placed = parse_plan(plan.dump(), input.folder);
   std::vector<brep::Landmark> landmarks;
   for (const NamedPoint& landmark : placed.landmarks) landmarks.push_back({landmark.name, landmark.p_mm});

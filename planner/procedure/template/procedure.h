@@ -11,7 +11,7 @@
 
 namespace octotomy::planner {
 
-/// A number that is typed when a procedure is planned.
+/// A number that the user enters for a procedure.
 struct ProcedureValue {
   std::string name;  ///< ends in its unit: "forward_mm"
   std::string says;
@@ -21,31 +21,31 @@ struct ProcedureValue {
 struct ProcedureLandmark {
   std::string name;
   std::string says;  ///< its definition
-  std::string scan;  ///< of those beside the patient's the one that it is placed on; empty: the patient's
+  std::string scan;  ///< the additional scan on which it is placed; empty: the patient's scan
 };
-/// A scan beside the patient's, as that of a donor bone.
+/// A scan in addition to the patient's, such as that of a donor bone.
 struct ProcedureScan {
   std::string name;
   std::string says;
 };
 
-/// An operation by its landmarks and typed values; its steps hold formulas.
+/// An operation defined by landmarks and entered values; its steps contain formulas.
 struct Procedure {
   std::string name;
   std::string says;
   std::vector<ProcedureLandmark> landmarks;
-  std::vector<ProcedureScan> scans;  ///< beside the patient's, which is "ct"
+  std::vector<ProcedureScan> scans;  ///< in addition to the patient's, which is "ct"
   std::vector<ProcedureValue> values;
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();
 };
 
-/// The most values that a procedure may ask for.
+/// The largest number of values of a procedure.
 inline constexpr std::size_t most_values = 12;
 
-/// Reads a procedure's JSON. Throws std::runtime_error with the place in it.
+/// Reads a procedure's JSON. Throws std::runtime_error with the position in it.
 Procedure parse_procedure(const std::string& json);
-/// A procedure of the program by its name, or one in a file that ends in .json. Throws std::runtime_error
-/// with the nearest name where there is none.
+/// A procedure of the program by its name, or one in a file that ends in .json. Throws std::runtime_error,
+/// with the nearest name, if there is none.
 Procedure read_procedure(const std::string& name_or_path);
 /// Names of the program's procedures.
 std::vector<std::string> procedures();
@@ -54,16 +54,16 @@ struct ProcedureInput {
   nlohmann::ordered_json scan;                                  ///< as a plan's entry: {"path": ...}
   std::map<std::string, nlohmann::ordered_json> further_scans;  ///< by the procedure's names
   std::vector<brep::Landmark> landmarks;
-  std::map<std::string, double> values;  ///< those that are not the preset
+  std::map<std::string, double> values;  ///< values that differ from the preset
   double voxel_mm = 1.0;
-  std::filesystem::path folder;  ///< of the plan
+  std::filesystem::path folder;  ///< folder of the plan
 };
 
-/// The plan of a procedure on one head, as JSON that stands alone. Where the landmarks hold both porions and
-/// an orbitale, the head is held by the Frankfort plane, and along nasion and basion where they are there.
-/// Throws std::runtime_error where a landmark or scan is missing, with its definition; a value is unknown or
-/// out of its range; a formula or the plan that comes of it is refused, as where landmarks of left and right
-/// are interchanged.
+/// The plan of a procedure on one head, as self-contained JSON. If the landmarks include both porions and an
+/// orbitale, the head is oriented by the Frankfort plane, and along nasion and basion if these are present.
+/// Throws std::runtime_error if a landmark or scan is missing (with its definition), a value is unknown or
+/// out of its range, or a formula or the resulting plan is refused, for example because landmarks of left and
+/// right are interchanged.
 nlohmann::ordered_json plan_of(const Procedure& procedure, const ProcedureInput& input);
 
 /// The procedure's own steps, its formulas answered: `landmarks` are in LPS, `lps_from_head` is how the head is

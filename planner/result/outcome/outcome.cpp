@@ -78,12 +78,12 @@ const Object& unmoved_of(const Objects& objects, const std::vector<Piece>& piece
     }
     if (best != nullptr) return *best;
   }
-  throw std::runtime_error("the plan has no bone that stays: name it by --unmoved");
+  throw std::runtime_error("the plan has no bone that does not move: name one by --unmoved");
 }
 
 const brep::Solid& solid_of(const Object& object) {
   if (!object.mesh.whole || object.mesh.whole->empty())
-    throw std::runtime_error("'" + object.id + "' has no mesh to be laid on the later scan");
+    throw std::runtime_error("'" + object.id + "' has no mesh to fit to the later scan");
   return *object.mesh.whole;
 }
 
@@ -167,13 +167,14 @@ Outcome outcome_of(const Plan& plan, const Evaluation& evaluation, const voxel::
   const std::vector<Piece> pieces = pieces_of(objects);
   const Object& unmoved = unmoved_of(objects, pieces, options.unmoved);
   if (!options.low && !unmoved.shown)
-    throw std::runtime_error("'" + unmoved.id + "' is of no window of a scan: say by --low what is bone");
+    throw std::runtime_error(
+        "'" + unmoved.id + "' does not come from a window of a scan: give the lower bound of bone by --low");
   const double low = options.low.value_or(unmoved.shown ? unmoved.shown->threshold : 0.0);
   const brep::Mesh surface = brep::mesh_of(
       convert::isosurface(after, low, std::numeric_limits<double>::infinity(), {options.progress.stop, {}}));
   if (surface.n_faces() == 0)
     throw std::runtime_error("the later scan has no sample of " + std::to_string(low) +
-                             " or more: say by --low what is bone in it");
+                             " or more: give its lower bound of bone by --low");
   const glm::dvec3 spacing_mm = after.lattice.spacing_mm();
   const double sample_mm = std::cbrt(spacing_mm.x * spacing_mm.y * spacing_mm.z);
   const Laid whole = laid(solid_of(unmoved), surface, {}, sample_mm, options);

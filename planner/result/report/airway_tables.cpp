@@ -75,14 +75,13 @@ std::string airway_tables(const Json& measurements) {
                     three_figures(least.at("half_width_mm2").get<double>())) +
         figure_cell(number(least.at("voxel_mm2"), 1)) + figure_cell(number(least.at("mesh_mm2"), 1)) +
         "</tr>";
-    made +=
-        element("h3", "Airway " + escaped(one.at("id").get<std::string>())) + element("table", rows) +
-        element("p", "Narrowest " + number(least.at("along_mm"), 1) + " mm along its centre line of " +
-                         number(airway.at("length_mm"), 1) + " mm, at x " + number(at.at(0), 1) + ", y " +
-                         number(at.at(1), 1) + ", z " + number(at.at(2), 1) +
-                         " mm. What lies nearer to an end than the passage's radius does not count: the line "
-                         "is not settled there.") +
-        plot(airway) + list(one.at("findings").get<std::vector<std::string>>());
+    made += element("h3", "Airway " + escaped(one.at("id").get<std::string>())) + element("table", rows) +
+            element("p", "Narrowest " + number(least.at("along_mm"), 1) + " mm along its centre line of " +
+                             number(airway.at("length_mm"), 1) + " mm, at x " + number(at.at(0), 1) + ", y " +
+                             number(at.at(1), 1) + ", z " + number(at.at(2), 1) +
+                             " mm. Sections nearer to an end than the airway's radius are ignored, because "
+                             "the centre line is unreliable there.") +
+            plot(airway) + list(one.at("findings").get<std::vector<std::string>>());
   }
   return made;
 }

@@ -17,7 +17,7 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr const char* to_state = "to be stated by who uses the numbers: this run cannot know it";
+constexpr const char* to_state = "to be stated by the user of the numbers: the run has no such information";
 
 /// The certificates by their objects.
 std::map<std::string, Json> certificates_of(const Json& result) {
@@ -50,7 +50,7 @@ class Number {
     const auto found = certificates.find(object);
     if (found == certificates.end())
       return gap("'" + object +
-                 "' has no certificate in this run: one kernel alone answered, or none was asked for");
+                 "' has no certificate in this run: only one kernel has an answer, or none was requested");
     const bool agrees = found->second.at("verdict") != "FAIL";
     json_[agrees ? "supported_by" : "contradicted_by"].push_back(evidence_of(found->second));
     if (!found->second.at("resolved").get<bool>())
@@ -119,7 +119,7 @@ void add_contacts(const Json& flap, const std::map<std::string, Json>& certifica
     number.by_certificate(certificates, object);
     if (!contact.at("slab_lacks_at_most_mm2").is_number())
       number.gap(
-          "the mean over the slab may differ from the area in the cut, by how much was not found here");
+          "the mean over the slab may differ from the area in the cut, by an amount that was not computed");
     numbers.push_back(std::move(number).json());
   }
 }
@@ -155,7 +155,7 @@ void add_contact_map(const Json& map, const std::map<std::string, Json>& certifi
                                         std::tuple("overlap_mm3", "overlap of ", "mm3")})
     if (map.contains(key) && map.at(key).is_number()) {
       Number number(id, what + pair, map.at(key), unit);
-      number.gap("one kernel alone tells it, without a half-width");
+      number.gap("only one kernel computes it, without a half-width");
       add(std::move(number));
     }
 }
@@ -186,7 +186,7 @@ void add_trials(const Json& trials, Json& numbers) {
                   doubt.at("what").get<std::string>() + " of " + doubt.at("of").get<std::string>(),
                   doubt.at("value"), doubt.at("unit").get<std::string>());
     number.by_trials(trials, doubt);
-    number.gap("how large the errors are was typed, and no kernel made the objects of a trial");
+    number.gap("the sizes of the errors were typed, and trials do not compute objects");
     numbers.push_back(std::move(number).json());
   }
 }
@@ -199,7 +199,7 @@ void add_movements(const Json& result, const std::map<std::string, Json>& certif
     const auto add = [&](const std::string& what, const Json& value, const char* unit) {
       Number number(object, what, value, unit);
       number.by_certificate(certificates, object);
-      number.gap("it is what the plan says: how near the operation comes, octotomy outcome tells");
+      number.gap("it is the plan's own value: octotomy outcome measures what the operation achieved");
       numbers.push_back(std::move(number).json());
     };
     const auto add_all = [&](const Json& from, const char* unit, const std::vector<std::string>& names) {
@@ -221,7 +221,7 @@ void add_cephalometry(const Json& result, Json& numbers) {
                     measure.at("unit").get<std::string>());
       number.by_half_width(told.value("half_width", Json()), Json::array({{{"name", "landmarks"}}}),
                            result.at("cephalometry").at("coverage"));
-      number.gap("the landmarks were placed by people: how well is an assumption of this run");
+      number.gap("the landmarks were placed by people; their accuracy is an assumption of this run");
       numbers.push_back(std::move(number).json());
     }
 }
@@ -245,7 +245,7 @@ Json numbers_of(const Json& result) {
         Number number(id, key, one.at(key + "_" + unit), unit);
         number.by_half_width(one.value(key + "_half_width_" + unit, Json()),
                              one.value(key + "_half_width_terms", Json()));
-        number.gap("the points were placed by people: how well was not told to this run");
+        number.gap("the points were placed by people; their accuracy was not stated for this run");
         numbers.push_back(std::move(number).json());
       }
     if (one.contains("osteotomies")) add_contacts(one, certificates, numbers);
@@ -272,8 +272,9 @@ Json certificate_evidence(const Json& result) {
     limits += one.contains("detection_limit") && !one.at("detection_limit").is_null();
   evidence.push_back({{"check", "certificates"}, {"counts", result.at("counts")}});
   if (limits > 0)
-    evidence.push_back({{"check", "errors made in the objects themselves, to find the smallest that is seen"},
-                        {"certificates_with_detection_limit", limits}});
+    evidence.push_back(
+        {{"check", "errors made in the objects themselves, to find the smallest that is detected"},
+         {"certificates_with_detection_limit", limits}});
   return evidence;
 }
 
@@ -335,24 +336,22 @@ Json factors_of(const Json& result) {
   const Json none = Json::array();
   return {
       factor(code, "software quality assurance", identity_evidence(result),
-             "also: the program's tests are not run by a plan; this tells what ran on what"),
+             "also: a plan does not run the program's tests; this states which version ran on which system"),
       factor(code, "numerical code verification", none,
              "no closed form was computed in this run: octotomy verify --phantoms and --faults do that for "
              "this version"),
       factor(calculation, "discretization error", certificate_evidence(result),
-             "no certificate was asked for, or no object has one"),
+             "no certificate was requested, or no object has one"),
       factor(calculation, "numerical solver error", none,
              "no solver was checked by itself: residuals of Booleans stand with the objects"),
-      factor(calculation, "use error", reader_evidence(result), "no reader signed this plan as it is"),
+      factor(calculation, "use error", reader_evidence(result), "no reader has signed the current plan"),
       factor(model, "model form", none,
              "bone is what lies in a window of samples: this run did not test that"),
-      factor(
-          model, "model inputs", input_evidence(result),
-          has_trials(result)
-              ? "also: how large the errors of landmarks, saw, segmentation and seating are was typed, not "
-                "measured"
-              : "also: errors of landmarks, typed numbers and segmentation were not told to this run: a step "
-                "of trials tells how far they reach"),
+      factor(model, "model inputs", input_evidence(result),
+             has_trials(result) ? "also: the sizes of the errors of landmarks, saw, segmentation and seating "
+                                  "were typed, not measured"
+                                : "also: errors of landmarks, typed numbers and segmentation were not stated "
+                                  "for this run: a trials step computes their effect"),
       factor(comparator, "test samples", none, no_comparison),
       factor(comparator, "test conditions", none, no_comparison),
       factor(assessment, "equivalency of input parameters", none, no_comparison),

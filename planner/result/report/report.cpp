@@ -71,7 +71,7 @@ void check_signatures(Result& result) {
     if (!what.empty())
       result.findings.push_back({"signature", voxel::Verdict::Warn,
                                  what + " changed after " + signature.by + " (" + signature.as +
-                                     ") signed at " + signature.at + ": let it be read and signed again"});
+                                     ") signed at " + signature.at + ": it must be read and signed again"});
   }
 }
 

@@ -266,14 +266,14 @@ std::string sizes(const Json& measurements) {
              "class=\"n\">Crofton 13</th><th "
              "class=\"n\">isosurface</th></tr>" +
                  rows) +
-         element(
-             "p class=\"soft small\"",
-             "Recommended: one number by the scan's own samples; the truth lies within its \u00b1 in 99 of "
-             "100 cases. Volume: voxels counted, and the mesh's enclosed volume by the divergence theorem. "
-             "Area: "
-             "Crofton formula over 13 directions on voxels (up to 9 % low on flat cuts), and the "
-             "triangles of "
-             "the isosurface.");
+         element("p class=\"soft small\"",
+                 "Recommended: one number by the scan's own samples; the true value lies within its \u00b1 "
+                 "in 99 of 100 cases. Volume: voxels counted, and the mesh's enclosed volume by the "
+                 "divergence theorem. "
+                 "Area: "
+                 "Crofton formula over 13 directions on voxels (up to 9 % low on flat cuts), and the "
+                 "triangles of "
+                 "the isosurface.");
 }
 
 std::string lengths(const Json& measurements) {

@@ -43,18 +43,19 @@ std::string trial_tables(const Json& measurements) {
     const auto error = [&](const char* key, const char* unit) {
       return plain(errors.at(key).get<double>()) + unit;
     };
-    made += element("h3", "How wrong it can be: " + escaped(trials.at("id").get<std::string>())) +
-            element("table", rows) +
-            element("p class=\"soft small\"",
-                    "After each \u00b1, what holds in 99 of 100 of " + trials.at("trials").dump() +
-                        " trials with errors of these standard deviations: landmarks " +
-                        error("landmark_mm", " mm") + " and a piece's seating " + error("seating_mm", " mm") +
-                        " along each axis, its turn " + error("seating_deg", "\u00b0") +
-                        " about each, the saw's width " + error("kerf_mm", " mm") + ", where bone ends " +
-                        error("segmentation_mm", " mm") +
-                        ". The further columns are what each source leaves alone. Gaps and overlaps are "
-                        "followed to first order.") +
-            list(trials.at("findings").get<std::vector<std::string>>());
+    made +=
+        element("h3", "How wrong it can be: " + escaped(trials.at("id").get<std::string>())) +
+        element("table", rows) +
+        element("p class=\"soft small\"",
+                "After each \u00b1, the half-width that holds in 99 of 100 of " + trials.at("trials").dump() +
+                    " trials with errors of these standard deviations: landmarks " +
+                    error("landmark_mm", " mm") + " and a piece's seating " + error("seating_mm", " mm") +
+                    " along each axis, its turn " + error("seating_deg", "\u00b0") +
+                    " about each, the saw's width " + error("kerf_mm", " mm") + ", where bone ends " +
+                    error("segmentation_mm", " mm") +
+                    ". The further columns are the half-widths of each source alone. Gaps and overlaps are "
+                    "computed to first order.") +
+        list(trials.at("findings").get<std::vector<std::string>>());
   }
   return made;
 }

@@ -130,7 +130,7 @@ TEST(ReadMesh, ATextThatIsNoStlIsNamedSo) {
   std::string obj = "# a box\n";
   for (int i = 0; i < 20; ++i) obj += "v 0 0 " + std::to_string(i) + "\n";
   const std::string why = refusal_of("box.stl", obj);
-  EXPECT_NE(why.find("text that is no STL"), std::string::npos) << why;
+  EXPECT_NE(why.find("text but not STL"), std::string::npos) << why;
   EXPECT_NE(why.find("'# a box'"), std::string::npos) << why;
 }
 
@@ -186,7 +186,7 @@ TEST(ReadMesh, WhatIsBadIsToldWithPathAndPlace) {
   EXPECT_NE(
       refusal_of("x.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_GRID\n").find("POLYDATA"),
       std::string::npos);
-  EXPECT_NE(refusal_of("x.dxf", "0").find("is no mesh format"), std::string::npos);
+  EXPECT_NE(refusal_of("x.dxf", "0").find("is not a mesh format"), std::string::npos);
   EXPECT_NE(refusal_of("x.ply", "").find("empty"), std::string::npos);
   EXPECT_THROW(read_triangles("/nowhere/at/all.stl"), std::runtime_error);
 }

@@ -113,7 +113,8 @@ TEST_F(History, AFileThatIsNoDatabaseIsRefusedByName) {
     const PlanHistory history(plan_);
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("is no history of a plan"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("is not the history of a plan"), std::string::npos)
+        << error.what();
   }
 }
 

@@ -216,7 +216,7 @@ TEST(ReadDicom, RefusesFramesThatAreProjectionsOrAFilm) {
                                 DicomBytes::number(0x0018, 2) + DicomBytes::number(0x1063, 2)) +
             attributes.substr(pixel, groups - pixel) + attributes.substr(pixels));
   };
-  expect(reason(film("")), "a film is no volume");
+  expect(reason(film("")), "a film is not a volume");
   write_bytes(folder / "frames.dcm", film(DicomBytes::element(0x00180088, "DS", "2")));
   const Scene scene = read_scene(folder / "frames.dcm");
   expect_ramp(scene, frames);

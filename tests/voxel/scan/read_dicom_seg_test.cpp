@@ -201,7 +201,7 @@ TEST(ReadDicomSeg, ADistanceOfPlanesThatPositionsContradictIsReported) {
       EXPECT_NE(warnings_of(scene).find(warning), std::string::npos) << warnings_of(scene);
   };
   expect(read({"38", "36.5", "35", "33.5"}, "1", ""), 4, 1.5, "positions are taken");
-  expect(read({"38", "35", "32", "29"}, "1", ""), 10, 1.0, "taken as empty");
+  expect(read({"38", "35", "32", "29"}, "1", ""), 10, 1.0, "assumed to be empty");
   expect(read({"41", "40", "36", "35"}, "", ""), 7, 1.0, "");
   expect(read({"41", "40", "36", "35"}, "1", ""), 7, 1.0, "");
   expect(read({"42", "40", "38", "36"}, "", "3"), 4, 2.0, "");

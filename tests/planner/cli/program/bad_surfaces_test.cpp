@@ -89,7 +89,7 @@ TEST_F(BadSurfaces, BecomeASolidThatTheBooleanTakesAndTheChangeIsTold) {
                 .status,
             0);
   expect_refused(run("repair " + off("sheet.off", sheet(4, 10)) + " --solid -o " + at("s.ply")),
-                 "enclose anything: there are only sheets");
+                 "encloses a volume: there are only sheets");
   EXPECT_FALSE(std::filesystem::exists(at("s.ply")));
 }
 

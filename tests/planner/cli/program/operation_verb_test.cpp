@@ -74,7 +74,8 @@ TEST_F(OperationVerbs, EachKernelOffsetsItsOwnOperand) {
 
 TEST_F(OperationVerbs, WhatOneKernelAloneDoesIsSaid) {
   for (const std::string verb : {"smooth", "decimate"})
-    expect_refused(run(verb + " " + at("ball.off") + " --certify -o " + at("x.ply")), "mesh kernel alone");
+    expect_refused(run(verb + " " + at("ball.off") + " --certify -o " + at("x.ply")),
+                   "only by the mesh kernel");
   expect_refused(run("fill " + at("ball.octree") + " -o " + at("x.ply")), "octotomy mesh");
   EXPECT_EQ(run("fill " + at("ball.octree") + " -o " + at("full.octree")).status, 0);
 }

@@ -102,7 +102,7 @@ TEST_F(PlanDocument, ASignatureHoldsUntilThePlanOrItsScanChanges) {
   ASSERT_EQ(run("run my.plan.json -o report --no-certificates").status, 0);
   result = tests::SortedJson::parse(tests::bytes_of(folder_ / "report/result.json"));
   EXPECT_EQ(result.at("signatures")[0].at("changed_since")[0], "the plan");
-  EXPECT_NE(result.at("findings").dump().find("let it be read and signed again"), std::string::npos);
+  EXPECT_NE(result.at("findings").dump().find("it must be read and signed again"), std::string::npos);
   changed["signatures"][0].erase("by");
   write("my.plan.json", changed.dump());
   expect_refused(run("plan sign my.plan.json"), "signatures[0]");

@@ -242,7 +242,7 @@ TEST(LabelTable, ANameOfTwoLabelsIsRefusedWithBothNumbers) {
     table.label("Bone");
     FAIL() << "one of two labels was chosen";
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("a.seg.nrrd: has 2 labels 'Bone', of the numbers 2, 7"),
+    EXPECT_NE(std::string(error.what()).find("a.seg.nrrd: has 2 labels 'Bone', with the numbers 2, 7"),
               std::string::npos)
         << error.what();
   }
@@ -332,12 +332,12 @@ TEST_F(LabelNames, TwoSegmentsOfOneNameAreRefusedByVerbAndPlan) {
         "Segment0_Name:=Bone\nSegment0_LabelValue:=1\nSegment1_Name:=Bone\nSegment1_LabelValue:=2\n\n"
         "0 1 2\n");
   expect_refused(run("segment " + at("two.seg.nrrd") + " --named Bone -o " + at("x.octree")),
-                 "of the numbers 1, 2");
+                 "with the numbers 1, 2");
   EXPECT_EQ(run("segment " + at("two.seg.nrrd") + " --label 2 -o " + at("x.octree")).status, 0);
   write("two.plan.json",
         R"({ "octotomy_plan": 1, "name": "n", "scans": { "seg": { "path": "two.seg.nrrd" } },
       "steps": [ { "id": "bone", "do": "segment", "scan": "seg", "named": "Bone" } ] })");
-  expect_refused(run("run " + at("two.plan.json") + " -o " + at("report")), "of the numbers 1, 2");
+  expect_refused(run("run " + at("two.plan.json") + " -o " + at("report")), "with the numbers 1, 2");
 }
 
 TEST_F(LabelNames, ANamedLabelIsTheOctreeOfItsNumberUnshiftedAndAnUnknownNameIsRefused) {

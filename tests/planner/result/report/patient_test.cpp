@@ -99,7 +99,7 @@ TEST_F(PatientReport, TheReportStatesWhomItIsAbout) {
 }
 
 TEST_F(PatientReport, AnAnonymousResultNamesNobodyAnywhere) {
-  EXPECT_NE(file("hidden/report.html").find("left out as asked"), std::string::npos);
+  EXPECT_NE(file("hidden/report.html").find("left out as requested"), std::string::npos);
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "hidden")) {
     if (!entry.is_regular_file()) continue;
     const std::string text = tests::bytes_of(entry.path());
