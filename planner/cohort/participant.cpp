@@ -22,6 +22,7 @@
 #include "planner/result/report/result_folder.h"
 #include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner {
 namespace {
@@ -113,10 +114,6 @@ std::vector<std::uint8_t> picture_of(const Plan& plan, const Evaluation& evaluat
   return group.pictures.empty() ? std::vector<std::uint8_t>{} : group.pictures.front().png;
 }
 
-void write_bytes(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
-  write_text(path, {bytes.begin(), bytes.end()});
-}
-
 /// The plan with the subject's own files where its steps read files that are not beside it.
 Plan of_subject(const Plan& plan, const Subject& subject) {
   std::map<fs::path, fs::path> places;
@@ -148,10 +145,10 @@ ScanAudits answer(const Plan& plan, const Subject& subject, const ParticipantOpt
   }
   std::string rows = long_header();
   for (const ResultRow& row : rows_of(json, subject.label)) rows += long_line(row);
-  write_text(folder / "rows.csv", rows);
-  write_text(folder / "result.json", json.dump() + "\n");
+  voxel::write_file(folder / "rows.csv", rows);
+  voxel::write_file(folder / "result.json", json.dump() + "\n");
   if (const std::vector<std::uint8_t> png = picture_of(result.plan, result.evaluation); !png.empty())
-    write_bytes(folder / "picture.png", png);
+    voxel::write_file(folder / "picture.png", {png.begin(), png.end()});
   return scan_audits_of(json);
 }
 
@@ -253,7 +250,7 @@ SubjectRecord run_participant(const Plan& given, const Subject& subject, const f
                                         : SubjectRecord::State::Done;
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.peak_mb = peak_mb();
-  write_text(folder.path() / "subject.json", to_json(record, subject).dump(2) + "\n");
+  voxel::write_file(folder.path() / "subject.json", to_json(record, subject).dump(2) + "\n");
   folder.publish();
   return record;
 }

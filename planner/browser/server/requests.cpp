@@ -14,6 +14,7 @@
 #include "planner/procedure/template/procedure.h"
 #include "voxel/filter/tissue.h"
 #include "voxel/space/error.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner::serve {
 namespace {
@@ -126,7 +127,7 @@ Json save(Desk& desk, const Json& said, const Watched&) {
   if (fs::exists(to))
     throw voxel::Error(voxel::ErrorCode::Input, to.string() + ": is there already; choose another name");
   need_folder_of(to);
-  write_whole(to, rebased(*plan, to.parent_path()).text);
+  voxel::write_whole(to, rebased(*plan, to.parent_path()).text);
   return {{"path", to.string()}};
 }
 
@@ -188,11 +189,11 @@ Json procedure(Desk& desk, const Json& said, const Watched&) {
     for (const ProcedureScan& scan : procedure.scans)
       if (whole["scans"].contains(scan.name)) input.further_scans[scan.name] = whole["scans"][scan.name];
     input.voxel_mm = document.plan()->voxel_mm.value_or(1.0);
-    for (const auto& [name, point] : said.at("landmarks").items())
-      if (const auto p_mm = point_of(said.at("landmarks"), name.c_str()))
-        input.landmarks.push_back({name, *p_mm});
+    for (const auto& [landmark, point] : said.at("landmarks").items())
+      if (const auto p_mm = point_of(said.at("landmarks"), landmark.c_str()))
+        input.landmarks.push_back({landmark, *p_mm});
     const Json values = said.value("values", Json::object());
-    for (const auto& [name, value] : values.items()) input.values[name] = value.get<double>();
+    for (const auto& [key, value] : values.items()) input.values[key] = value.get<double>();
     const Json made = plan_of(procedure, input);
     whole["steps"] = joined(whole["steps"], made.at("steps"), whole["scans"].begin().key());
     document.record(whole, procedure.name);

@@ -25,6 +25,7 @@
 #include "planner/result/report/result_folder.h"
 #include "voxel/space/file_text.h"
 
+#include "voxel/space/write_whole.h"
 namespace octotomy::planner::cli {
 namespace {
 
@@ -278,7 +279,7 @@ int table(Program& program, const TableText& text) {
     columns.add(static_cast<std::uint32_t>(labels.size()), rows);
     labels.push_back(name);
   }
-  write_whole(text.out, text.wide ? wide_table(labels, columns) : written);
+  voxel::write_whole(text.out, text.wide ? wide_table(labels, columns) : written);
   Json json = answer({});
   json["path"] = text.out.string();
   json["results"] = labels.size();

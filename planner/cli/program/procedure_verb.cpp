@@ -12,6 +12,7 @@
 #include "planner/operation/table/number_format.h"
 #include "planner/procedure/template/procedure.h"
 #include "voxel/space/staged_files.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -102,7 +103,7 @@ int procedure(Program& program, const ProcedureText& text) {
   if (text.name.empty()) throw std::runtime_error("name the procedure: octotomy procedure lists them");
   const Json plan = plan_of(read_procedure(text.name), input_of(text));
   const std::string written = plan.dump(2) + "\n";
-  const auto write = [&] { write_whole(text.out, written); };
+  const auto write = [&] { voxel::write_whole(text.out, written); };
   if (!text.report.empty()) {
     RunText replay;
     replay.out = text.report;

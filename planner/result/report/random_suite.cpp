@@ -21,6 +21,7 @@
 #include "voxel/solid/combine.h"
 #include "voxel/space/unfinished_folder.h"
 
+#include "voxel/space/write_whole.h"
 namespace octotomy::planner {
 namespace {
 
@@ -170,7 +171,7 @@ void write_plan(const ExactQuestion& question, const std::filesystem::path& fold
     json["steps"].push_back({{"id", name}, {"do", "window"}, {"scan", name}, {"low", 0.5}});
   }
   json["steps"].push_back({{"id", "result"}, {"do", "combine"}, {"expression", expression}});
-  write_text(folder / "disagreement.plan.json", json_text(json, 2));
+  voxel::write_file(folder / "disagreement.plan.json", json_text(json, 2));
 }
 
 /// A random plan's evaluation, or why there is none.
@@ -224,7 +225,7 @@ void write_plan(RandomPlan plan, const std::filesystem::path& folder) {
     std::filesystem::copy_file(from, folder / from.filename());
     scan["path"] = from.filename().string();
   }
-  write_text(folder / "disagreement.plan.json", text(plan));
+  voxel::write_file(folder / "disagreement.plan.json", text(plan));
 }
 
 /// The suite under way. What a case adds is kept by its number, so that order is the seeds'.
