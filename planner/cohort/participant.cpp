@@ -98,6 +98,7 @@ Json to_json(const SubjectRecord& record, const Subject& subject) {
           {"subject", subject.label},
           {"state", to_string(record.state)},
           {"reason", record.reason.empty() ? Json(nullptr) : Json(record.reason)},
+          {"fault", record.fault ? Json(to_string(*record.fault)) : Json(nullptr)},
           {"audit_findings", record.audit_findings},
           {"key", record.key},
           {"scans", scans},
@@ -160,18 +161,20 @@ std::vector<fs::path> needed_names(const Plan& plan, const ParticipantOptions& o
   return names;
 }
 
-/// Why a subject failed: what the evaluation says. Resource errors and stops are none of the subject's.
+/// Runs the work unless the subject has failed before. Enters what the work throws as the subject's failure.
+/// Stops and a want of memory, disk or time are not the subject's: they are thrown on.
 template <typename Work>
-std::string reason_of(const Work& work) {
+void attempt(SubjectRecord& record, const Work& work) {
+  if (!record.reason.empty()) return;
   try {
     work();
-    return {};
   } catch (const std::system_error&) {
     throw;
   } catch (const std::exception& error) {
     const Fault fault = fault_of(error);
     if (fault == Fault::Cancelled || fault == Fault::Resource) throw;
-    return message_of(error);
+    record.reason = message_of(error);
+    record.fault = fault;
   }
 }
 
@@ -207,6 +210,8 @@ SubjectRecord subject_record(const fs::path& out, const Subject& subject) {
                  : state == "doubtful" ? SubjectRecord::State::Doubtful
                                        : SubjectRecord::State::Failed;
   record.reason = json["reason"].is_string() ? json["reason"].get<std::string>() : "";
+  if (const auto fault = json.find("fault"); fault != json.end() && fault->is_string())
+    record.fault = fault_named(fault->get<std::string>());
   record.audit_findings = json.value("audit_findings", std::vector<std::string>{});
   record.key = json.value("key", "");
   record.seconds = json.value("seconds", 0.0);
@@ -231,9 +236,10 @@ SubjectRecord run_participant(const Plan& given, const Subject& subject, const f
   if (earlier.state == SubjectRecord::State::Changed) return earlier;
   record.scan_bytes = subject.scan_bytes();
   record.reason = subject.trouble;
+  if (!record.reason.empty()) record.fault = Fault::Input;
   Plan plan = given;
-  if (record.reason.empty()) record.reason = reason_of([&] { plan = of_subject(given, subject); });
-  if (record.reason.empty()) record.reason = reason_of([&] { record.key = key_of(plan, subject); });
+  attempt(record, [&] { plan = of_subject(given, subject); });
+  attempt(record, [&] { record.key = key_of(plan, subject); });
   if (!options.again && record.reason.empty() && earlier.has_answer() && earlier.key == record.key) {
     earlier.was_kept = true;
     return earlier;
@@ -242,8 +248,7 @@ SubjectRecord run_participant(const Plan& given, const Subject& subject, const f
   need_result_folder(place, needed_names(plan, options));
   ResultFolder folder(place);
   ScanAudits audits;
-  if (record.reason.empty())
-    record.reason = reason_of([&] { audits = answer(plan, subject, options, folder.path()); });
+  attempt(record, [&] { audits = answer(plan, subject, options, folder.path()); });
   record.audit_findings = audits.findings;
   record.state = !record.reason.empty() ? SubjectRecord::State::Failed
                  : audits.fails()       ? SubjectRecord::State::Doubtful

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "planner/cohort/subjects.h"
+#include "planner/operation/table/fault.h"
 #include "planner/plan/plan.h"
 
 namespace octotomy::planner {
@@ -20,6 +21,8 @@ struct SubjectRecord {
 
   State state = State::Missing;
   std::string reason;  ///< of what has no answer
+  /// The kind of the error that ended the evaluation of a subject. Internal: a mistake in the program.
+  std::optional<Fault> fault = {};
   /// Every WARN and FAIL of the audits of its scans, as ScanAudits has them.
   std::vector<std::string> audit_findings = {};
   std::string key;  ///< of the plan, the program's version and the scans: the same key, the same answer

@@ -8,6 +8,7 @@
 #include <optional>
 #include <tbb/parallel_for.h>
 
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/plan/evaluate.h"
 #include "planner/plan/plan.h"
@@ -20,8 +21,8 @@
 #include "voxel/scan/write_scene.h"
 #include "voxel/solid/combine.h"
 #include "voxel/space/unfinished_folder.h"
-
 #include "voxel/space/write_whole.h"
+
 namespace octotomy::planner {
 namespace {
 
@@ -109,12 +110,13 @@ Certificate answer_of(const ExactQuestion& question, const std::stop_token& stop
               .certificate;
     else
       certificate = verify::certify_exact(verify::exact_answers(question.expression(), {stop, {}}));
-  } catch (const Stopped&) {
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
+    if (fault_of(error) == Fault::Cancelled) throw;
     certificate.tier = verify::Tier::Exact;
     certificate.verdict = verify::Verdict::Fail;
-    certificate.reasons.push_back(std::string("no answer: ") + error.what());
+    certificate.reasons.push_back("no answer: " + message_of(error));
   }
   certificate.operation = question.told;
   return certificate;
@@ -193,9 +195,8 @@ PlanAnswer answer_of(const RandomPlan& plan, const std::stop_token& stop) {
   PlanAnswer answer;
   try {
     answer.evaluation = evaluate(parse_plan(text(plan), {}), options);
-  } catch (const Stopped&) {
-    throw;
   } catch (const std::runtime_error& error) {
+    if (fault_of(error) == Fault::Cancelled) throw;
     answer.refusal = error.what();
   }
   return answer;
