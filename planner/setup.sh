@@ -3,6 +3,9 @@
 
 say() { printf '\n== %s\n' "$*"; }
 
+# Further options for CMake.
+configure_options=()
+
 # What a build of the program takes, on Debian 12.
 build_packages=(
   ca-certificates cmake esbuild g++ ninja-build pkg-config
@@ -30,12 +33,14 @@ install_packages() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
 }
 
-# Configures build/PRESET as .cmake/PRESET.cmake says and builds the named targets there. Warnings are errors in the
-# developers' presets; for users of another compiler than ours a warning is none.
+# Configures build/PRESET as .cmake/PRESET.cmake and the array configure_options say, and builds the named targets there.
+# Warnings are errors in the developers' presets and in continuous integration; for users of another compiler than ours a
+# warning is none.
 build() {
   local preset=$1
   shift
   say "Building build/$preset (the first time takes some minutes)"
-  cmake -C "$root/.cmake/$preset.cmake" -S "$root" -B "$root/build/$preset" -G Ninja --log-level=WARNING >/dev/null
+  cmake -C "$root/.cmake/$preset.cmake" -S "$root" -B "$root/build/$preset" -G Ninja --log-level=WARNING \
+    "${configure_options[@]}" >/dev/null
   cmake --build "$root/build/$preset" --target "$@"
 }

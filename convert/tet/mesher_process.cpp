@@ -11,19 +11,18 @@
 #include <ctime>
 #include <fcntl.h>
 #include <filesystem>
-#include <spawn.h>
 #include <stdexcept>
 #include <sys/mman.h>
 #include <sys/wait.h>
-#include <thread>
+#include <system_error>
 #include <unistd.h>
 
 #include "voxel/space/helper_file.h"
+#include "voxel/space/spawn.h"
 #include "voxel/space/write_failure.h"
 
-// The child is a spawned executable, not a fork: the parent has threads, and a forked child could wait for
-// ever on a lock that another thread held. Request, answer and log are files in memory, so neither side waits
-// for the other and a child that dies early raises no SIGPIPE here.
+// Request, answer and log are files in memory, so neither side waits for the other and a child that dies early
+// raises no SIGPIPE here.
 
 namespace octotomy::convert {
 namespace {
@@ -92,35 +91,14 @@ class MemoryFile {
   int file_;
 };
 
-/// Starts the executable with three files as its standard streams. It inherits no other open file.
+/// Starts the executable with three files as its standard streams.
 pid_t start(const std::filesystem::path& executable, int in, int out, int log) {
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_adddup2(&files, in, STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&files, out, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&files, log, STDERR_FILENO);
-  posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigset_t all;
-  sigemptyset(&none);
-  sigfillset(&all);
-  // Under nohup both outlive the terminal.
-  sigdelset(&all, SIGHUP);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setsigdefault(&attributes, &all);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-
-  std::string name = executable.string();
-  char* arguments[] = {name.data(), nullptr};
-  char* environment[] = {nullptr};
-  pid_t child = -1;
-  const int error = posix_spawn(&child, name.c_str(), &files, &attributes, arguments, environment);
-  posix_spawn_file_actions_destroy(&files);
-  posix_spawnattr_destroy(&attributes);
-  if (error != 0) fail(name + " cannot be started", error);
-  return child;
+  try {
+    return voxel::spawn(
+        {.words = {executable.string()}, .in = in, .out = out, .errors = log, .has_environment = false});
+  } catch (const std::system_error& error) {
+    fail(executable.string() + " cannot be started", error.code().value());
+  }
 }
 
 enum class Ended { ByItself, OutOfTime, Stopped };
@@ -143,24 +121,19 @@ Ending wait_within(pid_t child, const MesherLimits& limits) {
   const Clock::time_point deadline = started + most_clock_times() * limits.time;
   Clock::time_point next_report = started + report_every;
   Ending ending;
-  for (;;) {
+  ending.status = voxel::wait_for_end(child, look_every, [&] {
+    if (ending.how != Ended::ByItself) return;
     if (limits.progress.report && Clock::now() >= next_report) {
       next_report += report_every;
       limits.progress.report(
           std::min(1.0, std::chrono::duration<double>(processor_time(child)) / limits.time));
     }
-    const pid_t gone = waitpid(child, &ending.status, ending.how == Ended::ByItself ? WNOHANG : 0);
-    if (gone == child) return ending;
-    if (gone < 0 && errno != EINTR) fail("the mesher's process is lost", errno);
-    if (ending.how != Ended::ByItself) continue;
     const bool stopped = limits.progress.stop.stop_requested();
-    if (stopped || processor_time(child) >= limits.time || Clock::now() >= deadline) {
-      ending.how = stopped ? Ended::Stopped : Ended::OutOfTime;
-      kill(child, SIGKILL);
-      continue;
-    }
-    std::this_thread::sleep_for(look_every);
-  }
+    if (!stopped && processor_time(child) < limits.time && Clock::now() < deadline) return;
+    ending.how = stopped ? Ended::Stopped : Ended::OutOfTime;
+    kill(child, SIGKILL);
+  });
+  return ending;
 }
 
 /// The end of the mesher's log, on one line.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Uses fork and exec, because posix_spawn() cannot request a signal at the end of the parent
-// (PR_SET_PDEATHSIG). The system sends that signal when the forking thread ends. The same thread waits for
-// the child, so it ends first only if the whole process ends.
+// A fork and an exec instead of voxel::spawn(), which cannot ask for a signal at the end of the parent
+// (PR_SET_PDEATHSIG). The system sends that signal when the thread that forked ends; the same thread waits
+// for the child, so it ends first only where the process does.
 #include "planner/cohort/child_process.h"
 
 #include <algorithm>
@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "voxel/space/error.h"
+#include "voxel/space/spawn.h"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration)
 
@@ -119,15 +120,12 @@ ChildEnd run_child_process(const ChildProcess& child, const std::stop_token& sto
     for (ssize_t count = 0; (count = read(output.reading(), part.data(), part.size())) > 0;)
       if (said.size() < 65536) said.append(part.data(), static_cast<std::size_t>(count));
   });
-  int status = 0;
   bool is_asked = false;
-  while (waitpid(process, &status, WNOHANG) == 0) {
-    if (stop.stop_requested() && !is_asked) {
-      kill(process, SIGTERM);
-      is_asked = true;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
+  const int status = voxel::wait_for_end(process, std::chrono::milliseconds(10), [&] {
+    if (is_asked || !stop.stop_requested()) return;
+    is_asked = true;
+    kill(process, SIGTERM);
+  });
   reader.join();
   if (is_asked) throw voxel::Stopped("stopped: the subjects that were done stay");
   return {status, said.substr(0, said.find('\n'))};

@@ -21,6 +21,7 @@
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
 #include "voxel/space/write_failure.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner {
 namespace {
@@ -58,13 +59,6 @@ void need_writable_folder(fs::path folder, const fs::path& out) {
   } catch (const voxel::Error& error) {
     throw voxel::Error(error.code(), out.string() + ": " + error.what());
   }
-}
-
-/// Writes to a temporary file and renames it into place.
-void replace_text(const fs::path& path, const std::string& text) {
-  voxel::StagedFiles staged(path.parent_path());
-  write_text(staged.folder() / path.filename(), text);
-  staged.commit();
 }
 
 std::string description_text(const std::string& version) {
@@ -188,7 +182,7 @@ void prepare_cohort_folder(const fs::path& out, const std::string& plan_text) {
   }
   const std::string description = description_text(OCTOTOMY_VERSION);
   if (found != Description::Edited && voxel::file_bytes(out / description_name) != description)
-    replace_text(out / description_name, description);
+    voxel::write_whole(out / description_name, description);
   if (!plan_text.empty()) write_cohort_file(out, plan_name, plan_text);
 }
 
@@ -198,7 +192,7 @@ void write_cohort_file(const fs::path& out, const std::string& name, const std::
   if (fs::exists(path) && voxel::file_bytes(path) == text) return;
   need_ours(out, name);
   list.add(sha256_of(text) + "  " + name + "\n");
-  replace_text(path, text);
+  voxel::write_whole(path, text);
 }
 
 }  // namespace octotomy::planner

@@ -14,6 +14,7 @@
 #include "planner/result/report/result_folder.h"
 #include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner {
 namespace {
@@ -250,11 +251,11 @@ Json merge_group(const std::vector<Subject>& subjects, const fs::path& out, cons
     page.columns.push_back(summarised(column, subjects, other));
     summary["measurements"].push_back(page.columns.back().summary);
     for (const auto& [kind, svg] : page.columns.back().plots)
-      write_text(folder.path() / "plots" / (column.name() + "_" + kind + ".svg"), svg);
+      voxel::write_file(folder.path() / "plots" / (column.name() + "_" + kind + ".svg"), svg);
   }
-  write_text(folder.path() / "wide.csv", wide_table(labels, table));
-  write_text(folder.path() / "summary.json", summary.dump(2) + "\n");
-  write_text(folder.path() / "index.html", group_page(page));
+  voxel::write_file(folder.path() / "wide.csv", wide_table(labels, table));
+  voxel::write_file(folder.path() / "summary.json", summary.dump(2) + "\n");
+  voxel::write_file(folder.path() / "index.html", group_page(page));
   folder.publish();
   return summary;
 }

@@ -22,6 +22,7 @@
 #include "planner/result/report/result_folder.h"
 #include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner {
 namespace {
@@ -98,6 +99,7 @@ Json to_json(const SubjectRecord& record, const Subject& subject) {
           {"subject", subject.label},
           {"state", to_string(record.state)},
           {"reason", record.reason.empty() ? Json(nullptr) : Json(record.reason)},
+          {"fault", record.fault ? Json(to_string(*record.fault)) : Json(nullptr)},
           {"audit_findings", record.audit_findings},
           {"key", record.key},
           {"scans", scans},
@@ -114,12 +116,7 @@ std::vector<std::uint8_t> picture_of(const Plan& plan, const Evaluation& evaluat
   return group.pictures.empty() ? std::vector<std::uint8_t>{} : group.pictures.front().png;
 }
 
-void write_bytes(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
-  write_text(path, {bytes.begin(), bytes.end()});
-}
-
-/// The plan with the subject's own files in place of files that its steps read and that are not beside the
-/// plan.
+/// The plan with the subject's own files where its steps read files that are not beside it.
 Plan of_subject(const Plan& plan, const Subject& subject) {
   std::map<fs::path, fs::path> places;
   for (const Step& step : plan.steps)
@@ -150,10 +147,10 @@ ScanAudits answer(const Plan& plan, const Subject& subject, const ParticipantOpt
   }
   std::string rows = long_header();
   for (const ResultRow& row : rows_of(json, subject.label)) rows += long_line(row);
-  write_text(folder / "rows.csv", rows);
-  write_text(folder / "result.json", json.dump() + "\n");
+  voxel::write_file(folder / "rows.csv", rows);
+  voxel::write_file(folder / "result.json", json.dump() + "\n");
   if (const std::vector<std::uint8_t> png = picture_of(result.plan, result.evaluation); !png.empty())
-    write_bytes(folder / "picture.png", png);
+    voxel::write_file(folder / "picture.png", {png.begin(), png.end()});
   return scan_audits_of(json);
 }
 
@@ -165,19 +162,20 @@ std::vector<fs::path> needed_names(const Plan& plan, const ParticipantOptions& o
   return names;
 }
 
-/// The reason why a subject failed: the message of the evaluation. Resource errors and stops are not the
-/// subject's failures and are rethrown.
+/// Runs the work unless the subject has failed before. Enters what the work throws as the subject's failure.
+/// Stops and a want of memory, disk or time are not the subject's: they are thrown on.
 template <typename Work>
-std::string reason_of(const Work& work) {
+void attempt(SubjectRecord& record, const Work& work) {
+  if (!record.reason.empty()) return;
   try {
     work();
-    return {};
   } catch (const std::system_error&) {
     throw;
   } catch (const std::exception& error) {
     const Fault fault = fault_of(error);
     if (fault == Fault::Cancelled || fault == Fault::Resource) throw;
-    return message_of(error);
+    record.reason = message_of(error);
+    record.fault = fault;
   }
 }
 
@@ -213,6 +211,8 @@ SubjectRecord subject_record(const fs::path& out, const Subject& subject) {
                  : state == "doubtful" ? SubjectRecord::State::Doubtful
                                        : SubjectRecord::State::Failed;
   record.reason = json["reason"].is_string() ? json["reason"].get<std::string>() : "";
+  if (const auto fault = json.find("fault"); fault != json.end() && fault->is_string())
+    record.fault = fault_named(fault->get<std::string>());
   record.audit_findings = json.value("audit_findings", std::vector<std::string>{});
   record.key = json.value("key", "");
   record.seconds = json.value("seconds", 0.0);
@@ -237,9 +237,10 @@ SubjectRecord run_participant(const Plan& given, const Subject& subject, const f
   if (earlier.state == SubjectRecord::State::Changed) return earlier;
   record.scan_bytes = subject.scan_bytes();
   record.reason = subject.trouble;
+  if (!record.reason.empty()) record.fault = Fault::Input;
   Plan plan = given;
-  if (record.reason.empty()) record.reason = reason_of([&] { plan = of_subject(given, subject); });
-  if (record.reason.empty()) record.reason = reason_of([&] { record.key = key_of(plan, subject); });
+  attempt(record, [&] { plan = of_subject(given, subject); });
+  attempt(record, [&] { record.key = key_of(plan, subject); });
   if (!options.again && record.reason.empty() && earlier.has_answer() && earlier.key == record.key) {
     earlier.was_kept = true;
     return earlier;
@@ -248,15 +249,14 @@ SubjectRecord run_participant(const Plan& given, const Subject& subject, const f
   need_result_folder(place, needed_names(plan, options));
   ResultFolder folder(place);
   ScanAudits audits;
-  if (record.reason.empty())
-    record.reason = reason_of([&] { audits = answer(plan, subject, options, folder.path()); });
+  attempt(record, [&] { audits = answer(plan, subject, options, folder.path()); });
   record.audit_findings = audits.findings;
   record.state = !record.reason.empty() ? SubjectRecord::State::Failed
                  : audits.fails()       ? SubjectRecord::State::Doubtful
                                         : SubjectRecord::State::Done;
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.peak_mb = peak_mb();
-  write_text(folder.path() / "subject.json", to_json(record, subject).dump(2) + "\n");
+  voxel::write_file(folder.path() / "subject.json", to_json(record, subject).dump(2) + "\n");
   folder.publish();
   return record;
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "planner/cohort/subjects.h"
+#include "planner/operation/table/fault.h"
 #include "planner/plan/plan.h"
 
 namespace octotomy::planner {
@@ -19,8 +20,10 @@ struct SubjectRecord {
   enum class State { Done, Doubtful, Failed, Missing, Changed };
 
   State state = State::Missing;
-  std::string reason;  ///< why there is no answer
-  /// Every WARN and FAIL of its scans' audits, as in ScanAudits.
+  std::string reason;  ///< of what has no answer
+  /// The kind of the error that ended the evaluation of a subject. Internal: a mistake in the program.
+  std::optional<Fault> fault = {};
+  /// Every WARN and FAIL of the audits of its scans, as ScanAudits has them.
   std::vector<std::string> audit_findings = {};
   std::string key;  ///< key of the plan, the program's version and the scans; equal keys mean equal answers
   double seconds = 0.0;

@@ -31,6 +31,7 @@
 #include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner {
 namespace {
@@ -429,7 +430,7 @@ class PlanHistory::Database {
   void write_file() {
     const std::string text = text_of(current_), sum = sha256_of(text);
     if (sum == written_ && sha256_of(read_text(plan_)) == sum) return;
-    write_whole(plan_, text);
+    voxel::write_whole(plan_, text);
     written_ = sum;
     query("UPDATE state SET written = ?", written_).next();
   }

@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/json.h"
 
 namespace octotomy::planner {
@@ -124,9 +125,8 @@ Merged merge(const Plan& base_plan, const Plan& a_plan, const Plan& b_plan) {
   const std::string text = merged.dump(2) + "\n";
   try {
     parse_plan(text, a_plan.folder);
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(std::string("the merged changes of both plans are not a valid plan: ") +
-                             error.what());
+  } catch (const std::exception& error) {
+    rethrow_at("merged, the changes of both make no plan: ", error);
   }
   return {text, {}};
 }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/field_json.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/json_file.h"
@@ -144,9 +145,15 @@ Step step_of(const SortedJson& value, std::size_t index, Scope& scope) {
   if (id == value.end() || id->is_null()) place.refuse("'id' is missing: add it");
   if (!id->is_string()) place.at("id").refuse("must be a text in quotes, not " + type_of(*id));
   Step step{id->get<std::string>(), Action(*operation)};
-  read_fields(operation->fields, value, step.action.value(), place, {"id", "do"});
-  if (operation->check) operation->check(step.action.value(), place);
-  // The id is bound last, so that no step can refer to itself.
+  try {
+    read_fields(operation->fields, value, step.action.value(), place, {"id", "do"});
+    if (operation->check) operation->check(step.action.value(), place);
+  } catch (const std::exception& error) {
+    // Refusals name their place themselves.
+    if (fault_of(error) == Fault::Internal) rethrow_at(place.where + ": ", error);
+    throw;
+  }
+  // Bound last, so that no step can name itself.
   scope.bind(place.where, step.id, *operation);
   return step;
 }
@@ -223,8 +230,8 @@ Plan read_plan(const std::filesystem::path& path) {
     Plan plan = parse_plan(text, std::filesystem::absolute(path).parent_path());
     plan.file = path;
     return plan;
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(path.string() + ": " + error.what());
+  } catch (const std::exception& error) {
+    rethrow_at(path.string() + ": ", error);
   }
 }
 

@@ -5,13 +5,14 @@
 #include <cstring>
 #include <fcntl.h>
 #include <memory>
-#include <spawn.h>
 #include <sys/wait.h>
+#include <system_error>
 #include <unistd.h>
 
 #include "voxel/scan/dicom_codec_wire.h"
 #include "voxel/space/error.h"
 #include "voxel/space/helper_file.h"
+#include "voxel/space/spawn.h"
 #include "voxel/space/unfinished_folder.h"
 
 namespace octotomy::voxel {
@@ -32,23 +33,16 @@ class CodecProcess {
     // hung.
     const timeval limit{60, 0};
     setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, sockets[1], STDIN_FILENO);
-    // One of GDCM's codecs prints to both streams while it decodes.
-    for (const int spoken : {STDOUT_FILENO, STDERR_FILENO})
-      posix_spawn_file_actions_addopen(&actions, spoken, "/dev/null", O_WRONLY, 0);
-    std::string name = path;
-    std::string folder = folder_.path().string();
-    char* arguments[] = {name.data(), folder.data(), nullptr};
-    const int error = posix_spawn(&process_, path.c_str(), &actions, nullptr, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(sockets[1]);
-    if (error != 0) {
-      close(socket_);
-      throw Error(ErrorCode::Resource, path + ": compressed DICOM cannot be read: " + std::strerror(error) +
+    try {
+      // Its output is /dev/null: one of GDCM's codecs prints while it decodes.
+      process_ = spawn({.words = {path, folder_.path().string()}, .in = sockets[1]});
+    } catch (const std::system_error& error) {
+      close(sockets[0]);
+      close(sockets[1]);
+      throw Error(ErrorCode::Resource, path + ": compressed DICOM cannot be read: " + error.code().message() +
                                            "; install this helper program and GDCM again");
     }
+    close(sockets[1]);
   }
   ~CodecProcess() {
     close(socket_);

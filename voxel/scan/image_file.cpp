@@ -17,6 +17,7 @@
 #include "voxel/space/quiet_errors.h"
 #include "voxel/space/staged_files.h"
 #include "voxel/space/write_failure.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::voxel {
 
@@ -105,13 +106,7 @@ void write_image(const fs::path& path, const glm::ivec2& size_px, const std::vec
   } catch (const Error& error) {
     throw Error(error.code(), path.string() + ": " + error.what());
   }
-  StagedFiles staging(path.parent_path());
-  errno = 0;
-  std::ofstream out(staging.folder() / path.filename(), std::ios::binary);
-  out.write(reinterpret_cast<const char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));
-  out.close();
-  if (!out) refuse_unwritten(path, errno);
-  staging.commit();
+  write_whole(path, {encoded.begin(), encoded.end()});
 }
 
 }  // namespace octotomy::voxel

@@ -15,6 +15,7 @@
 #include "planner/procedure/template/procedure.h"
 #include "voxel/filter/tissue.h"
 #include "voxel/space/error.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner::serve {
 namespace {
@@ -127,7 +128,7 @@ Json save(Desk& desk, const Json& said, const Watched&) {
   if (fs::exists(to))
     throw voxel::Error(voxel::ErrorCode::Input, to.string() + ": is there already; choose another name");
   need_folder_of(to);
-  write_whole(to, rebased(*plan, to.parent_path()).text);
+  voxel::write_whole(to, rebased(*plan, to.parent_path()).text);
   return {{"path", to.string()}};
 }
 

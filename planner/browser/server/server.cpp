@@ -11,11 +11,13 @@
 #include <boost/beast/websocket.hpp>
 #include <deque>
 #include <filesystem>
+#include <system_error>
 
 #include "planner/browser/server/answers.h"
 #include "planner/browser/server/gate.h"
 #include "planner/browser/server/new_files.h"
 #include "planner/browser/server/page.h"
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/json_file.h"
 
 namespace octotomy::planner::serve {
@@ -163,12 +165,17 @@ class Connection : public std::enable_shared_from_this<Connection> {
  private:
   using Refusal = std::optional<std::string>;
 
+  static http::status status_of(Fault fault) {
+    if (fault == Fault::Internal) return http::status::internal_server_error;
+    return fault == Fault::Resource ? http::status::insufficient_storage : http::status::bad_request;
+  }
+
   template <typename Work>
   void guard(const Work& work) {
     try {
       work();
     } catch (const std::exception& error) {
-      refuse(http::status::bad_request, error.what());
+      refuse(status_of(fault_of(error)), message_of(error));
     }
   }
 
@@ -276,13 +283,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
     upload_->body_limit(most_upload_bytes);
     beast::error_code failed;
     upload_->get().body().open(part.c_str(), beast::file_mode::write_new, failed);
-    if (failed) throw std::runtime_error(place.string() + ": " + failed.message());
+    if (failed) throw std::system_error(std::error_code(failed), place.string());
     stream_.expires_after(upload_patience);
     http::async_read(
         stream_, buffer_, *upload_, [self = shared_from_this(), place](beast::error_code ended, std::size_t) {
           self->upload_->get().body().close();
           self->guard([&] {
-            if (ended) throw std::runtime_error(place.string() + ": " + ended.message());
+            if (ended) throw std::system_error(std::error_code(ended), place.string());
             self->arriving_->commit(place.filename());
             self->arriving_.reset();
             self->say(http::status::ok, "application/json", json_text(Json{{"path", place.string()}}));

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "planner/browser/server/slice_pane.h"
+#include "planner/operation/table/fault.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner::serve {
@@ -30,7 +31,7 @@ void guarded(const Work& work, const Refuse& refuse) noexcept {
     } catch (const std::exception& error) {
       refuse(error);
     } catch (...) {
-      refuse(std::runtime_error("an error without a message: please report it"));
+      refuse(InternalError("an error without a message"));
     }
   } catch (...) {
     // The refusal could not be sent either: the window is closed or memory is exhausted.

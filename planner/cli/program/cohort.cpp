@@ -19,11 +19,13 @@
 #include "planner/operation/file/output_path.h"
 #include "planner/operation/file/outputs.h"
 #include "planner/operation/table/csv.h"
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/plan/dependence.h"
 #include "planner/plan/rebase.h"
 #include "planner/result/report/result_folder.h"
 #include "voxel/space/file_text.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -86,13 +88,15 @@ Json json_of(const Subject& subject, const SubjectRecord& record) {
           {"state", record.is_another_at_work ? "in hand" : to_string(record.state)},
           {"kept", record.was_kept},
           {"reason", record.reason.empty() ? Json(nullptr) : Json(record.reason)},
+          {"fault", record.fault ? Json(to_string(*record.fault)) : Json(nullptr)},
           {"audit_findings", record.audit_findings},
           {"seconds", record.seconds},
           {"peak_mb", record.peak_mb}};
 }
 
-/// Prints the records of the subjects with the WARN and FAIL of their scans' audits. Returns the exit status:
-/// if a subject has no answer, 3 if a process ran out of time, memory or disk, else 2.
+/// Prints the records of the subjects with the WARN and FAIL of their scans' audits. Returns the exit status.
+/// Where a subject has no answer it is 70 for a mistake in the program, else 3 if a process ran out of time,
+/// memory or disk, else 2.
 int say_records(const Program& program, const std::vector<Subject>& subjects,
                 const std::vector<SubjectRecord>& records, const std::vector<std::string>& jobs,
                 const std::vector<std::string>& findings, bool ran_out) {
@@ -102,11 +106,13 @@ int say_records(const Program& program, const std::vector<Subject>& subjects,
   json["subjects"] = Json::array();
   json["jobs"] = jobs;
   std::size_t done_count = 0, doubtful = 0, in_hand = 0;
+  bool is_internal = false;
   for (std::size_t i = 0; i < records.size(); ++i) {
     json["subjects"].push_back(json_of(subjects[i], records[i]));
     done_count += records[i].state == SubjectRecord::State::Done ? 1 : 0;
     doubtful += records[i].state == SubjectRecord::State::Doubtful ? 1 : 0;
     in_hand += records[i].is_another_at_work ? 1 : 0;
+    is_internal |= records[i].fault == Fault::Internal;
     if (!records[i].has_answer() && !records[i].is_another_at_work && jobs.empty())
       warn_finding(subjects[i].label + ": " + records[i].reason);
   }
@@ -126,7 +132,7 @@ int say_records(const Program& program, const std::vector<Subject>& subjects,
     said = "submitted: job " + jobs.front() + " and on; the group is job " + jobs.back() + "\n";
   program.say(json, said);
   if (!jobs.empty() || done_count + doubtful + in_hand == records.size()) return done;
-  return ran_out ? out_of_resources : bad_input;
+  return is_internal ? internal_error : ran_out ? out_of_resources : bad_input;
 }
 
 int participants(const Program& program, const CohortText& text, const Plan& plan,
@@ -279,7 +285,7 @@ int table(Program& program, const TableText& text) {
     columns.add(static_cast<std::uint32_t>(labels.size()), rows);
     labels.push_back(name);
   }
-  write_whole(text.out, text.wide ? wide_table(labels, columns) : written);
+  voxel::write_whole(text.out, text.wide ? wide_table(labels, columns) : written);
   Json json = answer({});
   json["path"] = text.out.string();
   json["results"] = labels.size();

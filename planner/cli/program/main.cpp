@@ -18,7 +18,6 @@
 #include <new>
 #include <optional>
 #include <string>
-#include <sysexits.h>
 #include <system_error>
 #include <tbb/global_control.h>
 #include <thread>
@@ -107,7 +106,7 @@ constexpr const char* out_of_memory =
   octotomy::voxel::remove_unfinished();
   cli::end_progress();
   cli::warn(octotomy::planner::message_of(octotomy::planner::InternalError(what)));
-  std::_Exit(EX_SOFTWARE);
+  std::_Exit(cli::internal_error);
 }
 
 /// Requests the verb to stop when its time is over or the user interrupts, and ends the process if the verb
@@ -160,8 +159,24 @@ int refuse(const std::string& text, int status) {
 
 /// The exit status of an error.
 int status_of(Fault fault) {
-  if (fault == Fault::Internal) return EX_SOFTWARE;
+  if (fault == Fault::Internal) return cli::internal_error;
   return fault == Fault::Cancelled || fault == Fault::Resource ? cli::out_of_resources : cli::bad_input;
+}
+
+/// Refuses with an error's text and status. The text of an internal error also names the verb, because a
+/// report needs it; texts for users name the file or the option.
+int refuse(const std::exception& error, const std::string& verb) {
+  const Fault fault = octotomy::planner::fault_of(error);
+  if (fault != Fault::Internal || verb.empty())
+    return refuse(octotomy::planner::message_of(error), status_of(fault));
+  const octotomy::planner::InternalError named(verb + ", " + error.what());
+  return refuse(octotomy::planner::message_of(named), status_of(fault));
+}
+
+/// The verb on the command line; empty where it names none.
+std::string verb_of(const CLI::App& app) {
+  const std::vector<CLI::App*> verbs = app.get_subcommands();
+  return verbs.empty() ? "" : verbs.front()->get_name();
 }
 
 int run_chosen(Program& program) {
@@ -181,7 +196,7 @@ int run_chosen(Program& program) {
   } catch (const std::bad_alloc&) {
     return refuse(out_of_memory, cli::out_of_resources);
   } catch (const std::exception& error) {
-    return refuse(octotomy::planner::message_of(error), status_of(octotomy::planner::fault_of(error)));
+    return refuse(error, verb_of(program.app));
   }
 }
 
@@ -198,8 +213,7 @@ int say_help(const CLI::App& app, const CLI::ParseError& error) {
   app.exit(error);
   std::cout.flush();
   if (std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return cli::done;
-  return refuse("standard output: " + std::generic_category().message(errno),
-                status_of(octotomy::planner::fault_of(std::system_error(errno, std::generic_category()))));
+  return refuse(std::system_error(errno, std::generic_category(), "standard output"), "");
 }
 
 int parse_and_run(int count, char** arguments) {
@@ -259,7 +273,6 @@ int main(int count, char** arguments) {
     std::fputs("octotomy: out of memory\n", stderr);
     return cli::out_of_resources;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "octotomy: %s\n", octotomy::planner::message_of(error).c_str());
-    return EX_SOFTWARE;
+    return refuse(error, "");
   }
 }

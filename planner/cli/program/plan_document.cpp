@@ -12,6 +12,7 @@
 #include "planner/plan/rebase.h"
 #include "planner/plan/sha256.h"
 #include "planner/plan/signature.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -62,7 +63,7 @@ int merge_plans(const Program& program, const Paths& paths) {
          "; make one of them agree and merge again");
     return bad_input;
   }
-  write_whole(paths.out, merged.text);
+  voxel::write_whole(paths.out, merged.text);
   const PlanDifference from_base = difference(read(paths.base), read_plan(paths.out));
   json["changes"] = to_json(from_base);
   program.say(json, "written: " + paths.out.string() + "\n" + text_of(from_base));
@@ -160,7 +161,7 @@ int sign_plan(const Program& program, const SignText& text) {
     if (fs::exists(PlanHistory::path_of(text.plan)))
       PlanHistory(text.plan).record(signed_text, "signed by " + text.by);
     else
-      write_whole(text.plan, signed_text);
+      voxel::write_whole(text.plan, signed_text);
   }
   std::map<std::string, std::string> sums;
   for (const auto& [name, scan] : plan.scans)

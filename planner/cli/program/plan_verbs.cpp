@@ -15,6 +15,7 @@
 #include "planner/result/report/result_folder.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/space/disk_need.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -35,7 +36,7 @@ int preview_step(Program& program, PreviewText& text) {
   for (const ScanRecord& scan : made.evaluation.scans) program.note_scan(scan);
   {
     const Stopwatch watch(made.evaluation.timings, "write");
-    write_whole(text.out, {made.png.begin(), made.png.end()});
+    voxel::write_whole(text.out, {made.png.begin(), made.png.end()});
   }
   Json json = answer(made.evaluation.timings);
   json["path"] = text.out.string();

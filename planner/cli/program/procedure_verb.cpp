@@ -14,6 +14,7 @@
 #include "planner/procedure/template/chain.h"
 #include "planner/procedure/template/procedure.h"
 #include "voxel/space/staged_files.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -121,7 +122,7 @@ int procedure(Program& program, const ProcedureText& text) {
   std::vector<std::string> carried;
   const Json plan = planned(program, text, carried);
   const std::string written = plan.dump(2) + "\n";
-  const auto write = [&] { write_whole(text.out, written); };
+  const auto write = [&] { voxel::write_whole(text.out, written); };
   if (!text.report.empty()) {
     RunText replay;
     replay.out = text.report;

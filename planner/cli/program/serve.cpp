@@ -7,6 +7,7 @@
 #include <fstream>
 #include <optional>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
 
 #include "planner/browser/server/folders.h"
@@ -17,6 +18,7 @@
 #include "planner/operation/table/json_file.h"
 #include "planner/plan/dependence.h"
 #include "planner/plan/plan.h"
+#include "voxel/space/spawn.h"
 #include "voxel/space/unfinished_folder.h"
 
 namespace octotomy::planner::cli {
@@ -42,9 +44,11 @@ void open_browser(const std::string& url, const fs::path& closed_folder) {
   std::ofstream(page) << "<!doctype html><meta charset=utf-8><meta name=referrer content=no-referrer>"
                          "<meta http-equiv=refresh content='0;url="
                       << url << "'>\n";
-  if (::fork() != 0) return;
-  ::execlp("xdg-open", "xdg-open", page.c_str(), nullptr);
-  ::_exit(1);
+  try {
+    voxel::spawn({.words = {"xdg-open", page.string()}});
+  } catch (const std::system_error&) {
+    // There is no desktop.
+  }
 }
 
 /// The plan or scan with which to begin. Throws std::runtime_error if two are named.

@@ -8,6 +8,7 @@
 
 #include "convert/tet/mesher_process.h"
 #include "planner/cli/suite/suites.h"
+#include "planner/operation/table/fault.h"
 #include "voxel/scan/dicom_codec.h"
 #include "voxel/scan/image_file.h"
 #include "voxel/space/helper_file.h"
@@ -112,10 +113,9 @@ std::string trouble_of(const Part& part, std::filesystem::path& path) {
     if (mark.empty()) return "has no mark of a build: it is damaged or of an earlier version";
     if (mark != octotomy_build_mark) return "is of another build than the program: install both again";
     return part.works() ? "" : "starts, but its answer to a small question is wrong";
-  } catch (const voxel::Stopped&) {
-    throw;
   } catch (const std::exception& error) {
-    return error.what();
+    if (fault_of(error) == Fault::Cancelled) throw;
+    return message_of(error);
   }
 }
 

@@ -21,8 +21,8 @@ class App;
 // Common parts of the verbs of the command line.
 namespace octotomy::planner::cli {
 
-/// Exit statuses. Anything else is a bug.
-enum Status { done = 0, disagreement = 1, bad_input = 2, out_of_resources = 3 };
+/// Exit statuses. The last is EX_SOFTWARE of sysexits.h: a mistake in the program.
+enum Status { done = 0, disagreement = 1, bad_input = 2, out_of_resources = 3, internal_error = 70 };
 
 /// The program's interface for verbs.
 struct Program {

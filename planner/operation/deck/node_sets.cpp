@@ -12,6 +12,7 @@
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/distance.h"
 #include "convert/deck/deck_names.h"
+#include "planner/operation/table/comma_numbers.h"
 #include "planner/operation/table/nearest_name.h"
 #include "voxel/space/file_text.h"
 
@@ -105,17 +106,6 @@ const NodeSet& set_called(const std::string& name, const std::vector<NodeSet>& s
 }
 
 }  // namespace
-
-std::vector<double> comma_numbers(const std::string& text) {
-  std::vector<double> numbers;
-  for (const char* at = text.c_str();;) {
-    char* end = nullptr;
-    numbers.push_back(std::strtod(at, &end));
-    if (end == at || !std::isfinite(numbers.back()) || (*end != ',' && *end != '\0')) return {};
-    if (*end == '\0') return numbers;
-    at = end + 1;
-  }
-}
 
 void check_set_names(const std::vector<std::string>& words) {
   std::map<std::string, std::string> known;

@@ -9,9 +9,6 @@
 
 namespace octotomy::planner {
 
-/// Finite numbers between commas; none where the text is anything else.
-std::vector<double> comma_numbers(const std::string& text);
-
 /// Throws std::runtime_error where a word NAME=WHERE has no name, a name that solvers do not take or that a
 /// deck's own sets have, or two names differ by case at most. For refusals before the work.
 void check_set_names(const std::vector<std::string>& words);

@@ -24,6 +24,7 @@
 #include "planner/operation/file/mesh_in.h"
 #include "planner/operation/file/octree_in.h"
 #include "planner/operation/measure/result_json.h"
+#include "planner/operation/table/comma_numbers.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"

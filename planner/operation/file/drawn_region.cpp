@@ -12,6 +12,7 @@
 #include "planner/operation/file/picture_frame.h"
 #include "planner/operation/file/region_file.h"
 #include "planner/operation/file/svg_outlines.h"
+#include "planner/operation/table/comma_numbers.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
@@ -250,12 +251,9 @@ DrawnRegion region_of_pixels(const std::string& text) {
     polygons.emplace_back();
     std::istringstream words(line);
     for (std::string word; words >> word;) {
-      char* end = nullptr;
-      const double x = std::strtod(word.c_str(), &end);
-      const bool has_comma = end != word.c_str() && *end == ',';
-      const char* second = has_comma ? end + 1 : end;
-      const double y = has_comma ? std::strtod(second, &end) : 0.0;
-      if (!has_comma || end == second || *end != '\0') refuse(option, "'" + word + "' is no pixel X,Y");
+      const std::vector<double> pixel = comma_numbers(word);
+      if (pixel.size() != 2) refuse(option, "'" + word + "' is no pixel X,Y");
+      const double x = pixel[0], y = pixel[1];
       if (!(x >= -0.5 && y >= -0.5 && x <= frame.size_px.x - 0.5 && y <= frame.size_px.y - 0.5))
         refuse(option, "'" + word + "' is no pixel of " + path.string() + ", which has " +
                            std::to_string(frame.size_px.x) + " x " + std::to_string(frame.size_px.y));

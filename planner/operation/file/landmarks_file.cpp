@@ -16,6 +16,7 @@
 
 #include "planner/operation/file/mesh_in.h"
 #include "planner/operation/table/csv.h"
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/nearest_name.h"
@@ -234,8 +235,8 @@ std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path) {
     return read();
   } catch (const SortedJson::exception& error) {
     throw std::runtime_error(path.string() + ": " + error.what());
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(path.string() + ": " + error.what());
+  } catch (const std::exception& error) {
+    rethrow_at(path.string() + ": ", error);
   }
 }
 

@@ -2,16 +2,12 @@
 #include "planner/operation/file/output_path.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
 
 #include "planner/operation/table/control_character.h"
 #include "planner/operation/table/nearest_name.h"
 #include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
-#include "voxel/space/staged_files.h"
 #include "voxel/space/unfinished_folder.h"
-#include "voxel/space/write_failure.h"
 
 namespace octotomy::planner {
 
@@ -37,16 +33,6 @@ std::filesystem::path output_file(const std::filesystem::path& folder, const std
 
 std::filesystem::path output_path(const std::filesystem::path& path) {
   return path.lexically_normal().generic_string();
-}
-
-void write_whole(const std::filesystem::path& path, const std::string& bytes) {
-  voxel::StagedFiles staged(std::filesystem::absolute(path).parent_path());
-  errno = 0;
-  std::ofstream file(staged.folder() / path.filename(), std::ios::binary);
-  file << bytes;
-  file.close();
-  if (!file) voxel::refuse_unwritten(path, errno);
-  staged.commit();
 }
 
 }  // namespace octotomy::planner

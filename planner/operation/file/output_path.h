@@ -21,8 +21,4 @@ std::filesystem::path output_file(const std::filesystem::path& folder, const std
 /// The path without "." and "..", as it is written and told.
 std::filesystem::path output_path(const std::filesystem::path& path);
 
-/// Writes a file beside its place and renames it there, so that an old one is never half gone. Throws
-/// voxel::Error with the path where the disk does not take it.
-void write_whole(const std::filesystem::path& path, const std::string& bytes);
-
 }  // namespace octotomy::planner

@@ -9,6 +9,7 @@
 #include "planner/operation/file/label_table.h"
 #include "planner/operation/file/output_path.h"
 #include "voxel/space/file_text.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner {
 namespace {
@@ -83,7 +84,7 @@ std::vector<std::string> write_label_table(const fs::path& label_map,
   if (label_table_of(label_map).names == names) return {};
   need_label_table(label_map, names);
   const fs::path table = label_table_path(label_map);
-  if (!holds_names(table, names)) write_whole(table, label_table_text(names));
+  if (!holds_names(table, names)) voxel::write_whole(table, label_table_text(names));
   std::vector<std::string> findings{"the names of the labels stand in " + table.string() +
                                     ", as the label map's own file has no place for them"};
   if (spelled(names) != names)

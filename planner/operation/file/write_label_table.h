@@ -28,7 +28,7 @@ void need_label_table(const std::filesystem::path& label_map, const std::map<int
 
 /// Writes the table beside the label map, unless a file there names its labels so already. Returns the
 /// findings: the file that was written, and names that it holds in another spelling. Throws as
-/// need_label_table() and write_whole().
+/// need_label_table() and voxel::write_whole().
 std::vector<std::string> write_label_table(const std::filesystem::path& label_map,
                                            const std::map<int, std::string>& names);
 

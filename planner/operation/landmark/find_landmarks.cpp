@@ -10,6 +10,7 @@
 #include "planner/operation/landmark/first_guess.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/picture/drawn_files.h"
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
@@ -79,7 +80,7 @@ Json measure(const FindLandmarks& asked, const AnswerBench& bench) {
     json.update(guess_json(
         guess_landmarks(drawn(object, glm::vec3(1.0f)), *object.mesh.within, bench.progress("landmarks"))));
   } catch (const std::runtime_error& error) {
-    if (bench.stop.stop_requested()) throw;
+    if (bench.stop.stop_requested() || !is_no_answer(error)) throw;
     return nothing(error.what());
   }
   return json;

@@ -58,12 +58,7 @@ brep::MirrorFit mid_plane_of(const brep::Mesh& surface, double overlap,
   options.start = start;
   options.rest_mm = plane_rest_mm;
   options.stop = progress.stop;
-  try {
-    return brep::fit_mirror_plane(surface, options);
-  } catch (const std::runtime_error& error) {
-    if (progress.stop.stop_requested()) throw voxel::Stopped(error.what());
-    throw;
-  }
+  return brep::fit_mirror_plane(surface, options);
 }
 
 /// One way to apply the rules: all that a guess depends on.

@@ -112,23 +112,18 @@ void by_surfaces(const brep::Mesh& moving, const brep::Mesh& fixed, const Regist
   options.rest_mm = asked.rest_mm;
   options.stop = progress.stop;
   options.progress = progress.report;
-  try {
-    const brep::SurfaceFit fit = brep::register_surfaces(moving, fixed, options);
-    laid.details["surfaces"] = {{"rms_mm", fit.rms_mm},
-                                {"kept_share", fit.kept_share},
-                                {"rounds", fit.rounds},
-                                {"converged", fit.converged},
-                                {"stiffness", fit.stiffness},
-                                {"start", is_laid ? "landmarks" : "search"},
-                                {"last_step_mm", fit.last_step_mm},
-                                {"rest_mm", fit.rest_mm}};
-    laid.onto_from_object = fit.fixed_from_moving;
-    laid.rms_mm = fit.rms_mm;
-    laid.findings.insert(laid.findings.end(), fit.findings.begin(), fit.findings.end());
-  } catch (const std::runtime_error& error) {
-    if (progress.stop.stop_requested()) throw voxel::Stopped(error.what());
-    throw;
-  }
+  const brep::SurfaceFit fit = brep::register_surfaces(moving, fixed, options);
+  laid.details["surfaces"] = {{"rms_mm", fit.rms_mm},
+                              {"kept_share", fit.kept_share},
+                              {"rounds", fit.rounds},
+                              {"converged", fit.converged},
+                              {"stiffness", fit.stiffness},
+                              {"start", is_laid ? "landmarks" : "search"},
+                              {"last_step_mm", fit.last_step_mm},
+                              {"rest_mm", fit.rest_mm}};
+  laid.onto_from_object = fit.fixed_from_moving;
+  laid.rms_mm = fit.rms_mm;
+  laid.findings.insert(laid.findings.end(), fit.findings.begin(), fit.findings.end());
 }
 
 void check(const Register& asked, const Place& place) {

@@ -7,6 +7,7 @@
 #include "planner/operation/file/file_kind.h"
 #include "planner/operation/measure/half_width.h"
 #include "planner/operation/measure/octree_summary.h"
+#include "planner/operation/table/comma_numbers.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/nearest_name.h"
 #include "planner/operation/table/operation.h"
@@ -59,17 +60,11 @@ std::vector<std::string> names_of(const std::map<std::string, std::string>& valu
 }
 
 glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
-  std::vector<double> numbers;
-  const char* at = text.c_str();
-  for (char* end = nullptr;; at = end + 1) {
-    numbers.push_back(std::strtod(at, &end));
-    const bool read = end != at;
-    if (read && *end == ',') continue;
-    if (read && *end == '\0' && (numbers.size() == 3 || numbers.size() == 7 || numbers.size() == 10)) break;
+  const std::vector<double> numbers = comma_numbers(text);
+  if (numbers.size() != 3 && numbers.size() != 7 && numbers.size() != 10)
     throw std::runtime_error("--motion: '" + name + "=" + text +
                              "' is no motion: give X,Y,Z in mm, then perhaps DEGREES and the "
                              "axis X,Y,Z, then perhaps the point X,Y,Z in mm it passes through");
-  }
   voxel::Motion motion;
   motion.translate_mm = {numbers[0], numbers[1], numbers[2]};
   if (numbers.size() >= 7) {

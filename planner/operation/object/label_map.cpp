@@ -8,6 +8,7 @@
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/scan/write_scene.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner {
 namespace {
@@ -38,7 +39,7 @@ void write(const LabelMap& wanted, const AnswerBench& bench, Exported& made) {
   const std::map<int, std::string> names{{1, object.id}};
   const std::filesystem::path table = label_table_path(file);
   if (!std::filesystem::exists(table))
-    write_whole(table, label_table_text(names));
+    voxel::write_whole(table, label_table_text(names));
   else if (!holds_names(table, names))
     made.findings.push_back("the name of its label is not written, as " + table.filename().string() +
                             " is there and does not have it: choose another name for one of them");

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "planner/operation/file/landmarks_file.h"
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/operation.h"
 
 namespace octotomy::planner {
@@ -25,8 +26,8 @@ void check(const Landmarks& landmarks, const Place& place) {
   std::vector<brep::Landmark> read;
   try {
     read = read_landmarks(place.scope->folder() / landmarks.file);
-  } catch (const std::runtime_error& error) {
-    file.refuse(error.what());
+  } catch (const std::exception& error) {
+    rethrow_at(file.where + ": ", error);
   }
   if (read.empty())
     file.refuse(landmarks.file.string() + " holds no placed point: place one, or leave it out");

@@ -17,6 +17,7 @@
 #include "voxel/solid/expression.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/regular_file.h"
+#include "voxel/space/write_whole.h"
 #include "voxel/volume/volume_header.h"
 
 namespace octotomy::planner {
@@ -121,7 +122,7 @@ FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::Oc
     throw voxel::Stopped("stopped before " + asked.out.string() + " was written");
   {
     const Stopwatch watch(timings, "write");
-    write_whole(asked.out, content);
+    voxel::write_whole(asked.out, content);
   }
   Json json = octree_answer(file, std::nullopt, timings);
   json["path"] = asked.out.string();

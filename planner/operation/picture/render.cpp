@@ -13,6 +13,7 @@
 #include "planner/operation/picture/drawn_files.h"
 #include "planner/operation/picture/picture_json.h"
 #include "planner/operation/picture/ray_pictures.h"
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/scan/image_file.h"
@@ -192,6 +193,7 @@ void check(const Render& render, const Place& place) {
     size_of(render);
     cuts_of(render);
   } catch (const std::exception& error) {
+    if (fault_of(error) != Fault::Input) throw;
     place.refuse(error.what());
   }
   if (!render.colour_by.empty()) place.at("colour_by").need_object(other_of(render.colour_by));

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdlib>
 #include <stdexcept>
 
 #include "planner/operation/file/picture_frame.h"
 #include "planner/operation/table/bench.h"
+#include "planner/operation/table/comma_numbers.h"
 #include "planner/operation/table/field.h"
 #include "voxel/view/annotation.h"
 #include "voxel/view/cutaway.h"
@@ -55,21 +55,12 @@ struct RenderedPicture {
 template <std::size_t Count>
 std::array<double, Count> numbers_of(const std::string& what, const std::string& text,
                                      const std::string& example) {
+  const std::vector<double> read = comma_numbers(text);
+  if (read.size() != Count)
+    throw std::runtime_error(what + ": '" + text + "' is not " + std::to_string(Count) +
+                             " numbers between commas, for example " + example);
   std::array<double, Count> numbers{};
-  const char* at = text.c_str();
-  for (std::size_t i = 0; i < Count; ++i) {
-    char* end = nullptr;
-    numbers[i] = std::strtod(at, &end);
-    if (end == at || !std::isfinite(numbers[i]) || *end != (i + 1 < Count ? ',' : '\0'))
-      throw std::runtime_error(std::string(what)
-                                   .append(": '")
-                                   .append(text)
-                                   .append("' is not ")
-                                   .append(std::to_string(Count))
-                                   .append(" numbers between commas, for example ")
-                                   .append(example));
-    at = end + 1;
-  }
+  std::copy(read.begin(), read.end(), numbers.begin());
   return numbers;
 }
 

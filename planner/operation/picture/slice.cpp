@@ -13,6 +13,7 @@
 #include "planner/operation/picture/colour.h"
 #include "planner/operation/picture/mesh_voxels.h"
 #include "planner/operation/picture/render.h"
+#include "planner/operation/table/comma_numbers.h"
 #include "planner/operation/table/field_json.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
@@ -79,11 +80,10 @@ struct CutSheet {
 double position_of(const std::string& plane, const std::string& text, const voxel::Lattice& lattice,
                    int axis) {
   if (text == "middle") return lattice.lps_mm(0.5 * glm::dvec3(lattice.dims - 1))[axis];
-  char* end = nullptr;
-  const double position_mm = std::strtod(text.c_str(), &end);
-  if (end == text.c_str() || *end != '\0' || !std::isfinite(position_mm))
+  const std::optional<double> position_mm = number_in(text);
+  if (!position_mm)
     throw std::runtime_error(plane + ": '" + text + "' is no position: give millimetres, or middle");
-  return position_mm;
+  return *position_mm;
 }
 
 /// The view that looks along a direction with `up` as near upwards as it can be.

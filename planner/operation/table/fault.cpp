@@ -53,6 +53,13 @@ std::string to_string(Fault fault) {
   return "internal";
 }
 
+std::optional<Fault> fault_named(std::string_view name) {
+  for (const Fault fault :
+       {Fault::Input, Fault::Geometry, Fault::Cancelled, Fault::Resource, Fault::Internal})
+    if (to_string(fault) == name) return fault;
+  return std::nullopt;
+}
+
 std::string message_of(const std::exception& error) {
   if (const auto* of_system = as<std::system_error>(error))
     return error.what() + voxel::way_out_of(of_system->code().value());

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 // Kinds of errors as reported to users, independent of the kernel, library or room they come from.
 namespace octotomy::planner {
@@ -28,6 +30,8 @@ Fault fault_of(const std::exception& error);
 
 /// "input", "geometry", "cancelled", "resource" or "internal".
 std::string to_string(Fault fault);
+/// The inverse of to_string(); none for other words.
+std::optional<Fault> fault_named(std::string_view name);
 
 /// The error's text for users. An Internal error is called internal, with a request to report it.
 std::string message_of(const std::exception& error);

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "planner/operation/table/comma_numbers.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/nearest_name.h"
@@ -353,25 +354,16 @@ struct Schema {
   }
 };
 
-double number_in(const std::string& word, const Field& field) {
-  char* end = nullptr;
-  const double value = std::strtod(word.c_str(), &end);
-  if (end == word.c_str() || *end != '\0' || !std::isfinite(value))
-    throw std::runtime_error("'" + word + "' is not a number" + for_example(field));
-  return value;
+double need_number(const std::string& word, const Field& field) {
+  const std::optional<double> value = number_in(word);
+  if (!value) throw std::runtime_error("'" + word + "' is not a number" + for_example(field));
+  return *value;
 }
 
 SortedJson point_in(const std::string& word) {
-  SortedJson point = SortedJson::array();
-  const char* at = word.c_str();
-  for (int axis = 0; axis < 3; ++axis) {
-    char* end = nullptr;
-    const double value = std::strtod(at, &end);
-    if (end == at || !std::isfinite(value) || *end != (axis < 2 ? ',' : '\0'))
-      throw std::runtime_error("'" + word + "' is no point: give X,Y,Z, for example -10,25.5,40");
-    point.push_back(value);
-    at = end + 1;
-  }
+  const std::vector<double> point = comma_numbers(word);
+  if (point.size() != 3)
+    throw std::runtime_error("'" + word + "' is no point: give X,Y,Z, for example -10,25.5,40");
   return point;
 }
 
@@ -381,8 +373,8 @@ struct Word {
   const std::string& word;
 
   SortedJson operator()(const bool*) const { return true; }
-  SortedJson operator()(const int*) const { return number_in(word, field); }
-  SortedJson operator()(const double*) const { return number_in(word, field); }
+  SortedJson operator()(const int*) const { return need_number(word, field); }
+  SortedJson operator()(const double*) const { return need_number(word, field); }
   SortedJson operator()(const glm::dvec3*) const { return point_in(word); }
   SortedJson operator()(const Site*) const {
     return word.find(',') == std::string::npos ? SortedJson(word) : point_in(word);

@@ -2,7 +2,6 @@
 #include "planner/operation/table/json_file.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -12,8 +11,7 @@
 #include "planner/operation/table/nearest_name.h"
 #include "voxel/space/error.h"
 #include "voxel/space/regular_file.h"
-#include "voxel/space/staged_files.h"
-#include "voxel/space/write_failure.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner {
 
@@ -69,13 +67,7 @@ SortedJson read_json(const std::filesystem::path& path) {
 }
 
 void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path) {
-  voxel::StagedFiles staging(std::filesystem::absolute(path).parent_path());
-  errno = 0;
-  std::ofstream stream(staging.folder() / path.filename());
-  stream << json_text(json) << '\n';
-  stream.close();
-  if (!stream) voxel::refuse_unwritten(path, errno);
-  staging.commit(path.filename());
+  voxel::write_whole(path, json_text(json) + "\n");
 }
 
 void check_keys(const SortedJson& object, const std::string& where, const std::vector<std::string>& known) {

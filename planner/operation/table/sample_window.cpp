@@ -7,19 +7,13 @@
 #include <stdexcept>
 #include <vector>
 
+#include "planner/operation/table/comma_numbers.h"
 #include "planner/operation/table/nearest_name.h"
 #include "planner/operation/table/number_format.h"
 #include "voxel/filter/tissue.h"
 
 namespace octotomy::planner {
 namespace {
-
-std::optional<double> number_in(const std::string& text) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (end == text.c_str() || *end != '\0' || !std::isfinite(number)) return std::nullopt;
-  return number;
-}
 
 std::vector<std::string> tissue_names() {
   std::vector<std::string> names;

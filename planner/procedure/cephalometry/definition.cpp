@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/nearest_name.h"
@@ -158,8 +159,8 @@ Cephalometry read_cephalometry(const std::string& name_or_path) {
     const SortedJson root = read_json(name_or_path);
     try {
       return Reader().read(root);
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error(name_or_path + ": " + error.what());
+    } catch (const std::exception& error) {
+      rethrow_at(name_or_path + ": ", error);
     }
   }
   for (const auto& [name, text] : cephalometry_files())

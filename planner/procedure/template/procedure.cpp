@@ -7,6 +7,7 @@
 #include <iterator>
 #include <set>
 
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/nearest_name.h"
@@ -207,8 +208,8 @@ Procedure read_procedure(const std::string& name_or_path) {
     const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     try {
       return parse_procedure(text);
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error(name_or_path + ": " + error.what());
+    } catch (const std::exception& error) {
+      rethrow_at(name_or_path + ": ", error);
     }
   }
   for (const auto& [name, text] : procedure_files())
@@ -237,9 +238,8 @@ Json steps_of(const Procedure& procedure, const std::vector<brep::Landmark>& lan
   Json steps = Json::array();
   for (const Json& step : procedure.steps) try {
       steps.push_back(answered(step, names));
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error("procedure " + procedure.name + ", step '" + step.value("id", "") +
-                               "': " + error.what());
+    } catch (const std::exception& error) {
+      rethrow_at("procedure " + procedure.name + ", step '" + step.value("id", "") + "': ", error);
     }
   return steps;
 }

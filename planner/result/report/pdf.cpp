@@ -4,18 +4,17 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <fcntl.h>
 #include <optional>
-#include <spawn.h>
 #include <sstream>
 #include <string>
 #include <sys/wait.h>
-#include <thread>
+#include <system_error>
 #include <unistd.h>
 #include <vector>
 
 #include "voxel/space/error.h"
 #include "voxel/space/progress.h"
+#include "voxel/space/spawn.h"
 #include "voxel/space/unfinished_folder.h"
 
 namespace octotomy::planner {
@@ -58,33 +57,21 @@ Words printing(const fs::path& page, const fs::path& pdf, const fs::path& profil
   return {};
 }
 
-/// Runs a program without showing its output; returns its exit status.
-int run(Words words, const std::stop_token& stop) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    posix_spawn_file_actions_addopen(&files, stream, "/dev/null", O_RDWR, 0);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+/// Runs the program and returns its exit status; -1 where it cannot be started or crashes.
+int run(const Words& words, const std::stop_token& stop) {
   pid_t child = -1;
-  const int error = posix_spawn(&child, arguments[0], &files, &attributes, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
-  posix_spawnattr_destroy(&attributes);
-  if (error != 0) return -1;
-  int status = 0;
-  while (::waitpid(child, &status, WNOHANG) == 0) {
-    if (stop.stop_requested()) {
-      ::kill(-child, SIGKILL);
-      ::waitpid(child, &status, 0);
-      throw voxel::Stopped("stopped while the report was printed");
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  try {
+    child = voxel::spawn({.words = words, .has_own_group = true});
+  } catch (const std::system_error&) {
+    return -1;
   }
+  bool is_stopped = false;
+  const int status = voxel::wait_for_end(child, std::chrono::milliseconds(10), [&] {
+    if (is_stopped || !stop.stop_requested()) return;
+    is_stopped = true;
+    ::kill(-child, SIGKILL);
+  });
+  if (is_stopped) throw voxel::Stopped("stopped while the report was printed");
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <tbb/parallel_for.h>
 
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/plan/evaluate.h"
 #include "planner/plan/plan.h"
@@ -20,6 +21,7 @@
 #include "voxel/scan/write_scene.h"
 #include "voxel/solid/combine.h"
 #include "voxel/space/unfinished_folder.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner {
 namespace {
@@ -109,12 +111,13 @@ Certificate answer_of(const ExactQuestion& question, const std::stop_token& stop
               .certificate;
     else
       certificate = verify::certify_exact(verify::exact_answers(question.expression(), {stop, {}}));
-  } catch (const Stopped&) {
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
+    if (fault_of(error) == Fault::Cancelled) throw;
     certificate.tier = verify::Tier::Exact;
     certificate.verdict = verify::Verdict::Fail;
-    certificate.reasons.push_back(std::string("no answer: ") + error.what());
+    certificate.reasons.push_back("no answer: " + message_of(error));
   }
   certificate.operation = question.told;
   return certificate;
@@ -172,7 +175,7 @@ void write_plan(const ExactQuestion& question, const std::filesystem::path& fold
     json["steps"].push_back({{"id", name}, {"do", "window"}, {"scan", name}, {"low", 0.5}});
   }
   json["steps"].push_back({{"id", "result"}, {"do", "combine"}, {"expression", expression}});
-  write_text(folder / "disagreement.plan.json", json_text(json, 2));
+  voxel::write_file(folder / "disagreement.plan.json", json_text(json, 2));
 }
 
 /// A random plan's evaluation, or the reason why there is none.
@@ -194,9 +197,8 @@ PlanAnswer answer_of(const RandomPlan& plan, const std::stop_token& stop) {
   PlanAnswer answer;
   try {
     answer.evaluation = evaluate(parse_plan(text(plan), {}), options);
-  } catch (const Stopped&) {
-    throw;
   } catch (const std::runtime_error& error) {
+    if (fault_of(error) == Fault::Cancelled) throw;
     answer.refusal = error.what();
   }
   return answer;
@@ -226,7 +228,7 @@ void write_plan(RandomPlan plan, const std::filesystem::path& folder) {
     std::filesystem::copy_file(from, folder / from.filename());
     scan["path"] = from.filename().string();
   }
-  write_text(folder / "disagreement.plan.json", text(plan));
+  voxel::write_file(folder / "disagreement.plan.json", text(plan));
 }
 
 /// The running suite. Results of a case are stored by its number, so that they are in the order of seeds.

@@ -71,12 +71,11 @@ struct RandomSuite {
 /// With a lower share, the agreement would mostly be on trivial results.
 inline constexpr double least_substance = 0.3;
 
-/// Compares both kernels on random questions: expressions up to six operators deep, over sets of up to 48
-/// voxels a side in general position or up to four as given; and plans. Questions run in parallel; results
-/// depend only on the seed. A disagreement is simplified (by removing operators, motions and regions and
-/// reducing sets) while it persists, and written as a plan with its scans. Throws Stopped, and as
-/// write_text() does. Cost in processor time per question: about 0.3 s in the exact tier, 3 ms as given, 1 s
-/// in the bounded tier.
+/// Asks both kernels random questions: expressions up to six operators deep, of sets of up to 48 voxels a
+/// side in general position and of up to four as given; and plans. Questions are asked in parallel; answers
+/// depend on the seed only. A disagreement is simplified (operators, motions and regions taken away, sets cut
+/// down) as long as it stays one, and written as a plan with its scans. Throws Stopped, and as voxel::write_file().
+/// Cost in processor time: a question to the exact tier about 0.3 s, as given 3 ms, to the bounded tier 1 s.
 RandomSuite ask_random(const RandomSuiteOptions& options);
 
 }  // namespace octotomy::planner

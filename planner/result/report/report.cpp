@@ -21,6 +21,7 @@
 #include "planner/result/report/result_tables.h"
 #include "voxel/filter/components.h"
 #include "voxel/scan/image_file.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner {
 namespace {
@@ -54,7 +55,8 @@ void write_pictures(const Result& result, const std::filesystem::path& folder) {
     for (const ScenePicture& picture : group.pictures) {
       std::string view = picture.view;
       std::replace(view.begin(), view.end(), ',', '_');
-      write_text(folder / (group.name + "_" + view + ".png"), {picture.png.begin(), picture.png.end()});
+      voxel::write_file(folder / (group.name + "_" + view + ".png"),
+                        {picture.png.begin(), picture.png.end()});
     }
 }
 
@@ -230,19 +232,20 @@ Json write_result_files(Result& result, const std::filesystem::path& folder, con
     voxel::create_folders_in(folder, "views");
     write_pictures(result, folder / "views");
     if (!result.cephalogram.empty())
-      write_text(folder / "views/cephalogram.png", {result.cephalogram.begin(), result.cephalogram.end()});
-    write_text(folder / "report.html", report_html(result));
+      voxel::write_file(folder / "views/cephalogram.png",
+                        {result.cephalogram.begin(), result.cephalogram.end()});
+    voxel::write_file(folder / "report.html", report_html(result));
     if (result.as_pdf) print_pdf(folder / "report.html", folder / "report.pdf", options.stop);
   }
   Json json = result_json(result);
   for (const auto& [name, text] : result_tables(json)) {
     voxel::create_folders_in(folder, std::filesystem::path(name).parent_path());
-    write_text(folder / name, text);
+    voxel::write_file(folder / name, text);
   }
   const Json credibility = credibility_json(json);
-  write_text(folder / "credibility.json", json_text(credibility, 2) + "\n");
-  write_text(folder / "credibility.html", credibility_html(credibility));
-  write_text(folder / "result.json", json_text(json, 2) + "\n");
+  voxel::write_file(folder / "credibility.json", json_text(credibility, 2) + "\n");
+  voxel::write_file(folder / "credibility.html", credibility_html(credibility));
+  voxel::write_file(folder / "result.json", json_text(json, 2) + "\n");
   return json;
 }
 

@@ -29,6 +29,7 @@
 #include "voxel/space/disk_need.h"
 #include "voxel/space/error.h"
 #include "voxel/space/staged_files.h"
+#include "voxel/space/write_whole.h"
 
 namespace octotomy::planner {
 namespace {
@@ -84,7 +85,7 @@ void write_list(const fs::path& folder) {
   }
   // Writes the list completely or not at all: with half a list, the files it lacks would count as the user's.
   const fs::path part = folder / (std::string(list_name) + "-part");
-  write_text(part, text);
+  voxel::write_file(part, text);
   fs::rename(part, folder / list_name);
 }
 
@@ -448,18 +449,6 @@ void ResultFolder::put_in_place(const std::function<void()>& then) {
   } catch (const std::exception&) {
     // The result is published; the next run removes the rest.
   }
-}
-
-void write_text(const fs::path& path, const std::string& text) {
-  const auto fail = [&] {
-    throw fs::filesystem_error("cannot write", path, std::error_code(errno, std::generic_category()));
-  };
-  errno = 0;
-  std::FILE* opened = std::fopen(path.c_str(), "wb");
-  if (opened == nullptr) fail();
-  const bool written = std::fwrite(text.data(), 1, text.size(), opened) == text.size();
-  const bool closed = std::fclose(opened) == 0;
-  if (!written || !closed) fail();
 }
 
 }  // namespace octotomy::planner

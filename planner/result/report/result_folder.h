@@ -76,7 +76,4 @@ class ResultFolder {
   std::unique_ptr<voxel::UnfinishedFolder> staged_;  ///< beside it
 };
 
-/// Writes text as a file. Throws std::filesystem::filesystem_error with path and the system's reason.
-void write_text(const std::filesystem::path& path, const std::string& text);
-
 }  // namespace octotomy::planner

@@ -17,6 +17,7 @@
 #include "planner/result/report/difference_pictures.h"
 #include "planner/result/report/html.h"
 #include "planner/result/report/result_folder.h"
+#include "voxel/space/write_whole.h"
 #include "voxel/view/surface_scalar.h"
 
 namespace octotomy::planner {
@@ -309,8 +310,8 @@ std::string verification_html(const Verification& verification) {
 
 void write_verification(const Verification& verification, const std::filesystem::path& folder) {
   ResultFolder result(folder);
-  write_text(result.path() / "report.html", verification_html(verification));
-  write_text(result.path() / "result.json", json_text(verification.answer, 2) + "\n");
+  voxel::write_file(result.path() / "report.html", verification_html(verification));
+  voxel::write_file(result.path() / "result.json", json_text(verification.answer, 2) + "\n");
   result.publish();
 }
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """Scans, octrees, meshes and pictures as arrays."""
 import os
+import resource
 import tempfile
 import unittest
 from pathlib import Path
@@ -87,6 +88,18 @@ class Scans(unittest.TestCase):
                 octotomy.read_scan(name)
             octotomy.Scan(noise(), LATTICE).write(name)
             self.assertTrue(octotomy.read_scan(name).source.endswith(r"/x\xff.nrrd"))
+
+    def test_a_file_that_does_not_fit_is_no_fault_of_the_input(self):
+        before = resource.getrlimit(resource.RLIMIT_FSIZE)
+        with tempfile.TemporaryDirectory() as folder:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (100, before[1]))
+            try:
+                with self.assertRaisesRegex(octotomy.ResourceError, "s.nrrd: cannot be written: File too large") as raised:
+                    octotomy.Scan(noise(), LATTICE).write(Path(folder) / "s.nrrd")
+            finally:
+                resource.setrlimit(resource.RLIMIT_FSIZE, before)
+            self.assertNotIsInstance(raised.exception, octotomy.InputError)
+            self.assertEqual(os.listdir(folder), [])
 
     @unittest.skipIf(nibabel is None, "nibabel is not installed")
     def test_nibabel_sees_the_same_places(self):

@@ -65,6 +65,11 @@ TEST(Fault, IsOfOneKindForEveryTypeThatRoomsThrow) {
   for (const Case& each : cases()) EXPECT_EQ(caught(each.fail).first, each.fault) << each.name;
 }
 
+TEST(Fault, IsReadBackFromItsName) {
+  for (const Case& each : cases()) EXPECT_EQ(fault_named(to_string(each.fault)), each.fault) << each.name;
+  EXPECT_EQ(fault_named("Internal"), std::nullopt);
+}
+
 TEST(Fault, KeepsItsKindAndNamesTheStepItIsIn) {
   for (const Case& each : cases()) {
     const auto [fault, message] = caught([&] { in_step("cut", each.fail); });

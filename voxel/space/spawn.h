@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <sys/types.h>
+#include <vector>
+
+namespace octotomy::voxel {
+
+/// A program to start. A standard stream without a descriptor is /dev/null. Precondition: `out` and `errors`
+/// are above 2.
+struct Spawn {
+  std::vector<std::string> words = {};  ///< the program, found by PATH if it has no slash, and its arguments
+  std::optional<int> in = {}, out = {}, errors = {};
+  bool has_environment = true;  ///< false: it starts without variables
+  bool has_own_group = false;   ///< false: it gets the signals of our terminal
+};
+
+/// Starts the program and returns its process. It inherits no other open file, no blocked signal, and no
+/// ignored signal except SIGHUP, so that under nohup both outlive the terminal. Throws std::system_error with
+/// the program's name.
+pid_t spawn(const Spawn& program);
+
+/// Waits for the end of a child and returns its status as waitpid() reports it. Calls `look` every
+/// `look_every` until then; `look` may send signals. Throws std::system_error if the process is no child.
+int wait_for_end(pid_t child, std::chrono::milliseconds look_every, const std::function<void()>& look);
+
+}  // namespace octotomy::voxel
