@@ -69,7 +69,7 @@ TEST(Tetrahedralise, ALimitOnVolumeMakesMoreAndSmallerTetrahedra) {
   TetOptions options;
   options.max_volume_mm3 = 10.0;
   const Tetrahedra fine = tetrahedralise(surface, options);
-  EXPECT_EQ(fine.method, "TetGen -pYq1.4a10");
+  EXPECT_EQ(fine.method, "TetGen -pYq1.4a8.5");
   EXPECT_GT(fine.tets.size(), tetrahedralise(surface).tets.size());
   // Beside triangles that must stay, TetGen gives up on a few.
   std::size_t larger = 0;
@@ -85,7 +85,7 @@ TEST(Tetrahedralise, NewPointsOnTheSurfaceAreMadeWhereTheyAreAllowed) {
   options.keep_boundary = false;
   options.max_volume_mm3 = 5.0;
   const Tetrahedra t = tetrahedralise(brep::mesh_of(box({0, 0, 0}, {10, 10, 10})), options);
-  EXPECT_EQ(t.method, "TetGen -pq1.4a5");
+  EXPECT_EQ(t.method, "TetGen -pq1.4a4.25");
   EXPECT_GT(t.boundary_nodes.size(), 8U);
   EXPECT_NEAR(quality(t).volume_mm3, 1000.0, 1e-6);
 }
