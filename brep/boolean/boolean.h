@@ -25,7 +25,9 @@ struct BooleanResult {
 /// Ask health() before a mesh generator does. Volumes beside the result's are computed with it and must add
 /// up. Lines through every shell of the operands and the result must find what the operation makes of the
 /// operands, so that no shell is too many, missing or turned, see disagreement_along_lines(). Shells of one
-/// operand may lie on the other's, with the same sense or the contrary one, in whole or in part. An operand
+/// operand may lie on the other's, with the same sense or the contrary one, in whole or in part. Faces that lie
+/// on one plane but for the rounding of the points, as of boxes turned as one, count as lying on it exactly,
+/// see common_frame.h. An operand
 /// that meets itself, which a proof below Health allows, is found near the cut only. The bits are the same on
 /// any number of threads and for either order of the operands. Throws std::invalid_argument if an operand is
 /// inside out; Error (Geometry) if the result cannot be represented as a manifold surface, the volumes do not
