@@ -13,9 +13,10 @@ struct SmoothOptions {
 
 /// The mesh with its vertices' noise taken off by steps in and out again that leave long waves, and so the
 /// volume, nearly as they were. Connection and orientation stay; a thin wall may come to intersect itself:
-/// ask health(). Precondition: closed and manifold. Throws std::invalid_argument where an option is out of
-/// its range or the mesh is open, Error (Geometry) with both volumes if the volume changes by more than
-/// its share. Deterministic. Cost: rounds times edges.
+/// ask health(). Borders of an open mesh stay where they are, and the volume between its triangles and their
+/// first place is held against the share of the volume of a ball of its area. Precondition: manifold. Throws
+/// std::invalid_argument where an option is out of its range, Error (Geometry) with both volumes if the
+/// volume changes by more than its share. Deterministic. Cost: rounds times edges.
 /// Source: Taubin, "A signal processing approach to fair surface design", SIGGRAPH 1995, with equal weights.
 Mesh smooth(const Mesh& mesh, const SmoothOptions& options = {});
 
