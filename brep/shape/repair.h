@@ -58,7 +58,8 @@ struct Repair {
 /// Orients last, until health() agrees. Triangles with points that are not finite are taken out where `solid`
 /// is asked for. Ask health() what is left to be wished for. Throws std::invalid_argument if an option is out
 /// of its range, Error (Input) if a triangle refers to no point or to one that is not finite, Error
-/// (Geometry) with both volumes if the volume changes by more than its share, or as enclose(); Stopped. Cost:
+/// (Geometry) with both volumes if the volume changes by more than its share, of an enclosing with what would
+/// be accepted in its place, or as enclose(); Stopped. Cost:
 /// n log n, and most for triangles that intersect: those are taken out of up to 100 000 triangles only, when
 /// `solid` can enclose instead. Source: holes after Liepa, "Filling holes in meshes", SGP 2003; both holes
 /// and intersections as CGAL has them.
