@@ -6,19 +6,40 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <stdexcept>
 
 #include "brep/align/cloud_fit.h"
 #include "brep/align/forward_axis.h"
 #include "brep/align/register_surfaces.h"
+#include "brep/mesh/short_text.h"
 #include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
 namespace {
 
-constexpr std::size_t trial_samples = 1000;
-constexpr int trial_rounds = 60;
+/// The starts are sifted by a few samples in a few rounds, and the best planes tried again by more.
+constexpr std::size_t voting_samples = 1000, voted_count = 24, sift_samples = 150, trial_samples = 1000;
+constexpr int sift_rounds = 15, trial_rounds = 60;
+constexpr std::size_t tried_count = 4;
+
+/// The share of the overlap that trials keep, so that a loss on one side which moves the surface's centre and
+/// axes, or is larger than the overlap says, does not choose the plane.
+constexpr double trial_overlap() {
+  return 0.5;
+}
+
+/// Planes whose normals are nearer than this, in degrees, and that pass the centre within a twentieth of the
+/// spread, are one.
+constexpr double same_plane_deg() {
+  return 10.0;
+}
+
+/// A plane whose residual is up to this times the best one's fits nearly as well.
+constexpr double rival_share() {
+  return 1.5;
+}
 
 glm::dmat4 reflection(const MirrorPlane& plane) {
   glm::dmat4 matrix(1.0);
@@ -105,6 +126,109 @@ MirrorFit plane_of(const SurfaceFit& fit, const MirrorPlane& start, const glm::d
   return found;
 }
 
+/// Planes that most pairs of samples are mirror images about, point and normal: they do not hang on where the
+/// surface's centre and axes lie, so that a loss on one side takes votes from the mid-plane and does not move
+/// it. Pairs vote in cells of some ten degrees by a tenth of the spread; the peaks, the highest first.
+std::vector<MirrorPlane> voted_planes(const Cloud& cloud, std::size_t count) {
+  constexpr double cells_of_normal = 6.0, cell_share = 0.1, like_normals = 0.15;
+  struct Votes {
+    std::size_t count = 0;
+    glm::dvec3 normal{0.0};
+    double along_mm = 0.0;
+  };
+  std::map<std::array<int, 4>, Votes> cells;
+  const std::size_t samples = cloud.points_mm.size();
+  for (std::size_t i = 0; i < samples; ++i)
+    for (std::size_t k = i + 1; k < samples; ++k) {
+      const glm::dvec3 way = cloud.points_mm[i] - cloud.points_mm[k];
+      const double length = glm::length(way);
+      if (!(length > cell_share * cloud.spread_mm)) continue;
+      const glm::dvec3 normal = forward(way / length);
+      const glm::dvec3 image = cloud.normals[i] - 2.0 * glm::dot(cloud.normals[i], normal) * normal;
+      if (glm::length(image - cloud.normals[k]) > like_normals) continue;
+      const double along_mm =
+          glm::dot(0.5 * (cloud.points_mm[i] + cloud.points_mm[k]) - cloud.centre_mm, normal);
+      Votes& votes = cells[{static_cast<int>(std::lround(cells_of_normal * normal.x)),
+                            static_cast<int>(std::lround(cells_of_normal * normal.y)),
+                            static_cast<int>(std::lround(cells_of_normal * normal.z)),
+                            static_cast<int>(std::lround(along_mm / (cell_share * cloud.spread_mm)))}];
+      ++votes.count;
+      votes.normal += normal;
+      votes.along_mm += along_mm;
+    }
+  std::vector<Votes> peaks;
+  for (const auto& [cell, votes] : cells) peaks.push_back(votes);
+  std::stable_sort(peaks.begin(), peaks.end(),
+                   [](const Votes& a, const Votes& b) { return a.count > b.count; });
+  std::vector<MirrorPlane> planes;
+  for (const Votes& votes : peaks) {
+    if (planes.size() == count) break;
+    const glm::dvec3 normal = glm::normalize(votes.normal);
+    const glm::dvec3 on_mm = cloud.centre_mm + votes.along_mm / static_cast<double>(votes.count) * normal;
+    const bool is_known = std::any_of(planes.begin(), planes.end(), [&](const MirrorPlane& known) {
+      return std::abs(glm::dot(known.normal, normal)) > 0.96 &&
+             std::abs(glm::dot(on_mm - known.point_mm, known.normal)) < 2.0 * cell_share * cloud.spread_mm;
+    });
+    if (!is_known) planes.push_back({on_mm, normal});
+  }
+  return planes;
+}
+
+/// A plane with its residual.
+struct Tried {
+  MirrorPlane plane;
+  double rms_mm = 0.0;
+};
+
+bool are_same(const MirrorPlane& a, const MirrorPlane& b, const Spread& spread) {
+  const double cosine = glm::dot(a.normal, b.normal);
+  const double size_mm =
+      std::sqrt(spread.covariance[0][0] + spread.covariance[1][1] + spread.covariance[2][2]);
+  const double apart_mm = std::abs(glm::dot(spread.centre_mm - a.point_mm, a.normal)) -
+                          std::abs(glm::dot(spread.centre_mm - b.point_mm, b.normal));
+  return std::abs(cosine) > std::cos(same_plane_deg() * std::numbers::pi / 180.0) &&
+         std::abs(apart_mm) < 0.05 * size_mm;
+}
+
+/// The planes that fits from the starts end at, each once, the best first; of equal ones the earlier start's.
+std::vector<Tried> tried(const std::vector<MirrorPlane>& starts, const Cloud& cloud,
+                         const OrientedSurface& surface, const Spread& spread, SurfaceFitOptions options,
+                         int rounds) {
+  options.max_rounds = rounds;
+  options.overlap *= trial_overlap();
+  std::vector<Tried> planes;
+  for (const MirrorPlane& start : starts) {
+    const SurfaceFit fit = fit_cloud(mirrored_cloud(cloud, start), surface, glm::dmat4(1.0), options, false);
+    const bool is_fit = fit.kept_share >= 0.5 * options.overlap;
+    planes.push_back({plane_of(fit, start, spread.centre_mm).plane,
+                      is_fit ? fit.rms_mm : std::numeric_limits<double>::max()});
+  }
+  std::stable_sort(planes.begin(), planes.end(),
+                   [](const Tried& a, const Tried& b) { return a.rms_mm < b.rms_mm; });
+  std::vector<Tried> different;
+  for (const Tried& plane : planes)
+    if (std::none_of(different.begin(), different.end(),
+                     [&](const Tried& known) { return are_same(known.plane, plane.plane, spread); }))
+      different.push_back(plane);
+  return different;
+}
+
+/// A residual this many times that of the trials, which keep less of the surface, tells of samples without a
+/// counterpart.
+constexpr double far_worse() {
+  return 3.0;
+}
+
+/// Reports a second plane that fits nearly as well.
+void tell_rival(const std::vector<Tried>& planes, MirrorFit& found) {
+  if (planes.size() < 2 || planes[1].rms_mm > rival_share() * planes[0].rms_mm) return;
+  const glm::dvec3& n = planes[1].plane.normal;
+  found.findings.push_back("WARN mid-plane: another plane, of normal (" + short_text(n.x) + ", " +
+                           short_text(n.y) + ", " + short_text(n.z) + "), fits nearly as well, to " +
+                           short_text(planes[1].rms_mm) + " mm beside " + short_text(planes[0].rms_mm) +
+                           " mm: look at the image, or give a plane near the right one, --plane");
+}
+
 Triangles mirrored_triangles(Triangles triangles, const MirrorPlane& plane) {
   const double length = glm::length(plane.normal);
   if (!(length > 0.0) || !std::isfinite(length))
@@ -127,39 +251,41 @@ Solid mirrored(const Solid& solid, const MirrorPlane& plane) {
 
 MirrorFit fit_mirror_plane(const Mesh& mesh, const MirrorFitOptions& options) {
   const Spread spread = spread_of(triangles_of(mesh));
-  std::vector<MirrorPlane> starts;
-  if (options.start)
-    starts.push_back(*options.start);
-  else
-    for (const glm::dvec3& axis : axes_of(spread.covariance)) starts.push_back({spread.centre_mm, axis});
   SurfaceFitOptions fit_options;
   fit_options.overlap = options.overlap;
   fit_options.max_rounds = options.max_rounds;
   fit_options.rest_mm = options.rest_mm;
   fit_options.stop = options.stop;
   const OrientedSurface surface(mesh);
-  // Finds the best start with few samples, then its plane with all samples.
-  MirrorPlane plane = starts.front();
-  if (starts.size() > 1) {
-    const Cloud few = cloud_of(mesh, trial_samples, "mirrored");
-    SurfaceFitOptions trial_options = fit_options;
-    trial_options.max_rounds = trial_rounds;
-    double least_mm = std::numeric_limits<double>::infinity();
-    for (const MirrorPlane& start : starts) {
-      const SurfaceFit trial =
-          fit_cloud(mirrored_cloud(few, start), surface, glm::dmat4(1.0), trial_options, false);
-      const double rms_mm =
-          trial.kept_share < 0.5 * options.overlap ? std::numeric_limits<double>::max() : trial.rms_mm;
-      if (!(rms_mm < least_mm)) continue;
-      least_mm = rms_mm;
-      plane = plane_of(trial, start, spread.centre_mm).plane;
-    }
+  std::vector<Tried> planes;
+  if (!options.start) {
+    std::vector<MirrorPlane> starts = voted_planes(cloud_of(mesh, voting_samples, "mirrored"), voted_count);
+    for (const glm::dvec3& axis : axes_of(spread.covariance)) starts.push_back({spread.centre_mm, axis});
+    planes =
+        tried(starts, cloud_of(mesh, sift_samples, "mirrored"), surface, spread, fit_options, sift_rounds);
+    std::vector<MirrorPlane> best;
+    for (std::size_t i = 0; i < std::min(tried_count, planes.size()); ++i) best.push_back(planes[i].plane);
+    planes =
+        tried(best, cloud_of(mesh, trial_samples, "mirrored"), surface, spread, fit_options, trial_rounds);
   }
+  const MirrorPlane plane = options.start ? *options.start : planes.front().plane;
   if (options.progress) options.progress(0.5);
   const Cloud all = cloud_of(mesh, fit_options.samples, "mirrored");
-  const SurfaceFit fit = fit_cloud(mirrored_cloud(all, plane), surface, glm::dmat4(1.0), fit_options);
+  SurfaceFit fit = fit_cloud(mirrored_cloud(all, plane), surface, glm::dmat4(1.0), fit_options);
+  const bool is_narrowed = !planes.empty() && fit.rms_mm > far_worse() * planes.front().rms_mm;
+  if (is_narrowed) {
+    const double wide_mm = fit.rms_mm;
+    fit_options.overlap *= trial_overlap();
+    fit = fit_cloud(mirrored_cloud(all, plane), surface, glm::dmat4(1.0), fit_options);
+    fit.findings.push_back("WARN mid-plane: of " + short_text(100.0 * options.overlap) +
+                           " % of the surface the residual is " + short_text(wide_mm) + " mm, so that only " +
+                           short_text(100.0 * fit_options.overlap) + " % were fitted, to " +
+                           short_text(fit.rms_mm) + " mm: say by --overlap what has a counterpart");
+  }
   if (options.progress) options.progress(1.0);
-  return plane_of(fit, plane, spread.centre_mm);
+  MirrorFit found = plane_of(fit, plane, spread.centre_mm);
+  tell_rival(planes, found);
+  return found;
 }
 
 }  // namespace octotomy::brep

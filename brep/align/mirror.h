@@ -23,11 +23,12 @@ Mesh mirrored(const Mesh& mesh, const MirrorPlane& plane);
 Solid mirrored(const Solid& solid, const MirrorPlane& plane);
 
 struct MirrorFitOptions {
-  /// A plane within about 20 degrees of the result. None: tries the planes perpendicular to the surface's
-  /// three axes.
+  /// Near which the plane lies, to some 20 degrees; none tries those square to the surface's three axes and
+  /// those that most pairs of points are mirror images about.
   std::optional<MirrorPlane> start = std::nullopt;
-  /// Share of the surface's area that has a counterpart on the other side, as in SurfaceFitOptions: the part
-  /// that is missing or deformed on one side must be less than 1 - overlap.
+  /// Share of the surface's area that has a counterpart on the other side, as in SurfaceFitOptions: what is
+  /// missing or crooked on one side must be less than the rest. Without a start half of it is taken, with a
+  /// finding, where the residual tells that less has a counterpart.
   double overlap = 0.7;
   int max_rounds = 100;                          ///< as in SurfaceFitOptions
   std::optional<double> rest_mm = std::nullopt;  ///< as in SurfaceFitOptions
@@ -46,13 +47,16 @@ struct MirrorFit {
   int rounds = 0;                            ///< number of rounds of the last two refinements
   bool converged = false;                    ///< both came to rest within max_rounds
   double last_step_mm = 0.0, rest_mm = 0.0;  ///< as in SurfaceFit
+  /// Doubts. Without a start also another plane that fits nearly as well, and a smaller overlap that was
+  /// taken.
   std::vector<std::string> findings;
 };
 
-/// The plane about which a surface is most nearly its own mirror image. Throws as register_surfaces() does.
-/// Cost: that of one such fit and, without a start, of three short ones with fewer samples. Source: Benz et
-/// al., "The symmetry of faces", VMV 2002: mirror about any plane, register, and choose the plane half way
-/// between points and their images.
+/// The plane about which a surface is most nearly its own mirror image. Throws as register_surfaces(). Cost:
+/// that of one such fit, and without a start 27 short ones with a few samples and four with more. Source:
+/// Benz et al., "The symmetry of faces", VMV 2002: mirror about any plane, register, and take the plane half
+/// way between points and their images; starts by votes of pairs after Mitra, Guibas, Pauly, "Partial and
+/// approximate symmetry detection for 3D geometry", SIGGRAPH 2006.
 MirrorFit fit_mirror_plane(const Mesh& mesh, const MirrorFitOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 refuse inside-out operands; 2 put the operands into a canonical order, so that the result's bits depend
-// neither on the caller's order nor on addresses; 3 cut only near the common lines or, if that fails,
-// corefine the whole surfaces; 4 check that the volumes add up and that lines through all shells agree; 5 if
-// a wanted result is not manifold or a check fails, try again with the second operand moved by far less than
-// any bound, and report it.
+// 1 refuse inside-out operands; 2 put the operands in an order of their own, so that neither the
+// caller's order nor its addresses show in the bits; 3 where faces lie on one plane but for rounding, go on in
+// a frame in which they do exactly; 4 cut near the common lines only, or corefine the whole where that will
+// not do; 5 let the volumes vouch for each other, and lines through all shells for their places; 6 where a
+// wanted result is not manifold or these do not agree, try again with the second operand moved by far less
+// than any bound, and tell.
 #include "brep/boolean/boolean.h"
 
 #include <algorithm>
@@ -17,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "brep/boolean/common_frame.h"
 #include "brep/boolean/corefine.h"
 #include "brep/boolean/line_agreement.h"
 #include "brep/boolean/near_boolean.h"
@@ -274,7 +276,30 @@ Answer answer_of(const Question& question, Attempt attempt) {
   return answer;
 }
 
+/// Where faces of both lie on one plane but for rounding. None without such faces, or where the results fail
+/// in that frame, too.
+std::optional<Answer> answer_in_common_frame(const Question& question) {
+  const std::optional<CommonFrame> frame = common_frame(question.a, question.b);
+  if (!frame) return std::nullopt;
+  Attempt attempt =
+      best_attempt({frame->a, frame->b, question.wanted, question.names, question.stop}, frame->b);
+  if (!attempt.failure.empty()) return std::nullopt;
+  for (std::optional<Triangles>& result : attempt.results)
+    if (result) result = frame->moved_back(*result);
+  // Points of doubles are moved by their last places, as every new point is.
+  if (frame->moved_mm > volume_tolerance_mm3(question.a.size(), question.b.size()) /
+                            (question.a.size().area_mm2 + question.b.size().area_mm2))
+    attempt.findings.push_back(
+        "coplanar: faces of " + question.names.first + " and " + question.names.second + " within " +
+        short_text(frame->moved_mm) +
+        " mm of one plane count as lying on it, as points are rounded to floats, which "
+        "changes a volume by at most " +
+        short_text(frame->moved_mm * (question.a.size().area_mm2 + question.b.size().area_mm2)) + " mm3");
+  return answer_of(question, std::move(attempt));
+}
+
 Answer answer(const Question& question) {
+  if (std::optional<Answer> found = answer_in_common_frame(question)) return *std::move(found);
   std::string first_failure;
   const double extent = extent_mm(question.a.size(), question.b.size());
   for (int i = 0; i < attempt_count; ++i) {

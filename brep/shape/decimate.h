@@ -9,8 +9,8 @@
 namespace octotomy::brep {
 
 struct DecimateOptions {
-  /// Largest distance of a remaining vertex from the planes of the triangles that it replaces. A third of the
-  /// spacing of a scan's samples removes two of three triangles of an isosurface.
+  /// Largest distance of either surface from the other, above 0; infinite for none. A third of the spacing of
+  /// a scan's samples takes two triangles of three from an isosurface.
   double max_error_mm = 0.1;
   std::optional<std::size_t> faces;      ///< stops at this number of faces, if the other bounds do not stop
                                          ///< it earlier
@@ -19,14 +19,17 @@ struct DecimateOptions {
   int max_rounds = 8;      ///< see below; at least 1
 };
 
-/// A coarser mesh of the same topology whose vertices are vertices of the given one. Edges are collapsed in
-/// order of the resulting error. A collapse does not check distant triangles, so a round that makes the mesh
-/// intersect itself is repeated with the vertices around the intersections locked. Precondition: closed,
-/// manifold, without self-intersection; the result is that too. Throws std::invalid_argument if an option is
-/// out of its range or the mesh is open, Error (Geometry) if `max_rounds` rounds do not remove
-/// self-intersections. Deterministic. Cost: n log n per round, usually two rounds. Source: Garland and
-/// Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997, by OpenMesh's Decimater,
-/// halfedge collapses.
+/// A coarser mesh of the same topology whose vertices are vertices of the given one: edges are collapsed in
+/// the order of the error they make. Borders of an open mesh stay as they are. Collapses know nothing of
+/// triangles further along the surface, and their errors are distances from planes. So a round that makes the
+/// mesh intersect itself, or moves a surface by more than the largest error (surface_error.h), is done again
+/// with the vertices about those places locked, later rounds also with half the error; where the last is
+/// still too far off, the mesh comes back as it was. Precondition: manifold, without self-intersection; the
+/// result is that too. Throws std::invalid_argument where an option is out of its range, Error (Geometry) if
+/// `max_rounds` do not get rid of self-intersections. Deterministic. Cost: n log n a round, two to four
+/// rounds as a rule.
+/// Source: Garland and Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997, by
+/// OpenMesh's Decimater, halfedge collapses.
 Mesh decimate(const Mesh& mesh, const DecimateOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -230,7 +230,9 @@ class Mender {
   }
 
   const Triangles& surface() const { return repair_.surface; }
-  /// Whether a side of a triangle is not shared with exactly one other.
+  /// The lattice's where the surface was made anew.
+  const std::optional<double>& cell_mm() const { return repair_.enclosed_cell_mm; }
+  /// Whether a side of a triangle is not shared by just one other.
   bool is_open() const {
     const Across across = across_of(repair_.surface);
     return std::find(across.face.begin(), across.face.end(), is_new) != across.face.end();
@@ -588,14 +590,55 @@ double volume_inside_mm3(const Triangles& surface) {
   return closed > 0.0 ? volumes.all.a_mm3 * static_cast<double>(volumes.lines) / closed : 0.0;
 }
 
+bool is_within_share(double before_mm3, double now_mm3, const RepairOptions& options) {
+  return std::abs(now_mm3 - before_mm3) <= options.max_volume_share * before_mm3;
+}
+
+[[noreturn]] void refuse_volume(double before_mm3, double now_mm3, const RepairOptions& options,
+                                const char* step, const std::string& ways) {
+  throw Error(ErrorCode::Geometry, std::string("repair: ") + step + " took the volume from " +
+                                       short_text(before_mm3) + " to " + short_text(now_mm3) +
+                                       " mm3, more than its share of " +
+                                       short_text(options.max_volume_share) + ": " + ways);
+}
+
 void check_volume(double before_mm3, const Triangles& now, const RepairOptions& options, const char* step) {
   const double now_mm3 = volume_inside_mm3(now);
-  if (std::abs(now_mm3 - before_mm3) <= options.max_volume_share * before_mm3) return;
-  throw Error(ErrorCode::Geometry,
-              std::string("repair: ") + step + " took the volume from " + short_text(before_mm3) + " to " +
-                  short_text(now_mm3) + " mm3, more than its share of " +
-                  short_text(options.max_volume_share) +
-                  ": allow a larger one, --max-volume-share, or mend with smaller cells, --cell");
+  if (!is_within_share(before_mm3, now_mm3, options))
+    refuse_volume(before_mm3, now_mm3, options, step,
+                  "allow a larger one, --max-volume-share, or mend with smaller cells, --cell");
+}
+
+/// An answer that was tried, if it has one.
+std::optional<double> enclosed_mm3(const Triangles& surface, double cell_mm, bool hull,
+                                   const Progress& progress) {
+  try {
+    return size_of(brep::enclose(surface, {cell_mm, hull, progress}).solid).volume_mm3;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::Geometry) throw;
+    return std::nullopt;
+  }
+}
+
+/// What would be accepted in place of an enclosing that changed the volume by too much: smaller cells and the
+/// hull are tried.
+std::string ways_that_work(const Triangles& surface, double before_mm3, double now_mm3, double cell_mm,
+                           const RepairOptions& options) {
+  std::string ways;
+  const auto add = [&](const std::string& way) { ways += (ways.empty() ? "" : "; or ") + way; };
+  for (const double part : {0.5, 0.25}) {
+    const std::string cell = short_text(part * cell_mm);
+    const std::optional<double> finer_mm3 = enclosed_mm3(surface, std::stod(cell), false, options.progress);
+    if (!finer_mm3 || !is_within_share(before_mm3, *finer_mm3, options)) continue;
+    add("--cell " + cell + " encloses " + short_text(*finer_mm3) + " mm3, which is within it");
+    break;
+  }
+  if (const std::optional<double> hull_mm3 = enclosed_mm3(surface, cell_mm, true, options.progress))
+    add("--hull takes the outermost shells as full, " + short_text(*hull_mm3) + " mm3");
+  const double share = std::abs(now_mm3 - before_mm3) / before_mm3;
+  add("what it made has a share of " + short_text(share) + ", accepted by --max-volume-share " +
+      short_text(1.01 * share) + ": look at it, as thin sheets may be lost or closed gaps filled");
+  return ways;
 }
 
 /// The order matters: splitting fans needs orientation, orienting needs the shells that splitting closes, and
@@ -659,8 +702,14 @@ Repair repair(const Triangles& surface, const RepairOptions& options) {
   options.progress.at(0.2);
   const double before_mm3 = volume_inside_mm3(mender.surface());
   if (options.solid) {
+    const Triangles connected = mender.surface();
     make_solid(mender, before_mm3, options);
-    if (!options.hull) check_volume(before_mm3, mender.surface(), options, "enclosing");
+    const double now_mm3 = options.hull ? before_mm3 : volume_inside_mm3(mender.surface());
+    if (!is_within_share(before_mm3, now_mm3, options))
+      refuse_volume(before_mm3, now_mm3, options, "enclosing",
+                    mender.cell_mm()
+                        ? ways_that_work(connected, before_mm3, now_mm3, *mender.cell_mm(), options)
+                        : "allow a larger one, --max-volume-share");
   } else {
     mender.remove_intersections();
     check_volume(before_mm3, mender.surface(), options, "taking out intersections");

@@ -52,16 +52,17 @@ struct Repair {
   std::optional<double> enclosed_cell_mm;  ///< the lattice's cell, if the surface was reconstructed
 };
 
-/// Repairs a surface by the given options and lists each change. Moves points only to weld them to the first
-/// of their set, to remove intersections, or by enclosing. Edges of three or more triangles, and points where
-/// several fans meet, are split as by split_fans() if a step or the result needs it. Orients last, until
-/// health() has no finding on orientation. With `solid`, removes triangles with points that are not finite.
-/// Check the result with health(). Throws std::invalid_argument if an option is out of its range; Error
-/// (Input) if a triangle refers to a missing point or to one that is not finite; Error (Geometry) with both
-/// volumes if the volume changes by more than its share; as enclose() does; Stopped. Cost: n log n, and
-/// mainly removing intersections, which is tried for at most 100 000 triangles if `solid` can enclose
-/// instead. Source: holes after Liepa, "Filling holes in meshes", SGP 2003; holes and intersections are
-/// repaired by CGAL.
+/// Repairs a surface as asked and lists each change. Never moves a point but to weld it to the first of its
+/// set, where intersections are taken out or the surface is enclosed. Edges of three and more triangles, and
+/// points where several fans meet, are split as split_fans() does wherever a step or the result needs it.
+/// Orients last, until health() agrees. Triangles with points that are not finite are taken out where `solid`
+/// is asked for. Ask health() what is left to be wished for. Throws std::invalid_argument if an option is out
+/// of its range, Error (Input) if a triangle refers to no point or to one that is not finite, Error
+/// (Geometry) with both volumes if the volume changes by more than its share, of an enclosing with what would
+/// be accepted in its place, or as enclose(); Stopped. Cost:
+/// n log n, and most for triangles that intersect: those are taken out of up to 100 000 triangles only, when
+/// `solid` can enclose instead. Source: holes after Liepa, "Filling holes in meshes", SGP 2003; both holes
+/// and intersections as CGAL has them.
 Repair repair(const Triangles& surface, const RepairOptions& options);
 
 /// The differences between a surface and the one from which it was made.

@@ -2,12 +2,14 @@
 #include "brep/shape/smooth.h"
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "brep/mesh/error.h"
 #include "brep/mesh/measure.h"
+#include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
 namespace {
@@ -22,15 +24,21 @@ double step_out(double pass_band) {
   return 1.0 / (pass_band - 1.0 / step_in());
 }
 
-void check(const Mesh& mesh, const SmoothOptions& options) {
+void check(const SmoothOptions& options) {
   const auto refuse = [](const std::string& why) { throw std::invalid_argument("smooth: " + why); };
   if (options.rounds < 1) refuse("there must be at least one round");
   if (!(options.pass_band > 0.0 && options.pass_band < 1.0)) refuse("the pass band must be between 0 and 1");
   if (!(options.max_volume_share > 0.0)) refuse("the share of volume that may change must be positive");
-  for (const auto halfedge : mesh.halfedges())
-    if (mesh.is_boundary(halfedge))
-      refuse("the mesh is open at vertex " + std::to_string(mesh.to_vertex_handle(halfedge).idx()) +
-             ": close its holes first");
+}
+
+/// What the volume may change by a share of: that of a closed mesh, and of an open one that of a ball of its
+/// area, as it has none of its own.
+double volume_for_share_mm3(const Mesh& mesh, double volume_mm3) {
+  bool is_open = false;
+  for (const auto halfedge : mesh.halfedges()) is_open = is_open || mesh.is_boundary(halfedge);
+  if (!is_open) return std::abs(volume_mm3);
+  const double radius_mm = std::sqrt(size_of(triangles_of(mesh)).area_mm2 / (4.0 * std::numbers::pi));
+  return 4.0 / 3.0 * std::numbers::pi * radius_mm * radius_mm * radius_mm;
 }
 
 /// Moves every vertex by a share of the way to its neighbours' mean, computed from the positions before this
@@ -44,7 +52,7 @@ void step(Mesh& mesh, double share, std::vector<Mesh::Point>& before) {
     double count = 0.0;
     for (auto beside = mesh.cvv_begin(vertex); beside != mesh.cvv_end(vertex); ++beside, count += 1.0)
       sum += before[static_cast<std::size_t>(beside->idx())];
-    if (count == 0.0) continue;
+    if (count == 0.0 || mesh.is_boundary(vertex)) continue;
     const Mesh::Point& here = before[static_cast<std::size_t>(vertex.idx())];
     mesh.set_point(vertex, here + (sum / count - here) * share);
   }
@@ -53,7 +61,7 @@ void step(Mesh& mesh, double share, std::vector<Mesh::Point>& before) {
 }  // namespace
 
 Mesh smooth(const Mesh& mesh, const SmoothOptions& options) {
-  check(mesh, options);
+  check(options);
   Mesh smoothed = mesh;
   std::vector<Mesh::Point> before;
   for (int round = 0; round < options.rounds; ++round) {
@@ -61,11 +69,11 @@ Mesh smooth(const Mesh& mesh, const SmoothOptions& options) {
     step(smoothed, step_out(options.pass_band), before);
   }
   const double volume = volume_mm3(mesh), now = volume_mm3(smoothed);
-  if (!(std::abs(now - volume) <= options.max_volume_share * std::abs(volume)))
-    throw Error(
-        ErrorCode::Geometry,
-        "smooth: the volume went from " + std::to_string(volume) + " to " + std::to_string(now) +
-            " mm3, more than its share: use fewer rounds or a wider pass band, or allow a larger share");
+  if (!(std::abs(now - volume) <= options.max_volume_share * volume_for_share_mm3(mesh, volume)))
+    throw Error(ErrorCode::Geometry, "smooth: the volume went from " + std::to_string(volume) + " to " +
+                                         std::to_string(now) +
+                                         " mm3, more than its share: ask for fewer rounds or a "
+                                         "wider pass band, or allow a larger share");
   return smoothed;
 }
 

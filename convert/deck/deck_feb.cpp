@@ -160,7 +160,7 @@ void write_feb(const Tetrahedra& tetrahedra, const DeckOptions& options, std::os
     write_boundary(options, out);
   }
   out << "<Output><plotfile type=\"febio\"><var type=\"displacement\"/><var "
-         "type=\"stress\"/></plotfile></Output>\n"
+         "type=\"stress\"/><var type=\"reaction forces\"/></plotfile></Output>\n"
          "</febio_spec>\n";
 }
 

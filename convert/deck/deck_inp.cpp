@@ -165,7 +165,11 @@ void write_step(const Tetrahedra& tetrahedra, const DeckOptions& options, std::o
         out << std::size_t{set->nodes[i]} + 1 << ", " << axis + 1 << ", " << axis + 1 << ", "
             << deck_number(prescribed.displacement_mm[i][axis]).data() << "\n";
   }
-  out << "*NODE FILE\nU\n*EL FILE\nS\n*END STEP\n";
+  out << "*NODE FILE\nU, RF\n*EL FILE\nS\n";
+  // The force that holds or moves a set, in the .dat file.
+  for (const Prescribed& prescribed : options.prescribed)
+    out << "*NODE PRINT, NSET=" << prescribed.node_set << ", TOTALS=YES\nRF\n";
+  out << "*END STEP\n";
 }
 
 }  // namespace

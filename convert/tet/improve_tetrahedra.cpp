@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "convert/tet/element_faces.h"
+
 namespace octotomy::convert {
 namespace {
 
@@ -69,6 +71,86 @@ const std::array<glm::dvec3, 14>& directions() {
   return all;
 }
 
+/// Directions in which a surface node may move: its face or edge stays where it is where it is flat or
+/// straight.
+struct Freedom {
+  enum class Kind { Free, Plane, Line, None } kind = Kind::Free;
+  glm::dvec3 axis{0.0};  ///< the plane's unit normal, or the line's unit direction
+
+  glm::dvec3 allowed(const glm::dvec3& step) const {
+    switch (kind) {
+      case Kind::Free:
+        return step;
+      case Kind::Plane:
+        return step - glm::dot(step, axis) * axis;
+      case Kind::Line:
+        return glm::dot(step, axis) * axis;
+      case Kind::None:
+        break;
+    }
+    return glm::dvec3(0.0);
+  }
+};
+
+/// The cosine between normals of one flat face: a degree, which a face of elements of 3 mm has for bumps of
+/// some 0.03 mm.
+constexpr double flat_cosine() {
+  return 0.99985;
+}
+
+/// The different normals of the faces about each node, at most four.
+class FaceNormals {
+ public:
+  explicit FaceNormals(const Tetrahedra& t) : t_(t), of_node_(t.nodes_mm.size()) {}
+
+  /// Faces between regions look to either side; a surface that looks both ways at a node is folded there.
+  void add(const ElementFace& face, bool looks_outward) {
+    constexpr std::size_t most = 4;
+    const auto [a, b, c] = corners_of(t_, face);
+    const glm::dvec3 across = glm::cross(t_.nodes_mm[b] - t_.nodes_mm[a], t_.nodes_mm[c] - t_.nodes_mm[a]);
+    const double length = glm::length(across);
+    if (!(length > 0.0)) return;
+    const glm::dvec3 normal = across / length;
+    for (const std::uint32_t v : {a, b, c}) {
+      std::vector<glm::dvec3>& known = of_node_[v];
+      const bool is_known = std::any_of(known.begin(), known.end(), [&](const glm::dvec3& n) {
+        const double cosine = glm::dot(n, normal);
+        return (looks_outward ? cosine : std::abs(cosine)) > flat_cosine();
+      });
+      if (!is_known && known.size() < most) known.push_back(normal);
+    }
+  }
+
+  /// About a node on a flat face all have one normal, on a straight edge two, in a corner three. More tell of
+  /// a curved surface, where the node is free.
+  Freedom freedom(std::size_t v) const {
+    const std::vector<glm::dvec3>& n = of_node_[v];
+    if (n.size() == 1) return {Freedom::Kind::Plane, n[0]};
+    if (n.size() == 2 && std::abs(glm::dot(n[0], n[1])) < flat_cosine())
+      return {Freedom::Kind::Line, glm::normalize(glm::cross(n[0], n[1]))};
+    if (n.size() == 3 && std::abs(glm::dot(n[0], glm::cross(n[1], n[2]))) > least_corner())
+      return {Freedom::Kind::None, {}};
+    return {};
+  }
+
+ private:
+  /// Six times the volume that three normals span: a half of a cube's corner.
+  static constexpr double least_corner() { return 0.5; }
+
+  const Tetrahedra& t_;
+  std::vector<std::vector<glm::dvec3>> of_node_;
+};
+
+std::vector<Freedom> freedoms_of(const Tetrahedra& t) {
+  FaceNormals normals(t);
+  for (const ElementFace& face : surface_faces(t)) normals.add(face, true);
+  for (const Interface& between : interfaces(t))
+    for (const ElementFace& face : between.faces) normals.add(face, false);
+  std::vector<Freedom> freedoms(t.nodes_mm.size());
+  for (std::size_t v = 0; v < freedoms.size(); ++v) freedoms[v] = normals.freedom(v);
+  return freedoms;
+}
+
 class Improving {
  public:
   Improving(Tetrahedra& tetrahedra, const ImproveOptions& options)
@@ -81,6 +163,9 @@ class Improving {
     for (std::size_t i = 0; i < tetrahedra.boundary_nodes.size(); ++i)
       play_mm_[tetrahedra.boundary_nodes[i]] =
           options.surface_play_mm.empty() ? 0.0 : options.surface_play_mm[i];
+    if (std::any_of(options.surface_play_mm.begin(), options.surface_play_mm.end(),
+                    [](double play_mm) { return play_mm > 0.0; }))
+      freedoms_ = freedoms_of(tetrahedra);
   }
 
   /// Returns the rounds left if it ended early, otherwise 0.
@@ -168,7 +253,8 @@ class Improving {
     for (int halvings = 0; halvings < 7 && best > goal_;) {
       glm::dvec3 found_mm = best_mm;
       for (const glm::dvec3& direction : directions()) {
-        const glm::dvec3 p_mm = best_mm + step * direction;
+        const glm::dvec3 p_mm =
+            best_mm + (freedoms_.empty() ? step * direction : freedoms_[v].allowed(step * direction));
         if (glm::distance(p_mm, given_mm_[v]) > play_mm_[v]) continue;
         if (const double f = flattest(v, p_mm, best, worst); f < best) {
           best = f;
@@ -190,7 +276,8 @@ class Improving {
   double goal_;
   Stars stars_;
   std::vector<glm::dvec3> given_mm_;
-  std::vector<double> play_mm_;  ///< how far a node may move from its given place; infinite for inner nodes
+  std::vector<double> play_mm_;    ///< how far a node may move from its given place; infinite for inner nodes
+  std::vector<Freedom> freedoms_;  ///< of each node; empty where the surface stays
 };
 
 }  // namespace

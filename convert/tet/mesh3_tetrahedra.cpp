@@ -26,9 +26,11 @@ namespace {
 
 using voxel::rounded;
 
-/// The largest tetrahedron in a ball of radius R has a volume of 8 R^3 / (9 sqrt 3).
+/// The radius of a ball whose largest tetrahedron has a volume: 8 R^3 / (9 sqrt 3), of which passes 2 and 3
+/// may enlarge one by the rest.
 double radius_of_volume(double mm3) {
-  return std::cbrt(mm3 * 9.0 * std::sqrt(3.0) / 8.0);
+  constexpr double before_moves = 0.9;
+  return std::cbrt(before_moves * mm3 * 9.0 * std::sqrt(3.0) / 8.0);
 }
 
 /// The radius of the ball about a facet per side of the given triangles there: 1.5 times that of the ball

@@ -210,13 +210,57 @@ glm::dvec3 hole_point(const MesherInput& surface, const std::vector<Part>& parts
   return from + 0.5 * nearest * direction;
 }
 
-/// The switches to try, the most demanding first.
+/// The volume that meshers are asked for, relative to the largest that is allowed: nodes that move to mend
+/// flat elements enlarge some of their neighbours, by up to a tenth in balls and boxes.
+constexpr double asked_volume_share() {
+  return 0.85;
+}
+
+/// The switches to try, the most demanding first. The bound of volumes is given up last.
 std::vector<std::string> ladder(const TetOptions& options) {
-  std::string asked = options.keep_boundary ? "pYq" : "pq";
-  asked += switch_number(options.radius_edge);
-  if (options.max_volume_mm3) asked.append("a").append(switch_number(*options.max_volume_mm3));
-  if (options.keep_boundary) return {asked, "pY", "p"};
-  return {asked, "p"};
+  const std::string quality = "q" + switch_number(options.radius_edge);
+  const std::string volume =
+      options.max_volume_mm3 ? "a" + switch_number(asked_volume_share() * *options.max_volume_mm3) : "";
+  std::vector<std::string> switches = {(options.keep_boundary ? "pY" : "p") + quality + volume};
+  for (const std::string& bound : {volume, std::string()}) {
+    if (options.keep_boundary) switches.push_back("pY" + bound);
+    switches.push_back("p" + bound);
+    if (volume.empty()) break;
+  }
+  return switches;
+}
+
+/// Divides the triangles of a surface that TetGen keeps, in their planes, where a regular element on one
+/// would be larger than allowed. Returns the number of triangles before where that changed it.
+std::optional<std::size_t> divide_for_volume(MesherInput& surface, double max_volume_mm3) {
+  constexpr double regular = 0.75;  // right triangles of halved sides have elements as large as equilateral ones of 4/3
+  const double side_mm = regular * std::cbrt(6.0 * std::sqrt(2.0) * max_volume_mm3);
+  brep::Triangles given{std::move(surface.points_mm), std::move(surface.triangles)};
+  const std::size_t before = given.faces.size();
+  brep::Triangles divided = refined_surface(given, SizingField({Refinement{{}, given, side_mm}}));
+  surface.points_mm = std::move(divided.points_mm);
+  surface.triangles = std::move(divided.faces);
+  return surface.triangles.size() == before ? std::nullopt : std::optional(before);
+}
+
+/// Reports elements that are larger than asked for.
+std::optional<std::string> too_large(const Tetrahedra& made, double max_volume_mm3) {
+  std::size_t count = 0, largest = 0;
+  double most_mm3 = max_volume_mm3;
+  for (std::size_t t = 0; t < made.tets.size(); ++t) {
+    const double mm3 = six_volumes(corners_mm(made, t)) / 6.0;
+    count += mm3 > max_volume_mm3;
+    if (mm3 <= most_mm3) continue;
+    most_mm3 = mm3;
+    largest = t;
+  }
+  if (count == 0) return std::nullopt;
+  const TetCorners corners = corners_mm(made, largest);
+  return std::to_string(count) + " of " + std::to_string(made.tets.size()) +
+         " elements are larger than the " + rounded(max_volume_mm3) + " mm3 asked for, the largest " +
+         rounded(most_mm3) + " mm3 at " +
+         rounded(0.25 * (corners[0] + corners[1] + corners[2] + corners[3])) +
+         " mm: ask for smaller ones, or take another mesher";
 }
 
 void check(const TetOptions& options) {
@@ -266,8 +310,11 @@ ImproveOptions improve_options(const TetOptions& options) {
   return improving;
 }
 
-std::optional<Tetrahedra> by_tetgen(const MesherInput& surface, double surface_mm3, const TetOptions& options,
+std::optional<Tetrahedra> by_tetgen(MesherInput surface, double surface_mm3, const TetOptions& options,
                                     Attempts& attempts) {
+  std::optional<std::size_t> before;
+  if (options.max_volume_mm3 && options.keep_boundary)
+    before = divide_for_volume(surface, *options.max_volume_mm3);
   for (const std::string& switches : ladder(options)) {
     MesherOutcome outcome = run_tetgen(surface, switches + "Q",
                                        {options.time_limit, options.memory_limit_bytes, options.progress});
@@ -282,6 +329,11 @@ std::optional<Tetrahedra> by_tetgen(const MesherInput& surface, double surface_m
         ImproveOptions improving = improve_options(options);
         improving.all_or_nothing = options.mesher == Mesher::Best;
         attempts.rounds_left = improve(made, improving);
+        if (before)
+          made.findings.push_back("the surface's " + std::to_string(*before) +
+                                  " triangles were divided in their planes to " +
+                                  std::to_string(surface.triangles.size()) +
+                                  ", as larger ones have elements larger than asked for");
         return made;
       }
       outcome.failure = made.method + "Q " + *fault;
@@ -466,6 +518,9 @@ Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
   if (options.mesher == Mesher::Stuffing || (any && !reaches(best, fit_dihedral_deg())))
     take_better(best, by_stuffing(surface, surface_mm3, options, attempts), "isosurface stuffing", attempts);
   if (best) {
+    if (options.max_volume_mm3)
+      if (std::optional<std::string> large = too_large(*best, *options.max_volume_mm3))
+        best->findings.push_back(*std::move(large));
     if (best->method != "isosurface stuffing")
       if (std::optional<std::string> coarse = coarse_place(*best, options.finer))
         best->findings.push_back(*std::move(coarse));

@@ -26,9 +26,10 @@ struct TetOptions {
   Mesher mesher = Mesher::TetGen;
   double min_dihedral_deg = 8.0;  ///< goal, 0..30; a kept surface may make it unreachable
   double radius_edge = 1.4;       ///< TetGen's -q, 1 or more; 1.2 is hard, 2 is easy
-  /// TetGen's -a, above 0. A few tetrahedra beside a kept boundary stay larger.
+  /// Largest element, above 0. TetGen keeps a surface whose larger triangles are divided in their planes. A
+  /// finding counts elements that are larger all the same.
   std::optional<double> max_volume_mm3{};
-  bool keep_boundary = true;                    ///< TetGen's -Y: no new points on the surface
+  bool keep_boundary = true;                    ///< TetGen's -Y: keeps the surface's triangles
   std::vector<Refinement> finer{};              ///< divides the surface first; elements follow its triangles
   std::chrono::milliseconds time_limit{60000};  ///< of a processor, of each run
   std::uint64_t memory_limit_bytes = 4ull << 30;  ///< of each run
@@ -49,7 +50,7 @@ std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra);
 /// stay there.
 ///
 /// If TetGen fails it runs again with fewer demands: with quality (-pYq), without (-pY), with new points on
-/// the surface (-p); `method` and `findings` say which. Nodes inside then move to improve flat elements
+/// the surface (-p), and without the largest volume last; `method` and `findings` say which. Nodes inside then move to improve flat elements
 /// (improve_tetrahedra.h). Short edges of an isosurface make quality expensive: run brep::decimate() first.
 /// Refinements divide the surface's triangles in their planes, and elements grow inward from there.
 /// Stuffing's cells are as large as the triangles' mean side, larger where that would be over two million

@@ -40,7 +40,8 @@ class Picker {
   Picker(const std::vector<brep::Landmark>& landmarks, const convert::Tetrahedra& tetrahedra)
       : landmarks_(landmarks),
         tetrahedra_(tetrahedra),
-        near_mm_(on_surface_share() * mean_side_mm(convert::surface_of(tetrahedra))) {}
+        surface_(convert::surface_of(tetrahedra)),
+        near_mm_(on_surface_share() * mean_side_mm(surface_)) {}
 
   std::vector<std::uint32_t> nodes_at(const std::string& where) const {
     const std::vector<double> n = comma_numbers(where);
@@ -52,9 +53,7 @@ class Picker {
       return chosen([&](const glm::dvec3& p) { return glm::distance(p, {n[0], n[1], n[2]}) <= n[3]; });
     if (n.size() == 6 && glm::length(glm::dvec3(n[3], n[4], n[5])) > 0.0) {
       const glm::dvec3 normal = glm::normalize(glm::dvec3(n[3], n[4], n[5]));
-      return chosen([&](const glm::dvec3& p) {
-        return std::abs(glm::dot(p - glm::dvec3(n[0], n[1], n[2]), normal)) <= near_mm_;
-      });
+      return on_plane({n[0], n[1], n[2]}, normal);
     }
     if (n.empty() && std::filesystem::exists(where)) return on_mesh(where);
     throw std::runtime_error(
@@ -70,6 +69,25 @@ class Picker {
     for (const std::uint32_t v : tetrahedra_.boundary_nodes)
       if (choose(tetrahedra_.nodes_mm[v])) nodes.push_back(v);
     return nodes;
+  }
+
+  std::vector<std::uint32_t> on_plane(const glm::dvec3& point_mm, const glm::dvec3& normal) const {
+    const auto is_near = [&](const glm::dvec3& p) {
+      return std::abs(glm::dot(p - point_mm, normal)) <= near_mm_;
+    };
+    constexpr double along_cosine = 0.866;
+    std::vector<std::uint32_t> of_faces;
+    for (const auto& [a, b, c] : surface_.faces) {
+      const glm::dvec3 &p = surface_.points_mm[a], &q = surface_.points_mm[b], &r = surface_.points_mm[c];
+      const glm::dvec3 across = glm::cross(q - p, r - p);
+      if (is_near(p) && is_near(q) && is_near(r) &&
+          std::abs(glm::dot(across, normal)) >= along_cosine * glm::length(across))
+        of_faces.insert(of_faces.end(), {a, b, c});
+    }
+    if (of_faces.empty()) return chosen(is_near);
+    std::sort(of_faces.begin(), of_faces.end());
+    of_faces.erase(std::unique(of_faces.begin(), of_faces.end()), of_faces.end());
+    return of_faces;
   }
 
   std::vector<std::uint32_t> nearest(const glm::dvec3& p_mm) const {
@@ -91,6 +109,7 @@ class Picker {
 
   const std::vector<brep::Landmark>& landmarks_;
   const convert::Tetrahedra& tetrahedra_;
+  brep::Triangles surface_;
   double near_mm_;
 };
 

@@ -18,7 +18,9 @@ void check_set_names(const std::vector<std::string>& words);
 ///   x,y,z,r        the nodes within r mm of a point
 ///   x,y,z,u,v,w    the nodes on a plane through a point with a normal, as a saw left them
 ///   TEXT           the node nearest to a landmark of that name, or the nodes on the surface of a mesh file
-/// On a plane or surface means nearer than a quarter of the mean side of the elements' surface triangles.
+/// On a plane or surface means nearer than a quarter of the mean side of the elements' surface triangles. Where
+/// triangles of the elements' surface lie along a plane, within 30 degrees, only their nodes are on it: other
+/// nodes that near belong to the faces beside it.
 /// Throws std::runtime_error as check_set_names(), where the text is none of these, or a set is empty.
 std::vector<convert::NodeSet> picked_node_sets(const std::vector<std::string>& words,
                                                const std::vector<brep::Landmark>& landmarks,

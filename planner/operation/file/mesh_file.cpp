@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/operation/file/mesh_file.h"
 
+#include <algorithm>
 #include <exception>
 #include <tbb/parallel_for.h>
 #include <utility>
@@ -29,11 +30,7 @@ brep::Linked joined(const std::filesystem::path& path, std::vector<std::string>&
   }
 }
 
-}  // namespace
-
-brep::Solid read_solid(const std::filesystem::path& path, Timings& timings) {
-  const Stopwatch watch(timings, "read");
-  const brep::Triangles triangles = read_mesh_in(path);
+brep::Solid solid_in(const std::filesystem::path& path, const brep::Triangles& triangles) {
   try {
     return brep::solid_of(triangles);
   } catch (const brep::Error& error) {
@@ -41,6 +38,30 @@ brep::Solid read_solid(const std::filesystem::path& path, Timings& timings) {
                                         "; mend it first: octotomy repair " + path.filename().string() +
                                         " --solid -o solid.ply");
   }
+}
+
+}  // namespace
+
+brep::Solid read_solid(const std::filesystem::path& path, Timings& timings) {
+  const Stopwatch watch(timings, "read");
+  return solid_in(path, read_mesh_in(path));
+}
+
+brep::Solid read_turned_solid(const std::filesystem::path& path, Timings& timings,
+                              std::vector<std::string>& findings) {
+  const Stopwatch watch(timings, "read");
+  const brep::Triangles triangles = read_mesh_in(path);
+  brep::RepairOptions options;
+  options.weld_mm = 0.0;
+  options.orient = true;
+  const brep::Repair repaired = brep::repair(triangles, options);
+  const auto turned = std::count_if(repaired.changes.begin(), repaired.changes.end(),
+                                    [](const brep::Change& change) { return change.step == "orient"; });
+  if (turned > 0)
+    findings.push_back("orient: " + std::to_string(turned) + " of " + std::to_string(triangles.faces.size()) +
+                       " triangles of " + path.filename().string() +
+                       " were turned, so that shells face outward and cavities inward");
+  return solid_in(path, turned > 0 ? repaired.surface : triangles);
 }
 
 brep::Solid read_mended_solid(const std::filesystem::path& path, Timings& timings,

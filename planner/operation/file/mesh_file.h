@@ -22,6 +22,11 @@ brep::Solid read_solid(const std::filesystem::path& path, Timings& timings);
 brep::Solid read_mended_solid(const std::filesystem::path& path, Timings& timings,
                               std::vector<std::string>& findings, const brep::Progress& progress = {});
 
+/// As read_solid(), with triangles that face the wrong way turned: neighbours alike, shells outward, cavities
+/// inward; nothing moves. A finding counts them.
+brep::Solid read_turned_solid(const std::filesystem::path& path, Timings& timings,
+                              std::vector<std::string>& findings);
+
 /// A mesh of any triangles with finite points, closed or not, joined as brep::joined_surface() does; "read"
 /// in the timings. What was done to join them is appended to the findings, if there are any. Throws
 /// std::runtime_error, naming the path.

@@ -2,6 +2,10 @@
 // mesh kernel of `combine` does this.
 #include "brep/boolean/boolean.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "brep/boolean/exact_boolean.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/health.h"
@@ -18,7 +22,7 @@ struct Boolean {
   ObjectName a, b;
   std::string operation;
   std::vector<ObjectName> further;
-  bool exact = false, mend = false;
+  bool exact = false, mend = false, orient = false;
   std::filesystem::path out;
 };
 
@@ -39,6 +43,18 @@ Json proven(const FileBench& bench, const brep::Solid& a, brep::Operation operat
           {"rounded_points", exact.points}};
 }
 
+/// Whether a solid is no thicker than what the points' last places leave open: what exact numbers find between
+/// faces that lie on one plane but for rounding.
+bool is_film(const brep::Solid& solid) {
+  const brep::Size& size = solid.size();
+  double reach_mm = 0.0;
+  for (const glm::dvec3& p : {size.low_mm, size.high_mm})
+    reach_mm = std::max({reach_mm, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  constexpr double roundings = 8.0;  // of turned corners, see common_frame.h
+  return size.volume_mm3 <=
+         roundings * std::numeric_limits<double>::epsilon() * reach_mm * 0.5 * size.area_mm2;
+}
+
 bool boxes_meet(const brep::Solid& a, const brep::Solid& b) {
   const brep::Size &p = a.size(), &q = b.size();
   return glm::all(glm::lessThanEqual(p.low_mm, q.high_mm)) &&
@@ -57,9 +73,14 @@ FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
       return read_mended_solid(path.name, bench.timings, mended, {progress.stop, progress.report});
     }
     try {
-      return read_solid(path.name, bench.timings);
+      return asked.orient ? read_turned_solid(path.name, bench.timings, mended)
+                          : read_solid(path.name, bench.timings);
     } catch (const brep::Error& error) {
-      throw brep::Error(error.code(), std::string(error.what()) + "; or take --mend");
+      throw brep::Error(
+          error.code(),
+          std::string(error.what()) + (asked.orient ? "; or take --mend"
+                                                    : "; or take --mend, or --orient where triangles only "
+                                                      "face the wrong way"));
     }
   };
   std::vector<brep::Solid> operands = {solid(asked.a), solid(asked.b)};
@@ -79,15 +100,17 @@ FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
     if (!asked.exact && result.solid.empty() && operands.size() == 2 &&
         boxes_meet(operands[0], operands[1])) {
       proof = proven(bench, operands[0], operation, operands[1], result);
+      if (!result.solid.empty() && is_film(result.solid)) result.solid = brep::Solid();
       if (!result.solid.empty())
         result.findings.push_back("thinner than the rounding of points, so made with exact numbers: " +
                                   three_figures(result.solid.size().volume_mm3) + " mm3");
     }
   }
   if (result.solid.empty())
-    throw std::runtime_error("the " + asked.operation + " of " + asked.a.name + " and " + asked.b.name +
-                             " is empty" + (proof.is_null() ? "" : ", as exact numbers prove") +
-                             ": there is no surface to write");
+    throw std::runtime_error(
+        "the " + asked.operation + " of " + asked.a.name + " and " + asked.b.name + " is empty" +
+        (proof.is_null() ? "" : ", as exact numbers prove but for the rounding of points") +
+        ": there is no surface to write");
   result.findings.insert(result.findings.begin(), mended.begin(), mended.end());
   const brep::Health health = brep::health(result.solid.triangles());
   const brep::Measures& measures = result.solid.measures();
@@ -121,8 +144,10 @@ Operation boolean_operation() {
                    "Further meshes: all are united, intersected, or taken from the first."))
       .takes(field("exact", &Boolean::exact,
                    "New points as exact numbers, and proof that the volumes add up as rationals; slower."))
-      .takes(
-          field("mend", &Boolean::mend, "Repair meshes that are not solids first, as repair --solid does."))
+      .takes(field("mend", &Boolean::mend,
+                   "Meshes that are no solids are mended first, as repair --solid does."))
+      .takes(field("orient", &Boolean::orient,
+                   "Triangles that face the wrong way are turned first, as repair --orient does."))
       .takes(field("out", &Boolean::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.").required())
       .example(
           R"({"id": "rest", "do": "boolean", "a": "skull", "op": "difference", "b": "cut",

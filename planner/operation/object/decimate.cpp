@@ -3,7 +3,11 @@
 // own.
 #include "brep/shape/decimate.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "brep/mesh/measure.h"
+#include "planner/operation/object/reshape_file.h"
 #include "planner/operation/object/trace.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
@@ -13,26 +17,62 @@ namespace {
 
 struct Decimate {
   ObjectName object;
-  double max_error_mm = brep::DecimateOptions{}.max_error_mm;
+  std::optional<double> max_error_mm;
   std::optional<int> faces;
   double max_normal_deviation_deg = brep::DecimateOptions{}.max_normal_deviation_deg;
+  // Of the verb.
+  std::filesystem::path out;
+  std::optional<double> voxel_mm;
+  bool mend = false;
 };
 
+/// The share of a surface's extent that is allowed where no error is given, so that objects of another size or
+/// unit keep their shape: 0.1 mm is reached at 20 mm.
+constexpr double default_share() {
+  return 1.0 / 200.0;
+}
+
+/// A change of volume by more than this share is a finding.
+constexpr double told_share() {
+  return 0.05;
+}
+
+double max_error_mm(const Decimate& decimate, const brep::Mesh& mesh) {
+  if (decimate.max_error_mm) return *decimate.max_error_mm;
+  const brep::Size size = brep::size_of(brep::triangles_of(mesh));
+  const glm::dvec3 extent = size.high_mm - size.low_mm;
+  return std::min(brep::DecimateOptions{}.max_error_mm,
+                  default_share() * std::max({extent.x, extent.y, extent.z}));
+}
+
+brep::Mesh fewer(const Decimate& decimate, const brep::Mesh& mesh, Json& details,
+                 std::vector<std::string>& findings) {
+  brep::DecimateOptions options;
+  options.max_error_mm = max_error_mm(decimate, mesh);
+  if (decimate.faces) options.faces = static_cast<std::size_t>(*decimate.faces);
+  options.max_normal_deviation_deg = decimate.max_normal_deviation_deg;
+  brep::Mesh made = brep::decimate(mesh, options);
+  const double before_mm3 = brep::volume_mm3(mesh), after_mm3 = brep::volume_mm3(made);
+  details["faces_before"] = mesh.n_faces();
+  details["volume_change_mm3"] = after_mm3 - before_mm3;
+  details["max_error_mm"] = options.max_error_mm;
+  if (std::abs(after_mm3 - before_mm3) > told_share() * std::abs(before_mm3))
+    findings.push_back("WARN volume: it went from " + three_figures(before_mm3) + " to " +
+                       three_figures(after_mm3) + " mm\u00b3 within an error of " +
+                       three_figures(options.max_error_mm) + " mm: give a smaller one, --max-error");
+  return made;
+}
+
 std::string definition(const Decimate& decimate, const Objects&) {
-  return decimate.object.name + " of fewer triangles, within " + plain(decimate.max_error_mm) + " mm";
+  return decimate.object.name + " of fewer triangles, within " +
+         (decimate.max_error_mm ? plain(*decimate.max_error_mm) + " mm" : "0.1 mm or a 200th of its extent");
 }
 
 void triangles(const Decimate& decimate, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "decimate");
   const brep::Solid& solid = bench.object(decimate.object.name);
-  brep::DecimateOptions options;
-  options.max_error_mm = decimate.max_error_mm;
-  if (decimate.faces) options.faces = static_cast<std::size_t>(*decimate.faces);
-  options.max_normal_deviation_deg = decimate.max_normal_deviation_deg;
-  brep::Mesh fewer = brep::decimate(solid, options);
-  made.details = {{"faces_before", solid.mesh().n_faces()},
-                  {"volume_change_mm3", brep::volume_mm3(fewer) - brep::volume_mm3(solid)}};
-  made.whole = brep::trusted_solid(fewer, brep::Proof::Construction);
+  made.whole =
+      brep::trusted_solid(fewer(decimate, solid, made.details, made.findings), brep::Proof::Construction);
   made.lineage = "edges collapsed within an error";
 }
 
@@ -41,21 +81,40 @@ void bound(const Decimate& decimate, const BoundBench&, Object& made) {
   made.ends_with_universe = true;
 }
 
+FileAnswer on_files(const Decimate& asked, const FileBench& bench) {
+  return reshaped_file({asked.object.name, asked.out, asked.voxel_mm, asked.mend}, bench, "decimate",
+                       [&](const brep::Mesh& mesh, Json& details, std::vector<std::string>& findings) {
+                         return fewer(asked, mesh, details, findings);
+                       });
+}
+
 }  // namespace
 
 Operation decimate_operation() {
   return Describe<Decimate>("decimate", "Makes an object's surface of fewer triangles.", Makes::Object)
       .takes(field("object", &Decimate::object, "The object.").required().positional("mesh"))
       .takes(field("max_error_mm", &Decimate::max_error_mm,
-                   "Largest distance of a point that stays from the triangles it stands for.")
+                   "Largest distance of either surface from the other. Default: 0.1, or a 200th of the "
+                   "object's extent where that is less.")
                  .greater_than(0.0))
       .takes(field("faces", &Decimate::faces, "Ends at so many triangles.").from(4).to(100000000))
       .takes(field("max_normal_deviation_deg", &Decimate::max_normal_deviation_deg,
                    "Largest turn of a triangle at one collapse.")
                  .greater_than(0.0)
                  .to(90.0))
+      .verb_takes(
+          field("out", &Decimate::out,
+                "The answer: a .stl, .ply, .obj, .off, .vtp or .glb file, or an .octree of the voxels "
+                "inside that surface.")
+              .required())
+      .verb_takes(field("voxel_mm", &Decimate::voxel_mm,
+                        "Edge of an octree's voxels. Default: a 128th of the answer's extent.")
+                      .greater_than(0.0))
+      .verb_takes(field("mend", &Decimate::mend,
+                        "A mesh that is no solid is mended first, as repair --solid does; else an open one "
+                        "keeps its borders."))
       .example(R"({"id": "light", "do": "decimate", "object": "skull", "max_error_mm": 0.2})")
-      .on_files("octotomy decimate skull.stl -o light.stl --max-error 0.2 --json")
+      .on_files("octotomy decimate skull.stl -o light.stl --max-error 0.2 --json", on_files)
       .object(definition, nullptr, triangles, bound);
 }
 

@@ -7,7 +7,11 @@
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/components.h"
 #include "brep/mesh/health.h"
+#include "brep/mesh/line_volume.h"
 #include "brep/mesh/measure.h"
+#include "brep/mesh/split_fans.h"
+#include "brep/shape/repair.h"
+#include "brep/shape/unite_shells.h"
 #include "convert/surface/isosurface.h"
 #include "planner/operation/file/mesh_file.h"
 #include "planner/operation/file/mesh_in.h"
@@ -93,7 +97,16 @@ Json asked_of_surface(const Measure& asked, const brep::Solid& solid, const File
   return json;
 }
 
-/// Measures triangles that enclose no volume: their area and position.
+/// The volume along lines through an open surface, where few of them pass holes; else null.
+Json volume_by_lines_mm3(const brep::Triangles& triangles) {
+  constexpr double most_open_share = 0.1;
+  const brep::LineVolumes volumes = brep::line_volumes(triangles, {});
+  const auto lines = static_cast<double>(volumes.lines), open = static_cast<double>(volumes.open_lines);
+  if (!(open <= most_open_share * lines) || !(volumes.all.a_mm3 > 0.0)) return nullptr;
+  return volumes.all.a_mm3 * lines / (lines - open);
+}
+
+/// What triangles have that enclose nothing: an area and a place.
 FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& health) {
   if (health.faces == 0) throw std::runtime_error("there are no triangles to measure");
   const brep::Size size = brep::size_of(triangles);
@@ -103,6 +116,7 @@ FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& he
   const bool is_inside_out = health.first_defect == brep::Defect::InsideOut;
   json["volume_estimator"] =
       is_inside_out ? "none: the surface faces inward" : "none: the surface is not closed";
+  json["volume_lines_mm3"] = is_inside_out ? Json(nullptr) : volume_by_lines_mm3(triangles);
   json["area_mm2"] = size.area_mm2;
   json["area_estimator"] = "triangles";
   json["extents_mm"] = Json::array({to_json(size.low_mm), to_json(size.high_mm)});
@@ -113,7 +127,48 @@ FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& he
                                 "; octotomy repair --solid turns it outward"
                           : "volume_mm3: none, as the surface is not closed, oriented and manifold: " +
                                 health.findings.front() + "; octotomy repair --solid closes it"};
+  if (const Json& by_lines = json["volume_lines_mm3"]; !by_lines.is_null())
+    json["findings"].push_back(
+        "volume_lines_mm3: an estimate: " + grouped(by_lines.get<double>(), 1) +
+        " mm\u00b3 along lines through the surface; those through its holes count as the "
+        "others");
   return said(std::move(json));
+}
+
+/// Beyond this number of shells their union by Booleans would take minutes.
+constexpr std::size_t most_united = 1000;
+
+/// A closed surface whose shells may share points and edges, overlap, or lie in each other, as one without.
+struct OneSurface {
+  brep::Triangles triangles;
+  std::string how;  ///< of the volume
+};
+
+/// The union of a surface's shells, or their sum where they only touch; none where the surface is open, or a
+/// shell meets itself or faces inward with nothing around it.
+std::optional<OneSurface> one_surface(const brep::Triangles& given, const brep::Health& health,
+                                      const std::stop_token& stop) {
+  if (health.closed && health.manifold && health.oriented && health.self_intersections == 0)
+    return OneSurface{given, ""};
+  if (health.first_defect == brep::Defect::InsideOut) return std::nullopt;
+  const bool is_turned = health.misoriented_edges > 0;
+  const bool is_split = !health.closed || !health.manifold || is_turned;
+  brep::Triangles joined = given;
+  if (is_turned) {
+    brep::RepairOptions options;
+    options.weld_mm = 0.0;
+    options.orient = true;
+    joined = brep::repair(given, options).surface;
+  }
+  if (is_split) joined = brep::joined_surface(std::move(joined)).surface;
+  const brep::Health now = is_split ? brep::health(joined, {.self_intersections = false}) : health;
+  if (!now.closed || !now.manifold || now.misoriented_edges > 0 || now.shells > most_united)
+    return std::nullopt;
+  std::optional<brep::UnitedShells> united = brep::united_shells(joined, stop);
+  if (!united || united->surface.faces.empty()) return std::nullopt;
+  return OneSurface{std::move(united->surface),
+                    now.shells > 1 ? ", of the union of " + std::to_string(now.shells) + " shells"
+                                   : ", of the surface joined and turned alike"};
 }
 
 FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
@@ -125,26 +180,36 @@ FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked,
   }
   auto watch = std::make_unique<Stopwatch>(timings, "measure");
   const brep::Health health = brep::health(triangles);
-  if (!health.closed || !health.manifold || !health.oriented) {
+  std::optional<OneSurface> one = one_surface(triangles, health, bench.stop);
+  const bool is_sum = !one && health.closed && health.manifold && health.oriented;
+  if (is_sum) one = OneSurface{triangles, ", of shells that may overlap"};
+  if (!one) {
     if (asked.asks_surface() || !asked.out.empty())
       throw std::runtime_error(
           file.string() + ": is not a closed, oriented surface (" + health.findings.front() +
           "), which sections, walls and curvature are asked of: mend it first, octotomy repair --solid");
     return measure_open(triangles, health);
   }
-  const brep::Solid solid = brep::trusted_solid(triangles, brep::Proof::Connection);
+  const brep::Solid solid = brep::trusted_solid(std::move(one->triangles), brep::Proof::Connection);
   const brep::Measures& measures = solid.measures();
   watch.reset();
   const Json more = asked_of_surface(asked, solid, bench);
   Json json{{"kind", "mesh"}};
   json.update(to_json(measures));
   json.update(more);
-  json["area_estimator"] = "triangles";
+  json["volume_estimator"] = json["volume_estimator"].get<std::string>() + one->how;
+  json["area_estimator"] = "triangles" + one->how;
   json["volume_partial_mm3"] = nullptr;
   json["components"] = health.components;
   json["euler"] = health.euler;
   json["findings"] = {"volume_partial_mm3: a mesh has no voxels to fill partly"};
-  if (health.self_intersections > 0)
+  if (!is_sum && !one->how.empty())
+    json["findings"].push_back("volume_mm3: the file is no solid (" + health.findings.front() +
+                               "): measured is the union of its closed shells, joined and turned alike; its "
+                               "triangles as they stand enclose " +
+                               grouped(brep::size_of(triangles).volume_mm3, 1) +
+                               " mm\u00b3; octotomy repair --solid writes it");
+  if (is_sum)
     json["findings"].push_back("WARN volume_mm3: " + std::to_string(health.self_intersections) +
                                " pairs of triangles cross each other, so that parts which overlap count "
                                "twice: octotomy repair --solid makes one surface of them");

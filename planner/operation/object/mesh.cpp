@@ -139,8 +139,8 @@ Finished finished(Made made, const Meshed& asked, Timings& timings) {
   }
   if (fewer) {
     const Stopwatch watch(timings, "decimate");
-    // The number of triangles was requested: no bound on the error may stop the reduction earlier.
-    constexpr double no_bound_mm = 1e6;
+    // The number is what was asked for: no bound on the error may end it before.
+    constexpr double no_bound_mm = std::numeric_limits<double>::infinity();
     surface = brep::decimate(surface,
                              {.max_error_mm = no_bound_mm, .faces = static_cast<std::size_t>(*asked.faces)});
   }

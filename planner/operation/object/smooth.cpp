@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "brep/mesh/measure.h"
+#include "planner/operation/object/reshape_file.h"
 #include "planner/operation/object/trace.h"
 #include "planner/operation/table/operation.h"
 
@@ -16,17 +18,28 @@ struct Smooth {
   int rounds = brep::SmoothOptions{}.rounds;
   double pass_band = brep::SmoothOptions{}.pass_band;
   double max_volume_share = brep::SmoothOptions{}.max_volume_share;
+  // Of the verb.
+  std::filesystem::path out;
+  std::optional<double> voxel_mm;
+  bool mend = false;
 };
 
-/// An upper bound of the distance between the surfaces, in both directions. Smoothing moves points and keeps
-/// the triangles, so that each point of one triangle has a point of the other within the largest move of its
-/// corners.
-double largest_move_mm(const brep::Solid& solid, const brep::Solid& smoothed) {
-  const std::vector<glm::dvec3>&before = solid.triangles().points_mm, &after = smoothed.triangles().points_mm;
+/// The surfaces are no farther apart than this, either way: smoothing moves points and keeps triangles, so
+/// that each place of one triangle has one of the other within the largest move of its corners.
+double largest_move_mm(const brep::Mesh& mesh, const brep::Mesh& smoothed) {
+  const std::vector<glm::dvec3> before = brep::triangles_of(mesh).points_mm,
+                                after = brep::triangles_of(smoothed).points_mm;
   double largest_mm = 0.0;
   for (std::size_t i = 0; i < before.size(); ++i)
     largest_mm = std::max(largest_mm, glm::distance(before[i], after[i]));
   return largest_mm;
+}
+
+brep::Mesh smoothed(const Smooth& smooth, const brep::Mesh& mesh, Json& details) {
+  brep::Mesh made = brep::smooth(mesh, {smooth.rounds, smooth.pass_band, smooth.max_volume_share});
+  details["volume_change_mm3"] = brep::volume_mm3(made) - brep::volume_mm3(mesh);
+  details["largest_move_mm"] = largest_move_mm(mesh, made);
+  return made;
 }
 
 std::string definition(const Smooth& smooth, const Objects&) {
@@ -36,18 +49,20 @@ std::string definition(const Smooth& smooth, const Objects&) {
 void triangles(const Smooth& smooth, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "smooth");
   const brep::Solid& solid = bench.object(smooth.object.name);
-  const brep::Solid smoothed =
-      brep::trusted_solid(brep::smooth(solid, {smooth.rounds, smooth.pass_band, smooth.max_volume_share}),
-                          brep::Proof::Connection);
-  made.details = {{"volume_change_mm3", brep::volume_mm3(smoothed) - brep::volume_mm3(solid)},
-                  {"largest_move_mm", largest_move_mm(solid, smoothed)}};
-  made.whole = smoothed;
+  made.whole = brep::trusted_solid(smoothed(smooth, solid, made.details), brep::Proof::Connection);
   made.lineage = "steps in and out along the mesh (Taubin 1995)";
 }
 
 void bound(const Smooth& smooth, const BoundBench&, Object& made) {
   made.bound.reshaped = {smooth.object.name};
   made.ends_with_universe = true;
+}
+
+FileAnswer on_files(const Smooth& asked, const FileBench& bench) {
+  return reshaped_file({asked.object.name, asked.out, asked.voxel_mm, asked.mend}, bench, "smooth",
+                       [&](const brep::Mesh& mesh, Json& details, std::vector<std::string>&) {
+                         return smoothed(asked, mesh, details);
+                       });
 }
 
 }  // namespace
@@ -64,8 +79,19 @@ Operation smooth_operation() {
       .takes(field("max_volume_share", &Smooth::max_volume_share,
                    "The share of the volume that may be gained or lost; beyond it the step is refused.")
                  .greater_than(0.0))
+      .verb_takes(
+          field("out", &Smooth::out,
+                "The answer: a .stl, .ply, .obj, .off, .vtp or .glb file, or an .octree of the voxels "
+                "inside that surface.")
+              .required())
+      .verb_takes(field("voxel_mm", &Smooth::voxel_mm,
+                        "Edge of an octree's voxels. Default: a 128th of the answer's extent.")
+                      .greater_than(0.0))
+      .verb_takes(field("mend", &Smooth::mend,
+                        "A mesh that is no solid is mended first, as repair --solid does; else an open one "
+                        "keeps its borders."))
       .example(R"({"id": "even", "do": "smooth", "object": "skull", "rounds": 10})")
-      .on_files("octotomy smooth skull.stl -o smooth.stl --rounds 10 --json")
+      .on_files("octotomy smooth skull.stl -o smooth.stl --rounds 10 --json", on_files)
       .object(definition, nullptr, triangles, bound);
 }
 

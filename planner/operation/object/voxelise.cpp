@@ -2,8 +2,11 @@
 // digitises a mesh.
 #include "convert/voxel/voxelise.h"
 
+#include <algorithm>
+
 #include "brep/mesh/health.h"
 #include "brep/mesh/split_fans.h"
+#include "brep/shape/repair.h"
 #include "convert/voxel/voxelise_partial.h"
 #include "convert/voxel/winding_number.h"
 #include "planner/operation/file/file_kind.h"
@@ -36,15 +39,35 @@ struct Subject {
   brep::Health health;
 };
 
-/// Throws where the file holds no triangles, or where voxels' shares are requested and the surface is not a
-/// solid. Adds a finding where the inside is guessed.
+/// Turns triangles that wind against their neighbours: joining would cut the surface between them, and winding
+/// numbers of both ways cancel out.
+void turn_alike(const std::filesystem::path& path, brep::Triangles& triangles,
+                std::vector<std::string>& findings) {
+  if (triangles.faces.empty()) return;
+  const std::size_t contrary = brep::health(triangles, {.self_intersections = false}).misoriented_edges;
+  if (contrary == 0) return;
+  brep::RepairOptions options;
+  options.weld_mm = 0.0;
+  options.orient = true;
+  brep::Repair repaired = brep::repair(triangles, options);
+  const auto turned = std::count_if(repaired.changes.begin(), repaired.changes.end(),
+                                    [](const brep::Change& change) { return change.step == "orient"; });
+  triangles = std::move(repaired.surface);
+  findings.push_back("orient: " + path.string() + " has " + std::to_string(contrary) +
+                     " edges whose triangles wind against each other: " + std::to_string(turned) +
+                     " triangles were turned, so that shells face outward and cavities inward");
+}
+
+/// Throws where it holds no triangles, or is to be shared out exactly and is no solid; tells what is guessed.
 Subject read_subject(const std::filesystem::path& path, const std::string& digitise, Timings& timings,
                      std::vector<std::string>& findings) {
   Subject subject{path, {}, {}};
   {
     const Stopwatch watch(timings, "read");
-    // Welded, because each open edge would be a rim, and rims cost time.
-    subject.triangles = brep::joined_surface(read_mesh_in(path)).surface;
+    subject.triangles = read_mesh_in(path);
+    turn_alike(path, subject.triangles, findings);
+    // Welded, as each open edge is a rim that costs.
+    subject.triangles = brep::joined_surface(std::move(subject.triangles)).surface;
   }
   if (subject.triangles.faces.empty()) throw std::runtime_error(path.string() + ": holds no triangles");
   {
@@ -119,7 +142,7 @@ decltype(voxel::OctreeFile::tree) voxelised(const FileBench& bench, const Voxeli
   if (is_nothing(tree))
     throw std::runtime_error(subject.path.string() +
                              ": encloses no voxel: take smaller voxels by --voxel; where the mesh is inside "
-                             "out, flip its triangles");
+                             "out, octotomy repair --orient turns it");
   return tree;
 }
 

@@ -3,6 +3,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/health.h"
@@ -61,6 +62,52 @@ TEST(Mirror, APieceMissingOnOneSideDoesNotPullThePlane) {
   const MirrorFit fit = fit_mirror_plane(cut);
   EXPECT_GT(fit.plane.normal.x, std::cos(0.005));
   EXPECT_NEAR(glm::dot(-fit.plane.point_mm, fit.plane.normal), 0.0, 0.2);
+}
+
+/// A jaw: a tube along an arch, as thick below as above, so that its two halves are nearly mirror images about
+/// a plane along it, too. Loses a share of its right end.
+Triangles jaw(double lost) {
+  constexpr int along = 120, around = 24;
+  Triangles t;
+  const auto middle = [&](double s) {
+    return glm::dvec3(45 * s, 70 * s * s - 40,
+                      7.5 * std::max(0.0, std::abs(s) - 0.8) / 0.2 + 4 * std::cos(3 * s));
+  };
+  for (int i = 0; i <= along; ++i) {
+    const double s = -1.0 + (2.0 - 2.0 * lost) * i / along;
+    const glm::dvec3 forward = glm::normalize(middle(s + 1e-3) - middle(s - 1e-3));
+    const glm::dvec3 out = glm::normalize(glm::cross(forward, glm::dvec3(0, 0, 1)));
+    const glm::dvec3 up = glm::cross(out, forward);
+    for (int k = 0; k < around; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / around;
+      t.points_mm.push_back(middle(s) + (5 + 1.5 * std::cos(6 * s)) * std::cos(angle) * out +
+                            (9 + 5 * std::abs(s)) * std::sin(angle) * up);
+    }
+  }
+  for (std::uint32_t i = 0; i < along; ++i)
+    for (std::uint32_t k = 0; k < around; ++k) {
+      const std::uint32_t a = i * around + k, b = i * around + (k + 1) % around, c = a + around,
+                          d = b + around;
+      t.faces.push_back({a, d, b});
+      t.faces.push_back({a, c, d});
+    }
+  return t;
+}
+
+TEST(Mirror, ALossOnOneSideOfAJawDoesNotChooseAnotherPlane) {
+  for (const double lost : {0.0, 0.15, 0.2, 0.25, 0.3}) {
+    const MirrorFit fit = fit_mirror_plane(mesh_of(jaw(lost)));
+    EXPECT_GT(fit.plane.normal.x, std::cos(0.01)) << lost;
+    EXPECT_NEAR(glm::dot(-fit.plane.point_mm, fit.plane.normal), 0.0, 0.3) << lost;
+  }
+}
+
+TEST(Mirror, OfSeveralPlanesThatFitTheFindingNamesAnother) {
+  const MirrorFit fit = fit_mirror_plane(mesh_of(shapes::box({-10, -10, -10}, {10, 10, 10})));
+  ASSERT_FALSE(fit.findings.empty());
+  EXPECT_NE(fit.findings.back().find("another plane"), std::string::npos) << fit.findings.back();
+  for (const std::string& finding : fit_mirror_plane(mesh_of(head())).findings)
+    EXPECT_EQ(finding.find("another plane"), std::string::npos) << finding;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 
+#include "brep/mesh/measure.h"
 #include "brep/shape/decimate.h"
 
 namespace octotomy::brep {
@@ -17,7 +18,10 @@ inline Mesh plain_decimation(Mesh mesh, const DecimateOptions& options) {
   OpenMesh::Decimater::DecimaterT<Mesh> decimater(mesh);
   OpenMesh::Decimater::ModQuadricT<Mesh>::Handle quadric;
   decimater.add(quadric);
-  decimater.module(quadric).set_max_err(options.max_error_mm * options.max_error_mm, false);
+  decimater.module(quadric).set_max_err(4.0 * size_of(triangles_of(mesh)).area_mm2 /
+                                            static_cast<double>(mesh.n_faces()) * options.max_error_mm *
+                                            options.max_error_mm,
+                                        false);
   OpenMesh::Decimater::ModNormalFlippingT<Mesh>::Handle normals;
   decimater.add(normals);
   decimater.module(normals).set_max_normal_deviation(options.max_normal_deviation_deg);

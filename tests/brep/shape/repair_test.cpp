@@ -165,6 +165,31 @@ TEST(Repair, RealScansBecomeSolidsOrSayWhatIsLeft) {
   EXPECT_TRUE(of_bunny.solid() || !bunny.left.empty());
 }
 
+TEST(Repair, ARefusedEnclosingNamesWhatWouldBeAccepted) {
+  // Plates that cross, in cells wider than they are thick.
+  const Triangles plates =
+      shapes::together(shapes::box({0, 0, 0}, {20, 20, 0.6}), shapes::box({9.7, -1, -10}, {10.3, 21, 10}));
+  RepairOptions options;
+  options.solid = true;
+  options.cell_mm = 1.0;
+  try {
+    repair(plates, options);
+    FAIL() << "cells of 1 mm keep plates of 0.6 mm";
+  } catch (const Error& error) {
+    const std::string told = error.what();
+    const std::size_t cell = told.find("--cell "), hull = told.find("--hull"),
+                      share = told.find("--max-volume-share ");
+    ASSERT_NE(cell, std::string::npos) << told;
+    EXPECT_NE(hull, std::string::npos) << told;
+    ASSERT_NE(share, std::string::npos) << told;
+    options.cell_mm = std::stod(told.substr(cell + 7));
+    EXPECT_NO_THROW(repair(plates, options)) << told;
+    options.cell_mm = 1.0;
+    options.max_volume_share = std::stod(told.substr(share + 19));
+    EXPECT_NO_THROW(repair(plates, options)) << told;
+  }
+}
+
 TEST(Repair, RefusesOptionsOutOfTheirRange) {
   RepairOptions options;
   options.weld_mm = -1.0;

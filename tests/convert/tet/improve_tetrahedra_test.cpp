@@ -116,5 +116,40 @@ TEST(ImproveTetrahedra, RefusesOptionsOutOfRange) {
                std::invalid_argument);
 }
 
+TEST(ImproveTetrahedra, FlatFacesOfTheSurfaceStayFlatWhereItsNodesHavePlay) {
+  // A cube of an octree's elements, a node of each side moved nearly onto a neighbour in its plane.
+  const voxel::Universe universe = tests::unit_universe(3);
+  Tetrahedra cube = tetrahedra_of(
+      voxel::combine(universe, voxel::Expression(voxel::OrientedBox{glm::dvec3(3.5), glm::dvec3(2.0)})),
+      BoundaryCells::Voxels);
+  glm::dvec3 low(1e9), high(-1e9);
+  for (const std::uint32_t v : cube.boundary_nodes) {
+    low = glm::min(low, cube.nodes_mm[v]);
+    high = glm::max(high, cube.nodes_mm[v]);
+  }
+  const auto sides_of = [&](const glm::dvec3& p) {
+    std::array<int, 3> sides{};
+    for (int axis = 0; axis < 3; ++axis)
+      sides.at(static_cast<std::size_t>(axis)) = p[axis] == low[axis] ? -1 : p[axis] == high[axis] ? 1 : 0;
+    return sides;
+  };
+  const Tetrahedra given = cube;
+  ImproveOptions options;
+  options.min_dihedral_deg = 60.0;
+  options.surface_play_mm.assign(cube.boundary_nodes.size(), 0.3);
+  improve(cube, options);
+  std::size_t moved = 0;
+  for (const std::uint32_t v : cube.boundary_nodes) {
+    moved += cube.nodes_mm[v] != given.nodes_mm[v];
+    const std::array<int, 3> sides = sides_of(given.nodes_mm[v]);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (sides.at(axis) != 0) {
+        EXPECT_NEAR(cube.nodes_mm[v][static_cast<int>(axis)], given.nodes_mm[v][static_cast<int>(axis)],
+                    1e-12);
+      }
+  }
+  EXPECT_GT(moved, 0U);
+}
+
 }  // namespace
 }  // namespace octotomy::convert

@@ -69,7 +69,7 @@ TEST(Tetrahedralise, ALimitOnVolumeMakesMoreAndSmallerTetrahedra) {
   TetOptions options;
   options.max_volume_mm3 = 10.0;
   const Tetrahedra fine = tetrahedralise(surface, options);
-  EXPECT_EQ(fine.method, "TetGen -pYq1.4a10");
+  EXPECT_EQ(fine.method, "TetGen -pYq1.4a8.5");
   EXPECT_GT(fine.tets.size(), tetrahedralise(surface).tets.size());
   // Beside triangles that must stay, TetGen gives up on a few.
   std::size_t larger = 0;
@@ -80,12 +80,30 @@ TEST(Tetrahedralise, ALimitOnVolumeMakesMoreAndSmallerTetrahedra) {
   EXPECT_LT(larger, fine.tets.size() / 100);
 }
 
+TEST(Tetrahedralise, NoElementOfABoxOfTwelveTrianglesIsLargerThanAllowed) {
+  const brep::Mesh surface = brep::mesh_of(box({0, 0, 0}, {20, 20, 20}));
+  for (const Mesher mesher : {Mesher::TetGen, Mesher::Mesh3, Mesher::Stuffing}) {
+    TetOptions options;
+    options.mesher = mesher;
+    options.max_volume_mm3 = 20.0;
+    const Tetrahedra t = tetrahedralise(surface, options);
+    double largest_mm3 = 0.0;
+    for (std::size_t i = 0; i < t.tets.size(); ++i)
+      largest_mm3 = std::max(largest_mm3, six_volumes(corners_mm(t, i)) / 6.0);
+    const bool is_told = std::any_of(t.findings.begin(), t.findings.end(), [](const std::string& finding) {
+      return contains_text(finding, "elements are larger than the 20 mm3 asked for");
+    });
+    EXPECT_EQ(largest_mm3 > 20.0, is_told) << t.method << ": " << largest_mm3;
+    EXPECT_LT(largest_mm3, 25.0) << t.method;
+  }
+}
+
 TEST(Tetrahedralise, NewPointsOnTheSurfaceAreMadeWhereTheyAreAllowed) {
   TetOptions options;
   options.keep_boundary = false;
   options.max_volume_mm3 = 5.0;
   const Tetrahedra t = tetrahedralise(brep::mesh_of(box({0, 0, 0}, {10, 10, 10})), options);
-  EXPECT_EQ(t.method, "TetGen -pq1.4a5");
+  EXPECT_EQ(t.method, "TetGen -pq1.4a4.25");
   EXPECT_GT(t.boundary_nodes.size(), 8U);
   EXPECT_NEAR(quality(t).volume_mm3, 1000.0, 1e-6);
 }

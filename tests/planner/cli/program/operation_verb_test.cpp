@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // The verbs that derive from the table of operations, with both kernels' answers and their certificate.
+#include "brep/io/write_mesh.h"
+#include "tests/brep/shapes.h"
 #include "tests/planner/cli/program/command_line.h"
 
 namespace octotomy::planner {
@@ -74,10 +76,57 @@ TEST_F(OperationVerbs, EachKernelOffsetsItsOwnOperand) {
 
 TEST_F(OperationVerbs, WhatOneKernelAloneDoesIsSaid) {
   for (const std::string verb : {"smooth", "decimate"})
-    expect_refused(run(verb + " " + at("ball.off") + " --certify -o " + at("x.ply")),
-                   "only by the mesh kernel");
+    expect_refused(run(verb + " " + at("ball.off") + " --certify -o " + at("x.ply")), "--certify");
   expect_refused(run("fill " + at("ball.octree") + " -o " + at("x.ply")), "octotomy mesh");
   EXPECT_EQ(run("fill " + at("ball.octree") + " -o " + at("full.octree")).status, 0);
+}
+
+TEST_F(OperationVerbs, OfOverlappingAndTouchingShellsTheUnionIsMeasured) {
+  using brep::shapes::box;
+  const brep::Triangles cube = box({0, 0, 0}, {2, 2, 2});
+  brep::write_mesh(brep::shapes::together(cube, box({1, 1, 1}, {3, 3, 3})), folder_ / "over.ply");
+  EXPECT_NEAR(volume_mm3("measure " + at("over.ply")), 15.0, 1e-12);
+  brep::write_mesh(brep::shapes::together(cube, box({2, 2, 2}, {4, 4, 4})), folder_ / "corner.stl");
+  EXPECT_NEAR(volume_mm3("measure " + at("corner.stl")), 16.0, 1e-3);
+  brep::write_mesh(brep::shapes::together(cube, box({2, 2, 0}, {4, 4, 2})), folder_ / "edge.stl");
+  EXPECT_NEAR(volume_mm3("measure " + at("edge.stl")), 16.0, 1e-3);
+}
+
+TEST_F(OperationVerbs, TrianglesThatFaceTheWrongWayAreTurned) {
+  brep::Triangles ball = brep::shapes::sphere({0, 0, 0}, 10.0, 4);
+  for (auto& face : ball.faces)
+    if (ball.points_mm[face[0]].z < 0.0) std::swap(face[1], face[2]);
+  brep::write_mesh(ball, folder_ / "half.ply");
+  const brep::Triangles whole = brep::shapes::sphere({0, 0, 0}, 10.0, 4);
+  brep::write_mesh(whole, folder_ / "whole.ply");
+  brep::write_mesh(brep::shapes::inside_out(whole), folder_ / "inside_out.ply");
+  EXPECT_EQ(volume_mm3("voxelise " + at("half.ply") + " -o " + at("half.octree")),
+            volume_mm3("voxelise " + at("whole.ply") + " -o " + at("whole.octree")));
+  const std::string rest = " intersection " + at("ball.off") + " -o " + at("x.ply");
+  expect_refused(run("boolean " + at("inside_out.ply") + rest), "--orient");
+  EXPECT_NEAR(volume_mm3("boolean " + at("inside_out.ply") + rest + " --orient"),
+              volume_mm3("boolean " + at("whole.ply") + rest), 1e-9);
+}
+
+TEST_F(OperationVerbs, AnOpenSurfaceIsSmoothedAndDecimated) {
+  brep::Triangles cap = brep::shapes::sphere({0, 0, 0}, 10.0, 4);
+  std::erase_if(cap.faces, [&](const auto& face) { return cap.points_mm[face[0]].z < 0.0; });
+  brep::write_mesh(cap, folder_ / "cap.ply");
+  for (const std::string verb : {"smooth", "decimate"}) {
+    const CommandAnswer answer = run(verb + " " + at("cap.ply") + " -o " + at("x.ply") + " --json");
+    ASSERT_EQ(answer.status, 0) << answer.errors;
+    const SortedJson told = SortedJson::parse(answer.out);
+    EXPECT_TRUE(told.at("volume_mm3").is_null());
+    EXPECT_FALSE(told.at("closed"));
+    EXPECT_GT(told.at("area_mm2"), 500.0);
+    expect_refused(run(verb + " " + at("cap.ply") + " -o " + at("x.octree")), "--mend");
+  }
+}
+
+TEST_F(OperationVerbs, ASmallObjectIsNotDecimatedAway) {
+  brep::write_mesh(brep::shapes::sphere({0, 0, 0}, 0.1, 4), folder_ / "metres.ply");
+  const double before = volume_mm3("measure " + at("metres.ply"));
+  EXPECT_NEAR(volume_mm3("decimate " + at("metres.ply") + " -o " + at("x.ply")), before, 0.02 * before);
 }
 
 TEST_F(OperationVerbs, ARefusalNamesTheOption) {
