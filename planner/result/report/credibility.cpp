@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Source: ASME V&V 40-2018, Assessing Credibility of Computational
-// Modeling through Verification and Validation: Application to Medical Devices: its terms and its credibility
-// factors (section 5). Factors are not graded, because the grade depends on a model risk that only the user
-// can state.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Source: ASME V&V 40-2018, Assessing Credibility of Computational Modeling through Verification and
+// Validation: Application to Medical Devices: its terms and its credibility factors (section 5). Factors are
+// not graded, because the grade depends on a model risk that only the user can state.
 #include "planner/result/report/credibility.h"
 
 #include <algorithm>
