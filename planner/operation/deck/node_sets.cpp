@@ -20,8 +20,8 @@ namespace {
 
 using convert::NodeSet;
 
-/// Of the mean side of the surface's triangles: half of what parts two nodes, so that a plane along a row of
-/// nodes takes that row alone.
+/// As a share of the mean side of the surface's triangles: small enough that a plane along a row of nodes
+/// selects that row only.
 constexpr double on_surface_share() {
   return 0.25;
 }

@@ -12,14 +12,15 @@ namespace octotomy::planner {
 /// Finite numbers between commas; none where the text is anything else.
 std::vector<double> comma_numbers(const std::string& text);
 
-/// Throws std::runtime_error where a word NAME=WHERE has no name, a name that solvers do not take or that a
-/// deck's own sets have, or two names differ by case at most. For refusals before the work.
+/// Throws std::runtime_error where a word NAME=WHERE has no name, a name that solvers do not accept or that a
+/// deck's own set has, or where two names are equal except for case. Called before the filling, so that such
+/// words are refused early.
 void check_set_names(const std::vector<std::string>& words);
 
 /// Sets of nodes of the elements' surface, in LPS millimetres, each as NAME=WHERE:
 ///   x,y,z          the node nearest to a point, as x,y,z,0
 ///   x,y,z,r        the nodes within r mm of a point
-///   x,y,z,u,v,w    the nodes on a plane through a point with a normal, as a saw left them
+///   x,y,z,u,v,w the nodes on a plane through a point with a normal, as after a saw cut
 ///   TEXT           the node nearest to a landmark of that name, or the nodes on the surface of a mesh file
 /// On a plane or surface means nearer than a quarter of the mean side of the elements' surface triangles.
 /// Throws std::runtime_error as check_set_names(), where the text is none of these, or a set is empty.
@@ -27,9 +28,8 @@ std::vector<convert::NodeSet> picked_node_sets(const std::vector<std::string>& w
                                                const std::vector<brep::Landmark>& landmarks,
                                                const convert::Tetrahedra& tetrahedra);
 
-/// The static step: sets that stay, and sets that move, NAME=DX,DY,DZ in mm. Throws std::runtime_error where
-/// a name is not one of the sets', sets that stay and move share a node, or something moves and nothing
-/// stays.
+/// The static step: fixed sets, and moved sets as NAME=DX,DY,DZ in mm. Throws std::runtime_error where a name
+/// is not that of a set, a fixed and a moved set share a node, or a set moves and none is fixed.
 std::vector<convert::Prescribed> prescribed_of(const std::vector<std::string>& fixed,
                                                const std::vector<std::string>& moved,
                                                const std::vector<convert::NodeSet>& sets);
