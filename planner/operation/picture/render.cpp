@@ -169,12 +169,12 @@ void check(const Render& render, const Place& place) {
   const auto refuse = [&](const std::string& field, const std::string& why) { place.at(field).refuse(why); };
   if (render.colours.size() > render.objects.size() || render.opacities.size() > render.objects.size())
     refuse("colours", "and opacities: give at most one of each an object");
-  if (render.range_mm && render.colour_by.empty()) refuse("range_mm", "is of 'colour_by': add it");
+  if (render.range_mm && render.colour_by.empty()) refuse("range_mm", "needs 'colour_by': add it");
   if (!render.tones.empty() && render.cut_face != "grey")
-    refuse("tones", "is of grey cut faces: add 'cut_face'");
-  if (!render.title.empty() && !render.annotate) refuse("title", "is of annotated pictures: add 'annotate'");
+    refuse("tones", "needs grey cut faces: add 'cut_face'");
+  if (!render.title.empty() && !render.annotate) refuse("title", "needs annotated pictures: add 'annotate'");
   if (render.grid_mm && (render.eye_mm || render.stereo_deg))
-    refuse("grid_mm", "is of pictures in true scale: leave out 'eye_mm' and 'stereo_deg'");
+    refuse("grid_mm", "needs a picture in true scale: leave out 'eye_mm' and 'stereo_deg'");
   for (const std::string& colour : render.colours) need_colour(colour);
   for (const double opacity : render.opacities)
     if (!(opacity >= 0.0 && opacity <= 1.0)) refuse("opacities", "are from 0, hidden, to 1");

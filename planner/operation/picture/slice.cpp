@@ -375,7 +375,7 @@ void check(const Slice& slice, const Place& place) {
   if (slice.grid_mm && !slice.curve_mm.empty())
     place.at("grid_mm").refuse("is of planes; a curved picture has none");
   if (slice.centre_mm && slice.size.empty())
-    place.at("centre_mm").refuse("is of pictures of a 'size': add it");
+    place.at("centre_mm").refuse("needs a picture with a 'size': add it");
   if (slice.colours.size() > slice.objects.size()) place.at("colours").refuse("give at most one an object");
   if (!slice.level.empty() && !(slice.level[1] > 0.0))
     place.at("level").refuse("is CENTRE and WIDTH, which is above zero");

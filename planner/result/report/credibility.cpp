@@ -148,7 +148,7 @@ void add_contact_map(const Json& map, const std::map<std::string, Json>& certifi
   if (map.at("certain_count").is_number()) {
     Number number(id, "contacts of " + pair + " that are certain", map.at("certain_count"), "");
     number.gap(
-        "a count of contacts whose half-width reaches no farther than the limit: nothing else checks it");
+        "a count of contacts whose distance plus half-width is within the limit; no other number checks it");
     add(std::move(number));
   }
   for (const auto& [key, what, unit] : {std::tuple("area_mm2", "area in contact of ", "mm2"),
