@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pictures of objects: shaded surfaces, what lies along rays, cuts, colours by distance.
+// Pictures of objects: shaded surfaces, projections along rays, cuts, colours by distance.
 #include "planner/operation/picture/render.h"
 
 #include <algorithm>
@@ -63,13 +63,13 @@ std::string other_of(const std::string& text) {
   return text.substr(kind.size());
 }
 
-/// What is drawn; the first object coloured by its distance to another one, where that is asked for.
+/// The drawn objects. The first one is coloured by its distance to another object, where this is requested.
 struct Scene {
   std::vector<voxel::DrawnObject> objects;
   std::string coloured_by;  ///< the other one's name
 };
 
-/// `objects` ends with the other one, where one is asked for.
+/// The last of `objects` is the other object, where one is requested.
 Scene scene_of(const Render& render, std::vector<voxel::DrawnObject> objects, Timings& timings) {
   Scene scene{std::move(objects), {}};
   if (!render.colour_by.empty()) {
