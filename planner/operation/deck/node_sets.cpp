@@ -181,7 +181,7 @@ std::vector<convert::Prescribed> prescribed_of(const std::vector<std::string>& f
     const std::vector<double> by =
         equals == std::string::npos ? std::vector<double>{} : comma_numbers(word.substr(equals + 1));
     if (by.size() != 3)
-      throw std::runtime_error("--move: '" + word + "' says no motion: for example PIN=0,0,-0.5");
+      throw std::runtime_error("--move: '" + word + "' is not a motion: for example PIN=0,0,-0.5");
     const NodeSet& set = set_called(word.substr(0, equals), sets, "--move");
     take(set, "--move");
     step.push_back({set.name, std::vector<glm::dvec3>(set.nodes.size(), {by[0], by[1], by[2]})});

@@ -119,7 +119,7 @@ Occlude settle(const Occlude& asked, const SettleBench& bench) {
   const brep::Solid &solid = bench.object(asked.object.name), &against = bench.object(asked.against.name);
   if (solid.empty() || against.empty())
     throw std::runtime_error("'" + (solid.empty() ? asked.object.name : asked.against.name) +
-                             "' is empty: nothing can meet");
+                             "' is empty: there is no contact");
   const glm::dvec3 along = direction_of(asked.towards, bench.objects.lps_from_head);
   const std::vector<Seat> seats = seats_of(asked, solid, bench.objects, voxel_mm(object));
   Occlude settled = asked;

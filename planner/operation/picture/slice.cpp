@@ -369,7 +369,7 @@ SlicePicture drawn(const Slice& slice, const Subject& subject, const std::vector
 
 void check(const Slice& slice, const Place& place) {
   if (slice.window && !slice.level.empty())
-    place.at("level").refuse("says the same as 'window': leave one out");
+    place.at("level").refuse("states the same as 'window': leave one of them out");
   if (!slice.size.empty() && !slice.curve_mm.empty())
     place.at("size").refuse("is of planes; a curve's picture is as long as the curve");
   if (slice.grid_mm && !slice.curve_mm.empty())
