@@ -49,7 +49,7 @@ struct MotionDoubt {
 
 struct SurfaceFit {
   glm::dmat4 fixed_from_moving{1.0};  ///< rigid
-  double rms_mm = 0.0;                ///< point to surface, over the samples kept
+  double rms_mm = 0.0;                ///< point to surface, over the samples that were kept
   double kept_share = 0.0;            ///< of the samples
   int rounds = 0;                     ///< of the last two refinements
   bool converged = false;             ///< it came to rest within max_rounds

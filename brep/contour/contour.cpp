@@ -1,7 +1,8 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Follows contours in passes: 1 join the crossed edges of each
-// cell of four samples by directed segments, with the object on the left; 2 walk open chains from edges to
-// which no segment leads; 3 walk the remaining segments, which are loops. An edge is crossed at most once and
-// has at most one segment on either side, so chains cannot fork.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Follows contours in passes: 1 join the crossed edges of each cell of four samples by directed segments,
+// with the object on the left; 2 walk open chains from edges to which no segment leads; 3 walk the remaining
+// segments, which are loops. An edge is crossed at most once and has at most one segment on either side, so
+// chains cannot fork.
 #include "brep/contour/contour.h"
 
 #include <algorithm>

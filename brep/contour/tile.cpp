@@ -1,10 +1,10 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later A strip is a path in a graph: node (i, j) is the span from the
-// lower ring's point i to the upper ring's point j, and a step to (i + 1, j) or (i, j + 1) is a triangle.
-// If costs depend on single triangles: every strip has a span at the lower ring's first point. Therefore 1
-// find the path of least cost from (0, 0) to (m, n); from (0, n) to (m, 2n) it is the same; 2 find the path
-// that starts half way between two known ones, which it need not cross, and so on; 3 write the triangles of
-// the best.
-// Otherwise: 1 find the start; 2 walk greedily, or find the path of least cost from there.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A strip is a path in a graph: node (i, j) is the span from the lower ring's point i to the upper ring's
+// point j, and a step to (i + 1, j) or (i, j + 1) is a triangle. If costs depend on single triangles: every
+// strip has a span at the lower ring's first point. Therefore 1 find the path of least cost from (0, 0) to
+// (m, n); from (0, n) to (m, 2n) it is the same; 2 find the path that starts half way between two known ones,
+// which it need not cross, and so on; 3 write the triangles of the best. Otherwise: 1 find the start; 2 walk
+// greedily, or find the path of least cost from there.
 #include "brep/contour/tile.h"
 
 #include <algorithm>

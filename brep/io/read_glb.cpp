@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Binary glTF 2.0 (Khronos Group): the triangles of the scene's
-// nodes, transformed by the matrices of their node and its ancestors.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Binary glTF 2.0 (Khronos Group): the triangles of the scene's nodes, transformed by the matrices of their
+// node and its ancestors.
 //   1 Read the chunks: JSON, and the bytes that it describes. 2 Visit the scene's nodes from the roots down.
 //   The format requires a tree, so a node visited twice is refused. 3 Read each triangle primitive's
 //   positions and indices, of any number type, sparse or not, and apply its node's matrix. Equal points are

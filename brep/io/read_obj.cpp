@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Wavefront's OBJ and Geomview's OFF, as text. Sources: Wavefront,
-// Advanced Visualizer, appendix B1 (Object Files), whose free-form surfaces (surf, or bzp, bsp and cdc of its
-// version 2.11) are not polygons.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Wavefront's OBJ and Geomview's OFF, as text. Sources: Wavefront, Advanced Visualizer, appendix B1 (Object
+// Files), whose free-form surfaces (surf, or bzp, bsp and cdc of its version 2.11) are not polygons.
 #include <stdexcept>
 
 #include "brep/io/mesh_scanner.h"

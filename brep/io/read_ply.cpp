@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Source: Turk, The PLY polygon file format, 1994: elements in the
-// header's order, each with scalar and list properties. Only x, y, z of "vertex" and the corner lists of
-// "face" and "tristrips" are used.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Source: Turk, The PLY polygon file format, 1994: elements in the header's order, each with scalar and list
+// properties. Only x, y, z of "vertex" and the corner lists of "face" and "tristrips" are used.
 #include <algorithm>
 #include <cmath>
 #include <optional>

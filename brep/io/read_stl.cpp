@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Reads STL. The file's length decides whether it is binary, not
-// its first word: binary files that begin with "solid" are common. If the count and the length of a binary
-// file disagree:
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Reads STL. The file's length decides whether it is binary, not its first word: binary files that begin with
+// "solid" are common. If the count and the length of a binary file disagree:
 // - less than a triangle follows the counted ones: these bytes are ignored and reported;
 // - whole triangles follow: the count is too small, as when a writer stopped before updating it; they are
 //   read, with a warning;

@@ -1,8 +1,8 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later VTK's legacy format (The VTK User's Guide, "Simple legacy
-// formats"): polydata and unstructured grids; version 5 stores cells as offsets and connectivity, earlier
-// ones as counts and corners in one list. Binary numbers are big-endian. Keywords are in any case. The
-// geometry ends at the data of points or cells; before these, fields may occur anywhere. METADATA may follow
-// an array, up to an empty line.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// VTK's legacy format (The VTK User's Guide, "Simple legacy formats"): polydata and unstructured grids;
+// version 5 stores cells as offsets and connectivity, earlier ones as counts and corners in one list. Binary
+// numbers are big-endian. Keywords are in any case. The geometry ends at the data of points or cells; before
+// these, fields may occur anywhere. METADATA may follow an array, up to an empty line.
 #include <cmath>
 #include <stdexcept>
 

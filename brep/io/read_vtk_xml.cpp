@@ -1,8 +1,9 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later VTK's XML polydata and unstructured grids ("VTK XML file
-// formats", The VTK User's Guide): numbers as text, as base64 within their element, or appended at the end,
-// raw or base64; plain or in blocks of zlib or LZ4. An array starts with a header: its length or, for blocks,
-// their count, size, last size and compressed sizes. The XML is searched for the few relevant elements
-// instead of parsed, because raw appended data are not XML.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// VTK's XML polydata and unstructured grids ("VTK XML file formats", The VTK User's Guide): numbers as text,
+// as base64 within their element, or appended at the end, raw or base64; plain or in blocks of zlib or LZ4.
+// An array starts with a header: its length or, for blocks, their count, size, last size and compressed
+// sizes. The XML is searched for the few relevant elements instead of parsed, because raw appended data are
+// not XML.
 #include <cmath>
 #include <lz4.h>
 #include <map>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Source of types and numberings of cells: The VTK User's Guide,
-// "VTK file formats".
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Source of types and numberings of cells: The VTK User's Guide, "VTK file formats".
 #include "brep/io/vtk_cells.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The glTF 2.0 specification, Khronos Group. Its colours are
-// linear, so sRGB is converted, with 16 bits per channel to preserve dark steps.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The glTF 2.0 specification, Khronos Group. Its colours are linear, so sRGB is converted, with 16 bits per
+// channel to preserve dark steps.
 #include <cmath>
 #include <limits>
 

@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later One pass over the triangles adds to each corner its share of
-// area, its angle, and the gradient of the area. The sum of gradients divided by the area is twice the mean
-// curvature along the normal. Gradients use cotangents of the two other angles, computed from cross and dot
-// products without trigonometry.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// One pass over the triangles adds to each corner its share of area, its angle, and the gradient of the area.
+// The sum of gradients divided by the area is twice the mean curvature along the normal. Gradients use
+// cotangents of the two other angles, computed from cross and dot products without trigonometry.
 #include "brep/measure/curvature.h"
 
 #include <algorithm>

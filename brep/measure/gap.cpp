@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Surfaces that intersect have no gap. Otherwise two trees find
-// the nearest triangles. Their nearest points are a corner of one and a point of the other, or lie on an edge
-// of each.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Surfaces that intersect have no gap. Otherwise two trees find the nearest triangles. Their nearest points
+// are a corner of one and a point of the other, or lie on an edge of each.
 #include "brep/measure/gap.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

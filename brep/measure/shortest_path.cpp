@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later 1 compute an upper bound of the length from a path along edges;
-// 2 keep the triangles that a path of at most this length can touch; 3 search these exactly. Step 3 is the
-// expensive one, and a path of a few centimetres cannot touch most of a head.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// 1 compute an upper bound of the length from a path along edges; 2 keep the triangles that a path of at most
+// this length can touch; 3 search these exactly. Step 3 is the expensive one, and a path of a few centimetres
+// cannot touch most of a head.
 #include "brep/measure/shortest_path.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -1,7 +1,8 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later A tree of axis-aligned boxes, split at the median centre along
-// the longest axis. Two levels of halves form one node, whose four boxes are tested at once (Wald, Benthin,
-// Boulos, "Getting rid of packets", RT 2008); boxes are floats, rounded outward. Nearest point of a triangle:
-// Ericson, Real-Time Collision Detection, 2005, 5.1.5.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A tree of axis-aligned boxes, split at the median centre along the longest axis. Two levels of halves form
+// one node, whose four boxes are tested at once (Wald, Benthin, Boulos, "Getting rid of packets", RT 2008);
+// boxes are floats, rounded outward. Nearest point of a triangle: Ericson, Real-Time Collision Detection,
+// 2005, 5.1.5.
 #include "brep/mesh/distance.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later A hash table of the first point at each position, with open
-// addressing, at most half full.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A hash table of the first point at each position, with open addressing, at most half full.
 #include "brep/mesh/equal_points.h"
 
 #include <bit>

@@ -1,7 +1,8 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The three points of a triangle without area are collinear, so
-// its middle point lies on its long side: the neighbour at that side, divided at the middle point, covers
-// both. If the neighbour's far point is collinear too, the two new triangles are flat again. Therefore
-// exchanges are counted: reducing a line of n points by one takes one exchange at best, n at worst.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The three points of a triangle without area are collinear, so its middle point lies on its long side: the
+// neighbour at that side, divided at the middle point, covers both. If the neighbour's far point is collinear
+// too, the two new triangles are flat again. Therefore exchanges are counted: reducing a line of n points by
+// one takes one exchange at best, n at worst.
 #include "brep/mesh/flat_triangles.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Sums run over blocks of 64 faces, term by term, then over the
-// blocks in pairs: the error grows with 64 and log n instead of n (Higham, "The accuracy of floating point
-// summation", 1993), and sums do not depend on the number of threads.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Sums run over blocks of 64 faces, term by term, then over the blocks in pairs: the error grows with 64 and
+// log n instead of n (Higham, "The accuracy of floating point summation", 1993), and sums do not depend on
+// the number of threads.
 #include "brep/mesh/measure.h"
 
 #include <algorithm>

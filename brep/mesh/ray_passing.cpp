@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later A ray crosses a triangle if an odd number of its edges,
-// projected along x, pass the point on one side. Each edge is evaluated from its lower end, whichever
-// triangle it belongs to, so neighbours agree and no ray slips between them.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A ray crosses a triangle if an odd number of its edges, projected along x, pass the point on one side. Each
+// edge is evaluated from its lower end, whichever triangle it belongs to, so neighbours agree and no ray
+// slips between them.
 #include "brep/mesh/ray_passing.h"
 
 #include "brep/mesh/orientation.h"

@@ -1,9 +1,10 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later 1 list the cells that each triangle may pass; 2 find the winding
-// number at their corners; 3 while the surface of winding number 1/2 leaves the listed cells, add the cells
-// beyond; 4 on each tetrahedron's edge whose ends lie on different sides, compute the point where a triangle
-// crosses it or, across a hole, where the winding number is 1/2; 5 join those points; 6 for the hull, leave
-// out cavities and their contents. Pass 3 finds the whole surface: away from the triangles the winding number
-// is harmonic, so no closed part of the surface lies there.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// 1 list the cells that each triangle may pass; 2 find the winding number at their corners; 3 while the
+// surface of winding number 1/2 leaves the listed cells, add the cells beyond; 4 on each tetrahedron's edge
+// whose ends lie on different sides, compute the point where a triangle crosses it or, across a hole, where
+// the winding number is 1/2; 5 join those points; 6 for the hull, leave out cavities and their contents. Pass
+// 3 finds the whole surface: away from the triangles the winding number is harmonic, so no closed part of the
+// surface lies there.
 #include "brep/shape/enclose.h"
 
 #include <algorithm>

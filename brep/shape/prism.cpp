@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Caps are constrained Delaunay triangulations without new points.
-// Walls are built on the edges between inside and outside by the even-odd rule, so the polygons' winding has
-// no effect.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Caps are constrained Delaunay triangulations without new points. Walls are built on the edges between
+// inside and outside by the even-odd rule, so the polygons' winding has no effect.
 #include "brep/shape/prism.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>

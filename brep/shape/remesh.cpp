@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Uses CGAL's own mesh, whose handles are numbers, so that results
-// do not depend on addresses. Only this unit includes CGAL's remeshing, which is slow to compile. Constrained
-// edges may be split, and collapsed along their line: otherwise edges longer than the target would stay long.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Uses CGAL's own mesh, whose handles are numbers, so that results do not depend on addresses. Only this unit
+// includes CGAL's remeshing, which is slow to compile. Constrained edges may be split, and collapsed along
+// their line: otherwise edges longer than the target would stay long.
 #include "brep/shape/remesh.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Each step works on a list of triangles with their numbers in the
-// input, by which changes name them. Steps that need a connected mesh report it if the list does not form
-// one.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Each step works on a list of triangles with their numbers in the input, by which changes name them. Steps
+// that need a connected mesh report it if the list does not form one.
 #include "brep/shape/repair.h"
 
 #include <algorithm>

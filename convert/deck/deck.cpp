@@ -55,8 +55,8 @@ void check_nodes(const Tetrahedra& tetrahedra, const std::filesystem::path& path
       if (node >= nodes)
         refuse_to_write(path, "a side names node " + std::to_string(node) + " of " + std::to_string(nodes));
   if (!tetrahedra.region_of_tet.empty() && tetrahedra.region_of_tet.size() != tetrahedra.tets.size())
-    refuse_to_write(path, "regions are given of " + std::to_string(tetrahedra.region_of_tet.size()) + " of " +
-                              std::to_string(tetrahedra.tets.size()) + " tetrahedra");
+    refuse_to_write(path, "regions are stated for " + std::to_string(tetrahedra.region_of_tet.size()) +
+                              " of " + std::to_string(tetrahedra.tets.size()) + " tetrahedra");
 }
 
 void check_materials(const Tetrahedra& tetrahedra, const std::filesystem::path& path,

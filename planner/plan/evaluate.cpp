@@ -2,11 +2,12 @@
 //
 // Steps are evaluated in order, each in both kernels before the next:
 // 1 Read every scan once, sample it into a grey octree, and store its samples until the last step that uses
-// them.
+//   them.
 // 2 Voxel kernel: the operation's answer from other voxel answers.
 // 3 Mesh kernel: the operation's answer from other mesh answers and the scan's own samples.
 // 4 Certify: only here are the two answers compared. Without a cache, certificates run in parallel with later
-// steps. Invariant: the benches of 2 and 3 give access to one kernel each.
+//   steps.
+// Invariant: the benches of 2 and 3 give access to one kernel each.
 #include "planner/plan/evaluate.h"
 
 #include <algorithm>

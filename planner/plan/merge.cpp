@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later A three-way merge by names, not by lines: 1 merge values outside
-// the steps; 2 merge steps by their ids, field by field; 3 use the order of the plan that changed it; 4
-// insert steps that the other plan adds after the step that they follow there.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A three-way merge by names, not by lines: 1 merge values outside the steps; 2 merge steps by their ids,
+// field by field; 3 use the order of the plan that changed it; 4 insert steps that the other plan adds after
+// the step that they follow there.
 #include "planner/plan/merge.h"
 
 #include <iterator>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1. The results: a list of numbers, each a function of one trial's motions and landmarks.
 // 2. A trial draws an error for each landmark, saw, moved piece and for the segmentation, and applies the
-// plan's motions with these errors, symbolically: no object is made.
+//    plan's motions with these errors, symbolically: no object is made.
 // 3. Run all trials with all errors, then with the errors of one source at a time.
 #include "planner/plan/trial.h"
 

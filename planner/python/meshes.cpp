@@ -115,7 +115,8 @@ void add_meshes(py::module_& module) {
             return without_lock([&](const std::stop_token&) { return brep::solid_of(triangles); });
           },
           "The solid that it bounds. Raises GeometryError with the first defect and its place.")
-      .def("write", &write, py::arg("path"), "Writes .stl, .ply, .obj, .off, .vtp or .glb as the name ends.");
+      .def("write", &write, py::arg("path"),
+           "Writes .stl, .ply, .obj, .off, .vtp or .glb, by the name's extension.");
 
   py::class_<Solid>(module, "Solid",
                     "The inside of a closed surface, immutable. & (and), | (or), - (less) are mesh Booleans.")
@@ -147,7 +148,7 @@ void add_meshes(py::module_& module) {
       .def(
           "write",
           [](const Solid& solid, const std::filesystem::path& path) { write(solid.triangles(), path); },
-          py::arg("path"), "Writes .stl, .ply, .obj, .off, .vtp or .glb as the name ends.");
+          py::arg("path"), "Writes .stl, .ply, .obj, .off, .vtp or .glb, by the name's extension.");
 
   module.def(
       "read_mesh",

@@ -1,8 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Source: ISO/IEC 15948 (PNG) and its advice on filters (12.8).
-// 1 filter each row in five ways and choose the one whose bytes, as signed numbers, have the least sum of
-// magnitudes;
-// 2 deflate all rows as one stream;
-// 3 cut the stream into chunks.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Source: ISO/IEC 15948 (PNG) and its advice on filters (12.8). 1 filter each row in five ways and choose the
+// one whose bytes, as signed numbers, have the least sum of magnitudes; 2 deflate all rows as one stream; 3
+// cut the stream into chunks.
 #include "voxel/picture/encode_png.h"
 
 #include <algorithm>

@@ -288,8 +288,8 @@ class SegReader {
     const double tolerance_mm = 0.02 + 0.01 * fit_.step_mm;
     if (planes > 1.0 && thickness_mm_ && *thickness_mm_ < fit_.step_mm - tolerance_mm)
       warn_spacing(
-          print("planes of %.4g mm (SliceThickness) lie %.4g mm apart: the positions are taken, so "
-                "that each plane stands for %.4g mm of its segments. Nothing was drawn in %.3g mm of "
+          print("planes of %.4g mm (SliceThickness) lie %.4g mm apart: the positions are used, so each plane "
+                "represents %.4g mm of its segments. Nothing was drawn in %.3g mm of "
                 "them; volumes are %.3g times those of the planes alone",
                 *thickness_mm_, fit_.step_mm, fit_.step_mm, fit_.step_mm - *thickness_mm_,
                 fit_.step_mm / *thickness_mm_));

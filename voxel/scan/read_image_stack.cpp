@@ -148,9 +148,9 @@ Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
   for (const std::string& doubt : names.doubts) scene.audit.push_back({"slice_names", Verdict::Warn, doubt});
   if (!stacks.empty())
     scene.audit.push_back({"stacks", Verdict::Fail,
-                           "the pattern takes the pictures of several stacks, whose names have the same "
+                           "the pattern matches the pictures of several stacks, whose names have the same "
                            "numbers, as slices of one: " +
-                               stacks + ": let it name one of them"});
+                               stacks + ": use a pattern that matches only one of them"});
   else if (const std::string alike = numbered_alike(names); !alike.empty())
     scene.audit.push_back({"stacks", Verdict::Warn, alike});
   if (const std::string missing = skipped(names); !missing.empty())

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Fits a lattice to a stack of slices:
-//   1 choose the step from the distances of neighbours 2 fit even distances to positions that are rounded or
-//   noisy 3 distinguish holes from a protocol's second slice distance 4 find the source slices of every slice
-//   of the lattice 5 fit the stack's sideways lean, report slices that deviate from it, widen the lattice by
-//   it
+//   1  choose the step from the distances of neighbours
+//   2  fit even distances to positions that are rounded or noisy
+//   3  distinguish holes from a protocol's second slice distance
+//   4  find the source slices of every slice of the lattice
+//   5  fit the stack's sideways lean, report slices that deviate from it, widen the lattice by it
 #include "voxel/scan/slice_plan.h"
 
 #include <algorithm>

@@ -121,7 +121,7 @@ Meets meets(const Operand& operand, const Cube& cube) {
   return std::visit(
       [&](const auto& o) -> Meets {
         if constexpr (requires { o.meets(cube); }) return o.meets(cube);
-        assert(!"the operand has no answer about a cube");
+        assert(!"the operand cannot be evaluated on a cube");
         return {};
       },
       operand);

@@ -61,8 +61,8 @@ class NodePolygons {
     }
     return true;
   }
-  /// Whether a square of pixel positions lies wholly inside or wholly outside the polygon. Conservative:
-  /// Either may hold for a square on one side.
+  /// Whether a square of pixel positions lies wholly inside or wholly outside the polygon. Conservative: for
+  /// a square on one side, Either may be returned as well.
   enum class Place { Inside, Outside, Either };
   Place place(const Polygon& polygon, const glm::dvec2& low_px, double side_px) const {
     const glm::dvec2 d = low_px + 0.5 * side_px - polygon.centre_px;

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Only this source includes Boost.Beast, which takes twelve
-// seconds to compile. One thread transfers bytes; the service's threads compute answers and post them here.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Only this source includes Boost.Beast, which takes twelve seconds to compile. One thread transfers bytes;
+// the service's threads compute answers and post them here.
 #include "planner/browser/server/server.h"
 
 #include <boost/asio/ip/tcp.hpp>

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The program: reads the command line, runs the chosen verb and
-// turns exceptions into an exit status: 2 for errors that the user can correct, 3 for time, memory and disk,
-// 70 for a mistake in the program.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The program: reads the command line, runs the chosen verb and turns exceptions into an exit status: 2 for
+// errors that the user can correct, 3 for time, memory and disk, 70 for a mistake in the program.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>

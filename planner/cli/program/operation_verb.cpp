@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // A verb made from an operation:
-//   1 The words of its options become the JSON of a step, which is read like a step of a plan. 2 The files
-//   that it names become objects: meshes, checked to be solids, or octrees. 3 The kernel that the output's
-//   format needs computes the answer; with --certify both do and are compared. If only the mesh kernel has an
-//   answer, an octree is made from its voxels. 4 The answer is written, measured and printed.
+//   1 The words of its options become the JSON of a step, which is read like a step of a plan.
+//   2 The files that it names become objects: meshes, checked to be solids, or octrees.
+//   3 The kernel that the output's format needs computes the answer; with --certify both do and are
+//     compared. If only the mesh kernel has an answer, an octree is made from its voxels.
+//   4 The answer is written, measured and printed.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>

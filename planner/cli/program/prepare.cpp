@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later A plan of operations that each make a scan from the previous
-// one.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A plan of operations that each make a scan from the previous one.
 #include <CLI/CLI.hpp>
 
 #include "planner/cli/program/verbs.h"

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The segment operation on files: an object for each window, and
-// further octrees, written as an octree, a label map or a DICOM segmentation.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The segment operation on files: an object for each window, and further octrees, written as an octree, a
+// label map or a DICOM segmentation.
 #include "planner/operation/object/segment.h"
 
 #include <CLI/CLI.hpp>

@@ -5,7 +5,7 @@
 #include <string>
 
 // Movements in anatomical words. A head's directions are the columns of `lps_from_head`: its left, back and
-// up as unit vectors of LPS; the identity is the head as the scan holds it.
+// up as unit vectors of LPS; the identity is the head's position in the scan.
 namespace octotomy::planner {
 
 /// A displacement along the head's directions; negative: back, right, down.

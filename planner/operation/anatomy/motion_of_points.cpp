@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One point translates, two are laid along each other by the least turn, three and more are registered as
+// One point gives a translation, two are aligned by the smallest rotation, three or more are registered like
 // named landmarks.
 #include "planner/operation/anatomy/motion_of_points.h"
 
@@ -12,7 +12,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// The least rotation that takes one direction to another.
+/// The smallest rotation that maps one direction to another.
 glm::dmat3 least_turn(const glm::dvec3& from, const glm::dvec3& to) {
   const glm::dvec3 axis = glm::cross(from, to);
   const double sine = glm::length(axis), cosine = glm::dot(from, to);

@@ -24,7 +24,8 @@ Json displacement_json(const glm::dvec3& by_mm, const glm::dmat3& lps_from_head)
           {"words", in_words(along)}};
 }
 
-/// The bone of scans' windows that no moved object is or comes from; none where nothing moves or stays.
+/// The bone of scans' windows without moved objects and the objects that they were made from; none where
+/// nothing moves or nothing remains.
 std::optional<voxel::Expression> staying_bone(const Objects& objects) {
   std::optional<voxel::Expression> staying, pieces;
   const auto add = [](std::optional<voxel::Expression>& all, const voxel::Octree& octree) {
@@ -39,8 +40,8 @@ std::optional<voxel::Expression> staying_bone(const Objects& objects) {
   return voxel::Expression(voxel::combine(objects.front().voxel.octree.universe(), *staying - *pieces));
 }
 
-/// Whether a piece has bone nearer to a landmark than what stays has: `at_mm` is the landmark's place with
-/// the piece, `still_mm` its place in the scan.
+/// Whether a piece's bone is nearer to a landmark than the bone that stays. `at_mm` is the landmark's
+/// position with the piece, `still_mm` its position in the scan.
 bool nearer(const voxel::Octree& piece, const std::optional<voxel::Expression>& staying,
             const glm::dvec3& at_mm, const glm::dvec3& still_mm) {
   for (const double radius_mm : {0.5, 1.0, 2.0, reach_mm}) {
@@ -51,7 +52,7 @@ bool nearer(const voxel::Octree& piece, const std::optional<voxel::Expression>& 
     };
     const double of_piece = in_reach(voxel::Expression(piece), at_mm),
                  of_others = staying ? in_reach(*staying, still_mm) : 0.0;
-    // On a cut both have about half; it goes with the piece, which the cut was planned for.
+    // On a cut both have about half. The landmark then moves with the piece, which the cut was planned for.
     if (of_piece > 0.0 || of_others > 0.0) return of_piece > 0.5 * of_others;
   }
   return false;

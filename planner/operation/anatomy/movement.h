@@ -15,22 +15,22 @@ inline glm::dvec3 carried(const glm::dmat4& motion, const glm::dvec3& p_mm) {
   return glm::dvec3(motion * glm::dvec4(p_mm, 1.0));
 }
 
-/// What each moved object's last step moved, in the order of the objects: the motion, its turns, the
-/// displacement of the object's centroid and of the landmarks that lie on it, in words and along the head's
-/// directions; where earlier steps moved the object, too, the displacements since the scan. Landmarks go with
-/// objects as moved_landmarks() says. Cost: some small Booleans a landmark and object.
+/// The last motion of each moved object, in the order of the objects: the motion, its rotations, and the
+/// displacement of the object's centroid and of the landmarks on it, in words and along the head's
+/// directions. Where earlier steps moved the object as well, also the displacements since the scan. Landmarks
+/// move with objects by the rules of moved_landmarks(). Cost: some small Booleans per landmark and object.
 nlohmann::ordered_json movements_json(const Objects& objects, const std::vector<NamedPoint>& landmarks);
 
-/// A landmark, and the motion that a plan carries it by; the identity where it stays.
+/// A landmark and its motion by the plan; the identity where it does not move.
 struct MovedLandmark {
-  NamedPoint landmark;  ///< as it lies in the scan
+  NamedPoint landmark;  ///< its position in the scan
   glm::dmat4 moved_from_still{1.0};
 };
 
-/// Where a plan's objects take the landmarks. A landmark goes with the piece whose bone is nearest to it; it
-/// stays where other bone is nearer, or nothing that moves lies within 3 mm: surgeons place landmarks to
-/// about that. On a cut it goes with the piece. Of pieces that are moved again the last motion counts. Cost:
-/// some small Booleans a landmark and moved object.
+/// The motions of landmarks with a plan's objects. A landmark moves with the piece whose bone is nearest to
+/// it. It does not move where other bone is nearer, or where no moved object is within 3 mm, which is about
+/// the error of landmarks placed by surgeons. A landmark on a cut moves with the piece. For pieces that are
+/// moved again, the last motion counts. Cost: some small Booleans per landmark and moved object.
 std::vector<MovedLandmark> moved_landmarks(const Objects& objects, const std::vector<NamedPoint>& landmarks);
 
 }  // namespace octotomy::planner

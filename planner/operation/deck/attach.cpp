@@ -25,7 +25,7 @@ Holder moved_holder(const Objects& objects, const std::string& id) {
 
 /// Whether a node lies on an object's voxels or between two of them.
 bool touches(const voxel::Octree& octree, const glm::dvec3& p_voxel) {
-  // Rounding may put a corner on either side of where it is.
+  // Rounding may move a corner to either side of its position.
   constexpr double slack = 1e-6;
   const glm::ivec3 low(glm::floor(p_voxel + 0.5 - slack)), high(glm::floor(p_voxel + 0.5 + slack));
   for (int z = low.z; z <= high.z; ++z)
@@ -35,7 +35,7 @@ bool touches(const voxel::Octree& octree, const glm::dvec3& p_voxel) {
   return false;
 }
 
-/// A deck's elements on their way to be held.
+/// Attaches a deck's elements to their holders.
 class Attacher {
  public:
   Attacher(const std::vector<Holder>& holders, const std::vector<std::string>& names,
@@ -83,7 +83,7 @@ class Attacher {
         hold(node, holder);
   }
 
-  /// Takes away the parts that nothing holds; answers their volume.
+  /// Removes the parts that nothing holds; returns their volume.
   double keep_held() {
     brep::DisjointSets parts(tetrahedra_.nodes_mm.size());
     for (const auto& tet : tetrahedra_.tets)
@@ -201,7 +201,7 @@ class Attacher {
   const std::vector<std::string>& names_;
   convert::Tetrahedra& tetrahedra_;
   convert::DeckOptions& options_;
-  std::vector<int> region_of_holder_;  ///< its number, or `nobody` where it is outside of the deck
+  std::vector<int> region_of_holder_;  ///< the region's number, or `nobody` for a holder outside of the deck
   std::vector<int> holder_of_node_;
 };
 

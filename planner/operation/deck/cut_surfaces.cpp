@@ -7,13 +7,13 @@
 namespace octotomy::planner {
 namespace {
 
-/// How far a point of a cut may be from the wall that made it: where corefinement puts a point, and rounding
-/// after motions; far below anything a plan can mean.
+/// The largest distance of a cut's point from the mask's wall, due to corefinement and to rounding after
+/// motions. It is far below any distance that a plan can intend.
 constexpr double on_wall_mm() {
   return 1e-6;
 }
 
-/// Of each point whether it lies on the wall.
+/// For each point, whether it lies on the wall.
 std::vector<bool> on_wall(const std::vector<glm::dvec3>& points_mm, const CutWall& cut) {
   const glm::dmat4 still_from_moved = glm::inverse(cut.moved_from_still);
   std::vector<glm::dvec3> still_mm(points_mm.size());
@@ -28,7 +28,7 @@ std::vector<bool> on_wall(const std::vector<glm::dvec3>& points_mm, const CutWal
 
 constexpr std::size_t outer = std::numeric_limits<std::size_t>::max();
 
-/// Of each triangle, the first cut that made it, or `outer`.
+/// For each triangle, the first cut that made it, or `outer`.
 std::vector<std::size_t> cuts_of(const brep::Triangles& surface, const std::vector<CutWall>& cuts) {
   std::vector<std::size_t> cut_of(surface.faces.size(), outer);
   for (std::size_t c = 0; c < cuts.size(); ++c) {

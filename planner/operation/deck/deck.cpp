@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tetrahedra for finite elements: an object's filling, several objects as regions, or one that others hold.
+// Writes tetrahedra for finite elements: an object's filling, several objects as regions, or an object that
+// others hold.
 #include "convert/deck/deck.h"
 
 #include <algorithm>
@@ -174,7 +175,7 @@ Tried fill(const Object& object, const Deck& deck, const AnswerBench& bench) {
   return filled;
 }
 
-/// The filling that decks of one object share, made by the first.
+/// The filling that the decks of one object share; the first deck computes it.
 const Tried& filled_once(const Object& object, const Deck& deck, const AnswerBench& bench) {
   const std::string key = object.id + (deck.fallback ? " or its voxels" : "") + refinement_key(deck);
   std::shared_ptr<const void>& kept = bench.kept[key];
@@ -182,7 +183,7 @@ const Tried& filled_once(const Object& object, const Deck& deck, const AnswerBen
   return *static_cast<const Tried*>(kept.get());
 }
 
-/// The motion of all the steps that moved an object.
+/// The combined motion of all the steps that moved an object.
 glm::dmat4 moved_from_still(const Object& object, const Objects& objects) {
   return object.moved ? object.moved->motion * moved_from_still(objects.at(object.moved->object), objects)
                       : glm::dmat4(1.0);
@@ -244,7 +245,8 @@ void write(const Deck& deck, const AnswerBench& bench, Exported& made) {
     write_filled(object, deck, bench, made);
 }
 
-/// Of one object the filling; several regions and what others hold take their time when they are written.
+/// Computes the filling of a single object ahead of writing. Several regions and held objects are filled when
+/// they are written.
 void ahead(const Deck& deck, const AnswerBench& bench) {
   const Object& object = bench.objects.at(deck.object.name);
   if (deck.regions.empty() && !deck.is_held() && obstacle_of(object, deck).empty())

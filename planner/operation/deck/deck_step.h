@@ -20,7 +20,7 @@ struct Deck {
     double youngs_modulus_mpa = 0.0;
     double poisson_ratio = 0.0;
   };
-  /// Elements of about a size at a point or along an object's surface.
+  /// Elements of about a stated size at a point or along an object's surface.
   struct Finer {
     Site at;
     double size_mm = 1.0;
@@ -32,10 +32,10 @@ struct Deck {
 
   ObjectName object;
   std::filesystem::path path;
-  std::vector<ObjectName> moved;  ///< moved objects that take the deck along
+  std::vector<ObjectName> moved;  ///< moved objects that move the deck with them
   std::vector<ObjectName> fixed;
   std::optional<double> element_mm;  ///< edge of the smallest elements; none: the universe's voxels
-  std::optional<Material> material;  ///< of an object that others hold
+  std::optional<Material> material;  ///< for an object that others hold
   bool fallback = false;
   int order = 1;
   std::vector<Finer> finer;
@@ -45,7 +45,7 @@ struct Deck {
   std::string between = "shared";
   NamePairs sliding;
   std::vector<std::pair<std::string, Material>> materials;  ///< by region
-  std::optional<Stiffness> stiffness;                       ///< of a filled object
+  std::optional<Stiffness> stiffness;                       ///< for a filled object
 
   /// Whether others hold the object: soft tissue on bone.
   bool is_held() const { return !moved.empty() || !fixed.empty(); }

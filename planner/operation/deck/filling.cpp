@@ -18,13 +18,13 @@
 namespace octotomy::planner {
 namespace {
 
-/// Of the largest part's volume, what a part has to have to be a body.
+/// The least volume of a body, as a share of the largest part's.
 constexpr double crumb() {
   return 0.01;
 }
 
-/// The parts of the mesh that a deck is made of: crumbs that a cut leaves are no bodies to load and hold;
-/// what is left out is a finding, and so are several bodies.
+/// The parts of the mesh that become the deck, without fragments. Adds a finding on omitted parts, and one on
+/// several bodies.
 brep::Solid bodies_of(const brep::Solid& solid, Filling& filling) {
   const auto parts = brep::components(solid);
   std::vector<std::uint32_t> faces;
@@ -50,8 +50,8 @@ brep::Solid bodies_of(const brep::Solid& solid, Filling& filling) {
   return brep::trusted_solid(brep::part_of(solid, faces), brep::proof_of_part(solid.proof()));
 }
 
-/// The mesh without cavities smaller than a voxel, which are noise at the threshold; what is filled is a
-/// finding.
+/// The mesh without cavities smaller than a voxel, which are noise at the threshold. Adds a finding on the
+/// filled cavities.
 brep::Solid filled(const brep::Solid& solid, const voxel::Universe& universe, Filling& filling) {
   convert::Filled made = convert::fill_cavities(solid, universe.lattice().voxel_mm3());
   if (made.cavities > 0)
@@ -60,14 +60,14 @@ brep::Solid filled(const brep::Solid& solid, const voxel::Universe& universe, Fi
   return std::move(made.solid);
 }
 
-/// A third of the voxel's edge: no more than sampling leaves unknown of a surface anyhow.
+/// A third of the voxel's edge, which is below the uncertainty of a sampled surface.
 double simplification_mm(const voxel::Universe& universe) {
   const glm::dvec3 edge_mm = universe.lattice().spacing_mm();
   return std::min({edge_mm.x, edge_mm.y, edge_mm.z}) / 3.0;
 }
 
-/// The surface with fewer and better triangles, as tetrahedra can be no better than the triangles they stand
-/// on; as it was where that cannot be done.
+/// The surface with fewer and better triangles, because tetrahedra cannot be better than the triangles at
+/// their base. Where this fails, the surface is returned unchanged.
 brep::Mesh simplified(const brep::Mesh& mesh, double error_mm, Filling& filling) {
   brep::DecimateOptions options;
   options.max_error_mm = error_mm;
@@ -86,7 +86,7 @@ brep::Mesh simplified(const brep::Mesh& mesh, double error_mm, Filling& filling)
   return mesh;
 }
 
-/// The voxels' own elements, crumbs left out as of meshes.
+/// The voxels' elements, with fragments omitted as for meshes.
 Filling fallback_of(const Object& object, const std::string& why, const voxel::Progress& progress) {
   Filling filling;
   const auto parts = voxel::components(object.voxel.octree).voxel_counts;
@@ -114,7 +114,7 @@ Filling by_meshers(const Object& object, const FillingOptions& wanted) {
   options.mesher = convert::Mesher::Best;
   options.progress = wanted.progress;
   options.finer = wanted.finer;
-  // Some times what a bone of 50 000 triangles takes.
+  // Several times the time that a bone of 50 000 triangles takes.
   options.time_limit = std::chrono::minutes(2);
   filling.tetrahedra =
       convert::tetrahedralise(simplified(bodies, simplification_mm(universe), filling), options);
@@ -122,7 +122,7 @@ Filling by_meshers(const Object& object, const FillingOptions& wanted) {
   return filling;
 }
 
-/// What meshers made, or why they made nothing.
+/// The meshers' result, or the reason why they failed.
 std::variant<Filling, std::string> tried(const Object& object, const FillingOptions& options) {
   if (!object.mesh.within) return "it has no mesh";
   if (object.mesh.within->empty()) return "its mesh is empty";

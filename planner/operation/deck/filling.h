@@ -13,7 +13,7 @@
 
 namespace octotomy::planner {
 
-/// The tetrahedra of an object, and what is to be said of them.
+/// The tetrahedra of an object, with their findings.
 struct Filling {
   convert::Tetrahedra tetrahedra;
   std::size_t bodies = 0;
@@ -23,21 +23,23 @@ struct Filling {
 
 struct FillingOptions {
   std::vector<convert::Refinement> finer{};
-  bool fallback = false;       ///< where no mesher succeeds, the voxels' own elements are taken
-  voxel::Progress progress{};  ///< of the time that a mesher has
+  bool fallback = false;       ///< use the voxels' elements where no mesher succeeds
+  voxel::Progress progress{};  ///< a mesher reports the used share of its time
 };
 
-/// Fills the parts of an object's mesh down to a hundredth of the largest: the crumbs that a cut leaves are
-/// no bodies to load and hold. Cavities smaller than a voxel are filled and the surface is simplified before,
-/// within a third of a voxel. What is left out is a finding with its volume, and so are several bodies.
+/// Fills the parts of an object's mesh that have at least 1/100 of the largest part's volume: fragments that
+/// a cut leaves cannot be loaded and held as bodies. Before that, cavities smaller than a voxel are filled
+/// and the surface is simplified within a third of a voxel. Omitted parts are a finding with their volume;
+/// several bodies are a finding as well.
 ///
-/// Where no mesher can fill it, or dihedral angles are left that are not fit for a solver
-/// (convert::fit_dihedral_deg()), the fallback is taken where it is allowed, marked and with a finding that
-/// says why; without it, the former is answered as a text for people, the latter a finding. Throws Stopped.
+/// Where no mesher succeeds, or dihedral angles remain that are unfit for a solver
+/// (convert::fit_dihedral_deg()), and the fallback is allowed, the fallback is used, with a finding on the
+/// reason. Where it is not allowed, the failure is returned as a text, and unfit angles are a finding. Throws
+/// Stopped.
 std::variant<Filling, std::string> filling_of(const Object& object, const FillingOptions& options);
 
-/// What a deck's header says of its elements: angles, ratio of radius and edge, and volume; then how many
-/// have which smallest dihedral angle.
+/// The lines on elements in a deck's header: angles, ratio of radius to edge, and volume; then a histogram of
+/// the smallest dihedral angles.
 std::vector<std::string> quality_notes(const convert::TetQuality& quality);
 /// The same as JSON.
 nlohmann::ordered_json quality_json(const convert::TetQuality& quality);

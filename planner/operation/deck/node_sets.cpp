@@ -21,8 +21,8 @@ namespace {
 
 using convert::NodeSet;
 
-/// Of the mean side of the surface's triangles: half of what parts two nodes, so that a plane along a row of
-/// nodes takes that row alone.
+/// As a share of the mean side of the surface's triangles: small enough that a plane along a row of nodes
+/// selects that row only.
 constexpr double on_surface_share() {
   return 0.25;
 }
@@ -190,7 +190,7 @@ std::vector<convert::Prescribed> prescribed_of(const std::vector<std::string>& f
     const std::vector<double> by =
         equals == std::string::npos ? std::vector<double>{} : comma_numbers(word.substr(equals + 1));
     if (by.size() != 3)
-      throw std::runtime_error("--move: '" + word + "' says no motion: for example PIN=0,0,-0.5");
+      throw std::runtime_error("--move: '" + word + "' is not a motion: for example PIN=0,0,-0.5");
     const NodeSet& set = set_called(word.substr(0, equals), sets, "--move");
     take(set, "--move");
     step.push_back({set.name, std::vector<glm::dvec3>(set.nodes.size(), {by[0], by[1], by[2]})});

@@ -16,7 +16,7 @@ void check_set_names(const std::vector<std::string>& words);
 /// Sets of nodes of the elements' surface, in LPS millimetres, each as NAME=WHERE:
 ///   x,y,z          the node nearest to a point, as x,y,z,0
 ///   x,y,z,r        the nodes within r mm of a point
-///   x,y,z,u,v,w    the nodes on a plane through a point with a normal, as a saw left them
+///   x,y,z,u,v,w the nodes on a plane through a point with a normal, as after a saw cut
 ///   TEXT           the node nearest to a landmark of that name, or the nodes on the surface of a mesh file
 /// On a plane or surface means nearer than a quarter of the mean side of the elements' surface triangles. Where
 /// triangles of the elements' surface lie along a plane, within 30 degrees, only their nodes are on it: other
@@ -26,9 +26,8 @@ std::vector<convert::NodeSet> picked_node_sets(const std::vector<std::string>& w
                                                const std::vector<brep::Landmark>& landmarks,
                                                const convert::Tetrahedra& tetrahedra);
 
-/// The static step: sets that stay, and sets that move, NAME=DX,DY,DZ in mm. Throws std::runtime_error where
-/// a name is not one of the sets', sets that stay and move share a node, or something moves and nothing
-/// stays.
+/// The static step: fixed sets, and moved sets as NAME=DX,DY,DZ in mm. Throws std::runtime_error where a name
+/// is not that of a set, a fixed and a moved set share a node, or a set moves and none is fixed.
 std::vector<convert::Prescribed> prescribed_of(const std::vector<std::string>& fixed,
                                                const std::vector<std::string>& moved,
                                                const std::vector<convert::NodeSet>& sets);

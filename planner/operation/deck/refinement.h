@@ -10,11 +10,11 @@
 
 namespace octotomy::planner {
 
-/// Where an export step wants finer elements: its points, and the meshes of its objects. Throws
-/// std::runtime_error where an object has no mesh or an empty one.
+/// The regions where an export step requests finer elements: its points, and the meshes of its objects.
+/// Throws std::runtime_error where an object has no mesh or an empty one.
 std::vector<convert::Refinement> refinements(const Objects& objects, const Deck& step);
 
-/// What of a step says where elements are finer, as a key: equal where it is.
+/// A key for the finer elements of a step: two steps with the same key request the same.
 std::string refinement_key(const Deck& step);
 
 }  // namespace octotomy::planner

@@ -27,6 +27,7 @@ struct RegionDeck {
 /// Each region has the material that the step states for it. Without one, a held object is soft tissue, and
 /// so are its neighbours that hold nothing. Every other region is cortical bone; this is a finding, unless
 /// the region holds the object and therefore moves as a rigid body.
+///
 /// The surface FREE_<object>, or FREE for a single object, is where the object touches no other. The surface
 /// <one>_TO_<other> is where two objects touch, as faces of the first. Where the two slide, each has its own
 /// nodes there; the second's faces are the surface <other>_TO_<one>, and the two surfaces are a contact pair

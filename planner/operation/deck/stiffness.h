@@ -20,11 +20,11 @@ struct Stiffness {
   double poisson_ratio = convert::MaterialOptions{}.poisson_ratio;
 };
 
-/// Its fields but the scan.
+/// The fields except the scan.
 std::vector<Field> stiffness_fields();
 
-/// Gives each element the material of the scan's samples in it: adds materials, fields and a note to the
-/// deck; returns findings. `scan_from_deck` takes the deck's points to their place in the scan, LPS to LPS.
+/// Assigns to each element the material of the scan's samples in it: adds materials, fields and a note to the
+/// deck; returns findings. `scan_from_deck` maps the deck's points to positions in the scan, LPS to LPS.
 std::vector<std::string> add_stiffness(const Stiffness& stiffness, const convert::Tetrahedra& tetrahedra,
                                        const glm::dmat4& scan_from_deck, const voxel::Scene& scan,
                                        const voxel::Progress& progress, convert::DeckOptions& deck);

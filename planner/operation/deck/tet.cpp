@@ -360,10 +360,10 @@ Operation tet_operation() {
                 "A deck: .inp (Abaqus, CalculiX), .feb (FEBio 4), .vtu, .msh (Gmsh 4.1) or .node (TetGen).")
               .required())
       .takes(field("mesher", &Tet::mesher,
-                   "tetgen keeps the surface; mesh3 (CGAL) puts one of its own in place, within a tenth of a "
-                   "triangle's size; stuffing cuts a lattice's cells to the surface, over 10 degrees on any "
-                   "triangles, less what is thinner than a cell; best: tetgen, mesh3 where angles stay under "
-                   "--dihedral, and stuffing where they stay under 5 degrees.")
+                   "tetgen keeps the surface. mesh3 (CGAL) makes a new surface within a tenth of a "
+                   "triangle's size of it. stuffing cuts a lattice's cells at the surface: angles above 10 "
+                   "degrees, but parts thinner than a cell are lost. best: tetgen; mesh3 where angles stay "
+                   "below --dihedral; stuffing where they stay below 5 degrees.")
                  .one_of({"tetgen", "mesh3", "stuffing", "best"}))
       .takes(field("dihedral_deg", &Tet::dihedral_deg, "Smallest dihedral angle that is aimed at.")
                  .from(0.0)

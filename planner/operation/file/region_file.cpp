@@ -353,7 +353,7 @@ void tell_gaps(const Slices& planes, double apart_mm, double bridge_mm, const st
       plain(std::ceil(1000.0 * widest_mm) / 1000.0) + " (bridge_mm in a plan) interpolates");
 }
 
-/// Names in quotes; with the number of those that several have.
+/// Names in quotes; a name that several structures have is followed by its structure's number.
 std::string list_of(const std::vector<voxel::Structure>& structures) {
   std::map<std::string, int> counts;
   for (const voxel::Structure& structure : structures) ++counts[structure.name];

@@ -249,7 +249,8 @@ voxel::SliceMask refined(const voxel::SliceMask& mask, const Refinement& refinem
     for (brep::Contour& contour : contours) slice.polygons_mm.push_back(std::move(contour.points_mm));
     is_empty = is_empty && slice.polygons_mm.empty();
   }
-  if (is_empty) throw std::runtime_error("nothing is left of any contour: ask for less");
+  if (is_empty)
+    throw std::runtime_error("no contour is left: reduce the thinning, the smoothing or the inward offset");
   return result;
 }
 

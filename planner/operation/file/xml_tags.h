@@ -10,7 +10,7 @@ namespace octotomy::planner {
 
 /// Where an element of an XML text begins or ends.
 struct XmlTag {
-  std::string name;  ///< without "svg:"; "foreign" of another namespace's prefix
+  std::string name;  ///< without "svg:"; "foreign" for elements with the prefix of another namespace
   std::map<std::string, std::string> attributes;
   bool begins = true;
   std::size_t line = 1;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Mitred segments of a straight bone along a curve.
 //   1 A plane at every corner: the bisector of the two directions that meet there.
-//   2 Frames along the curve, each the one before under the smallest turn between the two directions. A line
-//     along one segment then meets the bisector where the same line along the next does.
-//   3 Positions on the donor: one after another, each as near to the one before as saw and wedge allow.
+//   2 Frames along the curve, each the previous one rotated by the smallest rotation between the two
+//     directions. A line along one segment then meets the bisector where the same line along the next does.
+//   3 Positions on the donor: one after another, each as near to the previous one as saw and wedge allow.
 // A cut is described by its slope: at an offset o from the axis it lies dot(slope, o) further along.
 #include "planner/operation/flap/design.h"
 
@@ -32,14 +32,15 @@ double tilt_deg(const glm::dvec2& slope) {
   return glm::degrees(std::atan(glm::length(slope)));
 }
 
-/// The part of a vector square to a unit vector, as a unit vector.
+/// The component of a vector perpendicular to a unit vector, normalised.
 glm::dvec3 square_to(const glm::dvec3& unit, const glm::dvec3& vector, const std::string& refusal) {
   const glm::dvec3 rest = vector - unit * glm::dot(unit, vector);
   if (!(glm::length(rest) > 1e-3 * glm::length(vector))) throw std::invalid_argument(refusal);
   return glm::normalize(rest);
 }
 
-/// The smallest turn that brings one unit vector onto another, which does not point the other way.
+/// Rotates a vector by the smallest rotation that maps one unit vector onto another. Precondition: the two
+/// are not opposite.
 glm::dvec3 carried(const glm::dvec3& vector, const glm::dvec3& from, const glm::dvec3& to) {
   const glm::dvec3 sum = from + to;
   return vector - sum * (glm::dot(vector, to) + glm::dot(vector, from)) / (1.0 + glm::dot(from, to)) +
@@ -86,7 +87,7 @@ std::vector<FlapPlane> cuts_of(const FlapPlan& plan, const std::vector<glm::dvec
   return cuts;
 }
 
-/// What no position on the donor changes.
+/// The parts of a segment that do not depend on its position on the donor.
 FlapSegment segment_between(const FlapPlane& start, const FlapPlane& end, const glm::dvec3& along,
                             const glm::dvec3& across, double corner_mm, std::size_t number) {
   FlapSegment made;

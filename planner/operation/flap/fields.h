@@ -10,7 +10,7 @@
 
 namespace octotomy::planner {
 
-/// What the steps of one free flap have in common: each finds the same cuts from the same fields.
+/// The fields that the steps of one free flap share: each step computes the same cuts from the same fields.
 struct FlapFields {
   std::vector<Mark> curve, stumps, donor;
   Mark face;
@@ -24,7 +24,7 @@ struct FlapFields {
 FlapPlan plan_of(const FlapFields& fields);
 /// The segments; throws as flap_segments().
 std::vector<FlapSegment> segments_of(const FlapFields& fields);
-/// Refuses fields of which no flap can be made, and marks that move with an object.
+/// Refuses fields that define no flap, and marks that move with an object.
 void check_flap(const FlapFields& fields, const Place& place);
 
 /// The fields as those of an operation that derives from FlapFields.

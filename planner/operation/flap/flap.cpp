@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a surgeon reads of a free flap: its segments in order, their lengths and angles, where the donor is
-// cut, and how much bone meets at every osteotomy. A contact area is the volume that both bones share within
-// a slab about the cut, over the slab's thickness: an object, so that both kernels answer it and it has a
-// certificate.
+// The surgeon's figures of a free flap: its segments in order, their lengths and angles, the cuts on the
+// donor, and the area of contact at every osteotomy. A contact area is the volume that both bones share
+// within a slab around the cut, divided by the slab's thickness. This volume is an object, so that both
+// kernels compute it and it has a certificate.
 #include <algorithm>
 #include <cmath>
 
@@ -50,8 +50,9 @@ Json segment_json(const FlapSegment& segment, const Object& object, std::size_t 
       {"second_cut", cut_json(segment.donor_end, segment.donor_end_mm, segment.end_tilt_deg)}};
 }
 
-/// Through a slab the bones drift apart by the tangent of half their angle to either side. Of equal convex
-/// sections at most `reach_mm` wide to each side, the mean over the slab lacks at most this much.
+/// The largest error of a contact area that is due to the slab's thickness. Across the slab the bones diverge
+/// by the tangent of half their angle to either side. For equal convex sections, at most `reach_mm` wide to
+/// each side, the mean over the slab is too small by at most this much.
 double drift_mm2(const Flap& flap, double turn_deg) {
   const double mean_shift_mm = 0.25 * flap.slab_mm * 2.0 * std::tan(glm::radians(0.5 * turn_deg));
   return mean_shift_mm * 2.0 * flap.reach_mm;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A donor's scan where one segment of a flap is placed. Its samples stay as they are; the lattice moves, so
-// that nothing is interpolated twice and both kernels read the placed bone as they read any scan.
+// A donor's scan at the position of one segment of a flap. Its samples do not change; only the lattice moves.
+// Nothing is therefore interpolated twice, and both kernels read the placed bone like any scan.
 #include <algorithm>
 
 #include "planner/operation/flap/fields.h"
@@ -15,7 +15,8 @@ struct FlapScan : FlapFields {
   int segment = 1;
 };
 
-/// The samples beside a segment go along as far as this, so that the bone continues through its osteotomies.
+/// Samples up to this distance beyond a segment's cuts are included, so that the bone continues through its
+/// osteotomies.
 constexpr double beyond_cuts_mm = 10.0;
 
 void check(const FlapScan& step, const Place& place) {
@@ -25,7 +26,7 @@ void check(const FlapScan& step, const Place& place) {
     place.at("segment").refuse("is beyond the curve, which has " + std::to_string(count) + " segments");
 }
 
-/// The box, in the donor's scan, of a segment's bone and of what continues it.
+/// The box, in the donor's scan, of a segment's bone and its continuation.
 voxel::Box box_of(const FlapPlan& plan, const FlapSegment& segment) {
   const glm::dvec3 along = glm::normalize(plan.donor_to_mm - plan.donor_from_mm);
   const double over_mm = 0.5 * (segment.longest_mm - segment.length_mm) + beyond_cuts_mm;

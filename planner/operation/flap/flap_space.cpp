@@ -20,7 +20,7 @@ struct FlapSpace : FlapFields {
 
 constexpr int sides = 8;
 
-/// A stretch of a beam between two cuts.
+/// A part of a beam between two cuts.
 struct Piece {
   FlapPlane start, end;
   glm::dvec3 along, across;
@@ -30,7 +30,7 @@ struct Beam {
   double reach_mm = 0.0;  ///< from its axis to its sides
 };
 
-/// A direction square to a piece at an angle from where the face looks.
+/// A direction perpendicular to a piece, at an angle from the direction of its face.
 glm::dvec3 square_at(const Piece& piece, double radians) {
   return std::cos(radians) * piece.across + std::sin(radians) * glm::cross(piece.along, piece.across);
 }

@@ -9,30 +9,33 @@ namespace octotomy::planner {
 namespace {
 
 /// Lengths of a face, in millimetres.
-constexpr double rim_step = 8.0;           ///< by which a rim stands before what is behind it
-constexpr double rim_reach = 3.0;          ///< along which a rim goes on
-constexpr double above_spine = 4.0;        ///< where the piriform rim is taken, over the nasal spine
-constexpr double below_rim = 8.0;          ///< where the buttress is taken, under the piriform rim
+constexpr double rim_step = 8.0;           ///< least depth of the step behind a rim
+constexpr double rim_reach = 3.0;          ///< least length of a rim
+constexpr double above_spine = 4.0;        ///< height above the nasal spine at which the piriform rim is
+                                           ///< measured
+constexpr double below_rim = 8.0;          ///< height below the piriform rim at which the buttress is
+                                           ///< measured
 constexpr double deepest_buttress = 42.0;  ///< behind the nasal spine; a surface behind this is the ramus
 constexpr double broken = 4.0;             ///< a surface falls back farther where it ends
-constexpr double most_hole = 9.0;          ///< of thin bone, across which it may go on
+constexpr double most_hole = 9.0;          ///< of thin bone; the surface may continue beyond it
 constexpr double small_hole = 1.1;         ///< of a voxel
 constexpr double blurred_step = 3.0;       ///< over which the slope of a step extends
-constexpr double two_ends = 3.0;           ///< between answers for its end, beyond which none is known
+constexpr double two_ends = 3.0;           ///< largest distance between two results for its end
 constexpr double orbit_above_nose = 6.0;   ///< a height within the orbits, over the nose's opening
 constexpr double least_orbit = 18.0, most_orbit = 42.0;  ///< from the mid-plane
 constexpr double orbit_height = 32.0;
-constexpr double two_rims = 8.0;  ///< between the answers of two rules for a rim, beyond which neither is one
+constexpr double two_rims = 8.0;  ///< largest distance between two rules' results for a rim
 constexpr double crest = 6.0;     ///< below a rim's crest nothing stands before it for so long
 /// Within which places are as far out as the outermost, by noise, and as far down and back, by pitch.
 constexpr double as_far_out = 0.25, as_far_down = 1.0;
 constexpr double arch_begin = 15.0, arch_end = 78.0;  ///< behind the nasal spine
-constexpr double arch_beyond = 16.0;                  ///< where the arch of a large head may go on
-constexpr double arch_end_dip = 0.6;                  ///< by which the bone behind it lies further in
+constexpr double arch_beyond = 16.0;                  ///< the arch of a large head may extend by this much
+constexpr double arch_end_dip = 0.6;                  ///< least inward step of the bone behind it
 constexpr double least_half_face = 45.0, most_half_face = 80.0;
 constexpr double least_angle = 34.0, most_angle = 75.0;  ///< the mandible's, from the mid-plane
 constexpr double angle_begin = 40.0, angle_end = 88.0;   ///< behind the chin
-constexpr double angle_share = 0.6;  ///< of the way from chin to nasal spine, below which an angle lies
+constexpr double angle_share = 0.6;  ///< an angle lies below this share of the height from chin to nasal
+                                     ///< spine
 constexpr double nose_root = 12.0;   ///< over the nose's opening
 constexpr double nose_root_width = 2.0, nose_root_depth = 30.0;  ///< beside the mid-plane; behind the nose
 
@@ -86,7 +89,7 @@ class Face {
       miss("piriform", "no rim stands out before the inside of the nose");
       return miss("buttress", "no rim stands out before the inside of the nose");
     }
-    // Another rule: where the surface steps back most within a millimetre and a half.
+    // A second rule: the largest backward step of the surface within 1.5 mm.
     double step_back = rim, most = 0.0;
     for (double out = 4.0; out <= 24.0; out += step()) {
       const double deep = front(out, row),
@@ -101,7 +104,7 @@ class Face {
       doubt("piriform", 0.7 * std::abs(step_back - rim));
     }
     const int lower = maps_.front.row(ans->z + above_spine - below_rim + higher_mm_);
-    // From the rim outwards: until the surface breaks off or a hole follows.
+    // Goes outwards from the rim until the surface breaks off or a hole follows.
     const double begin = std::max(rim_at(lower), rim) + 1.0;
     const auto end_at = [&](double hole_mm, double break_mm) {
       double out = begin;
@@ -110,7 +113,7 @@ class Face {
       return out;
     };
     const double out = end_at(most_hole, broken);
-    // What follows behind a hole or a smaller step may be another bone, and blur makes a slope of a step.
+    // Bone behind a hole or a smaller step may be another bone; blur turns a step into a slope.
     bool is_clear = out - end_at(small_hole, 0.6 * broken) <= two_ends;
     for (double at = begin; at < out - two_ends && is_clear; at += step())
       is_clear = !(front(at + blurred_step, lower) - front(at, lower) > 2.0 * broken);
@@ -149,7 +152,7 @@ class Face {
 
   void orbit() {
     const int first = maps_.front.row(nose_.top_mm + orbit_above_nose);
-    // The median of five columns leaves single ones, as with a foramen, out.
+    // The median of five columns excludes single outliers, such as a foramen.
     std::vector<std::pair<int, double>> rims;
     std::vector<int> rows;
     for (double out = least_orbit; out <= most_orbit; out += step()) {
@@ -174,7 +177,7 @@ class Face {
   struct Window {
     glm::dvec2 low, high;    ///< back and up
     double as_far = 0.0;     ///< within which places reach as far
-    double beyond_mm = 0.0;  ///< behind the window, unless the bone was passed there
+    double beyond_mm = 0.0;  ///< beyond the window, unless the bone ended there
   };
 
   /// Places of the map from this side in a column that reach at least as far as `least`.
@@ -214,7 +217,7 @@ class Face {
     if (near.empty()) return std::nullopt;
     glm::dvec3 mean(0.0);
     for (const auto& [value, at] : near) mean += at / static_cast<double>(near.size());
-    // At the window's end it is no extremum of the bone.
+    // At the window's end, the position is not an extremum of the bone.
     if (mean.y > end_mm - 1.0 || mean.y < window.low.x + 1.0 || mean.z > window.high.y - 1.0)
       return std::nullopt;
     double far_mm = 0.0;

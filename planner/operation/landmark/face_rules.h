@@ -6,8 +6,8 @@
 namespace octotomy::planner {
 
 /// Landmarks of both sides, each with _left and _right: the piriform rims, the orbits' lowest rims, the
-/// zygomatic buttresses, the zygomatic arches' outermost points and the mandible's angles. Adds to what the
-/// profile gave. `higher_mm` shifts the heights that a rule sets itself.
+/// zygomatic buttresses, the zygomatic arches' outermost points and the mandible's angles. Adds to the
+/// landmarks of the profile. `higher_mm` shifts the heights that the rules choose.
 void find_face_places(const HeadMaps& maps, const NasalOpening& nose, double higher_mm, FoundPlaces& found);
 
 /// The point of the mid-line at the nose's root.

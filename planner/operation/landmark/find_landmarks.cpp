@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A first guess where a skull's landmarks are, for a person to look at and to correct.
+// A first guess of a skull's landmarks, which a person checks and corrects.
 #include <algorithm>
 #include <map>
 
@@ -25,7 +25,7 @@ namespace {
 
 struct Meaning {
   std::string says;
-  double least_mm = 0.0;  ///< by which even a sharp rule misses what people mean
+  double least_mm = 0.0;  ///< least error of a rule, however sharp, against human observers
 };
 std::map<std::string, Meaning> meanings() {
   std::map<std::string, Meaning> all;
@@ -39,7 +39,7 @@ std::map<std::string, Meaning> meanings() {
 
 struct FindLandmarks {
   ObjectName object;
-  // Of the verb.
+  // Of the command only.
   SampleWindow window{300.0};
   std::filesystem::path out;
 };
@@ -86,7 +86,7 @@ Json measure(const FindLandmarks& asked, const AnswerBench& bench) {
   return json;
 }
 
-/// The bone's surface, of which the mid-plane is fitted.
+/// The bone's surface, for the fit of the mid-plane.
 brep::Mesh surface_of(const std::filesystem::path& file, const voxel::DrawnObject& bone,
                       const FileBench& bench) {
   if (is_mesh(file)) return read_surface(file, bench.timings);

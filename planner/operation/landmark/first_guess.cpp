@@ -32,7 +32,8 @@ constexpr double least_left = 0.86;  ///< of the mid-plane's normal: turned and 
 constexpr double usual_overlap = 0.7;
 constexpr std::array<double, 2> other_overlaps{0.55, 0.85};
 constexpr double plane_rest_mm =
-    0.02;                          ///< a round that moves the surface less ends a fit: it turns no answer
+    0.02;                          ///< a fit ends with a round that moves the surface less than this, which
+                                   ///< does not change results
 constexpr double coarse_mm = 1.0;  ///< step of the maps of other trials
 /// Pitches in degrees at which a face is sought, nearest first; how often its pitch is corrected.
 constexpr std::array<double, 5> first_pitches{0.0, 12.0, -12.0, 24.0, -24.0};
@@ -45,10 +46,10 @@ constexpr double nose_lean_deg = 1.0, arch_fall_deg = 5.0, most_lean_deg = 35.0;
 constexpr std::array<std::array<double, 3>, 4> other_ways{
     {{6.0, 1.0, 1.5}, {3.0, 3.0, -1.0}, {-3.0, 1.0, 1.0}, {-6.0, 3.0, -1.5}}};
 constexpr double threshold_share = 1.25;  ///< a higher threshold over the usual one, from -150 on
-/// Of the scatter, the interval; and of the coarsest voxel edge.
+/// Factors of the interval: on the scatter, and on the coarsest voxel edge.
 constexpr double of_scatter = 1.3, of_voxel = 0.7;
 constexpr double scan_end_mm = 2.0;      ///< a voxel and more, as with skull_profile.cpp's
-constexpr double most_within_mm = 15.0;  ///< what may be farther off is no guess
+constexpr double most_within_mm = 15.0;  ///< a landmark with a larger error is not reported
 constexpr double least_plane_deg = 0.5;
 
 brep::MirrorFit mid_plane_of(const brep::Mesh& surface, double overlap,
@@ -61,7 +62,7 @@ brep::MirrorFit mid_plane_of(const brep::Mesh& surface, double overlap,
   return brep::fit_mirror_plane(surface, options);
 }
 
-/// One way to apply the rules: all that a guess depends on.
+/// One application of the rules, with all that a guess depends on.
 struct Trial {
   const voxel::DrawnObject* bone = nullptr;
   brep::MirrorPlane plane;
@@ -111,9 +112,9 @@ HeadFrame frame_of(const Trial& trial) {
   return head_frame(trial.plane.point_mm, trial.plane.normal, trial.pitch_deg);
 }
 
-/// By how much the head would have to be raised to be held by its Frankfurt plane, in degrees: the mean of
-/// what the line from nasal spine to nasion says and of what the one from orbit to zygomatic arch says. Each
-/// differs by some 4 degrees from face to face. None without either line.
+/// The pitch in degrees that would bring the head's Frankfurt plane to the horizontal: the mean of two
+/// estimates, from the line from nasal spine to nasion and from the line from orbit to zygomatic arch. Each
+/// varies by about 4 degrees between faces. None without either line.
 std::optional<double> to_raise_deg(const FoundPlaces& found) {
   double sum = 0.0, count = 0.0;
   const auto add = [&](double lean_deg, double usual_deg) {
@@ -134,7 +135,7 @@ std::optional<double> to_raise_deg(const FoundPlaces& found) {
   return count > 0.0 ? std::optional(sum / count) : std::nullopt;
 }
 
-/// The pitch at which the face is as in a head held by its Frankfurt plane; none: no face.
+/// The pitch at which the Frankfurt plane is horizontal; none: no face.
 std::optional<double> held_pitch(const voxel::DrawnObject& bone, const brep::MirrorPlane& plane,
                                  const voxel::Progress& progress) {
   std::optional<double> of_face_alone;
@@ -156,11 +157,12 @@ std::optional<double> held_pitch(const voxel::DrawnObject& bone, const brep::Mir
   return of_face_alone;
 }
 
-/// How far the trials' answers lie from the first one's. One trial may have none, or one so far off that it
-/// is of something else, as where a higher threshold opens thin bone; unbounded where two have.
+/// The largest distance of the trials' results from the first one's. One trial may have no result, or one so
+/// far away that it belongs to another structure, as where a higher threshold opens thin bone; with two such
+/// trials the scatter is unbounded.
 double scatter(const std::string& name, const glm::dvec3& first_mm, const std::vector<FoundPlaces>& others,
                const glm::dvec3& across) {
-  // Any point of the mid-line does; only how far it may lie beside counts.
+  // Any point of the mid-line is valid; only its sideways distance counts.
   const bool is_of_midline = name.starts_with("midline_");
   double most = 0.0;
   int without = 0;
@@ -207,8 +209,8 @@ double angle_deg(const glm::dvec3& a, const glm::dvec3& b) {
   return glm::degrees(std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
 }
 
-/// Adds the points of the brain case, which are found from within; their rule is the same in all trials but
-/// for the mid-plane.
+/// Adds the points of the brain case, which are found from inside. Their rule is the same in all trials
+/// except for the mid-plane.
 void add_brain_case(const HeadPart& head, const HeadFrame& frame, FoundPlaces& found) {
   const auto reach = [&](const char* name, const glm::dvec3& way, const char* missing) {
     if (!head.cavity_mm) {
@@ -226,8 +228,8 @@ void add_brain_case(const HeadPart& head, const HeadFrame& frame, FoundPlaces& f
   reach("midline_top", frame.up, "the scan ends below the top of the skull");
 }
 
-/// Takes out points of one side alone that were sought from points which turned out to be unknown: nothing
-/// else shows then that they are what they are called.
+/// Removes points of one side only that were searched for from points which are missing in the end: no other
+/// evidence for them remains.
 void take_out_unfounded(std::vector<LandmarkGuess>& found, std::map<std::string, std::string>& missing) {
   const auto take_out = [&](const std::string& name, const std::string& opposite,
                             const std::vector<std::string>& sources) {
@@ -269,7 +271,7 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
         "no nasal opening beside an orbit is seen from the front, from which the rules count: is it a skull, "
         "with its face in the scan, and the window that of bone?");
 
-  // The same with other pitches, widths, heights, thresholds and mid-planes.
+  // The trials: other pitches, widths, heights, thresholds and mid-planes.
   std::vector<Trial> trials;
   for (const auto& [pitch_deg, width_mm, higher_mm] : other_ways)
     trials.push_back({&bone, plane, *pitch + pitch_deg, coarse_mm, width_mm, higher_mm});
@@ -282,8 +284,8 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   }
   guess.mid_plane_within_deg = least_plane_deg + of_scatter * plane_deg;
   add_brain_case(head, frame, first);
-  // Halves that are not alike leave open by about their distance where their middle is; and a plane that is
-  // turned about its own point lies off by more the farther away from it.
+  // The middle of unlike halves is uncertain by about their distance. A rotation of the plane about its own
+  // point displaces it in proportion to the distance from that point.
   for (const auto& [name, place] : first.places)
     if (name.starts_with("midline_"))
       first.doubt_mm[name] +=
@@ -298,8 +300,8 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
     const bool has_face = !found.places.empty();
     add_brain_case(head, other, found);
     for (auto& [name, place] : found.places) place = other.lps_mm(place);
-    // A trial without this face, as where a higher threshold opens the orbits' floors or another edge passes
-    // for the spine, from which other rules count, says nothing; another one counts as it is.
+    // A trial that did not find this face is ignored: a higher threshold may open the orbits' floors, or
+    // another edge may be mistaken for the spine, from which other rules start. Any other trial counts.
     const glm::dvec3 *spine = first.find("ans"), *its = found.find("ans");
     const bool is_this_face = has_face && (spine == nullptr || its == nullptr ||
                                            glm::distance(frame.lps_mm(*spine), *its) <= most_within_mm);
@@ -314,7 +316,7 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   for (const auto& [name, place] : first.places) {
     const glm::dvec3 p_mm = frame.lps_mm(place);
     const double moved = scatter(name, p_mm, others, plane.normal);
-    // A middle beside the mid-plane is a finding of its own: of a crooked face, or of bone on one side alone.
+    // A middle beside the mid-plane is a separate finding: the face is crooked, or bone is on one side only.
     const bool is_of_middle =
         name.find("_left") == std::string::npos && name.find("_right") == std::string::npos;
     const double aside = is_of_middle ? 0.5 * std::abs(place.x) : 0.0;

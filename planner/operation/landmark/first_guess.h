@@ -11,41 +11,42 @@
 
 namespace octotomy::planner {
 
-/// A place that a person has yet to look at.
+/// A guessed position, which a person has to check.
 struct LandmarkGuess {
   std::string name;
   glm::dvec3 p_mm{0.0};  ///< LPS
-  /// How far off it may be: 0.7 edges of the coarsest voxel, and the root of the sum of these squares:
+  /// Its largest expected error: 0.7 edges of the coarsest voxel, plus the root of the sum of the squares of:
   /// - 1.3 times the farthest answer when its rule is applied again with one assumption or more changed: the
   ///   head pitched by up to 6 degrees either way (faces' own lines differ by some 4 from the Frankfurt
   ///   plane), other heights, a coarser map, a higher threshold, mid-planes of other shares of the surface;
-  /// - what the rule itself leaves open (FoundPlaces::doubt_mm): the length over which its extremum is flat,
-  ///   half the way to a second rule's answer, the difference of both sides; of midline_... points how
-  ///   far the two halves lie apart, MirrorFit::rms_mm, and how far a plane turned by mid_plane_within_deg
-  ///   lies off there;
-  /// - of a point of the middle, half of how far it lies beside the mid-plane.
-  /// The two factors are chosen, not derived; random heads of closed form test the result. What observers
-  /// differ by in a name's meaning is not in it: the operation adds it by name (skull.landmarks.json).
+  /// - the rule's own doubt (FoundPlaces::doubt_mm): the length over which its extremum is flat, half the way
+  ///   to a second rule's answer, the difference of both sides; for midline_... points the distance between
+  ///   the two halves, MirrorFit::rms_mm, and the displacement of the plane there by a rotation of
+  ///   mid_plane_within_deg;
+  /// - for a point of the middle, half of its distance from the mid-plane. The two factors are chosen, not
+  ///   derived; random heads of closed form test the result. Differences between observers on the meaning of
+  ///   a name are not included: the operation adds them by name (skull.landmarks.json).
   double within_mm = 0.0;
 };
 
 struct SkullGuess {
   brep::MirrorFit mid_plane;
-  /// How far the mid-plane's normal may be off: the widest angle between planes of other shares of the
-  /// surface, and a floor of half a degree.
+  /// The largest expected error of the mid-plane's normal: half a degree plus 1.3 times the widest angle to
+  /// the planes from other shares of the surface.
   double mid_plane_within_deg = 0.0;
   std::vector<LandmarkGuess> found;                          ///< by name
   std::vector<std::pair<std::string, std::string>> missing;  ///< names, each with the reason
   std::vector<std::string> findings;
 };
 
-/// A first guess of a skull's landmarks from its symmetry and its extremal points, as the rules in
-/// skull_profile.h and face_rules.h say them, on the patient's bone alone (head_part.h). The patient's up,
-/// left and front are the scan's, to some 20 degrees; the pitch is found from nose, orbits and arches. Names
-/// are those of procedures and cephalometry. What two trials do not find, or far off, and what lies as in no
-/// face (plausible.h) is missing. `surface` is the same bone. Throws std::runtime_error where there is no
-/// mid-plane or no face, as of what is no skull; voxel::Stopped. Cost: three mirror fits, three pictures and
-/// some forty of a quarter of their pixels.
+/// A first guess of a skull's landmarks from its symmetry and its extremal points, by the rules of
+/// skull_profile.h and face_rules.h, on the patient's bone only (head_part.h). `surface` is the surface of
+/// the same bone. The patient's up, left and front have to be the scan's within about 20 degrees; the pitch
+/// is determined from nose, orbits and arches. Names are those of procedures and cephalometry.
+/// A landmark is missing where two trials do not find it or find it far away, or where its position is
+/// implausible (plausible.h). Throws std::runtime_error where there is no mid-plane or no face, as for an
+/// object that is not a skull; voxel::Stopped. Cost: three mirror fits, three pictures and about forty of a
+/// quarter of their pixels.
 SkullGuess guess_landmarks(const voxel::DrawnObject& bone, const brep::Mesh& surface,
                            const voxel::Progress& progress = {});
 

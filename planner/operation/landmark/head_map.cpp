@@ -14,7 +14,7 @@ constexpr int most_px = 1024;
 
 /// A view's picture: the depth along `look` at every pixel, over (right, up).
 HeadMap depths(const voxel::DrawnObject& bone, const voxel::View& view, double step_mm) {
-  // A frame about the bone of any size tells its extent; the picture itself has pixels of a known width.
+  // A frame around the bone, of any size, gives its extent; the picture itself has pixels of a stated width.
   const voxel::Frame about = voxel::frame_about({bone}, view, {256, 256});
   voxel::RenderOptions options;
   options.view = view;

@@ -11,8 +11,8 @@
 
 namespace octotomy::planner {
 
-/// A head's own directions, unit and square to each other, and a point of its mid-plane. A place in it is
-/// (left, back, up) in millimetres: left of the mid-plane, back and up from LPS's origin.
+/// A head's own directions, orthonormal, and a point of its mid-plane. A position in this frame is (left,
+/// back, up) in millimetres: left of the mid-plane, back and up from LPS's origin.
 struct HeadFrame {
   glm::dvec3 left{1, 0, 0}, back{0, 1, 0}, up{0, 0, 1};
   double mid_mm = 0.0;  ///< of the mid-plane along left
@@ -25,7 +25,7 @@ struct HeadFrame {
 /// Precondition: a unit normal that points to the left and is not along z.
 HeadFrame head_frame(const glm::dvec3& point_mm, const glm::dvec3& normal, double pitch_deg);
 
-/// A rectangle of numbers at equal distances, NaN where nothing was met. `x` runs along the rows.
+/// A rectangular grid of numbers at equal distances, NaN where no bone was hit. `x` runs along the rows.
 class HeadMap {
  public:
   HeadMap(const glm::ivec2& size, const glm::dvec2& first_mm, double step_mm);
@@ -48,10 +48,10 @@ class HeadMap {
   std::vector<double> values_;
 };
 
-/// What of a skull is met first, from the front and from both sides.
+/// Depth maps of a skull, from the front and from both sides.
 struct HeadMaps {
   HeadFrame frame;
-  HeadMap front;        ///< over (left, up): how far back the bone begins
+  HeadMap front;        ///< over (left, up): the backward coordinate where bone begins
   HeadMap left, right;  ///< over (back, up): how far to that side the bone reaches, both positive
 };
 inline constexpr double head_map_step_mm = 0.5;

@@ -44,7 +44,7 @@ class Cells {
   const glm::ivec3& step() const { return step_; }
   double cell_mm3() const { return size_mm_.x * size_mm_.y * size_mm_.z; }
 
-  /// What each part surrounds: how many cells, and their middle.
+  /// The cells that each part surrounds: their number and centre.
   struct Surrounded {
     double cells = 0.0;
     glm::dvec3 sum_voxel{0.0};
@@ -80,7 +80,7 @@ class Cells {
         if (at_cell(at + off) != 0 || at_cell(at + 2 * off) != 0) continue;
         const glm::dvec3 voxel = voxel_of(at + 2 * off);
         const glm::dvec3 sample = still ? glm::dvec3(*still * glm::dvec4(voxel, 1.0)) : voxel;
-        // The scan's own end is no surface.
+        // The scan's end is not a surface of the part.
         if (!bone_.grey->scan().contains(glm::ivec3(glm::round(sample)))) continue;
         outside += 1.0;
         if (bone_.grey->step() * voxel::interpolate(*bone_.grey, sample, voxel::Interpolation::Nearest) >=

@@ -12,15 +12,16 @@
 
 namespace octotomy::planner {
 
-/// The patient's bone among all that is as dense.
+/// The patient's bone, separated from other dense objects.
 struct HeadPart {
   voxel::Octree bone;
-  /// The middle of what the skull surrounds, LPS; none where it surrounds too little for a brain case.
+  /// The centre of the space that the skull surrounds, LPS; none where this space is too small for a brain
+  /// case.
   std::optional<glm::dvec3> cavity_mm;
-  std::size_t removed_count = 0;  ///< parts that are not the patient's
+  std::size_t removed_count = 0;  ///< number of parts that do not belong to the patient
   double removed_mm3 = 0.0;
 
-  /// The triangles that lie on this bone, to some 2 mm.
+  /// The triangles that lie on this bone, within about 2 mm.
   brep::Mesh surface_of(const brep::Mesh& surface) const;
 
   /// Which cells of about 2 mm hold this bone or touch one that does, x fastest; cell c holds the voxels from
@@ -29,12 +30,12 @@ struct HeadPart {
   std::vector<bool> is_near;
 };
 
-/// Parts the skull, and the bones near it, from couch, headrest, frame, mask and markers. The skull is the
-/// part that surrounds most: a cell is surrounded where at least five of the six ways along the axes meet the
-/// part. Another part belongs to it if most of it lies below or within the skull's box, and if soft tissue
-/// covers it as it covers the skull; a marker in the air or on the skin has air beside it. Of bone without
-/// samples, or without soft tissue, as a dry skull, parts smaller than a twentieth of the skull are left out.
-/// Cost: a component search for each of the ten largest parts, and a pass over cells.
+/// Separates the skull, and the bones near it, from couch, headrest, frame, mask and markers. The skull is
+/// the part that surrounds most cells: a cell is surrounded where at least five of the six directions along
+/// the axes hit the part. Another part belongs to it if most of the part lies below or within the skull's
+/// box, and soft tissue covers it as it covers the skull; a marker in the air or on the skin is next to air.
+/// Where there are no samples or no soft tissue, as for a dry skull, parts smaller than 1/20 of the skull are
+/// left out. Cost: a component search for each of the ten largest parts, and a pass over cells.
 HeadPart head_part(const voxel::DrawnObject& bone, const voxel::Progress& progress = {});
 
 }  // namespace octotomy::planner

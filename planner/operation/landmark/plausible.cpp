@@ -10,7 +10,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// What the second lies from the first, in millimetres of height or depth, or as a share of the nose's
+/// The position of the second relative to the first: height or depth in millimetres, or a share of the nose's
 /// height.
 struct Relation {
   const char *first, *second;
@@ -39,7 +39,7 @@ constexpr std::array<Relation, 14> relations{{
 struct Pair {
   const char* name;
   double least_out, most_out, most_across, most_along;
-  bool is_known_by_both = false;  ///< missing where the other side is
+  bool is_known_by_both = false;  ///< missing where the other side is missing
 };
 constexpr std::array<Pair, 5> pairs{{{"piriform", 6.5, 19.0, 5.0, 8.0},
                                      {"orbitale", 18.0, 48.0, 14.0, 9.0},
@@ -67,7 +67,7 @@ void keep_related(FoundPlaces& found) {
       if (value >= relation.low && value <= relation.high) continue;
       const std::string where = relation.of == Relation::Below ? "below" : "behind";
       wrong[second] = "it would lie farther or nearer " + where + " " + relation.first + " than in any face";
-      // Which of the two is wrong is not known.
+      // It is not known which of the two is wrong.
       wrong[relation.first] = "it and " + second + " would lie as in no face";
     }
   }
@@ -83,8 +83,8 @@ void keep_alike(FoundPlaces& found) {
           take_out(found, name, "it would lie farther from or nearer to the middle than in any face");
     const glm::dvec3 *a = found.find(left), *b = found.find(right);
     if (a == nullptr || b == nullptr) {
-      // One side alone cannot be compared. The maxilla's outer end, which the rule takes for reached at the
-      // first wide hole, is not known without.
+      // A single side cannot be compared. The maxilla's outer end, which the rule places at the first wide
+      // hole, is not known without the other side.
       for (const std::string& name : {left, right}) {
         if (found.find(name) != nullptr) found.doubt_mm[name] += 2.0;
         if (pair.is_known_by_both)
@@ -98,7 +98,7 @@ void keep_alike(FoundPlaces& found) {
         take_out(found, name, "left and right would differ more than the sides of a face");
       continue;
     }
-    // Which of them is wrong is not known, so each may be by all of it.
+    // It is not known which of them is wrong, so each has the whole doubt.
     for (const std::string& name : {left, right}) found.doubt_mm[name] += std::hypot(across, along);
   }
 }

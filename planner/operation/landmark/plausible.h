@@ -5,10 +5,10 @@
 
 namespace octotomy::planner {
 
-/// Takes out places that cannot be what they are called, with the reason: heights out of order, lengths that
-/// no face has as shares of the height of its nose, and sides that do not match. Sides that match badly are
-/// in doubt by what they differ. Places are in the head's frame, pitched as the Frankfurt plane to
-/// some 6 degrees.
+/// Removes landmarks in implausible positions, with the reason: heights out of order, lengths that no face
+/// has in proportion to the height of its nose, and sides that do not match. Where sides match badly, their
+/// difference is added to the doubt. Positions are in the head's frame, whose pitch is that of the Frankfurt
+/// plane to about 6 degrees.
 void keep_plausible(FoundPlaces& found);
 
 }  // namespace octotomy::planner

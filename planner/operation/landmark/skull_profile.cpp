@@ -8,41 +8,44 @@ namespace octotomy::planner {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-/// Lengths of an adult's or a child's face, in millimetres, that tell its parts apart.
+/// Lengths in an adult's or a child's face, in millimetres, that distinguish its parts.
 constexpr double least_opening = 14.0, most_opening = 50.0;  ///< height of the nose's opening
-constexpr double edge = 5.0;          ///< by which bone stands before what is behind it
+constexpr double edge = 5.0;          ///< least step from bone to the surface behind it
 constexpr double spine_reach = 10.0;  ///< of the nasal spine below the opening's floor
 constexpr double least_alveolar = 10.0, most_alveolar = 45.0;  ///< from the spine to the upper incisors' edge
-constexpr double tooth_step = 1.5;                             ///< an edge's, within tooth_step_over
+constexpr double tooth_step = 1.5;                             ///< least backward step of an edge, within
+                                                               ///< tooth_step_over
 constexpr double tooth_step_over = 2.0;
-constexpr double crown = 9.0;             ///< of an incisor
-constexpr double receding = 28.0;         ///< a chin's, at most, behind the nasal spine
+constexpr double crown = 9.0;             ///< height of an incisor
+constexpr double receding = 28.0;         ///< the largest distance of a chin behind the nasal spine
 constexpr double least_mandible = 20.0;   ///< its height in the mid-line
 constexpr double chin = 22.0;             ///< its height
 constexpr double between_chins = 3.0;     ///< half the distance between a chin's foremost point and the point
                                           ///< farthest before its chord
 constexpr double hollow = 1.0;            ///< least depth of a concavity between its neighbours
 constexpr double most_nasal_bone = 25.0;  ///< above the opening
-constexpr double widest_end = 25.0;  ///< of bone that ends by itself, from front to back, in its lowest row
-constexpr double scan_end = 2.0;     ///< within which of a scan's end nothing is bone's own
+constexpr double widest_end = 25.0;  ///< largest width, from front to back, of the lowest row of bone that
+                                     ///< ends naturally
+constexpr double scan_end = 2.0;     ///< within this distance of the scan's end, an end of bone is the scan's
 constexpr double least_brow = 12.0, most_brow = 45.0;  ///< above the nose's tip
-constexpr double stands_out = 0.7;  ///< by which a spine's tip lies before the bone below it
-constexpr double spine_end = 1.1;   ///< by which its upper end may lie behind its foremost point
+constexpr double stands_out = 0.7;  ///< least distance of a spine's tip in front of the bone below it
+constexpr double spine_end = 1.1;   ///< largest distance of its upper end behind its foremost point
 constexpr double spine_line =
     12.0;  ///< below the opening's floor, the end of the line before which the spine stands
-constexpr double flat = 0.4;  ///< within which places of an extremum cannot be told apart
-/// Of the height from nasion to spine: the least distance of an upper incisor's edge from the spine, and of a
-/// lower one's from the chin. Without teeth the ridge lies at a third of it, and at six tenths.
+constexpr double flat = 0.4;  ///< positions of an extremum within this depth cannot be distinguished
+/// Shares of the height from nasion to spine: the least distance of an upper incisor's edge from the spine,
+/// and of a lower one's from the chin. Without teeth the ridges lie at 0.33 and 0.6.
 constexpr double most_upper_tooth = 0.85;
 constexpr double least_upper_tooth = 0.38, least_lower_tooth = 0.7;
-/// From here on it is a tooth's, for certain; between, it is one if it stands below the upper incisors as in
-/// a closed bite.
+/// An edge beyond this share is certainly a tooth's. Between the shares, it is a tooth's if it lies below the
+/// upper incisors as in a closed bite.
 constexpr double sure_lower_tooth = 0.92, closed_bite = 6.0;
-constexpr double notch = 5.0;  ///< by which a whole chin's lower border rises at most in the middle
-/// About a row, over which both sides are compared; beside the middle; and how far the middle is sought.
+constexpr double notch = 5.0;  ///< largest rise of an intact chin's lower border in the middle
+/// The region in which both sides are compared: rows around a row, distances from the middle; and the largest
+/// distance at which the middle is searched for.
 constexpr double like_height = 8.0, like_begin = 3.0, like_end = 24.0, most_aside = 9.0;
 
-/// The row that lies foremost of first..last; of equals, to a third of a millimetre, the middle one.
+/// The foremost row of first..last; of rows that are equal to a third of a millimetre, the middle one.
 int foremost(const Profile& profile, int first, int last) {
   double best = infinite;
   for (int k = first; k <= last; ++k) best = std::min(best, profile.back_mm[static_cast<std::size_t>(k)]);
@@ -72,7 +75,7 @@ class Reader {
   }
   int rows_of(double length_mm) const { return static_cast<int>(std::lround(length_mm / profile_.step_mm)); }
   int within(int k) const { return std::clamp(k, 0, profile_.rows() - 1); }
-  /// Places a point that an edge below it makes, unless the scan made the edge.
+  /// Places a point at the edge below it, unless the edge is the scan's end.
   void place_end(const char* name, int k) {
     if (profile_.up_mm(k) < profile_.cut_mm + scan_end) return miss(name, "the scan ends there");
     place(name, k);
@@ -80,8 +83,9 @@ class Reader {
   void place(const char* name, int k) {
     found_.places[name] = {profile_.middle_mm[static_cast<std::size_t>(k)], back(k), profile_.up_mm(k)};
   }
-  /// Adds how far the farthest row lies that is as far in front, in the profile turned so that the extremum
-  /// lies foremost: noise and the samples' distance may put the extremum there, also beyond rows between.
+  /// Adds to the doubt the distance to the farthest row that is equally far in front, in the profile rotated
+  /// so that the extremum is foremost. Noise and the samples' distance may shift the extremum to that row,
+  /// even across rows between.
   template <typename Depth>
   void add_flat(const char* name, int k, int first, int last, const Depth& depth) {
     int low = k, high = k;
@@ -91,8 +95,8 @@ class Reader {
   }
   void miss(const char* name, const char* why) { found_.missing[name] = why; }
 
-  /// The nose's root lies deepest behind the line from the nasal bones' foremost point that touches the brow,
-  /// however the head is pitched.
+  /// The nose's root is the point deepest behind the tangent from the nasal bones' foremost point to the
+  /// brow; this does not depend on the head's pitch.
   void above_nose() {
     const int top = profile_.row(nose_.top_mm);
     const int tip = foremost(profile_, within(top - rows_of(most_nasal_bone)), top);
@@ -108,7 +112,7 @@ class Reader {
   void below_nose() {
     const int floor = profile_.row(nose_.floor_mm);
     const int ans = foremost(profile_, floor, within(floor + rows_of(spine_reach)));
-    // The spine's tip is the highest of rows as far in front.
+    // The spine's tip is the highest of the rows that are equally far in front.
     int tip = ans;
     while (tip > floor && back(tip - 1) <= back(ans) + 0.5) --tip;
     place_spine(floor, tip);
@@ -131,8 +135,8 @@ class Reader {
     mandible(incisor < 0 ? tip : incisor, last);
   }
 
-  /// The tip is the first row that stands before what follows it, and, by another rule that no pitch of the
-  /// head changes, the row farthest before the line from the opening's floor to the bone below.
+  /// The tip is the first row in front of the rows that follow. A second rule, which does not depend on the
+  /// head's pitch, is the row farthest in front of the line from the opening's floor to the bone below.
   void place_spine(int floor, int foremost_row) {
     const int end = within(floor + rows_of(spine_line));
     int first = -1;
@@ -150,7 +154,7 @@ class Reader {
     const bool is_prominent = before(second) >= 1.0;
     if (first < 0 && !is_prominent)
       return miss("ans", "no spine stands before the bone below the nose's opening");
-    // Of a spine that runs on into the bone below it, the tip is its upper end.
+    // The tip of a spine that continues into the bone below it is its upper end.
     const int lies = first < 0 ? foremost_row : first;
     int tip = lies;
     while (tip > floor && back(tip - 1) <= back(lies) + spine_end) --tip;
@@ -170,18 +174,19 @@ class Reader {
     return last;
   }
 
-  /// The last row before the profile first steps back about as far as it does anywhere; -1: none.
+  /// The last row before the first step backwards that is about as large as the largest one; -1: none.
   int incisor_below(int tip, int last) const {
     const int over = rows_of(tooth_step_over);
     const int first = tip + rows_of(least_alveolar), lowest = std::min(last, tip + rows_of(most_alveolar));
-    // Where the mouth is open it falls back to the spine, which is no more of an edge.
+    // In an open mouth the profile falls back as far as the cervical spine; a deeper fall does not make it
+    // more of an edge.
     const auto fall = [&](int k) { return std::min(back(k + over) - back(k), edge); };
     double most = 0.0;
     for (int k = first; k <= lowest; ++k) most = std::max(most, fall(k));
     if (most < tooth_step) return -1;
     int k = first;
     while (fall(k) < 0.6 * most) ++k;
-    // The edge of the ridge may fall back as far as that of the teeth in it, which lies lower.
+    // The edge of the ridge may fall back as far as the edge of its teeth, which lies lower.
     const int near = tip + static_cast<int>(least_upper_tooth * nose_height_ / profile_.step_mm) + 1;
     const int far =
         std::min(lowest, tip + static_cast<int>(most_upper_tooth * nose_height_ / profile_.step_mm));
@@ -234,9 +239,9 @@ class Reader {
     place_hollow("b_point", first + rows_of(crown), foremost_chin);
   }
 
-  /// The foremost row, if the bone above lies behind it as clearly as a hollow. Otherwise, where a chin is
-  /// flat or recedes or a jaw is open, the row farthest before the line between both, which no pitch of the
-  /// head changes much; -1: none stands before it as clearly.
+  /// The foremost row, if the bone above lies behind it by at least `hollow`. Otherwise, for a flat or
+  /// receding chin or an open jaw, the row farthest in front of the line between both ends, which hardly
+  /// depends on the head's pitch; -1 if no row lies in front of that line by at least `hollow`.
   int pogonion_between(int high, int last) {
     const int row = foremost(profile_, high, last);
     double above = back(row);
@@ -261,7 +266,7 @@ class Reader {
   void place_hollow(const char* name, int first, int last,
                     const char* why = "the profile has no hollow there") {
     const double run = last - first, rise = back(last) - back(first);
-    // Square to the line, in millimetres.
+    // Perpendicular to the line, in millimetres.
     const auto depth = [&](int k) {
       return (back(k) - back(first) - rise * (k - first) / run) /
              std::hypot(1.0, rise / (run * profile_.step_mm));
@@ -281,8 +286,8 @@ class Reader {
   FoundPlaces found_;
 };
 
-/// Where both sides of the front are most alike about a row: left of the mid-plane, which it is itself unless
-/// another place is clearly better.
+/// The position, left of the mid-plane, about which both sides of the front are most alike near a row: the
+/// mid-plane itself, unless another position is clearly better.
 double middle_at(const HeadMap& front, int row) {
   const int high = static_cast<int>(like_height / front.step_mm()),
             step = std::max(1, static_cast<int>(1.0 / front.step_mm()));
@@ -298,7 +303,7 @@ double middle_at(const HeadMap& front, int row) {
           off.push_back(15.0);
       }
     if (off.size() < 20) return infinite;
-    // The mean of the better two thirds: streaks and holes are on one side alone.
+    // The mean of the better two thirds: streaks and holes are on one side only.
     const auto kept = static_cast<std::ptrdiff_t>(off.size() * 2 / 3);
     std::nth_element(off.begin(), off.begin() + kept, off.end());
     double sum = 0.0;
@@ -311,7 +316,7 @@ double middle_at(const HeadMap& front, int row) {
   return at;
 }
 
-/// Whether bone stands on both sides of a height before what is seen in the mid-line.
+/// Whether bone on both sides of the mid-line lies in front of the surface in the mid-line at this height.
 bool is_between_rims(const HeadMap& front, int row, double back_mm) {
   for (const double side : {-1.0, 1.0}) {
     bool is_rim = false;
@@ -332,7 +337,7 @@ Profile profile_of(const HeadMap& front, double within_mm) {
   Profile profile;
   profile.step_mm = front.step_mm();
   profile.top_mm = front.y_mm(front.size().y - 1);
-  // The middle of every few rows, and of five of those the median one.
+  // The middle of every few rows; then the median of five of them.
   const int apart = std::max(1, static_cast<int>(std::lround(4.0 / front.step_mm())));
   std::vector<double> middles;
   for (int j = front.size().y - 1; j >= 0; j -= apart) middles.push_back(middle_at(front, j));
@@ -356,7 +361,7 @@ Profile profile_of(const HeadMap& front, double within_mm) {
 }
 
 double chin_notch(const HeadMap& front, const Profile& profile, const NasalOpening& nose) {
-  // Bone of the front alone: a neck stands far behind.
+  // Only bone of the front: a neck lies far behind.
   const double floor_mm = profile.back_mm[static_cast<std::size_t>(profile.row(nose.floor_mm))];
   int lowest = profile.rows() - 1;
   while (lowest > 0 && !(profile.back_mm[static_cast<std::size_t>(lowest)] < floor_mm + receding)) --lowest;
@@ -389,12 +394,13 @@ std::optional<NasalOpening> find_nasal_opening(const Profile& profile, const Hea
   const auto back = [&](int k) { return profile.back_mm[static_cast<std::size_t>(k)]; };
   const int over = static_cast<int>(std::lround(tooth_step_over / profile.step_mm));
   for (int k = 0; k + over < profile.rows(); ++k) {
-    // The nasal bones' lower end: the profile falls back at once.
+    // The nasal bones' lower end, where the profile falls back abruptly.
     if (!(back(k) < infinite) || back(k + over) - back(k) < edge) continue;
     int top = k;
     for (int i = k; i < k + over; ++i)
       if (back(i + 1) - back(i) > back(top + 1) - back(top)) top = i;
-    // It ends where bone stands before all that was seen in it, but for the last rows, as its floor slopes.
+    // The opening ends where bone lies in front of all its rows except the last ones, because its floor
+    // slopes.
     int floor = top + static_cast<int>(least_opening / profile.step_mm);
     double nearest = infinite;
     for (int seen = top + over; floor < profile.rows(); ++floor) {

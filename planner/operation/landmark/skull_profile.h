@@ -10,12 +10,12 @@
 
 namespace octotomy::planner {
 
-/// Places in a head's frame by landmarks' names, and why others were not found.
+/// Positions in a head's frame by landmarks' names, and the reasons why others were not found.
 struct FoundPlaces {
   std::map<std::string, glm::dvec3> places;
   std::map<std::string, std::string> missing;
-  /// How far each may be off for reasons of its own: the length over which its extremum is flat, and how far
-  /// a second rule's answer lies away.
+  /// Each landmark's own doubt: the length over which its extremum is flat, and the distance to a second
+  /// rule's result.
   std::map<std::string, double> doubt_mm;
 
   const glm::dvec3* find(const std::string& name) const {
@@ -24,20 +24,21 @@ struct FoundPlaces {
   }
 };
 
-/// The skull's outline in the mid-plane, as seen from the front: how far back the bone begins by height, the
-/// highest first. Infinite where there is none.
+/// The skull's outline in the mid-plane, as seen from the front: the backward coordinate where bone begins,
+/// by height, the highest first. Infinite where there is no bone.
 struct Profile {
   double top_mm = 0.0, step_mm = 1.0;
   double cut_mm = -std::numeric_limits<double>::infinity();  ///< the height at which the scan cuts bone off
   double chin_notch_mm = 0.0;                                ///< chin_notch()
   std::vector<double> back_mm;
-  std::vector<double> middle_mm;  ///< left of the mid-plane, where both sides are most alike at this height
+  std::vector<double> middle_mm;  ///< by height: the position, left of the mid-plane, about which both sides
+                                  ///< are most alike
 
   double up_mm(int row) const { return top_mm - row * step_mm; }
   int row(double up_mm) const;
   int rows() const { return static_cast<int>(back_mm.size()); }
 };
-/// The foremost bone within a distance of the face's own middle at each height, which of crooked faces lies
+/// The foremost bone within a distance of the face's middle at each height. The middle of a crooked face lies
 /// beside the mid-plane.
 Profile profile_of(const HeadMap& front, double within_mm);
 
@@ -45,19 +46,20 @@ Profile profile_of(const HeadMap& front, double within_mm);
 struct NasalOpening {
   double top_mm = 0.0, floor_mm = 0.0;
 };
-/// None unless some opening in the profile has bone on both sides that lies before what is seen within it.
+/// None unless an opening in the profile has bone on both sides that lies in front of the surface within it.
 std::optional<NasalOpening> find_nasal_opening(const Profile& profile, const HeadMap& front);
 
-/// The height below which the scan, and not the bone, ends: its lowest bone is far too wide for an end.
+/// The height at which the scan cuts the bone off: the lowest bone is then far too wide for an end of its
+/// own.
 double cut_height(const HeadMap& side);
 
-/// By how much the chin's lower border lies higher in the middle than beside it; negative: lower.
+/// The height of the chin's lower border in the middle, relative to the border beside it; negative: lower.
 double chin_notch(const HeadMap& front, const Profile& profile, const NasalOpening& nose);
 
-/// Nasion, ANS, A, the incisors' edges, B, pogonion and menton, each as the foremost, deepest or
-/// lowest point of its part of the profile. What has no such extremum is missing, with the reason.
-/// Teeth are told from the ridge that is left without them by how far their edge
-/// lies from spine and chin, of the height of the nose.
+/// Nasion, ANS, A, the incisors' edges, B, pogonion and menton, each as the foremost, deepest or lowest point
+/// of its part of the profile. A landmark without such an extremum is missing, with the reason. Teeth are
+/// distinguished from a toothless ridge by the distance of their edge from spine and chin, relative to the
+/// height of the nose.
 FoundPlaces places_of_profile(const Profile& profile, const NasalOpening& nose);
 
 }  // namespace octotomy::planner

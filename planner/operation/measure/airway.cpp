@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The size of an airway and its narrowest section, between two
-// ends.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The size of an airway and its narrowest section, between two ends.
 #include <cmath>
 
 #include "planner/operation/measure/digitised.h"

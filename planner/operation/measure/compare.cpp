@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The distances between two objects' surfaces, in both directions,
-// and their common volume.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The distances between two objects' surfaces, in both directions, and their common volume.
 #include "brep/io/write_mesh.h"
 #include "brep/measure/difference.h"
 #include "brep/mesh/line_volume.h"

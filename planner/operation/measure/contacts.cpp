@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Contacts of two objects, like marks of articulating paper on
-// teeth: positions, areas, depths and distances.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Contacts of two objects, like marks of articulating paper on teeth: positions, areas, depths and distances.
 #include <cmath>
 
 #include "planner/operation/measure/digitised.h"

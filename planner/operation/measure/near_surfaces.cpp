@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1. Compute signed distances to the other surface at points of the first: corners of triangles, which are
-// split if they are large and may be near, or voxels of the boundary.
+//    split if they are large and may be near, or voxels of the boundary.
 // 2. Group points within the distance that are near each other into places (single linkage by a grid).
 // 3. Add each triangle's area within the distance, by linear interpolation, to the place of its nearest
-// corner.
+//    corner.
 #include "planner/operation/measure/near_surfaces.h"
 
 #include <algorithm>

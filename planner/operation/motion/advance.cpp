@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Moves a piece in one direction until it touches another one, or
-// until a gap remains. The distance is determined first, on voxels, so that both kernels use the same
-// distance.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Moves a piece in one direction until it touches another one, or until a gap remains. The distance is
+// determined first, on voxels, so that both kernels use the same distance.
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Rotates the mandible about its condyles until first contact. The
-// angle is determined first, on voxels, so that both kernels use the same angle.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Rotates the mandible about its condyles until first contact. The angle is determined first, on voxels, so
+// that both kernels use the same angle.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -17,7 +17,7 @@ FirstContact first_contact(const Object& object, const Object& against, const Co
                            const std::stop_token& stop) {
   if (object.voxel.octree.is_empty() || against.voxel.octree.is_empty())
     throw std::runtime_error("'" + (object.voxel.octree.is_empty() ? object.id : against.id) +
-                             "' is empty: nothing can meet");
+                             "' is empty: there is no contact");
   const voxel::Expression other(against.voxel.octree);
   const auto overlap = [&](double at) {
     if (stop.stop_requested()) throw voxel::Stopped("stopped while moving to contact");

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The position of the head. It defines the directions of views,
-// and of words such as "forward", for all later steps.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The position of the head. It defines the directions of views, and of words such as "forward", for all later
+// steps.
 #include <cmath>
 
 #include "planner/operation/anatomy/head_directions.h"

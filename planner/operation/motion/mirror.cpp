@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later An object's mirror image about a plane: a stated plane, or the
-// plane that fits the object's mesh best. A fit runs first, so that both kernels mirror about the same plane.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// An object's mirror image about a plane: a stated plane, or the plane that fits the object's mesh best. A
+// fit runs first, so that both kernels mirror about the same plane.
 #include "brep/align/mirror.h"
 
 #include <array>

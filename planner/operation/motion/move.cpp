@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later A rigid motion, stated in one of four ways:
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A rigid motion, stated in one of four ways:
 //   a turn, then a translation: numbers in LPS, in words of the head, or from one mark to another;
 //   points and their target positions (Ong 1992, 8.3);
 //   a matrix, as `register` prints it;

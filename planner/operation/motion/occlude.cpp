@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// An object seated on another one so that it touches at wanted places, as a mandible on the upper teeth: one
-// place lets it only slide along the direction, two tilt it, three and more seat it. The motion is settled
-// first, on meshes, so that both kernels move by the same one.
+// Seats an object on another one so that they touch at stated places, as a mandible on the upper teeth. With
+// one place the object only slides along the direction, with two it also tilts, with three or more it is
+// seated. The motion is determined first, on meshes, so that both kernels use the same motion.
 //
 // 1. At each place the least signed distance of the object's vertices about it to the other surface.
 // 2. The rigid motion whose displacements along the direction are those distances, in least squares.
@@ -119,7 +119,7 @@ Occlude settle(const Occlude& asked, const SettleBench& bench) {
   const brep::Solid &solid = bench.object(asked.object.name), &against = bench.object(asked.against.name);
   if (solid.empty() || against.empty())
     throw std::runtime_error("'" + (solid.empty() ? asked.object.name : asked.against.name) +
-                             "' is empty: nothing can meet");
+                             "' is empty: there is no contact");
   const glm::dvec3 along = direction_of(asked.towards, bench.objects.lps_from_head);
   const std::vector<Seat> seats = seats_of(asked, solid, bench.objects, voxel_mm(object));
   Occlude settled = asked;

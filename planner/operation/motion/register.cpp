@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Registers an object to another one by a rigid motion, from
-// surfaces, named landmarks or both. The motion is determined first, so that both kernels use the same
-// motion.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Registers an object to another one by a rigid motion, from surfaces, named landmarks or both. The motion is
+// determined first, so that both kernels use the same motion.
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Moves an object by the displacements of a solved deck: the face
-// after the operation. Only the mesh kernel applies a field of displacements; its result is digitised, and
-// therefore has no certificate of its own.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Moves an object by the displacements of a solved deck: the face after the operation. Only the mesh kernel
+// applies a field of displacements; its result is digitised, and therefore has no certificate of its own.
 #include <algorithm>
 
 #include "convert/deck/calculix_result.h"

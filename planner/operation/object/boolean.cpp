@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The Boolean of meshes in files, by corefinement. In a plan, the
-// mesh kernel of `combine` does this.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The Boolean of meshes in files, by corefinement. In a plan, the mesh kernel of `combine` does this.
 #include "brep/boolean/boolean.h"
 
 #include <algorithm>

@@ -10,7 +10,7 @@ namespace octotomy::planner {
 
 /// The note on an object that only the mesh kernel makes.
 inline constexpr const char* mesh_alone =
-    "no certificate: only the mesh kernel does this, and its voxels are its mesh's";
+    "no certificate: only the mesh kernel computes this object, and its voxels are digitised from that mesh";
 
 /// Whether certify() can judge an object: it has a mesh within its universe, or a witness that judges its
 /// voxels.

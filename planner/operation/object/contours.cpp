@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Writes contours on a scan's slices as a file that masks read:
-// traced, thinned, smoothed, moved outwards or inwards, edited.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Writes contours on a scan's slices as a file that masks read: traced, thinned, smoothed, moved outwards or
+// inwards, edited.
 #include "brep/contour/contour.h"
 #include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/output_path.h"

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later An object whose surface has fewer triangles. Only the mesh
-// kernel has triangles: its result is digitised for the voxel kernel, and therefore has no certificate of its
-// own.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// An object whose surface has fewer triangles. Only the mesh kernel has triangles: its result is digitised
+// for the voxel kernel, and therefore has no certificate of its own.
 #include "brep/shape/decimate.h"
 
 #include <algorithm>

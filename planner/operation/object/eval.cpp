@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later A Boolean expression of octrees in files. In a plan, the voxel
-// kernel of `combine` does this.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A Boolean expression of octrees in files. In a plan, the voxel kernel of `combine` does this.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later A mesh of any program as an object. Its voxels are digitised
-// from it, so that it has no certificate of its own; objects that are made with it have one.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A mesh of any program as an object. Its voxels are digitised from it, so that it has no certificate of its
+// own; objects that are made with it have one.
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/error.h"
 #include "planner/operation/file/mesh_in.h"

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Names for points, which later steps use in place of coordinates.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Names for points, which later steps use in place of coordinates.
 #include <algorithm>
 
 #include "planner/operation/file/landmarks_file.h"

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The size of an object, the gap between two objects, the distance
-// between two points or the angle of three; each number with its half-width and the terms of that half-width.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The size of an object, the gap between two objects, the distance between two points or the angle of three;
+// each number with its half-width and the terms of that half-width.
 #include <algorithm>
 #include <cmath>
 #include <set>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The surface of a scan's window or of an octree, in files. In a
-// plan, the mesh kernel of `window` and `segment` and the step `surface` do this.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The surface of a scan's window or of an octree, in files. In a plan, the mesh kernel of `window` and
+// `segment` and the step `surface` do this.
 #include <limits>
 #include <utility>
 

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Writes an octree of a scan's window or of all its samples, or an
-// octree in another form. In a plan, `window` makes it.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Writes an octree of a scan's window or of all its samples, or an octree in another form. In a plan,
+// `window` makes it.
 #include <algorithm>
 #include <array>
 #include <fstream>

@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The solid within a distance of an object, or the points of the
-// object that are farther than that from its outside. Each kernel measures distances to its own
-// representation of the object: to points of the surface between its voxels, or to its triangles.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The solid within a distance of an object, or the points of the object that are farther than that from its
+// outside. Each kernel measures distances to its own representation of the object: to points of the surface
+// between its voxels, or to its triangles.
 #include "brep/shape/offset.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The connected parts of an object that are large enough or
-// contain a point.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The connected parts of an object that are large enough or contain a point.
 #include "planner/operation/object/parts.h"
 
 #include <algorithm>

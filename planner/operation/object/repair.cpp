@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later A mesh of any program, repaired in the requested ways, as an
-// object. Its voxels are digitised from it, so that it has no certificate of its own.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A mesh of any program, repaired in the requested ways, as an object. Its voxels are digitised from it, so
+// that it has no certificate of its own.
 #include "brep/shape/repair.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later A saw cut: a polyline swept in one direction, as wide as the
-// blade.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A saw cut: a polyline swept in one direction, as wide as the blade.
 #include "brep/shape/saw.h"
 
 #include "brep/boolean/boolean.h"

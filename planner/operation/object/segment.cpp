@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Both kernels start from the scan: the voxel kernel from a window
-// on its grey octree, the mesh kernel from the isosurface of its own samples. A selection that is only
-// defined on voxels leaves the object without a mesh.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Both kernels start from the scan: the voxel kernel from a window on its grey octree, the mesh kernel from
+// the isosurface of its own samples. A selection that is only defined on voxels leaves the object without a
+// mesh.
 #include "planner/operation/object/segment.h"
 
 #include <algorithm>

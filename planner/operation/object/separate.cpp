@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Separates a surface into its pieces, each a file or an object.
-// No point moves and nothing is repaired, so that the command separates any triangles. An object of a plan is
-// a solid, so the step separates a solid.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Separates a surface into its pieces, each a file or an object. No point moves and nothing is repaired, so
+// that the command separates any triangles. An object of a plan is a solid, so the step separates a solid.
 #include <algorithm>
 #include <map>
 

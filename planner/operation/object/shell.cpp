@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The outer layer of an object: its points within a distance of
-// its outside. Each kernel subtracts its own inward offset from its own representation of the object.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The outer layer of an object: its points within a distance of its outside. Each kernel subtracts its own
+// inward offset from its own representation of the object.
 #include "brep/boolean/boolean.h"
 #include "brep/shape/offset.h"
 #include "planner/operation/object/trace.h"

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later An object's surface without its noise. Only the mesh kernel
-// smooths: its result is digitised, so that later steps have it in both kernels, and therefore has no
-// certificate of its own.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// An object's surface without its noise. Only the mesh kernel smooths: its result is digitised, so that later
+// steps have it in both kernels, and therefore has no certificate of its own.
 #include "brep/shape/smooth.h"
 
 #include <algorithm>

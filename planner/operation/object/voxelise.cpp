@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Octrees and label maps of meshes in files. In a plan, `import`
-// digitises a mesh.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Octrees and label maps of meshes in files. In a plan, `import` digitises a mesh.
 #include "convert/voxel/voxelise.h"
 
 #include <algorithm>

@@ -13,7 +13,8 @@ std::optional<glm::vec3> colour_of_text(const std::string& text);
 glm::vec3 need_colour(const std::string& text);
 /// #rrggbb.
 std::string text_of_colour(const glm::vec3& colour);
-/// Colours of objects that were given none: bone, then colours told apart by readers with any colour vision.
+/// Colours of objects without a stated colour: bone, then colours that readers with any colour vision can
+/// distinguish.
 glm::vec3 colour_of(std::size_t number);
 
 /// The red of interference, #e5484d.

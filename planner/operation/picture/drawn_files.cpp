@@ -13,10 +13,10 @@
 namespace octotomy::planner {
 namespace {
 
-/// The object that a grey octree's window is.
+/// Makes the object a grey octree's window.
 void set_window(voxel::DrawnObject& object, const voxel::GreyOctree& grey, const SampleWindow& window) {
   object.octree = voxel::combine(grey.universe(), voxel::Expression(window_on(grey, window)));
-  // Depth is interpolated at the lower bound; an upper bound inside the object breaks that.
+  // The depth is interpolated at the lower bound. An upper bound inside the object would make it wrong.
   if (!window.high) object.grey = grey;
   object.threshold = window.low;
 }
@@ -28,7 +28,7 @@ std::string name_of(const std::filesystem::path& path) {
   return stem.extension() == ".nii" ? stem.stem().string() : stem.string();
 }
 
-/// What a file holds, as it is to be drawn.
+/// The object of a file, for drawing.
 voxel::DrawnObject drawn_of_file(const std::filesystem::path& path, const Render& render,
                                  const std::optional<voxel::Universe>& universe, const FileBench& bench) {
   if (is_mesh(path)) return {name_of(path), voxels_of_mesh(path, universe, render.voxel_mm, bench)};
@@ -78,7 +78,7 @@ std::vector<voxel::DrawnObject> drawn_of_files(const Render& render, const std::
     objects.push_back(drawn_of_file(file.name, render, universe, bench));
     voxel::DrawnObject& object = objects.back();
     if (universe && object.octree.universe() != *universe) {
-      // Samples of another lattice cannot be followed along this one's columns.
+      // Samples of another lattice cannot be traversed along this universe's columns.
       object.octree = voxel::combine(*universe, voxel::Expression(object.octree));
       object.grey.reset();
       object.counted_in_grey = false;

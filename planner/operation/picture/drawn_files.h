@@ -12,15 +12,16 @@
 
 namespace octotomy::planner {
 
-/// What the files hold, all in the first one's universe, named as the files are, without folder and ending.
-/// Throws std::runtime_error for files that cannot be drawn, with the path, and for what is no colour.
+/// The objects of the files, all in the first one's universe, named after their files without folder and
+/// extension. Throws std::runtime_error for files that cannot be drawn, with the path, and for texts that are
+/// not colours.
 std::vector<voxel::DrawnObject> drawn_of_files(const Render& render, const std::vector<ObjectName>& files,
                                                const FileBench& bench);
 
-/// A plan's object, with the samples that show its surface.
+/// A plan's object, with the samples that define its surface.
 voxel::DrawnObject drawn(const Object& object, const glm::vec3& colour);
 
-/// The colours and opacities that are asked for, or those of objects that were given none.
+/// Sets the requested colours and opacities, or the default ones.
 void paint(const Render& render, std::vector<voxel::DrawnObject>& objects);
 
 }  // namespace octotomy::planner

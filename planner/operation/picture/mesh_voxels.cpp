@@ -34,7 +34,7 @@ voxel::Octree voxels_of_mesh(const std::filesystem::path& path,
   brep::Triangles triangles;
   {
     const Stopwatch watch(bench.timings, "read");
-    // Welded, as each open edge is a rim that costs.
+    // Welded, because each open edge would be a rim, and rims cost time.
     triangles = brep::joined_surface(read_mesh_in(path)).surface;
   }
   const auto refuse = [&](const std::string& why) { throw std::runtime_error(path.string() + ": " + why); };

@@ -22,7 +22,7 @@ voxel::TransferFunction transfer_of(const Render& render) {
   return voxel::preset_transfer(render.transfer);
 }
 
-/// A picture, and what is said of it.
+/// A picture with its results.
 struct RayPicture {
   std::vector<std::uint8_t> rgb;
   std::uint64_t lit_pixels = 0;

@@ -9,10 +9,10 @@ namespace octotomy::planner {
 std::vector<std::string> ray_picture_names();
 bool is_ray_picture(const Render& render);
 
-/// Throws std::runtime_error for what such pictures do not have.
+/// Throws std::runtime_error for options that such pictures do not have.
 void check_rays(const Render& render);
 
-/// The samples from which a composite picture shows anything: the window of what is drawn.
+/// The window of the drawn samples; for a composite picture, the samples from the first visible one on.
 SampleWindow ray_window(const Render& render);
 
 /// Draws such a picture of one object's samples. Throws std::runtime_error where there is not one with

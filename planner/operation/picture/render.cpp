@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pictures of objects: shaded surfaces, what lies along rays, cuts, colours by distance.
+// Pictures of objects: shaded surfaces, projections along rays, cuts, colours by distance.
 #include "planner/operation/picture/render.h"
 
 #include <algorithm>
@@ -64,13 +64,13 @@ std::string other_of(const std::string& text) {
   return text.substr(kind.size());
 }
 
-/// What is drawn; the first object coloured by its distance to another one, where that is asked for.
+/// The drawn objects. The first one is coloured by its distance to another object, where this is requested.
 struct Scene {
   std::vector<voxel::DrawnObject> objects;
   std::string coloured_by;  ///< the other one's name
 };
 
-/// `objects` ends with the other one, where one is asked for.
+/// The last of `objects` is the other object, where one is requested.
 Scene scene_of(const Render& render, std::vector<voxel::DrawnObject> objects, Timings& timings) {
   Scene scene{std::move(objects), {}};
   if (!render.colour_by.empty()) {
@@ -170,12 +170,12 @@ void check(const Render& render, const Place& place) {
   const auto refuse = [&](const std::string& field, const std::string& why) { place.at(field).refuse(why); };
   if (render.colours.size() > render.objects.size() || render.opacities.size() > render.objects.size())
     refuse("colours", "and opacities: give at most one of each an object");
-  if (render.range_mm && render.colour_by.empty()) refuse("range_mm", "is of 'colour_by': add it");
+  if (render.range_mm && render.colour_by.empty()) refuse("range_mm", "needs 'colour_by': add it");
   if (!render.tones.empty() && render.cut_face != "grey")
-    refuse("tones", "is of grey cut faces: add 'cut_face'");
-  if (!render.title.empty() && !render.annotate) refuse("title", "is of annotated pictures: add 'annotate'");
+    refuse("tones", "needs grey cut faces: add 'cut_face'");
+  if (!render.title.empty() && !render.annotate) refuse("title", "needs annotated pictures: add 'annotate'");
   if (render.grid_mm && (render.eye_mm || render.stereo_deg))
-    refuse("grid_mm", "is of pictures in true scale: leave out 'eye_mm' and 'stereo_deg'");
+    refuse("grid_mm", "needs a picture in true scale: leave out 'eye_mm' and 'stereo_deg'");
   for (const std::string& colour : render.colours) need_colour(colour);
   for (const double opacity : render.opacities)
     if (!(opacity >= 0.0 && opacity <= 1.0)) refuse("opacities", "are from 0, hidden, to 1");

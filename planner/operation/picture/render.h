@@ -14,7 +14,7 @@
 #include "voxel/view/drawn_object.h"
 #include "voxel/view/render.h"
 
-// A picture of objects: what is asked for, and what its ways of drawing have in common.
+// A picture of objects: its fields, and the functions that its ways of drawing share.
 namespace octotomy::planner {
 
 struct Render {
@@ -35,23 +35,23 @@ struct Render {
   std::string title;
   std::optional<double> grid_mm;
   bool count = false;
-  // Of the verb.
+  // Of the command only.
   std::filesystem::path out;
   SampleWindow window{300.0};
   std::optional<double> voxel_mm;
 };
 
-/// What is drawn and what is told of it.
+/// A drawn picture with its results.
 struct RenderedPicture {
   glm::ivec2 size_px{0};
   std::vector<std::uint8_t> rgb;
   double pixel_mm = 1.0;
-  glm::dvec2 centre_mm{0.0};               ///< of pictures along rays, in the view's millimetres
-  std::optional<PictureFrame> frame = {};  ///< of pictures in true scale
+  glm::dvec2 centre_mm{0.0};               ///< for pictures along rays, in the view's millimetres
+  std::optional<PictureFrame> frame = {};  ///< for pictures in true scale
   nlohmann::ordered_json said = nlohmann::ordered_json::object();
 };
 
-/// Finite numbers between commas, just as many; throws std::runtime_error naming what they are of.
+/// Exactly `Count` finite numbers between commas; throws std::runtime_error with `what`.
 template <std::size_t Count>
 std::array<double, Count> numbers_of(const std::string& what, const std::string& text,
                                      const std::string& example) {
@@ -65,16 +65,16 @@ std::array<double, Count> numbers_of(const std::string& what, const std::string&
 }
 
 /// View, size, frame, shading and cuts, without the grey tones of cut faces. Throws std::runtime_error for
-/// what cannot be read. Precondition: no ray picture.
+/// fields that cannot be read. Precondition: no ray picture.
 voxel::RenderOptions options_of(const Render& render);
-/// The samples that cut faces show, and what is black and white of them. Throws std::runtime_error where no
-/// object has samples.
+/// The samples that cut faces show, and the samples that are black and white. Throws std::runtime_error where
+/// no object has samples.
 voxel::CutTones cut_tones_of(const Render& render, const std::vector<voxel::DrawnObject>& objects);
 /// WxH in pixels.
 glm::ivec2 size_of(const Render& render);
-/// Normals are made unit.
+/// The planes of the cuts, with normalised normals.
 std::vector<voxel::Cutaway> cuts_of(const Render& render);
-/// Writes what is asked for on the pixels: a grid, whose margin makes the picture larger, and the annotation.
+/// Draws the requested grid, whose margin makes the picture larger, and the annotation.
 void finish(RenderedPicture& picture, const voxel::ImagePlane& plane, const Render& render,
             const std::optional<voxel::Annotation>& annotation);
 /// Title, sides, scale, and a legend of the objects that are neither hidden nor coloured by a scalar.

@@ -25,12 +25,12 @@
 namespace octotomy::planner {
 namespace {
 
-/// Columns of a curved picture of which no pixel size is said: a dental arch fills a screen's width.
+/// Columns of a curved picture without a stated pixel size: a dental arch fills a screen's width.
 constexpr int least_curve_px = 800;
 
 namespace fs = std::filesystem;
 
-/// What is cut: a scan, or a tree of any kind.
+/// The samples that are cut: a scan, or a tree of any kind.
 struct Subject {
   std::variant<const voxel::Scene*, voxel::GreyOctree, voxel::Octree> samples;
   voxel::Lattice lattice;
@@ -62,7 +62,7 @@ double finest_mm(const voxel::Lattice& lattice) {
   return std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
 }
 
-/// A mesh's inside, in voxels of a pixel's width where that is given.
+/// A mesh's inside, in voxels of a pixel's width where one is stated.
 Subject subject_of_mesh(const fs::path& path, const Slice& slice, const FileBench& bench) {
   Subject subject{voxels_of_mesh(path, std::nullopt, slice.pixel_mm, bench), {}, "1"};
   subject.lattice = std::get<voxel::Octree>(subject.samples).universe().lattice();
@@ -94,8 +94,8 @@ voxel::View view_along(const glm::dvec3& direction, const std::optional<glm::dve
   view.look = glm::normalize(direction);
   const auto across = [&](const glm::dvec3& up) { return up - view.look * glm::dot(up, view.look); };
   glm::dvec3 up = across(wanted_up.value_or(glm::dvec3(0, 0, 1)));
-  // The head's direction shows how a plane stands unless the plane lies: then the face is up, as in axial
-  // slices. A plane lies where it leans by less than a degree.
+  // The head's up direction is up in the picture, unless the plane is horizontal to within a degree: then the
+  // face is up, as in axial slices.
   if (!wanted_up && glm::length(up) < std::sin(glm::radians(1.0))) up = across(glm::dvec3(0, -1, 0));
   if (!(glm::length(up) > 0.0))
     throw std::runtime_error("up: points along the direction that is looked in: choose another");
@@ -361,7 +361,7 @@ SlicePicture drawn(const Slice& slice, const Subject& subject, const std::vector
   const voxel::Range shown = shown_range(slice, subject, samples);
   picture.rgb = voxel::grey_tones(samples.image, shown.low, shown.high);
   picture.said = said_of(slice, subject, cut, samples, shown);
-  // What lies beside the scan is black, not the border's grey.
+  // Pixels outside of the scan are black, not the border's grey.
   for (std::size_t i = 0; i < samples.inside.size(); ++i)
     if (samples.inside[i] == 0) std::fill_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, 0);
   picture.said["outlines"] = draw_outlines(slice, objects, cut.sheet, picture.rgb, timings);
@@ -379,7 +379,7 @@ SlicePicture drawn(const Slice& slice, const Subject& subject, const std::vector
 
 void check(const Slice& slice, const Place& place) {
   if (slice.window && !slice.level.empty())
-    place.at("level").refuse("says the same as 'window': leave one out");
+    place.at("level").refuse("states the same as 'window': leave one of them out");
   if (!slice.size.empty() && !slice.curve_mm.empty())
     place.at("size").refuse("is of planes; a curve's picture is as long as the curve");
   if (slice.grid_mm && !slice.curve_mm.empty())

@@ -13,7 +13,7 @@
 #include "voxel/tree/octree.h"
 #include "voxel/view/reformat.h"
 
-// A plane or a curved sheet of samples: what is asked for, and the picture.
+// A plane or a curved sheet of samples: its fields, and the picture.
 namespace octotomy::planner {
 
 struct Slice {
@@ -33,19 +33,19 @@ struct Slice {
   std::string interpolate = "linear";
   bool plain = false;
   std::optional<double> grid_mm;
-  // Of the verb.
+  // Of the command only.
   std::filesystem::path out;
   std::vector<std::string> curve;
 };
 
 /// An object whose outline is drawn.
 struct Outlined {
-  std::string name;  ///< the path of its file, or its own
+  std::string name;  ///< the path of its file, or the object's name
   voxel::Octree octree;
   bool is_hatched = false;  ///< its inside is drawn, too
 };
 
-/// A picture, where it lies, and what is said of it.
+/// A picture, its position, and its results.
 struct SlicePicture {
   voxel::Sheet sheet;
   voxel::SheetSamples samples;
@@ -55,8 +55,8 @@ struct SlicePicture {
   nlohmann::ordered_json said;
 };
 
-/// Draws a slice of a scan, as the operation `slice` does. Throws std::runtime_error for what cannot be read;
-/// std::invalid_argument where a plane without a size misses the scan; Stopped.
+/// Draws a slice of a scan, as the operation `slice` does. Throws std::runtime_error for fields that cannot
+/// be read; std::invalid_argument where a plane without a size misses the scan; Stopped.
 SlicePicture slice_of(const Slice& slice, const voxel::Scene& scene, const std::vector<Outlined>& objects,
                       Timings& timings, const std::stop_token& stop);
 

@@ -7,7 +7,7 @@
 
 namespace octotomy::planner {
 
-/// A transfer function as a JSON file says it, samples ascending:
+/// Reads a transfer function from a JSON file, samples ascending:
 ///   { "octotomy_transfer": 1, "surface_per_mm": 50, "points": [
 ///       { "sample": 180, "colour": "#cc8c6b", "per_mm": 0 },
 ///       { "sample": 320, "colour": "#f0e3c7", "per_mm": 0.5 } ] }

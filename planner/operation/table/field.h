@@ -43,7 +43,8 @@ using Polygons = std::vector<std::vector<glm::dvec2>>;
 /// Pairs of names of objects.
 using NamePairs = std::vector<std::pair<std::string, std::string>>;
 
-/// Records within an operation: one that may be absent, a list of them, or some by the names of objects.
+/// Access to the records in a field of an operation: a single record, which may be absent, a list of records,
+/// or records by object name.
 struct Records {
   enum class Form { Optional, List, ByName };
   Form form = Form::Optional;

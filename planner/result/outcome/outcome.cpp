@@ -3,11 +3,11 @@
 // 1 Compute the surface of the later scan.
 // 2 Fit the bone that did not move to it: after_from_before.
 // 3 Fit each piece to it, starting at its planned position transformed by 2. The achieved motion is the
-// inverse of 2 times 3.
+//   inverse of 2 times 3.
 // 4 Compute intervals from both fits' covariances and the deviation of their residuals, which includes the
-// noise of both scans. A sample represents two samples of the scan a side, because the noise of neighbours is
-// correlated. Adds a systematic error: a lattice shifts an isosurface by some hundredths of its spacing,
-// equally wherever bone is flat.
+//   noise of both scans. A sample represents two samples of the scan a side, because the noise of neighbours
+//   is correlated. Adds a systematic error: a lattice shifts an isosurface by some hundredths of its spacing,
+//   equally wherever bone is flat.
 #include "planner/result/outcome/outcome.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Source: ASME V&V 40-2018, Assessing Credibility of Computational
-// Modeling through Verification and Validation: Application to Medical Devices: its terms and its credibility
-// factors (section 5). Factors are not graded, because the grade depends on a model risk that only the user
-// can state.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Source: ASME V&V 40-2018, Assessing Credibility of Computational Modeling through Verification and
+// Validation: Application to Medical Devices: its terms and its credibility factors (section 5). Factors are
+// not graded, because the grade depends on a model risk that only the user can state.
 #include "planner/result/report/credibility.h"
 
 #include <algorithm>
@@ -148,7 +148,7 @@ void add_contact_map(const Json& map, const std::map<std::string, Json>& certifi
   if (map.at("certain_count").is_number()) {
     Number number(id, "contacts of " + pair + " that are certain", map.at("certain_count"), "");
     number.gap(
-        "a count of contacts whose half-width reaches no farther than the limit: nothing else checks it");
+        "a count of contacts whose distance plus half-width is within the limit; no other number checks it");
     add(std::move(number));
   }
   for (const auto& [key, what, unit] : {std::tuple("area_mm2", "area in contact of ", "mm2"),

@@ -5,9 +5,9 @@
 // 2. other files in the old folder (not listed) are hard-linked into the new one;
 // 3. the two folders exchange their names (renameat2);
 // 4. the old folder, now hidden, is emptied: listed files and second links are removed; a file that is
-// neither, because it appeared after step 2 or could not be linked, is moved into the new folder. A hidden
-// folder without a list therefore never contained other files; one with a list is emptied as in step 4 by the
-// next run. A lock on the hidden folder shows that its process is running.
+//    neither, because it appeared after step 2 or could not be linked, is moved into the new folder.
+// A hidden folder without a list therefore never contained other files; one with a list is emptied as in step
+// 4 by the next run. A lock on the hidden folder shows that its process is running.
 #include "planner/result/report/result_folder.h"
 
 #include <algorithm>

@@ -200,12 +200,12 @@ TEST(ReadDicomSeg, ADistanceOfPlanesThatPositionsContradictIsReported) {
     else
       EXPECT_NE(warnings_of(scene).find(warning), std::string::npos) << warnings_of(scene);
   };
-  expect(read({"38", "36.5", "35", "33.5"}, "1", ""), 4, 1.5, "positions are taken");
+  expect(read({"38", "36.5", "35", "33.5"}, "1", ""), 4, 1.5, "positions are used");
   expect(read({"38", "35", "32", "29"}, "1", ""), 10, 1.0, "assumed to be empty");
   expect(read({"41", "40", "36", "35"}, "", ""), 7, 1.0, "");
   expect(read({"41", "40", "36", "35"}, "1", ""), 7, 1.0, "");
   expect(read({"42", "40", "38", "36"}, "", "3"), 4, 2.0, "");
-  expect(read({"42", "40", "38", "36"}, "", "1"), 4, 2.0, "positions are taken");
+  expect(read({"42", "40", "38", "36"}, "", "1"), 4, 2.0, "positions are used");
   expect(read({"43", "40", "37", "36"}, "", ""), 8, 1.0, "the least distance");
   // Thin planes far apart stand for what lies between them, whether the distance is stated or not.
   for (const char* stated : {"", "7"})
