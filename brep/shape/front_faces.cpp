@@ -20,7 +20,7 @@ namespace {
 
 constexpr double no_depth = std::numeric_limits<double>::infinity();
 /// More cells than this gain nothing beside their memory.
-constexpr double most_cells = 4.0e6;
+constexpr double most_view_cells = 4.0e6;
 
 struct FlatBox {
   glm::dvec2 low, high;
@@ -95,7 +95,7 @@ void FrontFaces::sort_into_cells(const std::vector<std::uint32_t>& triangles) {
     high = glm::max(high, box.high);
   }
   const glm::dvec2 extent = high - low_;
-  const double cells = std::min(static_cast<double>(triangles.size()), most_cells);
+  const double cells = std::min(static_cast<double>(triangles.size()), most_view_cells);
   cell_mm_ = std::max(std::sqrt(extent.x * extent.y / cells), std::max(extent.x, extent.y) / cells);
   dims_ = glm::ivec2(glm::floor(extent / cell_mm_)) + 1;
 

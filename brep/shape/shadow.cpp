@@ -51,7 +51,7 @@ using ViewPlane = CGAL::Constrained_Delaunay_triangulation_2<
 using ViewVertex = ViewPlane::Vertex_handle;
 using ViewFace = ViewPlane::Face_handle;
 
-glm::dvec2 place_of(ViewVertex vertex) {
+glm::dvec2 place_in_view(ViewVertex vertex) {
   return {vertex->point().x(), vertex->point().y()};
 }
 
@@ -214,7 +214,7 @@ void ShadowSurface::find_first() {
   tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
     const ViewFace face = all[i];
     glm::dvec2 middle(0.0);
-    for (int k = 0; k < 3; ++k) middle += place_of(face->vertex(k)) / 3.0;
+    for (int k = 0; k < 3; ++k) middle += place_in_view(face->vertex(k)) / 3.0;
     face->info() = faces_.first_at(middle);
     // What lies in the end plane has nothing behind it.
     if (face->info() == FrontFaces::none) return;
@@ -227,7 +227,7 @@ void ShadowSurface::find_first() {
 /// The depth of a face at one of its corners; the end plane's where the face is not covered.
 double ShadowSurface::depth_at(ViewFace face, ViewVertex vertex) const {
   if (!is_covered(face)) return end_;
-  const glm::dvec2 place = place_of(vertex);
+  const glm::dvec2 place = place_in_view(vertex);
   const auto& corners = solid_.triangles().faces[face->info()];
   double depth = std::numeric_limits<double>::quiet_NaN();
   for (const std::uint32_t corner : corners)
@@ -257,7 +257,7 @@ void ShadowSurface::find_levels() {
         own.push_back({depth, depth, 0});
       }
     }
-    const glm::dvec2 place = place_of(vertex);
+    const glm::dvec2 place = place_in_view(vertex);
     for (Level& level : own) {
       level.point = static_cast<std::uint32_t>(surface_.points_mm.size());
       // The nearer to the end plane the truer: only its own depth is not computed from a triangle's plane.

@@ -33,7 +33,7 @@ constexpr int columns_beside_outline = 3;
 /// In voxel edges: where the object is looked for about the depth of an outline, which is a jump by more
 /// than that, and how finely. At an edge of
 /// 90 degrees half a step is lost.
-constexpr float before = 0.75F, behind = 4.0F, look = 0.0625F;
+constexpr float look_before = 0.75F, look_behind = 4.0F, look_step = 0.0625F;
 constexpr int tile_side = 16;  ///< columns whose depths have one range
 constexpr float no_surface = std::numeric_limits<float>::infinity();
 
@@ -110,15 +110,15 @@ class FirstDepths {
       for (int x = 0; x < dims_.x; ++x) {
         const std::size_t column = index({x, y});
         const float beside = nearest[column], own = depths_[column].load(std::memory_order_relaxed);
-        if (!(own > beside + behind * voxel)) continue;
+        if (!(own > beside + look_behind * voxel)) continue;
         const glm::dvec2 place = origin_ + glm::dvec2(x, y) * pitch_mm_;
         const auto is_inside = [&](float depth) {
           return contains(frame_.lps_from_frame * glm::dvec3(place, depth));
         };
-        float out = beside - before * voxel, in = out;
-        while (in < beside + behind * voxel && !is_inside(in)) {
+        float out = beside - look_before * voxel, in = out;
+        while (in < beside + look_behind * voxel && !is_inside(in)) {
           out = in;
-          in += look * voxel;
+          in += look_step * voxel;
         }
         if (!is_inside(in)) continue;
         for (int halving = 0; halving < 5; ++halving) {
