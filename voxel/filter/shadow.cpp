@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 #include <utility>
@@ -128,6 +129,18 @@ class FirstDepths {
         lower(column, 0.5F * (out + in));
       }
     });
+  }
+
+  /// The volume of all columns to the object's far end.
+  double volume_mm3() const {
+    std::vector<double> rows(static_cast<std::size_t>(dims_.y), 0.0);
+    tbb::parallel_for(0, dims_.y, [&](int y) {
+      for (int x = 0; x < dims_.x; ++x) {
+        const float depth = depths_[index({x, y})].load(std::memory_order_relaxed);
+        if (depth < no_surface) rows[static_cast<std::size_t>(y)] += far_end_mm_ - double{depth};
+      }
+    });
+    return std::accumulate(rows.begin(), rows.end(), 0.0) * pitch_mm_ * pitch_mm_;
   }
 
   void sum_up() {
@@ -279,21 +292,34 @@ void fill_shares(const ShadowShares& shares, const glm::ivec3& block, int side, 
   }
 }
 
+void check_unit(const glm::dvec3& direction) {
+  constexpr double unit_error = 1e-9;  // of a direction that was normalised or typed with ten figures
+  if (!(std::abs(glm::length(direction) - 1.0) < unit_error))
+    throw std::invalid_argument("the direction of a shadow is a unit vector");
+}
+
+void check_voxels(const Octree& octree) {
+  if (octree.is_empty()) throw std::invalid_argument("an object without voxels has no shadow");
+}
+
+FirstDepths first_depths(const SurfaceCrossings& crossings, const Universe& universe, const Expression& solid,
+                         const glm::dvec3& direction) {
+  FirstDepths depths(universe, ColumnFrame(direction), crossings.points());
+  crossings.for_triangles([&](const std::array<glm::dvec3, 3>& corners) { depths.add(corners); });
+  depths.look_beside_outlines(Membership(universe, solid));
+  return depths;
+}
+
 }  // namespace
 
 Shadow shadow(const Octree& octree, const Expression& solid, const ShadowAsked& asked) {
-  constexpr double unit_error = 1e-9;  // of a direction that was normalised or typed with ten figures
-  if (!(std::abs(glm::length(asked.direction) - 1.0) < unit_error))
-    throw std::invalid_argument("the direction of a shadow is a unit vector");
+  check_unit(asked.direction);
   if (!std::isfinite(asked.end_mm)) throw std::invalid_argument("the end of a shadow is finite");
-  if (octree.is_empty()) throw std::invalid_argument("an object without voxels has no shadow");
+  check_voxels(octree);
   const Universe& universe = octree.universe();
   const SurfaceCrossings crossings(octree, solid);
   asked.progress.at(0.3);
-  FirstDepths depths(universe, ColumnFrame(asked.direction), crossings.points());
-  crossings.for_triangles([&](const std::array<glm::dvec3, 3>& corners) { depths.add(corners); });
-  asked.progress.at(0.5);
-  depths.look_beside_outlines(Membership(universe, solid));
+  FirstDepths depths = first_depths(crossings, universe, solid, asked.direction);
   depths.sum_up();
   asked.progress.at(0.6);
 
@@ -320,6 +346,21 @@ Shadow shadow(const Octree& octree, const Expression& solid, const ShadowAsked& 
       Octree::full(universe), 1.0);
   asked.progress.at(1.0);
   return {{std::move(grey), 0.0, points_a_voxel}, depths.far_end_mm()};
+}
+
+std::vector<double> filled_mm3(const Octree& octree, const Expression& solid,
+                               const std::vector<glm::dvec3>& directions, const Progress& progress) {
+  check_voxels(octree);
+  for (const glm::dvec3& direction : directions) check_unit(direction);
+  const Universe& universe = octree.universe();
+  const double object_mm3 = static_cast<double>(octree.voxel_count()) * universe.lattice().voxel_mm3();
+  const SurfaceCrossings crossings(octree, solid);
+  std::vector<double> found;
+  for (const glm::dvec3& direction : directions) {
+    progress.at(static_cast<double>(found.size()) / static_cast<double>(directions.size()));
+    found.push_back(first_depths(crossings, universe, solid, direction).volume_mm3() - object_mm3);
+  }
+  return found;
 }
 
 }  // namespace octotomy::voxel

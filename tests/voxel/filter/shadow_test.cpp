@@ -80,6 +80,17 @@ TEST(VoxelShadow, AnObliqueWedgeIsFilledDownToTheEnd) {
   EXPECT_NEAR(volume_mm3(universe, Expression(made.window)), truth_mm3, 0.006 * truth_mm3);
 }
 
+TEST(VoxelShadow, WhatItAddsIsKnownForManyDirectionsAtOnce) {
+  const Universe universe = tests::spaced_universe(6);
+  const Expression ball(Sphere{universe.lattice().lps_mm(glm::dvec3(31.3)), 12.0});
+  const std::vector<double> filled =
+      filled_mm3(combine(universe, ball), ball, {oblique, glm::dvec3(0, 0, 1), -oblique});
+  ASSERT_EQ(filled.size(), 3u);
+  const double truth_mm3 = pi / 3.0 * 12.0 * 12.0 * 12.0;
+  for (const double mm3 : filled) EXPECT_NEAR(mm3, truth_mm3, 0.03 * truth_mm3);
+  EXPECT_THROW(filled_mm3(combine(universe, ball), ball, {glm::dvec3(0, 0, 2)}), std::invalid_argument);
+}
+
 TEST(VoxelShadow, TheSameBitsOnOneThreadAndMany) {
   const Universe universe = tests::spaced_universe(6);
   const Expression ball(Sphere{universe.lattice().lps_mm(glm::dvec3(31.3)), 12.0});
