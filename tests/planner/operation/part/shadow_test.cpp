@@ -38,6 +38,14 @@ TEST(ShadowStep, OfABallIsItsHalfAndARoundPostToItsFarEnd) {
   EXPECT_NEAR(details.at("filled_mm3").get<double>(), post_mm3(20.0) - half_ball_mm3(), 200.0);
 }
 
+TEST(ShadowStep, EndsAtTheUniversesBorder) {
+  const ScratchFolder folder;
+  const Evaluation evaluation = evaluate(ball_plan(folder, R"(
+      {"id": "long", "do": "shadow", "object": "ball", "direction": [0, 0, -1], "beyond_mm": 30})"));
+  // The universe reaches 32 mm about the ball's middle.
+  expect_certified(evaluation.object("long"), half_ball_mm3() + post_mm3(32.0), 0.01);
+}
+
 TEST(ShadowStep, ATolerableUndercutIsLeftIn) {
   const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
