@@ -66,6 +66,7 @@ WRITERS = (
     ("convert", "IN.nrrd", "-o", "OUT.nii.gz"), ("octree", "IN.nrrd", "--window", "300:", "-o", "OUT.octree"),
     ("tet", "IN.stl", "-o", "OUT.inp"), ("smooth", "IN.stl", "-o", "OUT.ply"),
     ("offset", "IN.stl", "--by", "1", "-o", "OUT.stl"), ("shell", "IN.stl", "--thickness", "2", "-o", "OUT.stl"),
+    ("shadow", "IN.stl", "--direction", "0.2,1,0.1", "-o", "OUT.stl"),
     ("decimate", "IN.stl", "--faces", "100", "-o", "OUT.stl"), ("repair", "IN.stl", "--orient", "-o", "OUT.stl"),
     ("mirror", "IN.stl", "-o", "OUT.stl"), ("compare", "IN.stl", "IN.stl", "-o", "OUT.glb"),
     ("boolean", "IN.stl", "union", "IN.stl", "-o", "OUT.stl"),

@@ -382,6 +382,7 @@ class Kinds {
           {"mirror", "MUTANT", "-o", "OUT.stl"},
           {"mirror", "MUTANT", "--plane", "1,2,3", "1,1,0", "--exactly", "-o", "OUT.ply"},
           {"shell", "MUTANT", "--thickness", "8", "--voxel", "2", "-o", "OUT.octree"},
+          {"shadow", "MUTANT", "--direction", "0.2,1,0.1", "--voxel", "2", "-o", "OUT.octree"},
           {"fill", "MUTANT", "--certify", "-o", "OUT.stl"},
           {"saw", "MUTANT", "--line", "-60,-120,-20", "60,-120,-20", "--direction", "0,1,0", "--certify",
            "-o", "OUT.stl"}};

@@ -24,176 +24,15 @@
 #include <utility>
 #include <vector>
 
+#include "voxel/filter/surface_crossings.h"
 #include "voxel/measure/distance_map.h"
-#include "voxel/solid/membership.h"
 #include "voxel/tree/octree_node.h"
-#include "voxel/tree/voxel_boundary.h"
 
 namespace octotomy::voxel {
 namespace {
 
 /// Samples far from the offset surface; more than ten voxels' diagonals.
 constexpr double most_steps = 30000.0;
-
-glm::ivec3 axis_step(int axis) {
-  glm::ivec3 step(0);
-  step[axis] = 1;
-  return step;
-}
-
-/// A voxel of the universe or beside it, and an axis or 3, as one number.
-std::uint64_t key_of(const glm::ivec3& voxel, int axis) {
-  constexpr int bits = 20;
-  const glm::u64vec3 from(voxel + 2);
-  return (((from.z << bits | from.y) << bits | from.x) << 2) | static_cast<std::uint64_t>(axis);
-}
-glm::ivec3 voxel_of(std::uint64_t key) {
-  constexpr int bits = 20;
-  constexpr std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
-  const std::uint64_t at = key >> 2;
-  return glm::ivec3(static_cast<int>(at & mask), static_cast<int>((at >> bits) & mask),
-                    static_cast<int>(at >> (2 * bits))) -
-         2;
-}
-
-template <typename Value>
-void sort_and_unify(std::vector<Value>& values) {
-  tbb::parallel_sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-}
-
-/// Where a surface crosses the lattice, each crossing by the edge from a voxel's centre along an axis.
-/// Positions are in voxels.
-class Crossings {
- public:
-  Crossings(const Octree& octree, const Expression& solid) {
-    const std::vector<VoxelFace> faces = voxel_boundary(octree);
-    const Lattice lattice = octree.universe().lattice();
-    const Membership contains(octree.universe(), solid);
-    constexpr std::uint64_t no_crossing = std::numeric_limits<std::uint64_t>::max();
-    std::vector<std::pair<std::uint64_t, double>> found(faces.size());
-    tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t i) {
-      const VoxelFace& face = faces[i];
-      const glm::ivec3 step = face.side * axis_step(face.axis);
-      if (goes_on_beyond(face, octree.universe(), contains)) {
-        found[i].first = no_crossing;
-        return;
-      }
-      // The share of the way out: eight halvings, below a hundredth of an edge.
-      double in = 0.0, out = 1.0;
-      for (int halving = 0; halving < 8; ++halving) {
-        const double middle = 0.5 * (in + out);
-        (contains(lattice.lps_mm(glm::dvec3(face.voxel) + middle * glm::dvec3(step))) ? in : out) = middle;
-      }
-      const double share = 0.5 * (in + out);
-      found[i] = face.side > 0 ? std::pair{key_of(face.voxel, face.axis), share}
-                               : std::pair{key_of(face.voxel - axis_step(face.axis), face.axis), 1.0 - share};
-    });
-    tbb::parallel_sort(found.begin(), found.end());
-    for (const auto& [key, share] : found) {
-      if (key == no_crossing) break;
-      keys_.push_back(key);
-      glm::dvec3 at(voxel_of(key));
-      at[static_cast<int>(key & 3)] += share;
-      points_.push_back(at);
-    }
-  }
-
-  /// The crossings and the middles between them, in voxels.
-  std::vector<glm::dvec3> with_middles() const {
-    std::vector<std::uint64_t> squares, cells;
-    for (const std::uint64_t key : keys_) {
-      const int axis = static_cast<int>(key & 3);
-      const glm::ivec3 at = voxel_of(key), b = axis_step((axis + 1) % 3), c = axis_step((axis + 2) % 3);
-      // A square is known by its lowest voxel and its normal.
-      for (const int back : {0, 1}) {
-        squares.push_back(key_of(at - back * b, (axis + 2) % 3));
-        squares.push_back(key_of(at - back * c, (axis + 1) % 3));
-        for (const int also : {0, 1}) cells.push_back(key_of(at - back * b - also * c, 3));
-      }
-    }
-    sort_and_unify(squares);
-    sort_and_unify(cells);
-    std::vector<glm::dvec3> all = points_;
-    append(squares, all, [this](std::uint64_t key) { return middle_of_chord(key); });
-    append(cells, all, [this](std::uint64_t key) { return middle_of_ring(voxel_of(key)); });
-    return all;
-  }
-
- private:
-  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-
-  /// Whether a solid that the universe cuts off has no surface at a face of the universe.
-  static bool goes_on_beyond(const VoxelFace& face, const Universe& universe, const Membership& contains) {
-    glm::ivec3 beyond = face.voxel;
-    beyond[face.axis] += face.side;
-    return (beyond[face.axis] < 0 || beyond[face.axis] >= universe.side()) &&
-           contains(universe.lattice().lps_mm(glm::dvec3(beyond)));
-  }
-
-  using Middle = std::pair<bool, glm::dvec3>;
-
-  template <typename Find>
-  static void append(const std::vector<std::uint64_t>& keys, std::vector<glm::dvec3>& to, const Find& find) {
-    std::vector<Middle> found(keys.size());
-    tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) { found[i] = find(keys[i]); });
-    for (const auto& [is_there, at] : found)
-      if (is_there) to.push_back(at);
-  }
-
-  std::size_t crossing(const glm::ivec3& from, int axis) const {
-    const std::uint64_t key = key_of(from, axis);
-    const auto found = std::lower_bound(keys_.begin(), keys_.end(), key);
-    return found != keys_.end() && *found == key ? static_cast<std::size_t>(found - keys_.begin()) : none;
-  }
-
-  /// The crossings of a square's four edges: none, two, or four where its corners differ diagonally.
-  std::vector<std::size_t> of_square(const glm::ivec3& low, int normal) const {
-    std::vector<std::size_t> found;
-    const int b = (normal + 1) % 3, c = (normal + 2) % 3;
-    for (const int far : {0, 1})
-      for (const auto& [along, across] : {std::pair{b, c}, std::pair{c, b}})
-        if (const std::size_t at = crossing(low + far * axis_step(across), along); at != none)
-          found.push_back(at);
-    return found;
-  }
-
-  Middle middle_of_chord(std::uint64_t square) const {
-    const std::vector<std::size_t> ends = of_square(voxel_of(square), static_cast<int>(square & 3));
-    if (ends.size() != 2) return {};
-    return {true, 0.5 * (points_[ends[0]] + points_[ends[1]])};
-  }
-
-  /// The mean of a cell's crossings where chords join all of them to one ring: there the cell holds one
-  /// sheet.
-  Middle middle_of_ring(const glm::ivec3& low) const {
-    std::vector<std::pair<std::size_t, std::size_t>> chords;
-    for (int normal = 0; normal < 3; ++normal)
-      for (const int far : {0, 1}) {
-        const std::vector<std::size_t> ends = of_square(low + far * axis_step(normal), normal);
-        if (ends.size() > 2) return {};
-        if (ends.size() == 2) chords.emplace_back(ends[0], ends[1]);
-      }
-    if (chords.size() < 3) return {};
-    // From chord to chord: each crossing has two, as its edge lies in two of the cell's squares.
-    glm::dvec3 sum = points_[chords[0].first];
-    std::size_t at = chords[0].second, used = 0, count = 1;
-    for (; at != chords[0].first; ++count) {
-      sum += points_[at];
-      for (std::size_t i = 1; i < chords.size(); ++i) {
-        if (i == used || (chords[i].first != at && chords[i].second != at)) continue;
-        at = chords[i].first == at ? chords[i].second : chords[i].first;
-        used = i;
-        break;
-      }
-    }
-    if (count != chords.size()) return {};
-    return {true, sum / static_cast<double>(count)};
-  }
-
-  std::vector<std::uint64_t> keys_;  // ascending
-  std::vector<glm::dvec3> points_;
-};
 
 /// The nearest of many points: halved at the middle one along the longer side of their box, so that a range
 /// of the list is a node and its middle the point that divides it.
@@ -290,7 +129,7 @@ class Depths {
 
  private:
   static std::vector<glm::dvec3> on_surface(const Octree& octree, const Expression& solid) {
-    std::vector<glm::dvec3> points = Crossings(octree, solid).with_middles();
+    std::vector<glm::dvec3> points = SurfaceCrossings(octree, solid).with_middles();
     const glm::dmat3 edges_mm(octree.universe().lps_from_voxel);
     for (glm::dvec3& p : points) p = edges_mm * p;
     return points;

@@ -67,6 +67,7 @@ constexpr std::array verb_table{
     GroupedVerb{shaping, "fill"},
     GroupedVerb{shaping, "offset"},
     GroupedVerb{shaping, "shell"},
+    GroupedVerb{shaping, "shadow"},
     GroupedVerb{elements, "tet"},
     GroupedVerb{elements, "warp"},
     GroupedVerb{measuring, "measure"},

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "brep/mesh/progress.h"
+#include "brep/mesh/solid.h"
+
+namespace octotomy::brep {
+
+struct SeatingAsked {
+  glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit, LPS: in which the part moves to its place
+  double resolution_mm = 0.01;          ///< depths up to this are not looked for, and depths are good to it
+  Progress progress = {};
+};
+
+/// Where an object reaches deepest into the space that a part passes through on its way.
+struct Binding {
+  glm::dvec3 at_mm{0.0};  ///< a point of the object's surface
+  double depth_mm = 0.0;  ///< from there to the nearest point outside of that space
+  /// The part holds the point from `first_mm` before its place on, until `last_mm` before it; 0 is the place.
+  double first_mm = 0.0, last_mm = 0.0;
+};
+
+struct Seating {
+  std::optional<Binding> binding;  ///< the deepest; none up to the resolution
+  double swept_mm3 = 0.0;          ///< of the part's way, as far as the object's near end
+};
+
+/// A part is moved from outside along a direction to its place. The space that it passes through is its
+/// shadow() against that direction: exact, with no triangle left out. The depth of the object in it is found
+/// to `resolution_mm` by halving triangles of the object's surface whose depth may still be the largest.
+/// A part thinner than twice a depth cannot show that depth. Throws std::invalid_argument if the direction is
+/// not a unit vector, the resolution is not above 0 or a solid is empty; Stopped. The same bits on any thread
+/// count. Cost: shadow() of the part; a search in its tree for each triangle of the object within its box, and
+/// for parts of those triangles where the two surfaces lie closer than their size.
+Seating seating(const Solid& part, const Solid& object, const SeatingAsked& asked);
+
+}  // namespace octotomy::brep

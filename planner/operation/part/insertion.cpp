@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/part/insertion.h"
+
+#include <stdexcept>
+
+#include "planner/operation/table/number_format.h"
+#include "voxel/space/view.h"
+
+namespace octotomy::planner {
+
+void check(const Insertion& insertion, const Place& place) {
+  if (insertion.direction && insertion.seen_from)
+    place.at("seen_from").refuse("states the direction a second time: leave out 'direction' or 'seen_from'");
+  if (!insertion.direction && !insertion.seen_from)
+    place.refuse(
+        "the insertion direction is missing: add 'direction', for example [0, 0, 1], or 'seen_from', the "
+        "view "
+        "from whose side the part is put on");
+  if (insertion.seen_from) try {
+      voxel::parse_view(*insertion.seen_from);
+    } catch (const std::invalid_argument& error) {
+      place.at("seen_from").refuse(error.what());
+    }
+}
+
+glm::dvec3 direction_of(const Insertion& insertion, const glm::dmat3& lps_from_head) {
+  if (insertion.direction) return glm::normalize(*insertion.direction);
+  return glm::normalize(lps_from_head * voxel::parse_view(*insertion.seen_from).look);
+}
+
+std::string in_words(const Insertion& insertion) {
+  if (!insertion.direction) return "the view from " + *insertion.seen_from;
+  const glm::dvec3& along = *insertion.direction;
+  return "(" + plain(along.x) + ", " + plain(along.y) + ", " + plain(along.z) + ")";
+}
+
+Field insertion_direction(const std::function<Insertion&(void* owner)>& insertion) {
+  return Field{"direction", "The direction in which a part is put on, LPS; its length does not count.",
+               [insertion](void* owner) -> Slot { return &insertion(owner).direction; }}
+      .direction();
+}
+
+Field insertion_view(const std::function<Insertion&(void* owner)>& insertion) {
+  return Field{
+      "seen_from",
+      "Instead of the direction, the view from whose side a part is put on: anterior, posterior, left, "
+      "right, superior, inferior, or AZ,EL in degrees; of the head as it is held.",
+      [insertion](void* owner) -> Slot { return &insertion(owner).seen_from; }};
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+
+#include "planner/operation/table/field.h"
+#include "planner/operation/table/scope.h"
+
+namespace octotomy::planner {
+
+/// The way in which a part is put on, typed or by the view from whose side it comes: exactly one is there.
+struct Insertion {
+  std::optional<glm::dvec3> direction;   ///< of any length, LPS
+  std::optional<std::string> seen_from;  ///< a view of the head as it is held
+};
+
+/// Refuses both and neither, a direction without length and an unknown view.
+void check(const Insertion& insertion, const Place& place);
+/// A unit vector, LPS.
+glm::dvec3 direction_of(const Insertion& insertion, const glm::dmat3& lps_from_head);
+/// "(0, 1, 0)", "the view from anterior".
+std::string in_words(const Insertion& insertion);
+
+/// The fields "direction" and "seen_from" of an operation that holds an insertion.
+Field insertion_direction(const std::function<Insertion&(void* owner)>& insertion);
+Field insertion_view(const std::function<Insertion&(void* owner)>& insertion);
+template <typename Owner>
+Field insertion_direction(Insertion Owner::*member) {
+  return insertion_direction(
+      [member](void* owner) -> Insertion& { return static_cast<Owner*>(owner)->*member; });
+}
+template <typename Owner>
+Field insertion_view(Insertion Owner::*member) {
+  return insertion_view([member](void* owner) -> Insertion& { return static_cast<Owner*>(owner)->*member; });
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// An object with all that lies behind it along an insertion direction: its undercuts blocked out. A part from
+// which this is taken away can be slid on along the direction. Each kernel works on its own answer to the
+// object; the direction and the end plane are settled first, so that both take the same.
+//
+// With a tolerated undercut the shadow is that of the object's points deeper than the tolerance, united with
+// the object. On its way a part then meets points of the object that are at most so deep below its surface.
+#include "brep/shape/shadow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "brep/boolean/boolean.h"
+#include "brep/shape/offset.h"
+#include "brep/shape/prism.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/part/insertion.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "verify/witness/offset_witness.h"
+#include "voxel/filter/offset.h"
+#include "voxel/filter/shadow.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Shadow {
+  ObjectName object;
+  Insertion insertion;
+  double beyond_mm = 0.0;
+  std::optional<double> tolerance_mm;
+  glm::dvec3 along{0.0, 1.0, 0.0};  ///< settled: unit, LPS
+  double end_mm = 0.0;              ///< settled: p . along of the end plane
+};
+
+void check(const Shadow& shadow, const Place& place) {
+  check(shadow.insertion, place);
+}
+
+/// The object within the universe, of which both kernels make the shadow.
+const brep::Solid& solid_within(const Object& object) {
+  return object.mesh.within ? *object.mesh.within : *object.mesh.whole;
+}
+
+Shadow settle(const Shadow& asked, const SettleBench& bench) {
+  Shadow settled = asked;
+  settled.along = direction_of(asked.insertion, bench.objects.lps_from_head);
+  bench.object(asked.object.name);  // Refuses an object without a mesh.
+  const brep::Solid& solid = solid_within(bench.objects.at(asked.object.name));
+  if (!solid.empty()) settled.end_mm = brep::far_end_mm(solid, settled.along) + asked.beyond_mm;
+  bench.details = {{"direction", to_json(settled.along)}, {"end_mm", settled.end_mm}};
+  return settled;
+}
+
+std::string definition(const Shadow& shadow, const Objects&) {
+  return "shadow of " + shadow.object.name + " along " + in_words(shadow.insertion);
+}
+
+/// Edge of the cells in which the mesh kernel looks for points as deep as the tolerance: as offset's default.
+double cell_mm(const brep::Solid& solid, double tolerance_mm) {
+  const glm::dvec3 extent = solid.size().high_mm - solid.size().low_mm;
+  return std::max(0.25 * tolerance_mm, std::max({extent.x, extent.y, extent.z}) / 200.0);
+}
+
+/// The part of a shadow within the universe, where voxels end, too. A plane across an oblique direction reaches
+/// beyond the universe by nature, and nothing is lost there.
+brep::BooleanResult cut_at_universe(const brep::Solid& shadow, const MeshBench& bench) {
+  const glm::dvec3 &low = bench.low_mm, &high = bench.high_mm;
+  if (shadow.empty() || (glm::all(glm::greaterThanEqual(shadow.size().low_mm, low)) &&
+                         glm::all(glm::lessThanEqual(shadow.size().high_mm, high))))
+    return {shadow, {}, 0.0, {}};
+  brep::Prism world;
+  world.polygons_mm = {{{low.x, low.z}, {high.x, low.z}, {high.x, high.z}, {low.x, high.z}}};
+  world.from_mm = low.y;
+  world.to_mm = high.y;
+  return brep::boolean(shadow, brep::Operation::Intersection, brep::solid_of(world), bench.progress.stop);
+}
+
+void voxels(const Shadow& shadow, const VoxelBench& bench, VoxelSide& made) {
+  made.lineage = "columns of the octree filled from their first crossing of its surface";
+  const VoxelSide& object = bench.object(shadow.object.name);
+  if (object.octree.is_empty()) {
+    made.symbol = voxel::Expression(made.octree);
+    return;
+  }
+  voxel::Octree octree = object.octree;
+  voxel::Expression solid = bench.within_universe(*object.symbol);
+  if (shadow.tolerance_mm) {
+    const Stopwatch watch(bench.timings, "offset_voxel");
+    solid = voxel::Expression(voxel::offset(octree, solid, -*shadow.tolerance_mm, bench.progress));
+    octree = bench.combined(solid);
+  }
+  if (octree.is_empty()) {
+    made.octree = object.octree;
+    made.symbol = object.symbol;
+    made.findings.push_back(
+        "no point of the object is deeper than the tolerated undercut, so nothing is blocked out: take a "
+        "smaller one");
+    return;
+  }
+  const voxel::Shadow found = [&] {
+    const Stopwatch watch(bench.timings, "shadow_voxel");
+    return voxel::shadow(octree, solid, {shadow.along, shadow.end_mm, bench.progress});
+  }();
+  // The end is the mesh's. The voxels' own may be off by less than a voxel's diagonal.
+  const double apart_mm =
+      std::abs(found.far_end_mm + shadow.tolerance_mm.value_or(0.0) + shadow.beyond_mm - shadow.end_mm);
+  if (apart_mm > glm::length(bench.universe.lattice().spacing_mm()))
+    made.findings.push_back("the object's far end lies " + three_figures(apart_mm) +
+                            " mm apart in voxels and in the mesh: a thin tip has no voxels, so take smaller "
+                            "ones or cut the tip off");
+  const voxel::Expression window(found.window);
+  made.octree = bench.combined(shadow.tolerance_mm ? window | voxel::Expression(object.octree) : window);
+  made.symbol = bench.within_universe(shadow.tolerance_mm ? window | *object.symbol : window);
+}
+
+void triangles(const Shadow& shadow, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "shadow");
+  const brep::Solid& solid = solid_within(bench.objects.at(shadow.object.name));
+  const brep::Progress progress{bench.progress.stop, bench.progress.report};
+  brep::Solid deep = solid;
+  if (shadow.tolerance_mm && !solid.empty()) {
+    const brep::OffsetOptions options{-*shadow.tolerance_mm, cell_mm(solid, *shadow.tolerance_mm), progress};
+    deep = brep::offset(solid, options);
+    const brep::MissedWalls missed = brep::missed_walls(solid, deep, options);
+    if (missed.area_share > 0.0)
+      made.findings.push_back("walls thinner than " + three_figures(options.cell_mm) + " mm, " +
+                              three_figures(100.0 * missed.area_share) +
+                              " % of the surface, cast no shadow where an undercut is tolerated");
+    made.details["cell_mm"] = options.cell_mm;
+  }
+  const brep::Shadow found = brep::shadow(deep, {shadow.along, shadow.end_mm, progress});
+  brep::BooleanResult whole = cut_at_universe(found.solid, bench);
+  made.shift_mm = whole.shift_mm;
+  made.findings.insert(made.findings.end(), whole.findings.begin(), whole.findings.end());
+  if (shadow.tolerance_mm) {
+    whole = brep::boolean(solid, brep::Operation::Union, whole.solid, bench.progress.stop);
+    made.shift_mm += whole.shift_mm;
+    made.findings.insert(made.findings.end(), whole.findings.begin(), whole.findings.end());
+  }
+  made.whole = whole.solid;
+  made.details["triangles_seen"] = found.seen;
+  made.details["filled_mm3"] = brep::volume_mm3(*made.whole) - brep::volume_mm3(solid);
+  made.lineage = "the triangles that are seen first along the direction, with walls below their outline";
+}
+
+void bound(const Shadow& shadow, const BoundBench& bench, Object& made) {
+  const Object& object = bench.objects.at(shadow.object.name);
+  inherit(object, made);
+  if (shadow.tolerance_mm && made.mesh.whole && object.mesh.whole && !made.mesh.whole->empty()) {
+    made.bound.measured_apart_mm += verify::offset_allowance_mm(
+        {object.witness, object.voxel.octree, *object.mesh.whole, is_whole_voxels(object.voxel)},
+        {-*shadow.tolerance_mm, cell_mm(*object.mesh.whole, *shadow.tolerance_mm)},
+        made.mesh.whole->measures().area_mm2);
+    made.bound.reshaped = {shadow.object.name};
+  }
+  // Where the end plane is parallel to voxels' faces, all of it is rounded alike.
+  constexpr double rounding = 1e-9;
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(shadow.along[axis]) > 1.0 - rounding)
+      made.bound.planes.push_back({axis, shadow.along, shadow.end_mm, 1.0});
+  made.ends_with_universe = true;
+}
+
+}  // namespace
+
+Operation shadow_operation() {
+  return Describe<Shadow>("shadow",
+                          "Blocks out an object's undercuts: the object and all that lies behind it along an "
+                          "insertion direction.",
+                          Makes::Object)
+      .takes(field("object", &Shadow::object, "The object.").required().positional("solid"))
+      .takes(insertion_direction(&Shadow::insertion))
+      .takes(insertion_view(&Shadow::insertion))
+      .takes(
+          field("beyond_mm", &Shadow::beyond_mm,
+                "How far the shadow goes on behind the object's far end, at most to the universe's border. "
+                "Default: it ends there, as models that are blocked out by hand end at their base.")
+              .from(0.0)
+              .to(500.0))
+      .takes(field("tolerance_mm", &Shadow::tolerance_mm,
+                   "A tolerated undercut: what lies less deep below the object's surface blocks nothing, so "
+                   "that a part snaps on, for example 0.12. Default: none is tolerated.")
+                 .greater_than(0.0)
+                 .to(2.0))
+      .example(R"({"id": "blocked", "do": "shadow", "object": "teeth", "direction": [0, 0, 1]})")
+      .on_files(
+          "octotomy shadow teeth.stl --direction 0,0,1 -o blocked.stl\n"
+          "  octotomy shadow skull.stl --seen-from anterior --beyond 5 -o blocked.ply --json")
+      .of_head()
+      .check(check)
+      .settle(settle)
+      .object(definition, voxels, triangles, bound);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "voxel/filter/shadow.h"
+
+namespace octotomy::voxel {
+
+struct SeatingAsked {
+  glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit, LPS: in which the part moves to its place
+  Progress progress = {};
+};
+
+/// Where an object reaches deepest into the space that a part passes through on its way.
+struct Binding {
+  glm::dvec3 at_mm{0.0};  ///< a voxel's centre
+  double depth_mm = 0.0;  ///< from there to the nearest voxel outside of that space, less half an edge
+};
+
+struct Seating {
+  std::optional<Binding> binding;  ///< none: no voxel of the object is in that space
+  double swept_mm3 = 0.0;          ///< of the part's way within the universe
+};
+
+/// A part is moved from outside along a direction to its place. The space that it passes through is its
+/// shadow() against that direction, within the universe. The depth of the object's voxels in it is good to a
+/// voxel's diagonal: half of it from each digitised surface. Throws as shadow(). Parallel; same bits on any
+/// thread count. Cost: shadow() of the part, and a distance map over the voxels that both have.
+Seating seating(const Octree& part, const Expression& part_solid, const Octree& object,
+                const SeatingAsked& asked);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "voxel/solid/expression.h"
+#include "voxel/space/progress.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::voxel {
+
+struct ShadowAsked {
+  glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit, LPS: the way in which a part is put on
+  double end_mm = 0.0;                  ///< p . direction of the plane at which the shadow ends
+  Progress progress = {};
+};
+
+struct Shadow {
+  /// Samples are the share of a voxel in the shadow less one half, so that the window can be combined, moved
+  /// and sampled between voxels.
+  Window window;
+  double far_end_mm = 0.0;  ///< the largest p . direction of the object's surface as voxels have it
+};
+
+/// The points of an object and all points behind it as seen along a direction, up to a plane across that
+/// direction: what nothing can reach that moves along the direction from outside. `octree` holds the object's
+/// voxels, and `solid` decides where its surface crosses the lines between neighbouring voxels' centres. The
+/// object ends at the universe's border, and so does the shadow.
+///
+/// Columns along the direction, a fifth of the smallest voxel edge apart, each begin at the first crossing of
+/// a surface through those crossings (SurfaceCrossings); beside an outline, where that surface cuts edges
+/// off, at the solid itself. A voxel's share is counted at 5^3 points of it, each in the nearest column: the
+/// shadow's side walls lie at random up to 0.15 of a voxel edge off, and not on the mean. Walls thinner than
+/// half a voxel along the direction have no voxels.
+///
+/// Throws std::invalid_argument if the direction is not a unit vector, the end is not finite or the octree is
+/// empty; Stopped. Parallel; same bits on any thread count. Cost: the crossings, and for each voxel of the
+/// shadow's boundary 125 look-ups; 8 bytes a column, 2 bytes for each voxel of the blocks of 16 voxels a side
+/// that hold a part of the shadow.
+Shadow shadow(const Octree& octree, const Expression& solid, const ShadowAsked& asked);
+
+/// The volume that shadow() adds to the object along each of some unit directions, up to the object's far end:
+/// the columns' lengths less the object's voxels. Good to the columns' noise and to half a voxel edge of the
+/// object's far end. Throws as shadow(). Parallel; same bits on any thread count. Cost: the crossings once, and
+/// the columns of each direction.
+std::vector<double> filled_mm3(const Octree& octree, const Expression& solid,
+                               const std::vector<glm::dvec3>& directions, const Progress& progress = {});
+
+}  // namespace octotomy::voxel
