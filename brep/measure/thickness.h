@@ -29,17 +29,18 @@ struct ThicknessOptions {
   /// smaller angle heeds flatter ridges, and the facets of a curved sheet, whose depth h it makes some
   /// h / (1 - cos angle) of radius.
   double least_angle_deg = 30.0;
-  std::function<void(double)> progress = {};  ///< is called with 0..1, from any thread, one at a time
+  std::function<void(double)> progress = {};  ///< is called with 0..1, from the calling thread
   std::stop_token stop = {};
 };
 
 /// The thickness at each point. Balls shrink from the ray's half until no other sheet lies in them; towards a
-/// sharp edge they shrink to nothing, as a ball does that is to touch both its sides. Both are good to 2^-30
-/// of the solid's extent. Precondition: a point lies on the surface. Throws std::invalid_argument if the
-/// solid is empty, the angle is out of its range, or a ray leaves without meeting the surface, naming the
-/// point; Stopped. The same bits on any number of threads. Cost: about log n a point for the ray, and for
-/// each step of the ball; parallel. Source: Ma, Bae and Choi, "3D medial axis point approximation using
-/// nearest neighbors and the normal field", The Visual Computer 28, 2012, with triangles for points.
+/// sharp edge they shrink to nothing, as a ball does that is to touch both its sides. Rays are good to
+/// rounding; balls as InscribedBalls::touching() says. Precondition: a point lies on the surface. Throws
+/// std::invalid_argument if the solid is empty, the angle is out of its range, or a ray leaves without meeting
+/// the surface, naming the point; Stopped. The same bits on any number of threads. Cost: n log n for the tree,
+/// about log n a point; parallel. Source: Ma, Bae and Choi, "3D medial axis point approximation using nearest
+/// neighbors and the normal field", The Visual Computer 28, 2012, with triangles for points and all sheets at
+/// each step.
 std::vector<Thickness> thickness(const Solid& solid, const std::vector<SurfacePoint>& points,
                                  const ThicknessOptions& options = {});
 
