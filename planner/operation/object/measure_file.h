@@ -19,10 +19,12 @@ struct Measure {
   std::filesystem::path out;
 
   /// Whether anything is asked that only a surface has.
-  bool asks_surface() const {
-    return !section.empty() || !along.empty() || !distance.empty() || !angle.empty() || thickness ||
-           curvature || !out.empty();
+  bool asks_mesh() const {
+    return !section.empty() || !along.empty() || !distance.empty() || !angle.empty() || curvature ||
+           !out.empty();
   }
+  /// The same, or walls, which voxels have too.
+  bool asks_surface() const { return asks_mesh() || thickness; }
 };
 
 /// What is measured of a scan's window, an octree or a mesh in a file.
