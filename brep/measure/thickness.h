@@ -29,18 +29,18 @@ struct ThicknessOptions {
   /// 1..120. With a smaller angle, flatter ridges limit the ball, and so do the facets of a curved sheet:
   /// facets of depth h limit the radius to about h / (1 - cos angle).
   double least_angle_deg = 30.0;
-  std::function<void(double)> progress = {};  ///< called with 0..1, from any thread, one call at a time
+  std::function<void(double)> progress = {};  ///< is called with 0..1, from the calling thread
   std::stop_token stop = {};
 };
 
-/// The thickness at each point. Each ball starts with the ray's length as its diameter and shrinks until it
-/// contains no other sheet; towards a sharp edge its diameter tends to zero, because the ball touches both
-/// sides of the edge. Both values are accurate to 2^-30 of the solid's extent. Precondition: each point lies
-/// on the surface. Throws std::invalid_argument if the solid is empty, the angle is out of its range, or a
-/// ray does not hit the surface (names the point); Stopped. The same bits on any number of threads. Cost:
-/// about log n a point for the ray, and for each step of the ball; parallel. Source: Ma, Bae and Choi, "3D
-/// medial axis point approximation using nearest neighbors and the normal field", The Visual Computer 28,
-/// 2012, with triangles for points.
+/// The thickness at each point. Balls shrink from the ray's half until no other sheet lies in them; towards a
+/// sharp edge they shrink to nothing, as a ball does that is to touch both its sides. Rays are good to
+/// rounding; balls as InscribedBalls::touching() says. Precondition: a point lies on the surface. Throws
+/// std::invalid_argument if the solid is empty, the angle is out of its range, or a ray leaves without meeting
+/// the surface, naming the point; Stopped. The same bits on any number of threads. Cost: n log n for the tree,
+/// about log n a point; parallel. Source: Ma, Bae and Choi, "3D medial axis point approximation using nearest
+/// neighbors and the normal field", The Visual Computer 28, 2012, with triangles for points and all sheets at
+/// each step.
 std::vector<Thickness> thickness(const Solid& solid, const std::vector<SurfacePoint>& points,
                                  const ThicknessOptions& options = {});
 

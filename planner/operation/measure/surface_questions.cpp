@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/operation/measure/surface_questions.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -12,8 +11,8 @@
 #include "brep/measure/curvature.h"
 #include "brep/measure/gap.h"
 #include "brep/measure/shortest_path.h"
-#include "brep/measure/thickness.h"
 #include "brep/mesh/measure.h"
+#include "planner/operation/measure/wall_thickness.h"
 #include "planner/operation/table/number_format.h"
 
 namespace octotomy::planner {
@@ -46,30 +45,6 @@ Json box_json(const brep::Mesh& mesh) {
           {"volume_mm3", box.volume_mm3()}};
 }
 
-/// Area-weighted statistics; all null if there are no values.
-Json summary(std::vector<std::pair<double, double>> value_and_area, const std::string& unit) {
-  const auto key = [&](const char* what) { return std::string(what) + "_" + unit; };
-  Json json;
-  if (value_and_area.empty()) {
-    for (const char* what : {"min", "mean", "median", "max"}) json[key(what)] = nullptr;
-    return json;
-  }
-  std::sort(value_and_area.begin(), value_and_area.end());
-  double area = 0.0, sum = 0.0;
-  for (const auto& [value, part] : value_and_area) {
-    area += part;
-    sum += part * value;
-  }
-  double below = 0.0;
-  const auto median = std::find_if(value_and_area.begin(), value_and_area.end(),
-                                   [&](const auto& entry) { return (below += entry.second) >= 0.5 * area; });
-  json[key("min")] = value_and_area.front().first;
-  json[key("mean")] = sum / area;
-  json[key("median")] = (median == value_and_area.end() ? value_and_area.back() : *median).first;
-  json[key("max")] = value_and_area.back().first;
-  return json;
-}
-
 Json curvature_json(const brep::Mesh& mesh, AtVertices& shown) {
   brep::Curvature found = brep::curvature(mesh);
   std::vector<std::pair<double, double>> mean, gaussian;
@@ -82,46 +57,9 @@ Json curvature_json(const brep::Mesh& mesh, AtVertices& shown) {
   }
   shown = {"mean_curvature_per_mm", std::move(found.mean_per_mm)};
   return {{"estimator", "cotangents and angle defects over mixed Voronoi areas, at vertices"},
-          {"mean", summary(std::move(mean), "per_mm")},
-          {"gaussian", summary(std::move(gaussian), "per_mm2")},
+          {"mean", weighted_summary(std::move(mean), "per_mm")},
+          {"gaussian", weighted_summary(std::move(gaussian), "per_mm2")},
           {"total_gaussian", total}};
-}
-
-std::vector<brep::Thickness> thickness_of(const voxel::Progress& progress, const brep::Solid& solid,
-                                          const std::vector<brep::SurfacePoint>& points) {
-  brep::ThicknessOptions options;
-  options.progress = progress.report;
-  options.stop = progress.stop;
-  return brep::thickness(solid, points, options);
-}
-
-/// Computes the thickness at vertices, where a picture shows it.
-Json thickness_json(const voxel::Progress& progress, const brep::Solid& solid, AtVertices& shown) {
-  const brep::Mesh& mesh = solid.mesh();
-  const brep::Curvature surface = brep::curvature(mesh);
-  std::vector<brep::SurfacePoint> points;
-  std::vector<std::size_t> vertices;
-  for (const auto vertex : mesh.vertices()) {
-    const auto v = static_cast<std::size_t>(vertex.idx());
-    if (surface.normals[v] == glm::dvec3(0.0)) continue;
-    const auto& p = mesh.point(vertex);
-    points.push_back({{p[0], p[1], p[2]}, surface.normals[v]});
-    vertices.push_back(v);
-  }
-  const std::vector<brep::Thickness> found = thickness_of(progress, solid, points);
-  std::vector<std::pair<double, double>> ray, ball;
-  shown = {"thickness_mm", std::vector<double>(mesh.n_vertices(), 0.0)};
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    ray.emplace_back(found[i].ray_mm, surface.areas_mm2[vertices[i]]);
-    ball.emplace_back(found[i].ball_mm, surface.areas_mm2[vertices[i]]);
-    shown.values[vertices[i]] = found[i].ball_mm;
-  }
-  return {
-      {"definition",
-       "at vertices, weighted by area; ray: along the inward normal to the surface; ball: diameter of the "
-       "largest ball inside that touches there"},
-      {"ray", summary(std::move(ray), "mm")},
-      {"ball", summary(std::move(ball), "mm")}};
 }
 
 Json along_json(const SurfaceQuestions& questions, const brep::Mesh& mesh) {
@@ -167,7 +105,12 @@ Json surface_answers(const SurfaceQuestions& questions, const brep::Solid& solid
   if (!questions.along.empty()) put("along", [&] { return along_json(questions, solid); });
   if (questions.to != nullptr) put("gap", [&] { return gap_json(solid, *questions.to); });
   if (questions.curvature) put("curvature", [&] { return curvature_json(solid, shown); });
-  if (questions.thickness) put("thickness", [&] { return thickness_json(progress, solid, shown); });
+  if (questions.thickness) {
+    put("thickness", [&] {
+      shown.name = "thickness_mm";
+      return thickness_json(solid, progress, shown.values);
+    });
+  }
   return json;
 }
 
@@ -198,8 +141,10 @@ std::vector<std::pair<std::string, std::string>> surface_rows(const Json& answer
            number(curvature["gaussian"]["mean_per_mm2"], 5, " /mm\u00b2");
   });
   add("thickness", [&](const Json& thickness) {
-    return number(thickness["ball"]["median_mm"], 2, " mm by balls, ") +
-           number(thickness["ray"]["median_mm"], 2, " mm by rays, medians");
+    const Json& average = thickness["volume"]["average"];
+    return grouped(average["value"].get<double>(), 2) + " \u00b1 " +
+           three_figures(average["half_width"].get<double>()) + " mm on average, thinnest wall " +
+           number(thickness["wall"]["min_mm"], 2, " mm");
   });
   return rows;
 }

@@ -12,6 +12,7 @@
 #include "planner/operation/measure/recommended.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/measure/surface_questions.h"
+#include "planner/operation/measure/wall_thickness.h"
 #include "planner/operation/object/measure_file.h"
 #include "planner/operation/object/trace.h"
 #include "planner/operation/table/operation.h"
@@ -357,6 +358,10 @@ Json size_json(const Measure& asked, const AnswerBench& bench) {
 Json surface_json(const Measure& asked, const AnswerBench& bench) {
   const Object& object = bench.objects.at(asked.object->name);
   Json json = size_json(asked, bench);
+  if (asked.thickness) {
+    const Stopwatch watch(bench.timings, "thickness_voxel");
+    json["thickness_voxel"] = thickness_json(object.voxel.octree, bench.progress("walls of " + object.id));
+  }
   if (!object.mesh.within || object.mesh.within->empty()) {
     for (const auto& [key, is_asked] :
          {std::pair("section", !asked.section.empty()), std::pair("along", !asked.along.empty()),
@@ -403,7 +408,9 @@ Operation measure_operation() {
                  .from(2)
                  .to(2))
       .takes(field("along", &Measure::along, "Two points: the shortest way along the surface.").from(2).to(2))
-      .takes(field("thickness", &Measure::thickness, "Walls of the surface, by rays and by balls."))
+      .takes(field("thickness", &Measure::thickness,
+                   "Local thickness: the largest ball inside that holds a point, over the volume and "
+                   "the surface, and the thinnest wall away from edges; of a mesh or an octree."))
       .takes(field("curvature", &Measure::curvature, "Mean and Gaussian curvature of the surface."))
       .verb_takes(
           field("distance", &Measure::distance, "Two points: the straight way between them.").from(2).to(2))

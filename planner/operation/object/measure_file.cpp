@@ -19,6 +19,7 @@
 #include "planner/operation/measure/recommended.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/measure/surface_questions.h"
+#include "planner/operation/measure/wall_thickness.h"
 #include "planner/operation/object/trace.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/plan_universe.h"
@@ -276,7 +277,13 @@ voxel::Window window_of(const voxel::GreyOctree& grey, const std::filesystem::pa
   return window_on(grey, *asked.window);
 }
 
-/// The advice where voxels are too coarse for an object.
+void add_thickness(const voxel::Octree& octree, const Measure& asked, const FileBench& bench, Json& json) {
+  if (!asked.thickness) return;
+  const Stopwatch watch(bench.timings, "thickness");
+  json["thickness"] = thickness_json(octree, bench.progress("thickness"));
+}
+
+/// What voxels that are too coarse for an object want.
 constexpr const char* remake = "make the octree with smaller ones, --voxel";
 
 FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure& asked,
@@ -295,6 +302,7 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
     if (const Json& partial_mm3 = json["volume_partial_mm3"]; partial_mm3.is_number())
       seen = {{"interpolant", partial_mm3}, "the interpolant of its samples encloses", remake};
     add_half_width(inside, measures, window_shift_mm(window), seen, json);
+    add_thickness(inside, asked, bench, json);
   } else if (asked.window) {
     throw std::runtime_error(file_path.string() + ": holds no samples to take a --window of: leave it out");
   } else if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) {
@@ -303,6 +311,7 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
     const double shares_mm3 = voxel::volume_mm3(*partial);
     add_half_width(half, measures, {}, Seen{{"shares", shares_mm3}, "the voxels' filled shares are", remake},
                    json);
+    add_thickness(half, asked, bench, json);
     json["volume_estimator"] = "voxels at least half filled, counted";
     json["volume_partial_mm3"] = shares_mm3;
     json["volume_partial_estimator"] = "the voxels' filled shares";
@@ -310,6 +319,7 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
     const auto& octree = std::get<voxel::Octree>(file.tree);
     json = of_voxels(octree, timings, measures);
     add_half_width(octree, measures, {}, {}, json);
+    add_thickness(octree, asked, bench, json);
     json["volume_partial_mm3"] = nullptr;
     json["findings"].push_back(
         "volume_partial_mm3: voxels that are in or out say nothing of their parts: keep samples (--grey) or "
@@ -467,10 +477,11 @@ FileAnswer measure_file(const Measure& asked, const FileBench& bench) {
   if (!asked.object) throw std::runtime_error("file is required: a scan, an octree or a mesh");
   const std::filesystem::path file = asked.object->name;
   if (!asked.out.empty()) need_scalars_of(asked);
-  if ((asked.asks_surface() || asked.to) && !is_mesh(file))
+  const bool has_walls = is_mesh(file) || is_octree(file);
+  if (((asked.asks_mesh() || asked.to) && !is_mesh(file)) || (asked.thickness && !has_walls))
     throw std::runtime_error(file.string() +
-                             ": sections, ways, angles, walls and curvature are asked of a mesh: octotomy "
-                             "mesh makes one");
+                             ": sections, ways, angles and curvature are measured on a mesh, walls on a "
+                             "mesh or an octree: octotomy mesh makes a mesh");
   if (is_mesh(file) && (asked.window || asked.voxel_mm))
     throw std::runtime_error(file.string() + ": a mesh has no samples and no voxels: leave " +
                              (asked.window ? "--window" : "--voxel") + " out");

@@ -18,11 +18,13 @@ struct Measure {
   std::optional<double> voxel_mm;
   std::filesystem::path out;
 
-  /// Whether a measure is requested that needs a surface.
-  bool asks_surface() const {
-    return !section.empty() || !along.empty() || !distance.empty() || !angle.empty() || thickness ||
-           curvature || !out.empty();
+  /// Whether anything is asked that only a surface has.
+  bool asks_mesh() const {
+    return !section.empty() || !along.empty() || !distance.empty() || !angle.empty() || curvature ||
+           !out.empty();
   }
+  /// The same, or walls, which voxels have too.
+  bool asks_surface() const { return asks_mesh() || thickness; }
 };
 
 /// Measures a scan's window, an octree or a mesh in a file.

@@ -2,6 +2,7 @@
 // The outer layer of an object: its points within a distance of its outside. Each kernel subtracts its own
 // inward offset from its own representation of the object.
 #include "brep/boolean/boolean.h"
+#include "brep/shape/convex_inset.h"
 #include "brep/shape/offset.h"
 #include "planner/operation/object/trace.h"
 #include "planner/operation/table/number_format.h"
@@ -41,9 +42,12 @@ void voxels(const Shell& shell, const VoxelBench& bench, VoxelSide& made) {
 void triangles(const Shell& shell, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "offset");
   const brep::Solid& solid = bench.object(shell.object.name);
-  const brep::Solid core = brep::offset(solid, {.by_mm = -shell.thickness_mm,
-                                                .cell_mm = cell_of(shell),
-                                                .progress = {bench.progress.stop, bench.progress.report}});
+  const brep::Progress progress{bench.progress.stop, bench.progress.report};
+  const std::optional<brep::Solid> inset = brep::convex_inset(solid, shell.thickness_mm, progress);
+  const brep::Solid core =
+      inset ? *inset
+            : brep::offset(solid,
+                           {.by_mm = -shell.thickness_mm, .cell_mm = cell_of(shell), .progress = progress});
   brep::BooleanResult rest = brep::boolean(solid, brep::Operation::Difference, core, bench.progress.stop);
   made.shift_mm = rest.shift_mm;
   made.findings = rest.findings;

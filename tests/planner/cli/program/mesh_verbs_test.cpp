@@ -98,6 +98,14 @@ TEST_F(MeshVerbs, AMeshIsAskedForSectionsWaysAnglesWallsAndCurvature) {
   EXPECT_EQ(json["gap"]["distance_mm"], 0.0);
   EXPECT_NEAR(json["oriented_box"]["edges_mm"][0].get<double>(), 2 * r, 0.1 * r);
   EXPECT_NEAR(json["thickness"]["ray"]["median_mm"].get<double>(), 2 * r, 0.1 * r);
+  // A ball of few triangles is thinner than its diameter, by both kernels.
+  EXPECT_NEAR(json["thickness"]["volume"]["mean_mm"].get<double>(), 2 * r, 0.1 * r);
+  EXPECT_NEAR(json["thickness"]["wall"]["min_mm"].get<double>(), 2 * r, 0.2 * r);
+  ASSERT_EQ(run("octree " + at("ball.nrrd") + " --window 0: -o " + at("ball.octree")).status, 0);
+  const SortedJson voxels =
+      SortedJson::parse(run("measure " + at("ball.octree") + " --thickness --json").out)["thickness"];
+  const SortedJson& average = voxels["volume"]["average"];
+  EXPECT_NEAR(average["value"].get<double>(), 2 * r, average["half_width"].get<double>() + 0.05 * r);
   EXPECT_NEAR(json["curvature"]["mean"]["mean_per_mm"].get<double>() * r, 1.0, 0.1);
   EXPECT_NEAR(json["inertia_mm5"][0][0].get<double>(), 0.4 * ball["volume_mm3"].get<double>() * r * r,
               0.03 * ball["volume_mm3"].get<double>() * r * r);

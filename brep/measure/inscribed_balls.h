@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "brep/mesh/triangles.h"
+
+namespace octotomy::brep {
+
+/// A ball in LPS millimetres.
+struct Ball {
+  glm::dvec3 centre_mm{0.0};
+  double radius_mm = 0.0;
+};
+
+/// Balls that touch a surface from inside. Holds a tree of boxes over the triangles. Building: n log n, about
+/// 150 bytes a triangle. Any number of threads may call it.
+class InscribedBalls {
+ public:
+  /// Precondition: the surface has triangles, and its points are finite.
+  explicit InscribedBalls(const Triangles& surface);
+
+  /// The way from a point of the surface straight inward, along its unit normal, to where the surface is met
+  /// again; infinity where it is not. Places within 2^-30 of the surface's extent are the point itself. Cost:
+  /// about log n.
+  double ray_mm(const glm::dvec3& p_mm, const glm::dvec3& normal) const;
+
+  /// The largest ball that touches the surface at a point, has its centre opposite to the unit normal there,
+  /// and holds no other sheet; its diameter is at most `ray_mm`, that point's. A triangle whose nearest point
+  /// to the centre lies within the angle of `least_cosine` of the point, seen from the centre, belongs to the
+  /// point's own sheet. The radius is good to rounding, or where very many triangles touch the ball, as of a
+  /// sphere, too large by at most 0.5 %. Cost: about log n; at most some thousand nodes of the tree more.
+  Ball touching(const glm::dvec3& p_mm, const glm::dvec3& normal, double ray_mm, double least_cosine) const;
+
+  /// Whether the surface touches a ball, within 2.5 % of its radius, in a direction from its centre that
+  /// encloses at least `least_rad` with that to `p_mm`, a point where it touches. `least_rad` above 90
+  /// degrees. Cost: about log n and the triangles near the opposite point.
+  bool touches_opposite(const Ball& ball, const glm::dvec3& p_mm, double least_rad) const;
+
+ private:
+  /// Over triangles begin .. end - 1, within a box and a slab across their mean normal: of a curved sheet the
+  /// slab is much the thinner. An inner node's children are the next one and `second`, 0 in a leaf.
+  struct Node {
+    glm::dvec3 low_mm{0.0}, high_mm{0.0}, across{0.0};
+    double slab_low_mm = 0.0, slab_high_mm = 0.0;
+    std::uint32_t begin = 0, end = 0, second = 0;
+    double squared_distance(const glm::dvec3& p_mm) const;
+  };
+  void add_slab(Node& node) const;
+  struct Corners {
+    glm::dvec3 a_mm, b_mm, c_mm;
+  };
+
+  double step_mm_ = 0.0;            ///< within which places are one
+  std::vector<Corners> triangles_;  ///< in the leaves' order
+  std::vector<Node> nodes_;         ///< a parent before its children
+};
+
+/// The largest of many balls that holds a point.
+class LargestBall {
+ public:
+  explicit LargestBall(std::vector<Ball> balls);
+
+  /// The largest ball that holds the point, or `known` where that is larger: its radius is too small by at most
+  /// 0.1 %, so that balls of nearly one size are not all compared. Cost: about log n where radii vary slowly
+  /// from place to place.
+  Ball about(const glm::dvec3& p_mm, const Ball& known) const;
+
+ private:
+  struct Node {
+    glm::dvec3 low_mm{0.0}, high_mm{0.0};  ///< of centres
+    double largest_mm = 0.0;
+    std::uint32_t begin = 0, end = 0, second = 0;
+  };
+
+  std::vector<Ball> balls_;  ///< in the leaves' order
+  std::vector<Node> nodes_;
+};
+
+}  // namespace octotomy::brep

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "brep/measure/thickness.h"
+#include "brep/mesh/solid.h"
+
+namespace octotomy::brep {
+
+struct LocalThicknessOptions {
+  /// About how many points of the surface, and as many of the volume, are measured; at least 64. Errors of
+  /// the average fall with its square root on solids with edges.
+  std::size_t samples = 20000;
+  double least_angle_deg = 30.0;  ///< as of ThicknessOptions
+  /// A wall's point: its ball touches the surface, within 2.5 % of its radius, at a second place, whose direction from the ball's centre
+  /// encloses at least this with that to the point, 91..179. The two sides of a wedge of angle a touch balls
+  /// at 180 - a, so that 150 leaves out edges sharper or blunter than walls whose sides converge by up to 30
+  /// degrees.
+  double wall_angle_deg = 150.0;
+  std::function<void(double)> progress = {};  ///< is called with 0..1, from the calling thread
+  std::stop_token stop = {};
+};
+
+/// A point of the surface, its share of the area, and the local thickness there.
+struct LocalThicknessAt {
+  SurfacePoint point;
+  double area_mm2 = 0.0;
+  double ray_mm = 0.0;  ///< straight inward to where the surface is met again; infinity where it is not
+  double thickness_mm = 0.0;
+  bool is_wall = false;  ///< by the rule of LocalThicknessOptions::wall_angle_deg
+};
+
+/// Over a solid's volume, each point weighing its part of it.
+struct LocalThickness {
+  double mean_mm = 0.0, deviation_mm = 0.0, median_mm = 0.0, largest_mm = 0.0;
+  /// The mean is within this of the truth for the given triangles, in 99 of 100 cases: twice what leaving
+  /// out three balls of four changes it by, 2.6 standard errors of the points, which sums over every second
+  /// one show, and the searches' 0.5 %.
+  double mean_half_width_mm = 0.0;
+  std::vector<LocalThicknessAt> surface;
+  double reach_mm = 0.0;  ///< no point of the surface lies further than this from one of `surface`
+  /// The wall's point of least thickness, in `surface`; none where no point is of a wall.
+  std::optional<std::size_t> thinnest_wall;
+};
+
+/// Local thickness: the diameter of the largest ball inside that holds the point. On a smooth part of the
+/// surface that is the ball that touches there; towards a sharp edge it falls to 0, as no ball reaches the
+/// edge. LPS millimetres. Throws std::invalid_argument if the solid is empty or an option is out of its range;
+/// Stopped. The same bits on any number of threads. Cost: n log n for the tree, about log n a sample;
+/// parallel. Source: Hildebrand and Ruegsegger, "A new method for the model-independent assessment of
+/// thickness in three-dimensional images", Journal of Microscopy 185, 1997; balls after Ma, Bae and Choi (see
+/// thickness.h). Departure: balls are those that touch at samples and at the feet of the volume's points, not
+/// all of a distance ridge.
+LocalThickness local_thickness(const Solid& solid, const LocalThicknessOptions& options = {});
+
+}  // namespace octotomy::brep
