@@ -19,7 +19,8 @@ inline bool has_certificate(const Object& made) {
 }
 
 /// Holds both kernels' answers to one another, within what the object's bound terms allow; of an object
-/// without a mesh the voxels to their witness (verify::certify_alone()). Preconditions: the operation's
+/// without a mesh the voxels to their witness (verify::certify_alone()); of what the mesh kernel alone makes
+/// of an object's surface the mesh to what the step must make (verify::judge_reach()). Preconditions: the operation's
 /// bound() has run, and has_certificate(). Throws Stopped.
 void certify(Object& made, const std::string& title, const voxel::Progress& progress = {});
 
