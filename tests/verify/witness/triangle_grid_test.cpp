@@ -12,24 +12,24 @@
 namespace octotomy::verify {
 namespace {
 
-constexpr double endless = std::numeric_limits<double>::infinity();
+constexpr double any_distance_mm = std::numeric_limits<double>::infinity();
 
 /// A box with corners at whole millimetres, so that rays through whole numbers pass through sides and corners.
-brep::Triangles box() {
+brep::Triangles box_of_whole_millimetres() {
   return brep::shapes::box({0, 0, 0}, {4, 6, 8});
 }
 
 TEST(TriangleGrid, DistancesToABoxAreThoseOfItsSidesEdgesAndCorners) {
-  const TriangleGrid grid(box());
-  EXPECT_DOUBLE_EQ(grid.nearest({2, 3, 9}, endless)->distance_mm, 1.0);
-  EXPECT_DOUBLE_EQ(grid.nearest({7, 10, 4}, endless)->distance_mm, 5.0);
-  EXPECT_DOUBLE_EQ(grid.nearest({5, 8, 10}, endless)->distance_mm, 3.0);
-  EXPECT_DOUBLE_EQ(grid.nearest({2, 3, 4}, endless)->distance_mm, 2.0);
-  EXPECT_DOUBLE_EQ(grid.nearest({1004, 3, 4}, endless)->distance_mm, 1000.0);
+  const TriangleGrid grid(box_of_whole_millimetres());
+  EXPECT_DOUBLE_EQ(grid.nearest({2, 3, 9}, any_distance_mm)->distance_mm, 1.0);
+  EXPECT_DOUBLE_EQ(grid.nearest({7, 10, 4}, any_distance_mm)->distance_mm, 5.0);
+  EXPECT_DOUBLE_EQ(grid.nearest({5, 8, 10}, any_distance_mm)->distance_mm, 3.0);
+  EXPECT_DOUBLE_EQ(grid.nearest({2, 3, 4}, any_distance_mm)->distance_mm, 2.0);
+  EXPECT_DOUBLE_EQ(grid.nearest({1004, 3, 4}, any_distance_mm)->distance_mm, 1000.0);
   EXPECT_FALSE(grid.nearest({2, 3, 9}, 0.999));
   EXPECT_TRUE(grid.has_within({2, 3, 9}, 1.0));
   EXPECT_FALSE(grid.has_within({2, 3, 9}, 0.999));
-  const auto foot = grid.nearest({1, 2, 9}, endless);
+  const auto foot = grid.nearest({1, 2, 9}, any_distance_mm);
   glm::dvec3 at(0.0);
   for (std::size_t k = 0; k < 3; ++k)
     at += foot->weights[static_cast<int>(k)] *
@@ -38,7 +38,7 @@ TEST(TriangleGrid, DistancesToABoxAreThoseOfItsSidesEdgesAndCorners) {
 }
 
 TEST(TriangleGrid, ARayThroughEdgesAndCornersCrossesOnce) {
-  const TriangleGrid grid(box());
+  const TriangleGrid grid(box_of_whole_millimetres());
   int inside = 0;
   for (int z = -2; z <= 10; ++z)
     for (int y = -2; y <= 8; ++y)
@@ -57,7 +57,8 @@ TEST(TriangleGrid, AgreesWithTheSearchTreeOnATorusAndFarFromIt) {
   int inside = 0;
   for (int i = 0; i < 2000; ++i) {
     const glm::dvec3 p(coordinate(random), coordinate(random), 0.3 * coordinate(random));
-    EXPECT_NEAR(grid.nearest(p, endless)->distance_mm, solid.tree().distances_mm({p}).front(), 1e-9) << i;
+    EXPECT_NEAR(grid.nearest(p, any_distance_mm)->distance_mm, solid.tree().distances_mm({p}).front(), 1e-9)
+        << i;
     const bool is_inside = grid.has_inside(p);
     EXPECT_EQ(is_inside, brep::is_inside(p, solid.triangles())) << i;
     inside += is_inside ? 1 : 0;
@@ -67,8 +68,8 @@ TEST(TriangleGrid, AgreesWithTheSearchTreeOnATorusAndFarFromIt) {
 
 TEST(TriangleGrid, NothingIsNearNoTriangles) {
   const TriangleGrid grid{brep::Triangles{}};
-  EXPECT_FALSE(grid.nearest({0, 0, 0}, endless));
-  EXPECT_FALSE(grid.has_within({0, 0, 0}, endless));
+  EXPECT_FALSE(grid.nearest({0, 0, 0}, any_distance_mm));
+  EXPECT_FALSE(grid.has_within({0, 0, 0}, any_distance_mm));
   EXPECT_FALSE(grid.has_inside({0, 0, 0}));
 }
 

@@ -2,6 +2,7 @@
 #include "verify/witness/warped_witness.h"
 
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 
 #include "brep/mesh/solid.h"
@@ -18,11 +19,10 @@
 namespace octotomy::verify {
 namespace {
 
-constexpr double endless = std::numeric_limits<double>::infinity();
-
 /// A ball of 9 mm in a scan, in elements of a ball of 13 mm, all about (16, 16, 16), which stretch and bend.
 class AWarpedBall : public testing::Test {
  protected:
+  static constexpr double endless = std::numeric_limits<double>::infinity();
   static convert::Tetrahedra elements() {
     return convert::tetrahedra_of(voxel::combine(tests::unit_universe(5), voxel::Sphere{{16, 16, 16}, 13.0}));
   }
