@@ -33,6 +33,7 @@
 #include "planner/plan/makers.h"
 #include "planner/plan/sha256.h"
 #include "verify/certificate/places.h"
+#include "verify/witness/reshaped_witness.h"
 #include "verify/witness/witness.h"
 #include "voxel/scan/read_image_stack.h"
 #include "voxel/scan/read_scene.h"
@@ -346,6 +347,7 @@ class Evaluator {
     if (with_mesh_.contains(step.id)) make_mesh(step, value, object);
     if (!operation.voxel) voxelise(object);
     operation.bound(value, {result_.universe, result_.objects, scan_, plan_.folder}, object);
+    if (!is_judged(operation, object)) object.findings.emplace_back(mesh_alone);
     object.bound.shift_mm += object.mesh.shift_mm;
     take_within(object);
     return object;
@@ -398,7 +400,7 @@ class Evaluator {
     add_makers(made_of, !told.empty(), object);
     if (options_.ahead) work_ahead(object);
     if (has_certificate(object) && options_.certify && options_.meshes && !object.is_tool &&
-        operation.voxel) {
+        is_judged(operation, object)) {
       if (certifies_beside()) {
         Uncertified& made = uncertified_.emplace_back(Uncertified{object, result_.objects.size(), {}, {}});
         made.certify = [&made](const std::stop_token& stop) {
@@ -458,7 +460,12 @@ class Evaluator {
     for (const std::string& step : steps) result_.ahead[step] = begun;
   }
 
-  /// Voxelises an answer that only the mesh kernel has.
+  /// Whether the mesh has voxels of the other kernel or a witness of its own beside it.
+  static bool is_judged(const Operation& operation, const Object& object) {
+    return operation.voxel || verify::is_reshaped(object.witness);
+  }
+
+  /// The voxels of an answer that only the mesh kernel has.
   void voxelise(Object& object) {
     if (!object.mesh.whole)
       throw std::runtime_error(object.findings.empty() ? "there is no mesh to make voxels of"
@@ -466,7 +473,6 @@ class Evaluator {
     const Stopwatch watch(result_.timings, "voxelise");
     planner::voxelise(*object.mesh.whole, result_.universe, object.voxel);
     object.witness = verify::witness_of_surface(*object.mesh.whole);
-    object.findings.emplace_back(mesh_alone);
   }
 
   /// Computes the mesh kernel's answer; adds a finding if it has none.

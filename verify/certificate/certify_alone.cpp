@@ -10,6 +10,7 @@
 
 #include "voxel/measure/measure.h"
 #include "voxel/space/rounded.h"
+#include "voxel/space/shared_progress.h"
 
 namespace octotomy::verify {
 namespace {
@@ -44,18 +45,19 @@ struct CentreCount {
   }
 };
 
-CentreCount counted(const voxel::Octree& octree, const Witness& witness, const std::stop_token& stop) {
+CentreCount counted(const voxel::Octree& octree, const Witness& witness, const voxel::Progress& progress) {
   const voxel::Lattice lattice = octree.universe().lattice();
   const int side = octree.universe().side();
   std::vector<CentreCount> layers(static_cast<std::size_t>(side));
+  voxel::SharedProgress done(progress, layers.size());
   tbb::parallel_for(0, side, [&](int z) {
-    if (stop.stop_requested()) return;
     CentreCount& layer = layers[static_cast<std::size_t>(z)];
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x) {
         const glm::ivec3 voxel(x, y, z);
         layer.add(voxel, octree.contains(voxel), witness.words(lattice.lps_mm(glm::dvec3(voxel))).voxel);
       }
+    done.one_more();
   });
   CentreCount all;
   for (const CentreCount& layer : layers) all.add(layer);
@@ -66,8 +68,7 @@ CentreCount counted(const voxel::Octree& octree, const Witness& witness, const s
 
 Certificate certify_alone(const voxel::Octree& octree, const AloneInputs& inputs,
                           const voxel::Progress& progress) {
-  const CentreCount count = counted(octree, inputs.witness, progress.stop);
-  progress.at(0.9);
+  const CentreCount count = counted(octree, inputs.witness, voxel::part_of(progress, 0.0, 0.9));
   const voxel::Lattice lattice = octree.universe().lattice();
   const double voxel_mm3 = lattice.voxel_mm3();
   const auto mm3 = [&](std::uint64_t voxels) { return static_cast<double>(voxels) * voxel_mm3; };

@@ -83,6 +83,11 @@ class Witness {
   Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked = Asked::Both) const {
     return read_(p_mm, slack_mm, asked);
   }
+  /// The reader that the witness was made of; null if it is of another type.
+  template <typename Reader>
+  const Reader* reader() const {
+    return read_.target<Reader>();
+  }
   /// The same object's reading along lines, which separate code computes; may be empty.
   const LineReading& lines() const { return lines_; }
   Witness with_lines(LineReading lines) && {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Moves an object by the displacements of a solved deck: the face after the operation. Only the mesh kernel
-// applies a field of displacements; its result is digitised, and therefore has no certificate of its own.
+// An object moved as a solved deck moved: the face after the operation. Only the mesh kernel moves by a field
+// of displacements; its answer is voxelised. Its certificate moves points back and reads the object there.
 #include <algorithm>
 
 #include "convert/deck/calculix_result.h"
@@ -12,6 +12,8 @@
 #include "planner/operation/object/trace.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
+#include "verify/witness/reshaped_witness.h"
+#include "verify/witness/warped_witness.h"
 #include "voxel/scan/write_scene.h"
 
 namespace octotomy::planner {
@@ -65,8 +67,20 @@ void triangles(const Warp& warp, const MeshBench& bench, MeshSide& made) {
   made.lineage = "vertices of a mesh, displaced as the elements about them";
 }
 
-void bound(const Warp&, const BoundBench&, Object& made) {
+void bound(const Warp& warp, const BoundBench& bench, Object& made) {
+  const Object& object = bench.objects.at(warp.object.name);
+  made.bound.shift_mm = object.bound.shift_mm;
   made.ends_with_universe = true;
+  if (!made.mesh.whole || !object.mesh.whole) return;
+  // Read now, because the file may have changed when the certificate is asked for.
+  const auto deck =
+      std::make_shared<const convert::SolvedDeck>(convert::read_solved_deck(bench.folder / warp.result));
+  made.witness = verify::witness_of_reshaped([still = *object.mesh.whole, witness = object.witness,
+                                              deck]() -> verify::Reshaped {
+    const auto motion = std::make_shared<const verify::NodeMotion>(deck->tetrahedra, deck->displacement_mm);
+    return {verify::surface_warped(still.triangles(), *motion),
+            verify::witness_of_warped(witness, still.triangles(), motion)};
+  });
 }
 
 FileAnswer on_files(const Warp& warp, const FileBench& bench) {

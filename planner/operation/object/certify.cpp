@@ -6,7 +6,10 @@
 #include "planner/operation/object/trace.h"
 #include "verify/certificate/certify_alone.h"
 #include "verify/certificate/certify_bounded.h"
+#include "verify/certificate/surface_reach.h"
+#include "verify/witness/reshaped_witness.h"
 #include "verify/witness/witness.h"
+#include "voxel/space/shared_progress.h"
 
 namespace octotomy::planner {
 namespace {
@@ -17,6 +20,17 @@ verify::Witness within_universe(const Object& made) {
   const voxel::Box world = voxel::bounds(made.voxel.octree.universe().lattice());
   const verify::Witness within = verify::both(made.witness, verify::witness_of_box(world));
   return made.bound.shift_mm > 0.0 ? verify::loosened(within, made.bound.shift_mm) : within;
+}
+
+void judge_reshaped(Object& made, const voxel::Progress& progress) {
+  const voxel::Lattice lattice = made.voxel.octree.universe().lattice();
+  const glm::dvec3 voxel_mm = lattice.spacing_mm();
+  verify::judge_reach(*made.certificate, made.mesh.within->triangles(),
+                      verify::expected_surface(made.witness),
+                      {.world_mm = voxel::bounds(lattice),
+                       .shift_mm = made.bound.shift_mm,
+                       .spacing_mm = std::min({voxel_mm.x, voxel_mm.y, voxel_mm.z})},
+                      progress);
 }
 
 void lower_by_caveats(Object& made) {
@@ -47,10 +61,13 @@ void certify(Object& made, const std::string& title, const voxel::Progress& prog
   inputs.voxels_are_samples = made.bound.voxels_are_samples;
   inputs.is_surely_empty = made.is_surely_empty;
   inputs.witness = within_universe(made);
-  made.certificate = verify::certify_bounded(made.voxel.octree, *made.mesh.within, inputs, progress);
+  const bool reshaped = verify::is_reshaped(made.witness);
+  made.certificate = verify::certify_bounded(made.voxel.octree, *made.mesh.within, inputs,
+                                             voxel::part_of(progress, 0.0, reshaped ? 0.6 : 1.0));
   made.certificate->voxel.makers = made.voxel.makers;
   made.certificate->mesh.makers = made.mesh.makers;
   made.certificate->shared_values = made.shared_values;
+  if (reshaped) judge_reshaped(made, voxel::part_of(progress, 0.6, 1.0));
   verify::judge_independence(*made.certificate);
   lower_by_caveats(made);
 }

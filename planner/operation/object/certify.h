@@ -18,9 +18,10 @@ inline bool has_certificate(const Object& made) {
   return made.mesh.within || made.witness;
 }
 
-/// Compares both kernels' results within the bound of the object's terms; for an object without a mesh,
-/// compares the voxels with their witness (verify::certify_alone()). Preconditions: the operation's bound()
-/// has run, and has_certificate(). Throws Stopped.
+/// Holds both kernels' answers to one another, within what the object's bound terms allow; of an object
+/// without a mesh the voxels to their witness (verify::certify_alone()); of what the mesh kernel alone makes
+/// of an object's surface the mesh to what the step must make (verify::judge_reach()). Preconditions: the operation's
+/// bound() has run, and has_certificate(). Throws Stopped.
 void certify(Object& made, const std::string& title, const voxel::Progress& progress = {});
 
 }  // namespace octotomy::planner

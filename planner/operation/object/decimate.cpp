@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// An object whose surface has fewer triangles. Only the mesh kernel has triangles: its result is digitised
-// for the voxel kernel, and therefore has no certificate of its own.
+// An object's surface of fewer triangles. Only the mesh kernel has triangles: its answer is voxelised. Its
+// certificate measures how far it lies from the object's surface, and that from it.
 #include "brep/shape/decimate.h"
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include "planner/operation/object/trace.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
+#include "verify/witness/reshaped_witness.h"
 
 namespace octotomy::planner {
 namespace {
@@ -76,7 +77,13 @@ void triangles(const Decimate& decimate, const MeshBench& bench, MeshSide& made)
   made.lineage = "edges collapsed within an error";
 }
 
-void bound(const Decimate& decimate, const BoundBench&, Object& made) {
+void bound(const Decimate& decimate, const BoundBench& bench, Object& made) {
+  const Object& object = bench.objects.at(decimate.object.name);
+  made.bound.shift_mm = object.bound.shift_mm;
+  if (made.mesh.whole && object.mesh.whole)
+    made.witness = verify::witness_of_reshaped([still = *object.mesh.whole, decimate]() -> verify::Reshaped {
+      return {verify::surface_decimated(still.triangles(), decimate.max_error_mm)};
+    });
   made.bound.reshaped = {decimate.object.name};
   made.ends_with_universe = true;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// An object's surface without its noise. Only the mesh kernel smooths: its result is digitised, so that later
-// steps have it in both kernels, and therefore has no certificate of its own.
+// An object's surface without its noise. Only the mesh kernel smooths: its answer is voxelised, so that later
+// steps find it in both kernels. Its certificate compares it with the same steps by other code.
 #include "brep/shape/smooth.h"
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include "planner/operation/object/reshape_file.h"
 #include "planner/operation/object/trace.h"
 #include "planner/operation/table/operation.h"
+#include "verify/witness/reshaped_witness.h"
 
 namespace octotomy::planner {
 namespace {
@@ -53,7 +54,13 @@ void triangles(const Smooth& smooth, const MeshBench& bench, MeshSide& made) {
   made.lineage = "steps in and out along the mesh (Taubin 1995)";
 }
 
-void bound(const Smooth& smooth, const BoundBench&, Object& made) {
+void bound(const Smooth& smooth, const BoundBench& bench, Object& made) {
+  const Object& object = bench.objects.at(smooth.object.name);
+  made.bound.shift_mm = object.bound.shift_mm;
+  if (made.mesh.whole && object.mesh.whole)
+    made.witness = verify::witness_of_reshaped([still = *object.mesh.whole, smooth]() -> verify::Reshaped {
+      return {verify::surface_smoothed(still.triangles(), smooth.rounds, smooth.pass_band)};
+    });
   made.bound.reshaped = {smooth.object.name};
   made.ends_with_universe = true;
 }

@@ -43,14 +43,6 @@ inline void expect_not_independent(const planner::Object& object, double truth_m
   EXPECT_NE(reasons.find("not independent"), std::string::npos) << object.id << reasons;
 }
 
-/// The mesh kernel has the volume within `share` of the truth, its voxels too, and there is no certificate.
-inline void expect_of_mesh(const planner::Object& object, double truth_mm3, double share) {
-  ASSERT_TRUE(object.mesh.within) << object.id << testing::PrintToString(object.findings);
-  EXPECT_NEAR(object.mesh.within->measures().volume_mm3 / truth_mm3, 1.0, share) << object.id;
-  EXPECT_NEAR(object.voxel.measures.volume_mm3 / truth_mm3, 1.0, share) << object.id;
-  EXPECT_FALSE(object.certificate) << object.id;
-}
-
 /// The refusal of a plan with these steps; empty where it is read.
 inline std::string ball_refusal(const ScratchFolder& folder, const std::string& steps) {
   try {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <vector>
 
 #include "verify/witness/slice_witness.h"
 #include "verify/witness/witness.h"
@@ -100,6 +102,20 @@ TEST_F(AMaskOfSlices, DoesNotPassWhereItsWitnessDoesNotKnowTheSide) {
   const Certificate certificate = certified(voxels(mask()), parts);
   EXPECT_EQ(certificate.verdict, Verdict::Warn) << told(certificate);
   EXPECT_FALSE(certificate.resolved()) << told(certificate);
+}
+
+TEST_F(AMaskOfSlices, ReportsItsProgressLayerByLayerAndCanBeStopped) {
+  std::vector<double> fractions;
+  const AloneInputs inputs{"mask", "slices", {"the voxel kernel"}, witness()};
+  const voxel::Octree octree = voxels(mask());
+  tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  certify_alone(octree, inputs, {{}, [&](double fraction) { fractions.push_back(fraction); }});
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end())) << testing::PrintToString(fractions);
+  EXPECT_GE(std::count_if(fractions.begin(), fractions.end(), [](double f) { return f < 0.9; }), 60);
+  EXPECT_EQ(fractions.back(), 1.0);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW(certify_alone(octree, inputs, {stop.get_token(), {}}), voxel::Stopped);
 }
 
 TEST_F(AMaskOfSlices, TwoEmptyAnswersAreNoPass) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "tests/planner/operation/altered.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {
@@ -24,6 +25,25 @@ TEST(MirrorStep, AnImageLiesBehindThePlaneAndItsImageIsTheObject) {
   EXPECT_NEAR(evaluation.object("twin").voxel.measures.centroid_mm->z, after.z, 0.5);
   EXPECT_TRUE(evaluation.object("back").voxel.octree == evaluation.object("cap").voxel.octree);
   EXPECT_GT(evaluation.object("twin").mesh.within->measures().volume_mm3, 0.0) << "the image is inside out";
+}
+
+TEST(MirrorStep, AnImageAboutAnotherPlaneAPartLostASurfacePushedOutAndNothingFail) {
+  const ScratchFolder folder;
+  const Evaluation evaluation = evaluate(ball_plan(folder, R"(
+      {"id": "cut", "do": "mask", "regions": [{"view": "anterior",
+        "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
+      {"id": "cap", "do": "combine", "expression": "ball & cut"},
+      {"id": "twin", "do": "mirror", "object": "cap", "point_mm": [0, 0, 1], "normal": [0.1, 0, 1]},
+      {"id": "other_plane", "do": "mirror", "object": "cap", "point_mm": [0, 0, 1], "normal": [0.2, 0, 1]},
+      {"id": "plane_off", "do": "mirror", "object": "cap", "point_mm": [0, 0, 1.5], "normal": [0.1, 0, 1]},
+      {"id": "half", "do": "mask", "regions": [{"view": "anterior",
+        "polygons_mm": [[[-30, -30], [8, -30], [8, 30], [-30, 30]]]}]},
+      {"id": "part_lost", "do": "combine", "expression": "twin & half"},
+      {"id": "wider", "do": "offset", "object": "twin", "by_mm": 1})"));
+  EXPECT_EQ(verify::to_string(evaluation.object("twin").certificate->verdict), "PASS")
+      << testing::PrintToString(evaluation.object("twin").certificate->reasons);
+  for (const char* by : {"cap", "other_plane", "plane_off", "part_lost", "wider", ""})
+    expect_fails_as(evaluation, "twin", by);
 }
 
 TEST(MirrorStep, ANormalWithoutLengthIsRefused) {

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "brep/mesh/triangles.h"
+
+// Distances to triangles and sides of closed surfaces. Shares no code with the kernels' search trees or with
+// their digitisation.
+namespace octotomy::verify {
+
+/// The boxes that overlap each cell of a plain grid.
+class BoxGrid {
+ public:
+  struct Box {
+    glm::dvec3 low_mm{0.0}, high_mm{0.0};
+  };
+  BoxGrid() = default;
+  /// Cells are at least `cell_mm` long, and longer where the boxes would fill too many of them.
+  BoxGrid(const std::vector<Box>& boxes, double cell_mm);
+
+  bool empty() const { return items_.empty(); }
+  double cell_mm() const { return cell_mm_; }
+  const glm::ivec3& dims() const { return dims_; }
+  /// The cell of a point; a point beside the grid has a cell beside it.
+  glm::ivec3 cell_of(const glm::dvec3& p_mm) const;
+  bool has(const glm::ivec3& cell) const;
+  /// Calls `visit` with the number of each box that overlaps a cell of the grid. Stops where that returns
+  /// true.
+  template <typename Visit>
+  bool any_in(const glm::ivec3& cell, const Visit& visit) const {
+    const std::size_t i = index(cell);
+    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k)
+      if (visit(items_[k])) return true;
+    return false;
+  }
+
+ private:
+  std::size_t index(const glm::ivec3& cell) const;
+
+  double cell_mm_ = 1.0;
+  glm::dvec3 low_mm_{0.0};
+  glm::ivec3 dims_{0};
+  std::vector<std::uint32_t> first_, items_;
+};
+
+/// Triangles in LPS millimetres, in the cells of a grid. Safe to read from several threads.
+class TriangleGrid {
+ public:
+  explicit TriangleGrid(brep::Triangles triangles);
+
+  const brep::Triangles& triangles() const { return triangles_; }
+
+  /// The point of the triangles that is nearest to another one.
+  struct Foot {
+    double distance_mm = 0.0;
+    std::uint32_t face = 0;
+    glm::dvec3 weights{0.0};  ///< of the face's corners
+  };
+  /// None if all triangles are farther away than `most_mm`.
+  std::optional<Foot> nearest(const glm::dvec3& p_mm, double most_mm) const;
+  bool has_within(const glm::dvec3& p_mm, double reach_mm) const;
+  /// Whether a ray along x from the point crosses an odd number of triangles. A crossing through an edge or a
+  /// corner counts once. Precondition: the surface is closed.
+  bool has_inside(const glm::dvec3& p_mm) const;
+
+ private:
+  brep::Triangles triangles_;
+  BoxGrid cells_;  ///< of the triangles
+  BoxGrid rows_;   ///< of their projections along x
+};
+
+}  // namespace octotomy::verify

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Flat triangles. Along a triangle's side the field bends where the side passes from one element to the next.
+// Between two such places it is linear. Its distance from the straight line is 0 at both ends of the side; if
+// it has one bend, three quarters of the largest distance or more are seen at one of the points at a quarter,
+// a half and three quarters. Twice what is seen is allowed, for sides that pass through several elements.
+#include "verify/witness/warped_witness.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <tbb/parallel_for.h>
+#include <utility>
+
+namespace octotomy::verify {
+namespace {
+
+constexpr double bends = 2.0;
+constexpr int most_steps = 200;
+
+/// A point is at rest within this: some roundings of its coordinates.
+double rest_mm(const glm::dvec3& p_mm) {
+  return 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + glm::length(p_mm));
+}
+
+/// The faces that one element alone has. Corners in any order: only places on them matter.
+brep::Triangles skin_of(const convert::Tetrahedra& elements) {
+  using Face = std::array<std::uint32_t, 3>;
+  std::vector<Face> faces;
+  faces.reserve(4 * elements.tets.size());
+  for (const auto& tet : elements.tets)
+    for (std::size_t without = 0; without < 4; ++without) {
+      Face face{tet[(without + 1) % 4], tet[(without + 2) % 4], tet[(without + 3) % 4]};
+      std::sort(face.begin(), face.end());
+      faces.push_back(face);
+    }
+  std::sort(faces.begin(), faces.end());
+  brep::Triangles skin{elements.nodes_mm, {}};
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const bool is_shared =
+        (i > 0 && faces[i] == faces[i - 1]) || (i + 1 < faces.size() && faces[i] == faces[i + 1]);
+    if (!is_shared) skin.faces.push_back(faces[i]);
+  }
+  return skin;
+}
+
+/// Shares of an element's corners in a point, which add up to 1; below 0 beyond a face.
+glm::dvec4 shares_of(const glm::dvec3& p, const std::array<glm::dvec3, 4>& corners) {
+  const glm::dmat3 sides(corners[1] - corners[0], corners[2] - corners[0], corners[3] - corners[0]);
+  const glm::dvec3 shares = glm::inverse(sides) * (p - corners[0]);
+  return {1.0 - shares.x - shares.y - shares.z, shares};
+}
+
+/// How far triangles are off that stay flat between points that moved, back where they came from.
+double bent_mm(const brep::Triangles& still, const NodeMotion& motion) {
+  constexpr std::array<std::array<double, 3>, 10> places{{{0.75, 0.25, 0.0},
+                                                          {0.5, 0.5, 0.0},
+                                                          {0.25, 0.75, 0.0},
+                                                          {0.0, 0.75, 0.25},
+                                                          {0.0, 0.5, 0.5},
+                                                          {0.0, 0.25, 0.75},
+                                                          {0.25, 0.0, 0.75},
+                                                          {0.5, 0.0, 0.5},
+                                                          {0.75, 0.0, 0.25},
+                                                          {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}}};
+  std::vector<glm::dvec3> moved_mm(still.points_mm.size());
+  tbb::parallel_for(std::size_t{0}, moved_mm.size(), [&](std::size_t i) {
+    moved_mm[i] = still.points_mm[i] + motion.displacement_mm(still.points_mm[i]);
+  });
+  std::vector<double> off_mm(still.faces.size(), 0.0);
+  tbb::parallel_for(std::size_t{0}, off_mm.size(), [&](std::size_t face) {
+    const auto& [a, b, c] = still.faces[face];
+    for (const auto& [u, v, w] : places) {
+      const glm::dvec3 here = u * still.points_mm[a] + v * still.points_mm[b] + w * still.points_mm[c];
+      const glm::dvec3 there = u * moved_mm[a] + v * moved_mm[b] + w * moved_mm[c];
+      if (glm::distance(here + motion.displacement_mm(here), there) <= rest_mm(there)) continue;
+      if (const auto origin = motion.origin_mm(there, here))
+        off_mm[face] = std::max(off_mm[face], glm::distance(*origin, here));
+    }
+  });
+  return off_mm.empty() ? 0.0 : bends * *std::max_element(off_mm.begin(), off_mm.end());
+}
+
+}  // namespace
+
+NodeMotion::NodeMotion(const convert::Tetrahedra& elements, std::vector<glm::dvec3> displacement_mm)
+    : nodes_mm_(elements.nodes_mm), displacement_mm_(std::move(displacement_mm)), tets_(elements.tets) {
+  if (tets_.empty()) throw std::invalid_argument("a motion of nodes needs elements");
+  if (displacement_mm_.size() != nodes_mm_.size())
+    throw std::invalid_argument("a motion of nodes needs one displacement for each node, not " +
+                                std::to_string(displacement_mm_.size()) + " of " +
+                                std::to_string(nodes_mm_.size()));
+  std::vector<BoxGrid::Box> boxes;
+  double sum_mm = 0.0;
+  for (const auto& tet : tets_) {
+    BoxGrid::Box box{nodes_mm_[tet[0]], nodes_mm_[tet[0]]};
+    for (const std::uint32_t node : tet) {
+      box.low_mm = glm::min(box.low_mm, nodes_mm_[node]);
+      box.high_mm = glm::max(box.high_mm, nodes_mm_[node]);
+    }
+    sum_mm += glm::length(box.high_mm - box.low_mm);
+    boxes.push_back(box);
+  }
+  cells_ = BoxGrid(boxes, 0.5 * sum_mm / static_cast<double>(boxes.size()));
+  surface_.emplace(skin_of(elements));
+}
+
+glm::dvec3 NodeMotion::displacement_mm(const glm::dvec3& p_mm) const {
+  // A point on a face that two elements share lies in one of them in spite of rounding.
+  constexpr double slack = 1e-9;
+  std::optional<glm::dvec3> found;
+  if (const glm::ivec3 cell = cells_.cell_of(p_mm); cells_.has(cell))
+    cells_.any_in(cell, [&](std::uint32_t number) {
+      const auto& tet = tets_[number];
+      const glm::dvec4 shares =
+          shares_of(p_mm, {nodes_mm_[tet[0]], nodes_mm_[tet[1]], nodes_mm_[tet[2]], nodes_mm_[tet[3]]});
+      if (!(shares.x >= -slack && shares.y >= -slack && shares.z >= -slack && shares.w >= -slack))
+        return false;
+      found = shares.x * displacement_mm_[tet[0]] + shares.y * displacement_mm_[tet[1]] +
+              shares.z * displacement_mm_[tet[2]] + shares.w * displacement_mm_[tet[3]];
+      return true;
+    });
+  if (found) return *found;
+  const auto foot = surface_->nearest(p_mm, std::numeric_limits<double>::infinity());
+  const auto& [a, b, c] = surface_->triangles().faces[foot->face];
+  return foot->weights.x * displacement_mm_[a] + foot->weights.y * displacement_mm_[b] +
+         foot->weights.z * displacement_mm_[c];
+}
+
+bool NodeMotion::turns_over() const {
+  return std::any_of(tets_.begin(), tets_.end(), [&](const auto& tet) {
+    std::array<glm::dvec3, 4> still, moved;
+    for (std::size_t k = 0; k < 4; ++k) {
+      still[k] = nodes_mm_[tet[k]] - nodes_mm_[tet[0]];
+      moved[k] = still[k] + displacement_mm_[tet[k]] - displacement_mm_[tet[0]];
+    }
+    const auto side = [](const std::array<glm::dvec3, 4>& p) {
+      return glm::dot(glm::cross(p[1], p[2]), p[3]);
+    };
+    return side(still) * side(moved) <= 0.0;
+  });
+}
+
+std::optional<glm::dvec3> NodeMotion::origin_mm(const glm::dvec3& p_mm, const glm::dvec3& guess_mm) const {
+  glm::dvec3 x = guess_mm;
+  for (int step = 0; step < most_steps; ++step) {
+    const glm::dvec3 next = p_mm - displacement_mm(x);
+    const double moved_mm = glm::distance(next, x);
+    x = next;
+    if (moved_mm <= rest_mm(p_mm)) return x;
+  }
+  return std::nullopt;
+}
+
+ReshapedSurface surface_warped(const brep::Triangles& still, const NodeMotion& motion) {
+  brep::Triangles moved = still;
+  tbb::parallel_for(std::size_t{0}, moved.points_mm.size(),
+                    [&](std::size_t i) { moved.points_mm[i] += motion.displacement_mm(still.points_mm[i]); });
+  // A share of a corner is rounded by some roundings of coordinates over an element's height.
+  double farthest_mm = 1.0;
+  for (const glm::dvec3& p_mm : moved.points_mm) farthest_mm = std::max(farthest_mm, glm::length(p_mm));
+  constexpr double shares_of_flat_elements = 1e4;
+  return {TriangleGrid(std::move(moved)),
+          shares_of_flat_elements * 64.0 * std::numeric_limits<double>::epsilon() * farthest_mm,
+          "64e4 eps |p|: the same displacements by other code"};
+}
+
+Witness witness_of_warped(Witness still, const brep::Triangles& still_surface,
+                          std::shared_ptr<const NodeMotion> motion) {
+  if (!still || motion->turns_over()) return {};
+  const double off_mm = bent_mm(still_surface, *motion);
+  return Witness([still = std::move(still), motion = std::move(motion), off_mm](
+                     const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
+    const auto origin = motion->origin_mm(p_mm);
+    if (!origin) return {untold, untold, 0};
+    return still(*origin, slack_mm + off_mm, asked);
+  });
+}
+
+}  // namespace octotomy::verify

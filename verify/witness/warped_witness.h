@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "brep/mesh/triangles.h"
+#include "convert/tet/tetrahedra.h"
+#include "verify/witness/reading.h"
+#include "verify/witness/reshaped_witness.h"
+#include "verify/witness/triangle_grid.h"
+
+namespace octotomy::verify {
+
+/// Displacements of tetrahedra's nodes as a field over space: linear within an element, outside of all of
+/// them that of the nearest point of their surface. By code of this source alone. LPS millimetres.
+class NodeMotion {
+ public:
+  /// Throws std::invalid_argument without elements, or unless each node has one displacement.
+  NodeMotion(const convert::Tetrahedra& elements, std::vector<glm::dvec3> displacement_mm);
+
+  glm::dvec3 displacement_mm(const glm::dvec3& p_mm) const;
+  /// Whether the displacements turn an element over. Points then may have several origins.
+  bool turns_over() const;
+  /// The point that moves to p_mm: x = p - u(x), repeated until x rests. None where that does not rest, as
+  /// where elements stretch or shear by their own length.
+  std::optional<glm::dvec3> origin_mm(const glm::dvec3& p_mm) const { return origin_mm(p_mm, p_mm); }
+  /// The same from a guess.
+  std::optional<glm::dvec3> origin_mm(const glm::dvec3& p_mm, const glm::dvec3& guess_mm) const;
+
+ private:
+  std::vector<glm::dvec3> nodes_mm_, displacement_mm_;
+  std::vector<std::array<std::uint32_t, 4>> tets_;
+  BoxGrid cells_;
+  std::optional<TriangleGrid> surface_;  ///< of the elements; its points are all nodes
+};
+
+/// A surface each of whose points moves as NodeMotion says. The reach is rounding.
+ReshapedSurface surface_warped(const brep::Triangles& still, const NodeMotion& motion);
+
+/// An object that moved with a field: at a point, the still object's witness at the origin of that point.
+/// Triangles stay flat between points that moved; the witness allows what that is off by, which is measured
+/// at three points of each side and in the middle of each triangle. Where a point has no origin, the side is
+/// not known. Empty where the still object has no witness, and where elements turn over.
+Witness witness_of_warped(Witness still, const brep::Triangles& still_surface,
+                          std::shared_ptr<const NodeMotion> motion);
+
+}  // namespace octotomy::verify
