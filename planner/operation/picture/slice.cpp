@@ -34,6 +34,7 @@ struct Subject {
   std::variant<const voxel::Scene*, voxel::GreyOctree, voxel::Octree> samples;
   voxel::Lattice lattice;
   std::string unit = "1";
+  bool is_share = false;  ///< of voxels, from 0 to 1
 };
 
 Subject subject_of(const voxel::Scene& scene, const Slice& slice) {
@@ -51,7 +52,8 @@ Subject subject_of(const fs::path& path, Timings& timings) {
   } else if (const auto* octree = std::get_if<voxel::Octree>(&file.tree)) {
     subject.samples = *octree;
   } else {
-    subject.samples = voxel::at_least_half(std::get<voxel::PartialOctree>(file.tree));
+    subject.samples = voxel::share_samples(std::get<voxel::PartialOctree>(file.tree));
+    subject.is_share = true;
   }
   return subject;
 }
@@ -222,7 +224,7 @@ voxel::Range shown_range(const Slice& slice, const Subject& subject, const voxel
     const double centre = slice.level[0], width = slice.level[1];
     return {centre - 0.5 * width, centre + 0.5 * width};
   }
-  if (std::holds_alternative<voxel::Octree>(subject.samples)) return {0.0, 1.0};
+  if (subject.is_share || std::holds_alternative<voxel::Octree>(subject.samples)) return {0.0, 1.0};
   std::vector<float> values;
   for (std::size_t i = 0; i < samples.inside.size(); ++i)
     if (samples.inside[i] != 0) values.push_back(samples.image.values[i]);
