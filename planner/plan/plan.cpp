@@ -144,6 +144,7 @@ Step step_of(const SortedJson& value, std::size_t index, Scope& scope) {
   if (!id->is_string()) place.at("id").refuse("must be a text in quotes, not " + type_of(*id));
   Step step{id->get<std::string>(), Action(*operation)};
   read_fields(operation->fields, value, step.action.value(), place, {"id", "do"});
+  need_fields_read(operation->fields, value, step.action.value(), place);
   if (operation->check) operation->check(step.action.value(), place);
   // Bound last, so that no step can name itself.
   scope.bind(place.where, step.id, *operation);

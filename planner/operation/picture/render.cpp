@@ -8,6 +8,7 @@
 #include <map>
 
 #include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/octree_in.h"
 #include "planner/operation/file/output_path.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/picture/colour.h"
@@ -210,10 +211,6 @@ void check(const Render& render, const Place& place) {
   const auto refuse = [&](const std::string& field, const std::string& why) { place.at(field).refuse(why); };
   if (render.colours.size() > render.objects.size() || render.opacities.size() > render.objects.size())
     refuse("colours", "and opacities: give at most one of each an object");
-  if (render.range_mm && render.colour_by.empty()) refuse("range_mm", "is of 'colour_by': add it");
-  if (!render.tones.empty() && render.cut_face != "grey")
-    refuse("tones", "is of grey cut faces: add 'cut_face'");
-  if (!render.title.empty() && !render.annotate) refuse("title", "is of annotated pictures: add 'annotate'");
   if (render.grid_mm && (render.eye_mm || render.stereo_deg))
     refuse("grid_mm", "is of pictures in true scale: leave out 'eye_mm' and 'stereo_deg'");
   for (const std::string& colour : render.colours) need_colour(colour);
@@ -313,6 +310,21 @@ FileAnswer on_files(const Render& asked, const FileBench& bench) {
     answer.rows.emplace_back("lit pixels", std::to_string(picture.said["lit_pixels"].get<std::uint64_t>()));
   answer.rows.emplace_back("pixel", grouped(picture.pixel_mm, 4) + " mm");
   return answer;
+}
+
+// Conditions of fields.
+constexpr const char* along_rays = "pictures along rays read all samples alike: leave it out";
+
+bool draws_surfaces(const Render& render) {
+  return !is_ray_picture(render);
+}
+
+bool draws_samples(const Render& render) {
+  std::vector<ObjectName> files = render.objects;
+  if (!render.colour_by.empty()) files.push_back({other_of(render.colour_by)});
+  return std::any_of(files.begin(), files.end(), [](const ObjectName& file) {
+    return !is_mesh(file.name) && octree_kind(file.name).value_or(OctreeKind::Grey) == OctreeKind::Grey;
+  });
 }
 
 std::vector<std::string> all_shadings() {
@@ -455,16 +467,20 @@ Operation render_operation() {
               .one_of(all_shadings()))
       .takes(field("colours", &Render::colours, "#RRGGBB, one an object in their order.")
                  .repeated()
-                 .called("colour"))
+                 .called("colour")
+                 .read_if<Render>(draws_surfaces, along_rays))
       .takes(field("opacities", &Render::opacities, "0 (hidden) to 1, one an object in their order.")
                  .repeated()
-                 .called("opacity"))
+                 .called("opacity")
+                 .read_if<Render>(draws_surfaces, along_rays))
       .takes(
           field("colour_by", &Render::colour_by,
                 "distance:NAME colours the first object by its surface's distance outside (orange) or inside "
                 "(blue) another one; of the verb a file."))
       .takes(field("range_mm", &Render::range_mm, "Distance of the last colours by distance. Default: 5.")
-                 .greater_than(0.0))
+                 .greater_than(0.0)
+                 .read_if<Render>([](const Render& render) { return !render.colour_by.empty(); },
+                                  "is of 'colour_by': add it"))
       .takes(
           field("transfer", &Render::transfer,
                 "How samples look in composite pictures: bone, skin, vessels (CT in HU; default: bone), or a "
@@ -484,7 +500,9 @@ Operation render_operation() {
                    "What cut faces show: plain (the object's colour) or grey (the scan's samples).")
                  .one_of({"plain", "grey"}))
       .takes(field("tones", &Render::tones,
-                   "BLACK:WHITE in sample units of grey cut faces. Default: the samples' range."))
+                   "BLACK:WHITE in sample units of grey cut faces. Default: the samples' range.")
+                 .read_if<Render>([](const Render& render) { return render.cut_face == "grey"; },
+                                  "is of grey cut faces: add 'cut_face'"))
       .takes(field("picks", &Render::picks,
                    "X,Y of a pixel, from the top left (of the left eye's picture), whose object and point "
                    "are told; "
@@ -493,7 +511,9 @@ Operation render_operation() {
                  .called("pick"))
       .takes(field("annotate", &Render::annotate,
                    "Writes a scale, the patient's sides, a legend and a title on the picture."))
-      .takes(field("title", &Render::title, "Of an annotated picture. Default: the view."))
+      .takes(field("title", &Render::title, "Of an annotated picture. Default: the view.")
+                 .read_if<Render>([](const Render& render) { return render.annotate; },
+                                  "is of annotated pictures: add 'annotate'"))
       .takes(field("grid_mm", &Render::grid_mm,
                    "Draws lines at multiples of so many millimetres; a margin that is added at the right and "
                    "below tells their places in the view.")
@@ -502,10 +522,15 @@ Operation render_operation() {
                  .called("grid"))
       .takes(field("count", &Render::count, "Counts the octree nodes that the algorithm visits."))
       .verb_takes(field("out", &Render::out, "A .png, .jpg or .webp file.").required())
-      .verb_takes(field("window", &Render::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
-      .verb_takes(field("voxel_mm", &Render::voxel_mm,
-                        "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
-                      .greater_than(0.0))
+      .verb_takes(field("window", &Render::window, "LOW:HIGH or LOW: in sample units, or a tissue.")
+                      .read_if<Render>(draws_surfaces, along_rays)
+                      .read_if<Render>(draws_samples, "only scans and grey octrees have one: leave it out"))
+      .verb_takes(
+          field("voxel_mm", &Render::voxel_mm,
+                "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
+              .greater_than(0.0)
+              .read_if<Render>([](const Render& render) { return !is_octree(render.objects.front().name); },
+                               "the first file is an octree, whose voxels all are drawn in: leave it out"))
       .reads_scans()
       .uses(uses)
       .example(R"({"id": "front", "do": "render", "objects": ["rest", "advanced"], "path": "front.png",
