@@ -68,12 +68,12 @@ brep::Triangles tiled_contours(const voxel::Scene& scene, const SampleWindow& wi
                  : asked.tiling == "least-angle"     ? brep::TileCost::least_angle
                                                      : brep::TileCost::shortest_span;
   brep::TiledSections tiled = convert::contour_surface(scene, window.low, window.high_or_infinity(), options);
-  findings.push_back("contours: " + std::to_string(tiled.strips) + " pairs joined by strips, " +
-                     std::to_string(tiled.narrowed_strips) +
-                     " of them near the shortest spans as the best would cross something, " +
-                     std::to_string(tiled.crossed_strips) +
-                     " by overlay as their strips would cross something, " + std::to_string(tiled.overlaid) +
-                     " branchings, ends and lone contours by overlay");
+  findings.push_back(
+      "contours: " + std::to_string(tiled.strips) + " pairs joined by strips, " +
+      std::to_string(tiled.narrowed_strips) +
+      " of them nearer to the shortest spans or by least area as the best would cross something, " +
+      std::to_string(tiled.crossed_strips) + " by overlay as their strips would cross something, " +
+      std::to_string(tiled.overlaid) + " branchings, ends and lone contours by overlay");
   return std::move(tiled.surface);
 }
 
