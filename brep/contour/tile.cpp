@@ -117,6 +117,9 @@ class LeastPath {
     }
   }
 
+  /// The least path from (0, 0) between two others.
+  Path find_between(const Path& low, const Path& high) const { return from(0, &low, &high); }
+
   Path find() const {
     const Path low = from(0, nullptr, nullptr);
     Path high = low, best = low;
@@ -191,22 +194,50 @@ double angle_between(const glm::dvec3& n, const glm::dvec3& m) {
   return std::atan2(glm::length(glm::cross(n, m)), glm::dot(n, m));
 }
 
-/// The path from (0, 0) with the least sum of angles. A node has a sum for each step that may have led to it,
-/// because an angle depends on the triangle of that step and the next.
-std::vector<Step> least_angle_steps(const Pair& pair) {
+/// The columns of each row that a search may enter.
+struct Band {
+  Path low, high;
+  std::size_t begin(std::size_t row) const { return low.first(row); }
+  std::size_t end(std::size_t row) const { return high.last[row]; }
+};
+
+/// All columns.
+Band all_of(const Pair& pair) {
+  const std::size_t rows = pair.m() + 1;
+  return {{0, 0.0, std::vector<std::size_t>(rows, 0)}, {0, 0.0, std::vector<std::size_t>(rows, pair.n())}};
+}
+
+/// The columns at most `reach` beside those of a path of steps from (0, 0).
+Band about(const std::vector<Step>& steps, const Pair& pair, std::size_t reach) {
+  Band band = all_of(pair);
+  std::size_t row = 0, column = 0;
+  for (const Step step : steps) {
+    if (step == along_upper) {
+      ++column;
+      continue;
+    }
+    band.high.last[row] = std::min(pair.n(), column + reach);
+    band.low.last[row++] = column - std::min(column, reach);
+  }
+  return band;
+}
+
+/// The path from (0, 0) within a band with the least sum of angles. A node has a sum for each step that may
+/// have led to it, as an angle is between the triangle of that step and the next.
+std::vector<Step> least_angle_steps(const Pair& pair, const Band& band) {
   const std::size_t m = pair.m(), n = pair.n();
   constexpr double far = std::numeric_limits<double>::infinity();
   using Sums = std::array<double, 2>;
   std::vector<Sums> row(n + 1, {far, far}), above;
   std::vector<std::array<Step, 2>> came((m + 1) * (n + 1));
   for (std::size_t i = 0; i <= m; ++i) {
-    above = row;
-    for (std::size_t j = 0; j <= n; ++j) {
+    above.swap(row);
+    row.assign(n + 1, {far, far});
+    for (std::size_t j = band.begin(i); j <= band.end(i); ++j) {
       if (i == 0 && j == 0) {
         row[0] = {0.0, 0.0};
         continue;
       }
-      row[j] = {far, far};
       for (const Step step : {along_lower, along_upper}) {
         if (step == along_lower ? i == 0 : j == 0) continue;
         const std::size_t from_i = step == along_lower ? i - 1 : i, from_j = step == along_lower ? j : j - 1;
@@ -238,9 +269,7 @@ std::vector<Step> least_angle_steps(const Pair& pair) {
   return {steps.rbegin(), steps.rend()};
 }
 
-}  // namespace
-
-std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& upper, TileCost cost) {
+void check(const Ring& lower, const Ring& upper, TileCost cost) {
   for (const Ring* ring : {&lower, &upper})
     if (ring->points_mm.size() < 3)
       throw std::invalid_argument("tile: a ring has " + std::to_string(ring->points_mm.size()) +
@@ -255,19 +284,12 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
                 "tile: rings of " + std::to_string(lower.points_mm.size()) + " and " +
                     std::to_string(upper.points_mm.size()) + " points, at " + short_text(lower.z_mm) +
                     " mm, are too long for this cost: thin them, or take the shortest span");
-  std::array<std::size_t, 2> start{};
-  std::vector<Step> steps;
-  if (cost == TileCost::least_area || cost == TileCost::greatest_volume) {
-    const Path path = LeastPath({turned(lower, 0), turned(upper, 0)}, cost).find();
-    start[1] = path.start;
-    steps = steps_of(path);
-  } else {
-    start = start_of(lower, upper);
-    steps = cost == TileCost::shortest_span
-                ? greedy_steps(lower, upper, start)
-                : least_angle_steps({turned(lower, start[0]), turned(upper, start[1])});
-  }
+}
 
+/// The triangles of a path from a start.
+std::vector<std::array<std::uint32_t, 3>> faces_of(const Ring& lower, const Ring& upper,
+                                                   const std::array<std::size_t, 2>& start,
+                                                   const std::vector<Step>& steps) {
   const std::size_t m = lower.points_mm.size(), n = upper.points_mm.size();
   const auto lower_point = [&](std::size_t i) { return static_cast<std::uint32_t>((start[0] + i) % m); };
   const auto upper_point = [&](std::size_t j) { return static_cast<std::uint32_t>(m + (start[1] + j) % n); };
@@ -284,6 +306,35 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
     }
   }
   return faces;
+}
+
+}  // namespace
+
+std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& upper, TileCost cost) {
+  check(lower, upper, cost);
+  if (cost == TileCost::least_area || cost == TileCost::greatest_volume) {
+    const Path path = LeastPath({turned(lower, 0), turned(upper, 0)}, cost).find();
+    return faces_of(lower, upper, {0, path.start}, steps_of(path));
+  }
+  const std::array<std::size_t, 2> start = start_of(lower, upper);
+  if (cost == TileCost::shortest_span)
+    return faces_of(lower, upper, start, greedy_steps(lower, upper, start));
+  const Pair pair{turned(lower, start[0]), turned(upper, start[1])};
+  return faces_of(lower, upper, start, least_angle_steps(pair, all_of(pair)));
+}
+
+std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Ring& upper, TileCost cost,
+                                                    std::size_t band) {
+  check(lower, upper, cost);
+  const std::array<std::size_t, 2> start = start_of(lower, upper);
+  const std::vector<Step> shortest = greedy_steps(lower, upper, start);
+  if (cost == TileCost::shortest_span || band == 0) return faces_of(lower, upper, start, shortest);
+  const Pair pair{turned(lower, start[0]), turned(upper, start[1])};
+  const Band within = about(shortest, pair, band);
+  const std::vector<Step> steps = cost == TileCost::least_angle
+                                      ? least_angle_steps(pair, within)
+                                      : steps_of(LeastPath(pair, cost).find_between(within.low, within.high));
+  return faces_of(lower, upper, start, steps);
 }
 
 }  // namespace octotomy::brep

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -31,5 +32,11 @@ struct Ring {
 /// n time for the start alone; m n log n time and 17 m n bytes for the best of all strips; 2 m n bytes for
 /// least_angle. Source: the papers named above.
 std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& upper, TileCost cost);
+
+/// The best strip by the cost among those near the strip of shortest spans: from the lower ring's point i, its
+/// spans lead to no upper point more than `band` points before or behind those that the shortest spans lead
+/// to. With a band of 0 it is the strip of shortest spans. Throws and costs as tile().
+std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Ring& upper, TileCost cost,
+                                                    std::size_t band);
 
 }  // namespace octotomy::brep

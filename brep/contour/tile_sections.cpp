@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 orient all contours with the object on their left and move every other section slightly; 2 for each slab,
-// overlay its sections, then replace the surface by a strip where a contour has one counterpart, and undo
-// strips that cross anything; 3 number all points consecutively.
+// 1 turn all contours with the object on their left and move every other section a little; 2 for each slab
+// overlay its sections, then put strips where a contour has one counterpart, narrow those that cross anything
+// and take back those that always do; 3 number all points in one row.
 #include "brep/contour/tile_sections.h"
 
 #include <algorithm>
@@ -78,16 +78,34 @@ std::uint32_t point_count(const std::vector<Contour>& contours) {
 /// One slab's surface and counts of how its contours were joined.
 struct Tiled {
   SlabSurface surface;
-  std::size_t strips = 0, crossed_strips = 0, overlaid = 0;
+  std::size_t strips = 0, narrowed_strips = 0, crossed_strips = 0, overlaid = 0;
 };
 
-/// Replaces parts of a slab's surface by strips.
+/// Whether a strip is a surface: not so one whose triangles all meet at one span's two points, as the least
+/// area of rings that hardly overlap may have.
+bool is_surface(const FaceList& strip) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  edges.reserve(3 * strip.size());
+  for (const auto& face : strip)
+    for (std::size_t k = 0; k < 3; ++k) edges.push_back({face[k], face[(k + 1) % 3]});
+  std::sort(edges.begin(), edges.end());
+  return std::adjacent_find(edges.begin(), edges.end()) == edges.end();
+}
+
+/// Puts strips into a slab's surface.
 class Strips {
  public:
   Strips(const Slab& slab, TileCost cost, SlabSurface& surface)
-      : slab_(slab), surface_(surface), strips_(surface.groups.size()) {
-    for (std::size_t g = 0; g < strips_.size(); ++g)
-      if (is_pair(surface.groups[g])) strips_[g] = strip_of(surface.groups[g], cost);
+      : slab_(slab),
+        surface_(surface),
+        cost_(cost),
+        strips_(surface.groups.size()),
+        attempts_(surface.groups.size(), 0) {
+    for (std::size_t g = 0; g < strips_.size(); ++g) {
+      if (!is_pair(surface.groups[g])) continue;
+      strips_[g] = strip_of(surface.groups[g], 0);
+      if (!is_surface(strips_[g])) retry(g);
+    }
   }
 
   std::size_t count() const {
@@ -95,20 +113,33 @@ class Strips {
         std::count_if(strips_.begin(), strips_.end(), [](const FaceList& strip) { return !strip.empty(); }));
   }
 
-  /// Drops strips that cross anything, until no strip does.
+  /// Groups that a strip may join.
+  std::size_t wanted() const {
+    return static_cast<std::size_t>(std::count_if(surface_.groups.begin(), surface_.groups.end(),
+                                                  [&](const auto& group) { return is_pair(group); }));
+  }
+
+  /// Those that are not the best by their cost.
+  std::size_t narrowed_count() const {
+    std::size_t count = 0;
+    for (std::size_t g = 0; g < strips_.size(); ++g) count += !strips_[g].empty() && attempts_[g] > 0 ? 1 : 0;
+    return count;
+  }
+
+  /// Narrows the strips that cross anything until none does, and drops those that always do.
   void settle() {
     while (count() > 0) {
       std::vector<std::uint32_t> group;
       const Triangles all = with_strips(group);
       const Health found = health(all, {.self_intersections = true});
-      bool dropped = false;
+      std::vector<std::uint32_t> crossing;
       for (const auto& [f, g] : found.crossing)
-        for (const int face : {f, g}) {
-          FaceList& strip = strips_[group[static_cast<std::size_t>(face)]];
-          dropped = dropped || !strip.empty();
-          strip.clear();
-        }
-      if (!dropped) break;
+        for (const int face : {f, g}) crossing.push_back(group[static_cast<std::size_t>(face)]);
+      std::sort(crossing.begin(), crossing.end());
+      crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
+      std::erase_if(crossing, [&](std::uint32_t g) { return strips_[g].empty(); });
+      if (crossing.empty()) break;
+      for (const std::uint32_t g : crossing) retry(g);
     }
     std::vector<std::uint32_t> group;
     surface_.faces = with_strips(group).faces;
@@ -116,6 +147,41 @@ class Strips {
   }
 
  private:
+  /// Attempts after the best strip: by the same cost near the shortest spans, within an eighth and a
+  /// thirty-second of the rings' points and within two points; the shortest spans themselves; and the least
+  /// area, which crosses itself least, near them and anywhere.
+  static constexpr int shortest_attempt = 4, most_attempts = 6;
+
+  static std::size_t eighth(std::size_t points) { return std::max<std::size_t>(2, points / 8); }
+  static std::size_t band(std::size_t points, int attempt) {
+    if (attempt == shortest_attempt) return 0;
+    return attempt == 1 ? eighth(points) : attempt == 2 ? std::max<std::size_t>(2, points / 32) : 2;
+  }
+
+  /// Whether an attempt would repeat an earlier one.
+  bool is_repeated(int attempt) const {
+    if (cost_ == TileCost::shortest_span) return attempt <= shortest_attempt;
+    return cost_ == TileCost::least_area && attempt > shortest_attempt;
+  }
+
+  FaceList attempted(const Ring& below, const Ring& above, int attempt) const {
+    const std::size_t points = std::max(below.points_mm.size(), above.points_mm.size());
+    if (attempt == 0) return tile(below, above, cost_);
+    if (attempt <= shortest_attempt) return tile_near(below, above, cost_, band(points, attempt));
+    return attempt < most_attempts ? tile_near(below, above, TileCost::least_area, eighth(points))
+                                   : tile(below, above, TileCost::least_area);
+  }
+
+  /// The next strip of a group whose strip is none or crosses something; none after all attempts.
+  void retry(std::size_t g) {
+    strips_[g].clear();
+    while (strips_[g].empty() && attempts_[g] < most_attempts) {
+      if (is_repeated(++attempts_[g])) continue;
+      strips_[g] = strip_of(surface_.groups[g], attempts_[g]);
+      if (!is_surface(strips_[g])) strips_[g].clear();
+    }
+  }
+
   /// One contour below and one above, both outlines or both holes.
   bool is_pair(const SlabSurface::Group& group) const {
     return group.lower.size() == 1 && group.upper.size() == 1 &&
@@ -123,7 +189,7 @@ class Strips {
                (signed_area_mm2(slab_.upper[group.upper[0]]) > 0.0);
   }
 
-  FaceList strip_of(const SlabSurface::Group& group, TileCost cost) const {
+  FaceList strip_of(const SlabSurface::Group& group, int attempt) const {
     const auto first_of = [](const std::vector<Contour>& section, std::uint32_t contour) {
       std::size_t first = 0;
       for (std::uint32_t c = 0; c < contour; ++c) first += section[c].points_mm.size();
@@ -131,7 +197,8 @@ class Strips {
     };
     assert(is_pair(group));
     const Contour &lower = slab_.lower[group.lower[0]], &upper = slab_.upper[group.upper[0]];
-    FaceList strip = tile({lower.points_mm, slab_.low_mm}, {upper.points_mm, slab_.high_mm}, cost);
+    const Ring below{lower.points_mm, slab_.low_mm}, above{upper.points_mm, slab_.high_mm};
+    FaceList strip = attempted(below, above, attempt);
     const auto m = static_cast<std::uint32_t>(lower.points_mm.size());
     const std::uint32_t of_lower = first_of(slab_.lower, group.lower[0]);
     const std::uint32_t of_upper = point_count(slab_.lower) + first_of(slab_.upper, group.upper[0]);
@@ -162,7 +229,9 @@ class Strips {
 
   const Slab& slab_;
   SlabSurface& surface_;
-  std::vector<FaceList> strips_;  ///< strip of each group; empty if the surface of overlay() remains
+  TileCost cost_;
+  std::vector<FaceList> strips_;  ///< of each group; empty where overlay()'s stands
+  std::vector<int> attempts_;     ///< of each group, after the first
 };
 
 Tiled tile_slab(const Slab& slab, const std::optional<TileCost>& cost) {
@@ -171,9 +240,10 @@ Tiled tile_slab(const Slab& slab, const std::optional<TileCost>& cost) {
   tiled.overlaid = tiled.surface.groups.size();
   if (!cost) return tiled;
   Strips strips(slab, *cost, tiled.surface);
-  const std::size_t wanted = strips.count();
+  const std::size_t wanted = strips.wanted();
   strips.settle();
   tiled.strips = strips.count();
+  tiled.narrowed_strips = strips.narrowed_count();
   tiled.crossed_strips = wanted - tiled.strips;
   tiled.overlaid -= wanted;
   return tiled;
@@ -229,6 +299,7 @@ TiledSections joined(const std::vector<std::vector<Contour>>& contours, const st
       tiled.surface.faces.push_back(face);
     }
     tiled.strips += slabs[s].strips;
+    tiled.narrowed_strips += slabs[s].narrowed_strips;
     tiled.crossed_strips += slabs[s].crossed_strips;
     tiled.overlaid += slabs[s].overlaid;
   }

@@ -31,7 +31,10 @@ struct TileSectionsOptions {
 struct TiledSections {
   Triangles surface;
   std::size_t strips = 0;  ///< pairs of contours joined by cost
-  /// Pairs whose strip crossed itself or another surface and which were joined by overlay() instead.
+  /// Of these, pairs whose best strip crossed itself or another surface, and which were joined by the best one
+  /// nearer to that of shortest spans (tile_near()), by that, or by that of least area.
+  std::size_t narrowed_strips = 0;
+  /// Pairs all of whose strips crossed something and which were joined by overlay() instead.
   std::size_t crossed_strips = 0;
   std::size_t overlaid = 0;  ///< further groups of contours: branchings, ends, contours within contours
 };

@@ -22,7 +22,27 @@ const Tetrahedra& checked(const Tetrahedra& tetrahedra, std::size_t displacement
   return tetrahedra;
 }
 
+double largest_mm(const std::vector<glm::dvec3>& displacement_mm) {
+  double largest = 0.0;
+  for (const glm::dvec3& displacement : displacement_mm)
+    largest = std::max(largest, glm::length(displacement));
+  return largest;
+}
+
+double checked_fade(double fade_mm, const std::vector<glm::dvec3>& displacement_mm) {
+  if (!(fade_mm > least_fade_mm(largest_mm(displacement_mm))))
+    throw std::invalid_argument("a displacement of " + std::to_string(largest_mm(displacement_mm)) +
+                                " mm that fades over " + std::to_string(fade_mm) + " mm folds space");
+  return fade_mm;
+}
+
 }  // namespace
+
+double least_fade_mm(double largest_displacement_mm) {
+  // The derivative -20 r (1-r)^3 of (1-r)^4 (4r+1) is steepest at r = 1/4: 20 / 4 * 27 / 64.
+  constexpr double steepest = 135.0 / 64.0;
+  return steepest * largest_displacement_mm;
+}
 
 glm::ivec3 DisplacementField::Bins::bin(const glm::dvec3& p_mm) const {
   return glm::clamp(glm::ivec3(glm::floor((p_mm - low_mm) / side_mm)), glm::ivec3(0), dims - 1);
@@ -35,14 +55,20 @@ std::size_t DisplacementField::Bins::number(const glm::ivec3& bin) const {
               static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(bin.z));
 }
 
+DisplacementField::Box DisplacementField::box_of(const Tetrahedra& tetrahedra) {
+  Box box{tetrahedra.nodes_mm.front(), tetrahedra.nodes_mm.front()};
+  for (const glm::dvec3& p_mm : tetrahedra.nodes_mm) {
+    box.low_mm = glm::min(box.low_mm, p_mm);
+    box.high_mm = glm::max(box.high_mm, p_mm);
+  }
+  return box;
+}
+
 DisplacementField::Bins DisplacementField::bins_of(const Tetrahedra& tetrahedra) {
   Bins bins;
-  glm::dvec3 high_mm = bins.low_mm = tetrahedra.nodes_mm.front();
-  for (const glm::dvec3& p_mm : tetrahedra.nodes_mm) {
-    bins.low_mm = glm::min(bins.low_mm, p_mm);
-    high_mm = glm::max(high_mm, p_mm);
-  }
-  const glm::dvec3 extent_mm = high_mm - bins.low_mm;
+  const Box box = box_of(tetrahedra);
+  bins.low_mm = box.low_mm;
+  const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
   // About one bin an element. The limit along an axis bounds memory for any shape.
   constexpr double most_a_side = 400.0;
   const double longest_mm = std::max({extent_mm.x, extent_mm.y, extent_mm.z});
@@ -69,12 +95,43 @@ DisplacementField::Bins DisplacementField::bins_of(const Tetrahedra& tetrahedra)
   return bins;
 }
 
-DisplacementField::DisplacementField(Tetrahedra tetrahedra, std::vector<glm::dvec3> displacement_mm)
+DisplacementField::DisplacementField(Tetrahedra tetrahedra, std::vector<glm::dvec3> displacement_mm,
+                                     double fade_mm)
+    : DisplacementField(tetrahedra, displacement_mm, checked_fade(fade_mm, displacement_mm),
+                        box_of(checked(tetrahedra, displacement_mm.size())), false) {}
+
+DisplacementField::DisplacementField(Tetrahedra tetrahedra, std::vector<glm::dvec3> displacement_mm,
+                                     double fade_mm, Box box, bool is_inverse)
     : tetrahedra_(std::move(tetrahedra)),
       displacement_mm_(std::move(displacement_mm)),
-      bins_(bins_of(checked(tetrahedra_, displacement_mm_.size()))),
+      bins_(bins_of(tetrahedra_)),
       surface_(surface_of(tetrahedra_)),
-      surface_tree_(surface_) {}
+      surface_tree_(surface_),
+      fade_mm_(fade_mm),
+      box_(box),
+      is_inverse_(is_inverse) {}
+
+double DisplacementField::fading(const glm::dvec3& p_mm) const {
+  const double r = std::min(1.0, glm::distance(p_mm, glm::clamp(p_mm, box_.low_mm, box_.high_mm)) / fade_mm_);
+  const double square = (1.0 - r) * (1.0 - r);
+  return square * square * (4.0 * r + 1.0);
+}
+
+glm::dvec3 DisplacementField::faded(const glm::dvec3& p_mm, const glm::dvec3& displacement_mm) const {
+  if (!is_inverse_) return fading(p_mm) * displacement_mm;
+  // Where a displaced point came from: the share s with s = fading(p + s d). The map from s to the right side
+  // shrinks differences, because `fade_mm` is above least_fade_mm(); the error after all rounds is under the
+  // tolerance where the displacement is at most 95 % of what the fade allows.
+  constexpr int most_rounds = 400;
+  constexpr double tolerance = 1e-12;
+  double share = fading(p_mm);
+  for (int round = 0; round < most_rounds; ++round) {
+    const double next = fading(p_mm + share * displacement_mm);
+    if (std::abs(next - share) <= tolerance) return next * displacement_mm;
+    share = next;
+  }
+  return share * displacement_mm;
+}
 
 std::optional<glm::dvec3> DisplacementField::within(const glm::dvec3& p_mm) const {
   // With this tolerance a point on a shared face is in one of the two elements in spite of rounding.
@@ -116,8 +173,10 @@ std::vector<glm::dvec3> DisplacementField::at(const std::vector<glm::dvec3>& poi
   const std::vector<brep::Foot> feet = surface_tree_.feet(outside_mm);
   for (std::size_t i = 0; i < outside.size(); ++i) {
     const auto& corners = surface_.faces[feet[i].face];
+    glm::dvec3 of_foot(0.0);
     for (std::size_t k = 0; k < 3; ++k)
-      displacements[outside[i]] += feet[i].weights[static_cast<int>(k)] * displacement_mm_[corners[k]];
+      of_foot += feet[i].weights[static_cast<int>(k)] * displacement_mm_[corners[k]];
+    displacements[outside[i]] = faded(outside_mm[i], of_foot);
   }
   return displacements;
 }
@@ -129,17 +188,21 @@ DisplacementField DisplacementField::inverse() const {
     displaced.nodes_mm[node] += displacement_mm_[node];
     back[node] = -displacement_mm_[node];
   }
-  return {std::move(displaced), std::move(back)};
+  return {std::move(displaced), std::move(back), fade_mm_, box_, !is_inverse_};
 }
 
-std::size_t DisplacementField::turned_over() const {
-  std::size_t count = 0;
+std::vector<TurnedOver> DisplacementField::turned_over() const {
+  std::vector<TurnedOver> found;
   for (std::size_t tet = 0; tet < tetrahedra_.tets.size(); ++tet) {
-    TetCorners c = corners_mm(tetrahedra_, tet);
-    for (std::size_t k = 0; k < 4; ++k) c[k] += displacement_mm_[tetrahedra_.tets[tet][k]];
-    count += six_volumes(c) <= 0.0 ? 1 : 0;
+    const TetCorners before = corners_mm(tetrahedra_, tet);
+    TetCorners after = before;
+    for (std::size_t k = 0; k < 4; ++k) after[k] += displacement_mm_[tetrahedra_.tets[tet][k]];
+    const double volume = six_volumes(before), displaced_volume = six_volumes(after);
+    if (displaced_volume > 0.0) continue;
+    found.push_back({(before[0] + before[1] + before[2] + before[3]) / 4.0,
+                     volume > 0.0 ? displaced_volume / volume : 0.0});
   }
-  return count;
+  return found;
 }
 
 brep::Mesh warped(const brep::Mesh& mesh, const DisplacementField& field) {

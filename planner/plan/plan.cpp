@@ -147,6 +147,7 @@ Step step_of(const SortedJson& value, std::size_t index, Scope& scope) {
   Step step{id->get<std::string>(), Action(*operation)};
   try {
     read_fields(operation->fields, value, step.action.value(), place, {"id", "do"});
+    need_fields_read(operation->fields, value, step.action.value(), place);
     if (operation->check) operation->check(step.action.value(), place);
   } catch (const std::exception& error) {
     // Refusals name their place themselves.

@@ -26,6 +26,7 @@ import tempfile
 SOURCES = {
     "voxel/solid/combine.cpp": [("voxel_tests", "Combine*:Moved*:Octree*"), ("expression_tests", "SetIdentities*:Resampling*:CombineGrey*")],
     "voxel/solid/combine_grey.cpp": [("voxel_tests", "*Grey*:Combine*"), ("expression_tests", "Resampling*:CombineGrey*")],
+    "voxel/solid/grey_owner.cpp": [("expression_tests", "GreyOwners*:CombineGrey*")],
     "voxel/solid/combine_shares.cpp": [("expression_tests", "CombineShares*")],
     "brep/boolean/boolean.cpp": [("brep_tests", "*Boolean*")],
     "brep/boolean/corefine.cpp": [("brep_tests", "*Boolean*")],

@@ -117,6 +117,28 @@ bool is_subset(BlockRef inside, BlockRef touching, int height) {
   return true;
 }
 
+// A block of 16 x 16 x 16 voxels that the solid touches, and the first of its boundary voxels' fractions.
+struct SharedBlock {
+  glm::ivec3 block{0};
+  BlockRef inside, touching;
+  std::size_t first_fraction = 0;
+};
+
+void collect_shares(BlockRef inside, BlockRef touching, int height, const glm::ivec3& at, int limit,
+                    std::size_t& fraction_count, std::vector<SharedBlock>& into) {
+  if (touching.is_empty() || glm::any(glm::greaterThanEqual(at, glm::ivec3(limit)))) return;
+  if (height > 2) {
+    const int side = 1 << (2 * (height - 3));  // of a child, in blocks
+    for (int child = 0; child < 64; ++child)
+      collect_shares(inside.child(child), touching.child(child), height - 1, at + side * child_place(child),
+                     limit, fraction_count, into);
+    return;
+  }
+  into.push_back({at, inside, touching, fraction_count});
+  for (int leaf = 0; leaf < 64; ++leaf)
+    fraction_count += static_cast<std::size_t>(std::popcount(touching.word(leaf) & ~inside.word(leaf)));
+}
+
 }  // namespace
 
 void check(const PartialOctree& partial) {
@@ -159,6 +181,37 @@ Octree at_least_half(const PartialOctree& partial) {
   const std::uint16_t* next = partial.fractions.data();
   return {partial.touching.universe(),
           half_filled(partial.inside.root(), partial.touching.root(), partial.touching.root_height(), next)};
+}
+
+GreyOctree share_samples(const PartialOctree& partial) {
+  constexpr std::int64_t whole_share = 32767;
+  const Universe& universe = partial.touching.universe();
+  std::vector<SharedBlock> shared;
+  std::size_t fraction_count = 0;
+  collect_shares(partial.inside.root(), partial.touching.root(), partial.touching.root_height(),
+                 glm::ivec3(0), (universe.side() + 15) / 16, fraction_count, shared);
+  assert(fraction_count == partial.fractions.size());
+  std::vector<glm::ivec3> blocks;
+  blocks.reserve(shared.size());
+  for (const SharedBlock& block : shared) blocks.push_back(block.block);
+  const auto fill = [&](std::size_t number, GreyBrick& brick) {
+    const SharedBlock& block = shared[number];
+    const std::uint16_t* next = partial.fractions.data() + block.first_fraction;
+    for (int leaf = 0; leaf < 64; ++leaf) {
+      const std::uint64_t inside = block.inside.word(leaf), touching = block.touching.word(leaf);
+      for (int bit = 0; bit < 64; ++bit) {
+        std::int64_t share = 0;
+        if ((inside >> bit) & 1)
+          share = whole_share;
+        else if ((touching >> bit) & 1)
+          share = (2 * whole_share * *next++ + PartialOctree::whole) / (2 * PartialOctree::whole);
+        brick.samples[static_cast<std::size_t>(leaf)][static_cast<std::size_t>(bit)] =
+            static_cast<std::int16_t>(share);
+      }
+    }
+  };
+  return grey_octree_of_bricks(universe, 0, blocks, fill, Octree::full(universe),
+                               1.0 / static_cast<double>(whole_share));
 }
 
 double volume_mm3(const PartialOctree& partial) {

@@ -135,6 +135,20 @@ Scenery scenery_of(const std::vector<DrawnObject>& objects, const ImagePlane& pl
   return scenery;
 }
 
+/// The sample at a point of a cut face, of the voxel that shows there. A cut runs between voxels' centres, so
+/// that the voxel may begin up to half a voxel's diagonal behind the cut: it is looked for along the sight,
+/// `ahead`, in steps of a quarter voxel.
+std::optional<double> sample_on_cut(const GreyOwners& samples, const glm::dvec3& p_voxel,
+                                    const glm::dvec3& ahead) {
+  constexpr int most_steps = 8;
+  const glm::dvec3 step = 0.25 * glm::normalize(ahead);
+  for (int i = 0; i <= most_steps; ++i) {
+    const glm::ivec3 voxel(glm::floor(p_voxel + double(i) * step + 0.5));
+    if (const std::optional<OwnedSample> owned = samples.at(voxel, p_voxel)) return owned->value();
+  }
+  return std::nullopt;
+}
+
 /// The paint of samples on cut faces and of scalars on surfaces.
 Paint paint_of(const DepthImage& image, const std::vector<DrawnObject>& objects, const ImagePlane& plane,
                const RenderOptions& options, const Scenery& scenery,
@@ -162,7 +176,11 @@ Paint paint_of(const DepthImage& image, const std::vector<DrawnObject>& objects,
       const glm::dvec3 p_voxel(voxel_from_lps * glm::dvec4(p_mm, 1.0));
       if (on_cut) {
         const CutTones& tones = *options.cut_tones;
-        const double sample = tones.grey.step() * interpolate(tones.grey, p_voxel, Interpolation::Linear);
+        const glm::dvec3 ahead_mm = plane.lps_mm({x + 0.5, y + 0.5}, depth_mm + 1.0) - p_mm;
+        const std::optional<double> owned =
+            sample_on_cut(tones.samples, p_voxel, glm::dmat3(voxel_from_lps) * ahead_mm);
+        if (!owned) continue;
+        const double sample = *owned;
         paint.kinds[pixel] = Paint::Kind::Tone;
         paint.colours[pixel] = glm::vec3(
             static_cast<float>(std::clamp((sample - tones.black) / (tones.white - tones.black), 0.0, 1.0)));

@@ -433,7 +433,7 @@ class Depths {
     const int d = static_cast<int>(seen.depth_mm);
     double depth_voxels = d;
     if (readers_[object] && d > 0) {
-      const double threshold = objects_[object].threshold;
+      const double threshold = objects_[object].grey->in_steps(objects_[object].threshold);
       ColumnSamples& samples = *readers_[object];
       samples.go_to_column(p, q);
       const double inside = samples.at(frame_.index(d));

@@ -246,7 +246,7 @@ SheetSamples sample(const GreyOctree& grey, const Sheet& sheet, Interpolation in
     const glm::dvec3 p_voxel = voxel_of(p_mm);
     result.inside[pixel] = within(p_voxel, dims) ? 1 : 0;
     const glm::dvec3 near = glm::clamp(p_voxel, glm::dvec3(-3.0), glm::dvec3(dims) + 3.0);
-    result.image.values[pixel] = static_cast<float>(interpolate(grey, near, interpolation));
+    result.image.values[pixel] = static_cast<float>(grey.step() * interpolate(grey, near, interpolation));
   });
   return result;
 }

@@ -63,7 +63,7 @@ struct SheetSamples {
 /// depends on padding are not inside. Throws Stopped. Parallel over rows, same bits on any thread count.
 SheetSamples sample(const Scene& scene, const Sheet& sheet, Interpolation interpolation,
                     const Progress& progress = {});
-/// Samples a grey octree; pixels beyond the universe take its background.
+/// Samples a grey octree in its scan's unit; pixels beyond the universe take the background.
 SheetSamples sample(const GreyOctree& grey, const Sheet& sheet, Interpolation interpolation,
                     const Progress& progress = {});
 

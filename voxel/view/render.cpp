@@ -32,7 +32,7 @@ void check(const std::vector<DrawnObject>& objects, const RenderOptions& options
       throw std::invalid_argument("the grey octree of object '" + object.name +
                                   "' is of another universe than the object: build it for the same");
   }
-  if (options.cut_tones && options.cut_tones->grey.universe() != objects.front().octree.universe())
+  if (options.cut_tones && options.cut_tones->samples.universe() != objects.front().octree.universe())
     throw std::invalid_argument(
         "the samples for cut faces are of another universe than the objects: build them for the same");
   if (options.cut_tones && !(options.cut_tones->white > options.cut_tones->black))

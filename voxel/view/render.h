@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "voxel/solid/grey_owner.h"
 #include "voxel/space/view.h"
 #include "voxel/view/camera.h"
 #include "voxel/view/cutaway.h"
@@ -26,9 +27,10 @@ enum class Algorithm { NodeTrace, RayCast, FrontToBack, BackToFront };
 /// from the gradient of the samples (5.2.1.2). Silhouette, Outline: for print.
 enum class Shading { Depth, Gradient, Context, PartialVolume, GreyGradient, Silhouette, Outline };
 
-/// Samples painted on cut faces in grey tones, like a slice.
+/// Samples painted on cut faces in grey tones, like a slice: at each place those of the operand that owns it,
+/// moved with it. Places that no window owns keep the object's colour.
 struct CutTones {
-  GreyOctree grey;
+  GreyOwners samples;
   double black = 0.0;
   double white = 1.0;  ///< above black
 };

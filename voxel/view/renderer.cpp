@@ -55,7 +55,7 @@ bool same_lights(const std::vector<Light>& a, const std::vector<Light>& b) {
 
 bool same_tones(const std::optional<CutTones>& a, const std::optional<CutTones>& b) {
   if (!a || !b) return a.has_value() == b.has_value();
-  return same_samples(a->grey, b->grey) && a->black == b->black && a->white == b->white;
+  return a->samples.is_same(b->samples) && a->black == b->black && a->white == b->white;
 }
 
 /// Whether two sets of options turn the same layers into the same picture.

@@ -130,7 +130,8 @@ struct ViewPane::Drawing {
   bool is_moving = false;
   bool is_of_plan = true;  ///< a step of the plan could draw the same
   std::vector<voxel::DrawnObject> objects;
-  const Object* last = nullptr;            ///< the last drawn object that belongs to the plan
+  std::vector<const Object*> of_plan;      ///< those that are drawn
+  const Object* last = nullptr;            ///< the last of them
   std::shared_ptr<const Evaluation> held;  ///< keeps the objects of a preview
   Json header = Json::object();
 
@@ -177,12 +178,12 @@ struct ViewPane::Drawing {
   }
 
   voxel::RenderOptions options() {
-    const bool has_samples = std::any_of(objects.begin(), objects.end(),
-                                         [](const auto& object) { return object.grey.has_value(); });
-    if (!has_samples) render.cut_face = "plain";
+    std::optional<voxel::CutTones> tones;
+    if (render.cut_face == "grey") tones = cut_tones_of(render, objects, of_plan);
+    if (!tones) render.cut_face = "plain";
     voxel::RenderOptions made = options_of(render);
     made.background = background;
-    if (render.cut_face == "grey") made.cut_tones = cut_tones_of(render, objects);
+    made.cut_tones = std::move(tones);
     return made;
   }
 
@@ -254,11 +255,15 @@ void ViewPane::add_objects(Desk& desk, const Json& said, Drawing& drawing, const
     const bool is_dragged = moved != nullptr && id == dragged;
     if (const Object* object = is_dragged ? std::exchange(moved, nullptr) : find(evaluation, id)) {
       drawing.last = object;
+      drawing.of_plan.push_back(object);
       drawing.add(planner::drawn(*object, glm::vec3(1.0f)), id, entry);
     }
   }
   if (!preview.evaluation) return;
-  if (moved != nullptr) drawing.add(planner::drawn(*moved, glm::vec3(1.0f)), dragged, Json::object());
+  if (moved != nullptr) {
+    drawing.of_plan.push_back(moved);
+    drawing.add(planner::drawn(*moved, glm::vec3(1.0f)), dragged, Json::object());
+  }
   if (const Object* both = find(*preview.evaluation, Desk::Preview::overlap)) {
     drawing.header["overlap_mm3"] = both->voxel.measures.volume_mm3;
     drawing.add({"overlap", both->voxel.octree}, "", {{"colour", text_of_colour(interference_colour())}});

@@ -97,6 +97,7 @@ Action read_action(const Operation& operation, const FieldWords& words) {
   }
   try {
     read_fields(fields, step, action.value(), {operation.name});
+    need_fields_read(fields, step, action.value(), {operation.name});
     if (operation.check) operation.check(action.value(), {operation.name});
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(in_options(error.what(), operation.name, fields));

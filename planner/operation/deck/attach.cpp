@@ -44,11 +44,14 @@ class Attacher {
 
   std::vector<std::string> run() {
     find_holders();
+    std::vector<std::string> findings = lift_off();
     const double left_out_mm3 = keep_held();
     prescribe();
     part_surfaces();
-    if (left_out_mm3 <= 0.0) return {};
-    return {"parts that nothing holds, " + grouped(left_out_mm3, 1) + " mm\u00b3 together, are left out"};
+    if (left_out_mm3 > 0.0)
+      findings.push_back("parts that nothing holds, " + grouped(left_out_mm3, 1) +
+                         " mm\u00b3 together, are left out");
+    return findings;
   }
 
  private:
@@ -83,7 +86,60 @@ class Attacher {
         hold(node, holder);
   }
 
-  /// Removes the parts that nothing holds; returns their volume.
+  glm::dvec3 displacement_mm(const Holder& holder, std::uint32_t node) const {
+    const glm::dvec3& p_mm = tetrahedra_.nodes_mm[node];
+    return glm::dvec3(*holder.motion * glm::dvec4(p_mm, 1.0)) - p_mm;
+  }
+
+  /// Frees the nodes on stationary bone that lie so near to moved bone that the tissue between would be torn
+  /// or turned over: along a cut the surgeon lifts the tissue off the bone. Answers findings.
+  std::vector<std::string> lift_off() {
+    struct MovedNode {
+      glm::dvec3 p_mm;
+      double reach_mm;
+    };
+    // With twice the displacement as distance, tissue between is strained by at most a half.
+    constexpr double reach_of_displacement = 2.0;
+    std::vector<MovedNode> moved;
+    double farthest_mm = 0.0;
+    for (std::uint32_t node = 0; node < holder_of_node_.size(); ++node) {
+      if (holder_of_node_[node] == nobody) continue;
+      const Holder& holder = holders_[static_cast<std::size_t>(holder_of_node_[node])];
+      if (!holder.motion) continue;
+      const double reach_mm = reach_of_displacement * glm::length(displacement_mm(holder, node));
+      farthest_mm = std::max(farthest_mm, reach_mm);
+      moved.push_back({tetrahedra_.nodes_mm[node], reach_mm});
+    }
+    std::sort(moved.begin(), moved.end(),
+              [](const MovedNode& a, const MovedNode& b) { return a.p_mm.x < b.p_mm.x; });
+    std::vector<std::size_t> freed(holders_.size(), 0), held(holders_.size(), 0);
+    for (std::uint32_t node = 0; node < holder_of_node_.size(); ++node) {
+      const int number = holder_of_node_[node];
+      if (number == nobody) continue;
+      const auto h = static_cast<std::size_t>(number);
+      if (holders_[h].motion || region_of_holder_[h] != nobody) continue;
+      ++held[h];
+      const glm::dvec3& p_mm = tetrahedra_.nodes_mm[node];
+      const auto first =
+          std::lower_bound(moved.begin(), moved.end(), p_mm.x - farthest_mm,
+                           [](const MovedNode& other, double x_mm) { return other.p_mm.x < x_mm; });
+      for (auto other = first; other != moved.end() && other->p_mm.x <= p_mm.x + farthest_mm; ++other)
+        if (glm::distance(other->p_mm, p_mm) < other->reach_mm) {
+          holder_of_node_[node] = nobody;
+          ++freed[h];
+          break;
+        }
+    }
+    std::vector<std::string> findings;
+    for (std::size_t h = 0; h < holders_.size(); ++h)
+      if (freed[h] > 0)
+        findings.push_back("tissue is lifted off '" + holders_[h].id + "' at " + std::to_string(freed[h]) +
+                           " of " + std::to_string(held[h]) +
+                           " nodes, nearer to a moved piece than twice its motion");
+    return findings;
+  }
+
+  /// Takes away the parts that nothing holds; answers their volume.
   double keep_held() {
     brep::DisjointSets parts(tetrahedra_.nodes_mm.size());
     for (const auto& tet : tetrahedra_.tets)
@@ -144,8 +200,7 @@ class Attacher {
         if (holder_of_node_[node] != static_cast<int>(h)) continue;
         set.nodes.push_back(node);
         if (!holder.motion) continue;
-        const glm::dvec3& p_mm = tetrahedra_.nodes_mm[node];
-        prescribed.displacement_mm.push_back(glm::dvec3(*holder.motion * glm::dvec4(p_mm, 1.0)) - p_mm);
+        prescribed.displacement_mm.push_back(displacement_mm(holder, node));
       }
       if (set.nodes.empty())
         throw std::runtime_error("'" + holder.id +

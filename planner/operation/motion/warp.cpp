@@ -2,6 +2,9 @@
 // An object moved as a solved deck moved: the face after the operation. Only the mesh kernel moves by a field
 // of displacements; its answer is voxelised. Its certificate moves points back and reads the object there.
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
 
 #include "convert/deck/calculix_result.h"
 #include "convert/deck/displacement_field.h"
@@ -22,16 +25,59 @@ namespace {
 struct Warp {
   ObjectName object;
   std::filesystem::path result, out;
+  std::optional<double> fade_mm;
 };
 
-/// The displacements of a solved deck, with their results for the report.
+/// The displacements of a solved deck, and what the answer reports of them.
 struct Displaced {
   convert::DisplacementField field;
   Json details;
-  std::vector<std::string> findings;
 };
 
-Displaced displaced(const std::filesystem::path& path, const voxel::Progress& progress, Timings& timings) {
+std::string text_of(const glm::dvec3& p_mm) {
+  return "(" + plain(std::round(p_mm.x * 10.0) / 10.0) + ", " + plain(std::round(p_mm.y * 10.0) / 10.0) +
+         ", " + plain(std::round(p_mm.z * 10.0) / 10.0) + ")";
+}
+
+/// Over how many millimetres the displacement fades. Throws std::runtime_error where the typed distance folds
+/// space.
+double fade_of(const Warp& warp, double largest_mm) {
+  constexpr double usual_mm = 20.0;
+  // Above the least by enough that no part shrinks to less than a sixth.
+  constexpr double clearance = 1.2;
+  const double least_mm = clearance * convert::least_fade_mm(largest_mm);
+  if (!warp.fade_mm) return std::max(usual_mm, least_mm);
+  if (*warp.fade_mm < least_mm)
+    throw std::runtime_error("'fade_mm' is " + three_figures(*warp.fade_mm) + " mm, but a displacement of " +
+                             three_figures(largest_mm) +
+                             " mm that fades so fast folds the tissue: at least " +
+                             grouped(std::ceil(10.0 * least_mm) / 10.0, 1) + " mm");
+  return *warp.fade_mm;
+}
+
+/// Throws std::runtime_error with the place if elements are turned over: no tissue moves like that, and the
+/// scan of such a field shows one place twice.
+void refuse_turned_over(const convert::DisplacementField& field, const std::filesystem::path& path) {
+  const std::vector<convert::TurnedOver> found = field.turned_over();
+  if (found.empty()) return;
+  glm::dvec3 low_mm = found.front().centre_mm, high_mm = low_mm;
+  const convert::TurnedOver* worst = &found.front();
+  for (const convert::TurnedOver& element : found) {
+    low_mm = glm::min(low_mm, element.centre_mm);
+    high_mm = glm::max(high_mm, element.centre_mm);
+    if (element.volume_ratio < worst->volume_ratio) worst = &element;
+  }
+  throw std::runtime_error(path.string() + ": the displacements turn over " + std::to_string(found.size()) +
+                           (found.size() == 1 ? " element" : " elements") + ", the worst at " +
+                           text_of(worst->centre_mm) + " mm, all between " + text_of(low_mm) + " and " +
+                           text_of(high_mm) +
+                           " mm (LPS): there a motion is longer than the tissue between what moves and what "
+                           "stays. Take that place "
+                           "out of 'fixed' or the motion in smaller steps, and solve the deck again");
+}
+
+Displaced displaced(const Warp& warp, const std::filesystem::path& path, const voxel::Progress& progress,
+                    Timings& timings) {
   convert::SolvedDeck deck;
   {
     const Stopwatch watch(timings, "read");
@@ -40,16 +86,14 @@ Displaced displaced(const std::filesystem::path& path, const voxel::Progress& pr
   double largest_mm = 0.0;
   for (const glm::dvec3& displacement : deck.displacement_mm)
     largest_mm = std::max(largest_mm, glm::length(displacement));
+  const double fade_mm = fade_of(warp, largest_mm);
   Json details{{"nodes", deck.tetrahedra.nodes_mm.size()},
                {"tets", deck.tetrahedra.tets.size()},
-               {"largest_displacement_mm", largest_mm}};
-  Displaced made{{std::move(deck.tetrahedra), std::move(deck.displacement_mm)}, std::move(details), {}};
-  const std::size_t turned_over = made.field.turned_over();
-  if (turned_over > 0)
-    made.findings.push_back(
-        std::to_string(turned_over) +
-        " elements are turned over by the displacements: there the motion is too large for one linear step");
-  made.details["elements_turned_over"] = turned_over;
+               {"largest_displacement_mm", largest_mm},
+               {"fade_mm", fade_mm},
+               {"elements_turned_over", 0}};
+  Displaced made{{std::move(deck.tetrahedra), std::move(deck.displacement_mm), fade_mm}, std::move(details)};
+  refuse_turned_over(made.field, path);
   return made;
 }
 
@@ -58,13 +102,12 @@ std::string definition(const Warp& warp, const Objects&) {
 }
 
 void triangles(const Warp& warp, const MeshBench& bench, MeshSide& made) {
-  Displaced by = displaced(bench.folder / warp.result, {bench.progress.stop, {}}, bench.timings);
+  Displaced by = displaced(warp, bench.folder / warp.result, {bench.progress.stop, {}}, bench.timings);
   const Stopwatch watch(bench.timings, "warp");
   made.whole =
       brep::trusted_solid(convert::warped(bench.object(warp.object.name), by.field), brep::Proof::Connection);
   made.details = std::move(by.details);
-  made.findings = std::move(by.findings);
-  made.lineage = "vertices of a mesh, displaced as the elements about them";
+  made.lineage = "vertices of a mesh, displaced as the elements about them, fading beyond their box";
 }
 
 void bound(const Warp& warp, const BoundBench& bench, Object& made) {
@@ -90,7 +133,8 @@ FileAnswer on_files(const Warp& warp, const FileBench& bench) {
   else
     need_extension(warp.out, {".nrrd", ".nhdr", ".nii", ".nii.gz", ".mha", ".mhd"}, "a scan is");
   need_folder_of(warp.out);
-  Displaced by = displaced(warp.result, bench.progress("reading"), bench.timings);
+  const Displaced by = displaced(warp, warp.result, bench.progress("reading"), bench.timings);
+  std::vector<std::string> findings;
   if (is_mesh(file)) {
     const brep::Mesh mesh = read_surface(file, bench.timings);
     brep::Mesh warped;
@@ -110,18 +154,18 @@ FileAnswer on_files(const Warp& warp, const FileBench& bench) {
     }
     const Stopwatch watch(bench.timings, "write");
     voxel::write_scene(warped, warp.out);
-    by.findings.insert(by.findings.end(), table.passed_over.begin(), table.passed_over.end());
+    findings = table.passed_over;
     if (!table.names.empty())
       for (std::string& finding : write_label_table(warp.out, table.names))
-        by.findings.push_back(std::move(finding));
+        findings.push_back(std::move(finding));
   }
   FileAnswer answer{{{"path", warp.out.string()}}};
   answer.json.update(by.details);
-  answer.findings = std::move(by.findings);
+  answer.findings = std::move(findings);
   answer.rows = {
       {"written", warp.out.string()},
       {"largest displacement", grouped(by.details["largest_displacement_mm"].get<double>(), 2) + " mm"},
-      {"elements turned over", std::to_string(by.details["elements_turned_over"].get<std::size_t>())}};
+      {"fades to zero within", grouped(by.details["fade_mm"].get<double>(), 1) + " mm of the deck's box"}};
   return answer;
 }
 
@@ -136,6 +180,13 @@ Operation warp_operation() {
       .takes(field("result", &Warp::result, "CalculiX's .frd file of a deck of linear tetrahedra.")
                  .required()
                  .a_file())
+      .takes(
+          field(
+              "fade_mm", &Warp::fade_mm,
+              "Beyond the deck's box along the patient's axes, the displacement fades to zero over this "
+              "distance. At least 2.54 times the largest displacement, or space would fold. Default: 20 mm, "
+              "or that least where it is longer.")
+              .greater_than(0.0))
       .verb_takes(field("out", &Warp::out, "A mesh, or a .nrrd, .nii.gz or .mha file.").required())
       .reads_scans()
       .example(R"({"id": "face", "do": "warp", "object": "soft", "result": "face.frd"})")

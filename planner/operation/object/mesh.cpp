@@ -68,10 +68,12 @@ brep::Triangles tiled_contours(const voxel::Scene& scene, const SampleWindow& wi
                  : asked.tiling == "least-angle"     ? brep::TileCost::least_angle
                                                      : brep::TileCost::shortest_span;
   brep::TiledSections tiled = convert::contour_surface(scene, window.low, window.high_or_infinity(), options);
-  findings.push_back("contours: " + std::to_string(tiled.strips) + " pairs joined by strips, " +
-                     std::to_string(tiled.crossed_strips) +
-                     " by overlay as their strips would cross something, " + std::to_string(tiled.overlaid) +
-                     " branchings, ends and lone contours by overlay");
+  findings.push_back(
+      "contours: " + std::to_string(tiled.strips) + " pairs joined by strips, " +
+      std::to_string(tiled.narrowed_strips) +
+      " of them nearer to the shortest spans or by least area as the best would cross something, " +
+      std::to_string(tiled.crossed_strips) + " by overlay as their strips would cross something, " +
+      std::to_string(tiled.overlaid) + " branchings, ends and lone contours by overlay");
   return std::move(tiled.surface);
 }
 
@@ -194,10 +196,14 @@ Operation mesh_operation() {
       .takes(field("tiling", &Meshed::tiling,
                    "Of contours, what strips between them are chosen by: shortest-span, least-area, "
                    "greatest-volume, least-angle; overlay: no strips.")
-                 .one_of({"shortest-span", "least-area", "greatest-volume", "least-angle", "overlay"}))
+                 .one_of({"shortest-span", "least-area", "greatest-volume", "least-angle", "overlay"})
+                 .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "contours"; },
+                                  "is of contours: add 'surface' contours"))
       .takes(field("touching", &Meshed::touching,
                    "Of a cuberille, voxels that meet at an edge or corner only: apart or together.")
-                 .one_of({"apart", "together"}))
+                 .one_of({"apart", "together"})
+                 .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "cuberille"; },
+                                  "is of a cuberille: add 'surface' cuberille"))
       .takes(field("smooth", &Meshed::smooth, "Takes noise off the surface and keeps its volume."))
       .takes(field("faces", &Meshed::faces, "Decimates to so many triangles.").from(4).to(100000000))
       .takes(field("out", &Meshed::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.").required())

@@ -175,11 +175,19 @@ Operation octree_operation() {
           field("out", &Build::out, "An .octree file, or with --as the representation's, for example .txt.")
               .required())
       .takes(
-          field("window", &Build::window, "LOW:HIGH or LOW: in sample units, or a tissue: a binary octree."))
-      .takes(field("grey", &Build::grey, "A min-max octree of all samples."))
+          field("window", &Build::window, "LOW:HIGH or LOW: in sample units, or a tissue: a binary octree.")
+              .read_if<Build>([](const Build& build) { return build.from.empty(); },
+                              "a representation holds no samples to take a window of: leave it out"))
+      .takes(
+          field("grey", &Build::grey, "A min-max octree of all samples.")
+              .read_if<Build>([](const Build& build) { return build.from.empty() && !is_octree(build.in()); },
+                              "only a scan is made a tree of all its samples: leave it out"))
       .takes(field("voxel_mm", &Build::voxel_mm,
                    "Edge of a voxel. Default: as fine as the scan, at most 512 a side; with --from 1.")
-                 .greater_than(0.0))
+                 .greater_than(0.0)
+                 .read_if<Build>(
+                     [](const Build& build) { return !build.from.empty() || !is_octree(build.in()); },
+                     "an .octree file keeps its own voxels: leave it out"))
       .takes(
           field(
               "as", &Build::as,
@@ -188,9 +196,11 @@ Operation octree_operation() {
               .one_of(representation_names()))
       .takes(field("from", &Build::from, "Reads the file as such a representation.")
                  .one_of(representation_names()))
-      .takes(field("depth", &Build::depth, "With --from: the universe has 2^N voxels a side.")
-                 .from(2)
-                 .to(voxel::Universe::max_depth))
+      .takes(
+          field("depth", &Build::depth, "With --from: the universe has 2^N voxels a side.")
+              .from(2)
+              .to(voxel::Universe::max_depth)
+              .read_if<Build>([](const Build& build) { return !build.from.empty(); }, "is of 'from': add it"))
       .reads_scans()
       .example(R"({"id": "tree", "do": "octree", "file": "skull", "out": "skull.octree", "window": "300:"})")
       .on_files(

@@ -6,6 +6,7 @@
 #include "planner/operation/file/file_kind.h"
 #include "planner/operation/picture/colour.h"
 #include "planner/operation/picture/mesh_voxels.h"
+#include "planner/operation/picture/ray_pictures.h"
 #include "planner/operation/table/plan_universe.h"
 #include "voxel/solid/combine.h"
 #include "voxel/tree/octree_file.h"
@@ -47,8 +48,15 @@ voxel::DrawnObject drawn_of_file(const std::filesystem::path& path, const Render
       object.counted_in_grey = object.grey.has_value();
     } else {
       const auto& partial = std::get<voxel::PartialOctree>(file.tree);
-      object.octree = partial.touching;
-      object.inside = partial.inside;
+      // Shares are no densities: pictures along rays find no samples.
+      if (render.count || is_ray_picture(render)) {
+        object.octree = partial.touching;
+        object.inside = partial.inside;
+      } else {
+        object.octree = voxel::at_least_half(partial);
+        object.grey = voxel::share_samples(partial);
+        object.threshold = voxel::half_share;
+      }
     }
   } else {
     const voxel::Scene scene = bench.read_scan(path);

@@ -12,9 +12,9 @@
 
 namespace octotomy::planner {
 
-/// The objects of the files, all in the first one's universe, named after their files without folder and
-/// extension. Throws std::runtime_error for files that cannot be drawn, with the path, and for texts that are
-/// not colours.
+/// What the files hold, by the surface that partial volume gives an octree of shares; with Render::count,
+/// with its voxels as the thesis counts visits to them instead. All in the first one's universe, named as the files are, without folder and ending.
+/// Throws std::runtime_error for files that cannot be drawn, with the path, and for what is no colour.
 std::vector<voxel::DrawnObject> drawn_of_files(const Render& render, const std::vector<ObjectName>& files,
                                                const FileBench& bench);
 

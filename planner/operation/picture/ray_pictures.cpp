@@ -91,8 +91,7 @@ SampleWindow ray_window(const Render& render) {
 RenderedPicture render_rays(const Render& render, const std::vector<voxel::DrawnObject>& objects,
                             Timings& timings, const std::stop_token& stop) {
   if (objects.size() != 1 || !objects.front().grey)
-    throw std::runtime_error("--shading " + render.shading +
-                             " needs the samples of one scan or grey octree, and a --window LOW:");
+    throw std::runtime_error("--shading " + render.shading + " needs the samples of one scan or grey octree");
   const voxel::GreyOctree& grey = *objects.front().grey;
   const voxel::View view = voxel::parse_view(render.view);
   RenderedPicture made;

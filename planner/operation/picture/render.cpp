@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <map>
 
 #include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/octree_in.h"
 #include "planner/operation/file/output_path.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/picture/colour.h"
@@ -86,6 +88,38 @@ Scene scene_of(const Render& render, std::vector<voxel::DrawnObject> objects, Ti
   return scene;
 }
 
+/// All samples of a scan, moved by an object's motion.
+voxel::Expression all_samples(const voxel::GreyOctree& grey,
+                              const std::optional<glm::dmat4>& moved_from_still) {
+  constexpr double low = std::numeric_limits<std::int16_t>::min();
+  constexpr double high = std::numeric_limits<std::int16_t>::max();
+  voxel::Expression samples(voxel::Window{grey, low, high});
+  if (!moved_from_still || *moved_from_still == glm::dmat4(1.0)) return samples;
+  return glm::determinant(glm::dmat3(*moved_from_still)) > 0.0 ? moved(samples, *moved_from_still)
+                                                               : reflected(samples, *moved_from_still);
+}
+
+/// The samples in the tones that are asked for; by default from the smallest to the largest sample.
+voxel::CutTones tones_of(const Render& render, voxel::GreyOwners samples) {
+  if (render.tones.empty()) {
+    double black = std::numeric_limits<double>::infinity(), white = -black;
+    for (const voxel::Window& window : samples.windows()) {
+      const voxel::GreyOctree& grey = window.grey;
+      const voxel::MinMax range =
+          grey.range(std::max(2, voxel::root_height(grey.universe().depth)), {0, 0, 0});
+      black = std::min(black, range.low * grey.step());
+      white = std::max(white, std::max<double>(range.high, range.low + 1.0) * grey.step());
+    }
+    return {std::move(samples), black, white};
+  }
+  const auto colon = render.tones.find(':');
+  std::string numbers = render.tones;
+  if (colon != std::string::npos) numbers[colon] = ',';
+  const auto n = numbers_of<2>("--tones", numbers, "-500:1500");
+  if (!(n[1] > n[0])) throw std::runtime_error("--tones: '" + render.tones + "' has no room between");
+  return {std::move(samples), n[0], n[1]};
+}
+
 glm::ivec2 pixel_of(const std::string& text, const glm::ivec2& size_px) {
   const auto numbers = numbers_of<2>("--pick", text, "256,300");
   const glm::dvec2 pixel(numbers[0], numbers[1]);
@@ -116,8 +150,10 @@ std::vector<std::uint8_t> side_by_side(const voxel::Picture& left, const voxel::
   return rgb;
 }
 
-RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> drawn, Timings& timings,
-                         const std::stop_token& stop) {
+/// `counted` are the objects as visits to them are counted, where that is not as they are drawn; else empty.
+RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> drawn,
+                         const std::vector<voxel::DrawnObject>& counted, std::optional<voxel::CutTones> tones,
+                         Timings& timings, const std::stop_token& stop) {
   if (is_ray_picture(render)) {
     paint(render, drawn);
     return render_rays(render, drawn, timings, stop);
@@ -127,7 +163,7 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
   for (const std::string& pick : render.picks) picks.push_back(pixel_of(pick, options.size_px));
   const Scene scene = scene_of(render, std::move(drawn), timings);
   const std::vector<voxel::DrawnObject>& objects = scene.objects;
-  if (render.cut_face == "grey") options.cut_tones = cut_tones_of(render, objects);
+  options.cut_tones = std::move(tones);
   voxel::Picture picture, right_eye;
   {
     const Stopwatch watch(timings, "render");
@@ -137,7 +173,13 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
       right_eye = voxel::render(objects, options);
       options.view = left;
     }
+    std::optional<voxel::Visits> visits;
+    if (!counted.empty()) {
+      visits = voxel::render(counted, options).visits;
+      options.count = false;
+    }
     picture = voxel::render(objects, options);
+    if (visits) picture.visits = std::move(visits);
   }
   RenderedPicture made{picture.size_px, {}, picture.pixel_mm, {}, {}};
   made.said = {{"view", render.view},
@@ -170,10 +212,6 @@ void check(const Render& render, const Place& place) {
   const auto refuse = [&](const std::string& field, const std::string& why) { place.at(field).refuse(why); };
   if (render.colours.size() > render.objects.size() || render.opacities.size() > render.objects.size())
     refuse("colours", "and opacities: give at most one of each an object");
-  if (render.range_mm && render.colour_by.empty()) refuse("range_mm", "needs 'colour_by': add it");
-  if (!render.tones.empty() && render.cut_face != "grey")
-    refuse("tones", "needs grey cut faces: add 'cut_face'");
-  if (!render.title.empty() && !render.annotate) refuse("title", "needs annotated pictures: add 'annotate'");
   if (render.grid_mm && (render.eye_mm || render.stereo_deg))
     refuse("grid_mm", "needs a picture in true scale: leave out 'eye_mm' and 'stereo_deg'");
   for (const std::string& colour : render.colours) need_colour(colour);
@@ -215,7 +253,15 @@ void write(const Render& render, const AnswerBench& bench, Exported& made) {
     objects.push_back(drawn(bench.objects.at(name.name), glm::vec3(1.0f)));
   if (!render.colour_by.empty())
     objects.push_back(drawn(bench.objects.at(other_of(render.colour_by)), glm::vec3(1.0f)));
-  RenderedPicture picture = rendered(render, std::move(objects), bench.timings, bench.stop);
+  std::optional<voxel::CutTones> tones;
+  if (render.cut_face == "grey") {
+    std::vector<const Object*> cut;
+    for (const ObjectName& name : render.objects) cut.push_back(&bench.objects.at(name.name));
+    tones = cut_tones_of(render, {objects.begin(), objects.begin() + std::ptrdiff_t(cut.size())}, cut);
+    if (!tones) throw std::runtime_error("cut_face: no object is made of a window of a scan: leave it out");
+  }
+  RenderedPicture picture =
+      rendered(render, std::move(objects), {}, std::move(tones), bench.timings, bench.stop);
   write(output_file(bench.folder, made.path), picture);
   made.written = true;
   made.content = "a picture from " + render.view + ", " + std::to_string(picture.size_px.x) + " x " +
@@ -236,8 +282,25 @@ FileAnswer on_files(const Render& asked, const FileBench& bench) {
     if (!std::filesystem::exists(files.back().name))
       throw std::runtime_error("--colour-by: " + files.back().name + ": there is no such file");
   }
+  std::vector<voxel::DrawnObject> objects = drawn_of_files(render, files, bench);
+  std::vector<voxel::DrawnObject> counted;
+  if (std::any_of(objects.begin(), objects.end(),
+                  [](const auto& object) { return object.inside.has_value(); })) {
+    counted = std::move(objects);
+    Render shown = render;
+    shown.count = false;
+    objects = drawn_of_files(shown, files, bench);
+  }
+  std::optional<voxel::CutTones> tones;
+  if (render.cut_face == "grey") {
+    tones =
+        cut_tones_of(render, {objects.begin(), objects.begin() + std::ptrdiff_t(render.objects.size())}, {});
+    if (!tones)
+      throw std::runtime_error(
+          "--cut-face grey: no object has samples; give a scan or grey octree first, and a --window LOW:");
+  }
   const RenderedPicture picture =
-      rendered(render, drawn_of_files(render, files, bench), bench.timings, bench.stop);
+      rendered(render, std::move(objects), counted, std::move(tones), bench.timings, bench.stop);
   {
     const Stopwatch watch(bench.timings, "write");
     write(render.out, picture);
@@ -251,6 +314,21 @@ FileAnswer on_files(const Render& asked, const FileBench& bench) {
   return answer;
 }
 
+// Conditions of fields.
+constexpr const char* along_rays = "pictures along rays read all samples alike: leave it out";
+
+bool draws_surfaces(const Render& render) {
+  return !is_ray_picture(render);
+}
+
+bool draws_samples(const Render& render) {
+  std::vector<ObjectName> files = render.objects;
+  if (!render.colour_by.empty()) files.push_back({other_of(render.colour_by)});
+  return std::any_of(files.begin(), files.end(), [](const ObjectName& file) {
+    return !is_mesh(file.name) && octree_kind(file.name).value_or(OctreeKind::Grey) == OctreeKind::Grey;
+  });
+}
+
 std::vector<std::string> all_shadings() {
   std::vector<std::string> names = names_of(shadings);
   const std::vector<std::string> rays = ray_picture_names();
@@ -260,24 +338,23 @@ std::vector<std::string> all_shadings() {
 
 }  // namespace
 
-voxel::CutTones cut_tones_of(const Render& render, const std::vector<voxel::DrawnObject>& objects) {
-  const auto with_samples =
-      std::find_if(objects.begin(), objects.end(),
-                   [](const voxel::DrawnObject& object) { return object.grey.has_value(); });
-  if (with_samples == objects.end())
-    throw std::runtime_error(
-        "--cut-face grey: no object has samples; give a scan or grey octree first, and a --window LOW:");
-  const voxel::GreyOctree& grey = *with_samples->grey;
-  if (render.tones.empty()) {
-    const voxel::MinMax range = grey.range(std::max(2, voxel::root_height(grey.universe().depth)), {0, 0, 0});
-    return {grey, range.low * grey.step(), std::max<double>(range.high, range.low + 1.0) * grey.step()};
-  }
-  const auto colon = render.tones.find(':');
-  std::string numbers = render.tones;
-  if (colon != std::string::npos) numbers[colon] = ',';
-  const auto n = numbers_of<2>("--tones", numbers, "-500:1500");
-  if (!(n[1] > n[0])) throw std::runtime_error("--tones: '" + render.tones + "' has no room between");
-  return {grey, n[0], n[1]};
+std::optional<voxel::CutTones> cut_tones_of(const Render& render,
+                                            const std::vector<voxel::DrawnObject>& objects,
+                                            const std::vector<const Object*>& made) {
+  std::vector<voxel::SampleSource> sources;
+  for (const Object* object : made)
+    if (object->voxel.symbol) sources.push_back({*object->voxel.symbol, object->voxel.octree});
+  // What was filled or grown in an object of one scan lies in that scan, too, and moved with it.
+  const auto first = std::find_if(objects.begin(), objects.end(),
+                                  [](const voxel::DrawnObject& object) { return object.grey.has_value(); });
+  for (const voxel::DrawnObject& object : objects)
+    if (object.grey)
+      sources.push_back({all_samples(*object.grey, object.moved_from_still), object.octree});
+    else if (made.empty() && first != objects.end())
+      sources.push_back({all_samples(*first->grey, first->moved_from_still), object.octree});
+  voxel::GreyOwners samples(objects.front().octree.universe(), sources);
+  if (samples.windows().empty()) return std::nullopt;
+  return tones_of(render, std::move(samples));
 }
 
 voxel::RenderOptions options_of(const Render& render) {
@@ -392,16 +469,20 @@ Operation render_operation() {
               .one_of(all_shadings()))
       .takes(field("colours", &Render::colours, "#RRGGBB, one an object in their order.")
                  .repeated()
-                 .called("colour"))
+                 .called("colour")
+                 .read_if<Render>(draws_surfaces, along_rays))
       .takes(field("opacities", &Render::opacities, "0 (hidden) to 1, one an object in their order.")
                  .repeated()
-                 .called("opacity"))
+                 .called("opacity")
+                 .read_if<Render>(draws_surfaces, along_rays))
       .takes(
           field("colour_by", &Render::colour_by,
                 "distance:NAME colours the first object by its surface's distance outside (orange) or inside "
                 "(blue) another one; of the verb a file."))
       .takes(field("range_mm", &Render::range_mm, "Distance of the last colours by distance. Default: 5.")
-                 .greater_than(0.0))
+                 .greater_than(0.0)
+                 .read_if<Render>([](const Render& render) { return !render.colour_by.empty(); },
+                                  "is of 'colour_by': add it"))
       .takes(
           field("transfer", &Render::transfer,
                 "How samples look in composite pictures: bone, skin, vessels (CT in HU; default: bone), or a "
@@ -421,7 +502,9 @@ Operation render_operation() {
                    "What cut faces show: plain (the object's colour) or grey (the scan's samples).")
                  .one_of({"plain", "grey"}))
       .takes(field("tones", &Render::tones,
-                   "BLACK:WHITE in sample units of grey cut faces. Default: the samples' range."))
+                   "BLACK:WHITE in sample units of grey cut faces. Default: the samples' range.")
+                 .read_if<Render>([](const Render& render) { return render.cut_face == "grey"; },
+                                  "is of grey cut faces: add 'cut_face'"))
       .takes(field("picks", &Render::picks,
                    "X,Y of a pixel, from the top left (of the left eye's picture), whose object and point "
                    "are told; "
@@ -430,7 +513,9 @@ Operation render_operation() {
                  .called("pick"))
       .takes(field("annotate", &Render::annotate,
                    "Writes a scale, the patient's sides, a legend and a title on the picture."))
-      .takes(field("title", &Render::title, "Of an annotated picture. Default: the view."))
+      .takes(field("title", &Render::title, "Of an annotated picture. Default: the view.")
+                 .read_if<Render>([](const Render& render) { return render.annotate; },
+                                  "is of annotated pictures: add 'annotate'"))
       .takes(field("grid_mm", &Render::grid_mm,
                    "Draws lines at multiples of so many millimetres; a margin that is added at the right and "
                    "below tells their places in the view.")
@@ -439,10 +524,15 @@ Operation render_operation() {
                  .called("grid"))
       .takes(field("count", &Render::count, "Counts the octree nodes that the algorithm visits."))
       .verb_takes(field("out", &Render::out, "A .png, .jpg or .webp file.").required())
-      .verb_takes(field("window", &Render::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
-      .verb_takes(field("voxel_mm", &Render::voxel_mm,
-                        "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
-                      .greater_than(0.0))
+      .verb_takes(field("window", &Render::window, "LOW:HIGH or LOW: in sample units, or a tissue.")
+                      .read_if<Render>(draws_surfaces, along_rays)
+                      .read_if<Render>(draws_samples, "only scans and grey octrees have one: leave it out"))
+      .verb_takes(
+          field("voxel_mm", &Render::voxel_mm,
+                "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
+              .greater_than(0.0)
+              .read_if<Render>([](const Render& render) { return !is_octree(render.objects.front().name); },
+                               "the first file is an octree, whose voxels all are drawn in: leave it out"))
       .reads_scans()
       .uses(uses)
       .example(R"({"id": "front", "do": "render", "objects": ["rest", "advanced"], "path": "front.png",

@@ -9,6 +9,7 @@
 #include "planner/operation/table/bench.h"
 #include "planner/operation/table/comma_numbers.h"
 #include "planner/operation/table/field.h"
+#include "planner/operation/table/object.h"
 #include "voxel/view/annotation.h"
 #include "voxel/view/cutaway.h"
 #include "voxel/view/drawn_object.h"
@@ -67,9 +68,13 @@ std::array<double, Count> numbers_of(const std::string& what, const std::string&
 /// View, size, frame, shading and cuts, without the grey tones of cut faces. Throws std::runtime_error for
 /// fields that cannot be read. Precondition: no ray picture.
 voxel::RenderOptions options_of(const Render& render);
-/// The samples that cut faces show, and the samples that are black and white. Throws std::runtime_error where
-/// no object has samples.
-voxel::CutTones cut_tones_of(const Render& render, const std::vector<voxel::DrawnObject>& objects);
+/// The samples that cut faces show, and what is black and white of them; none if there are no samples. Of a
+/// plan, `made` holds the objects: each place shows the samples of the window that owns it, moved with it. Of
+/// files it is empty: objects without samples of their own show those of the first with samples, where they
+/// lie. Throws std::runtime_error for tones that cannot be read.
+std::optional<voxel::CutTones> cut_tones_of(const Render& render,
+                                            const std::vector<voxel::DrawnObject>& objects,
+                                            const std::vector<const Object*>& made);
 /// WxH in pixels.
 glm::ivec2 size_of(const Render& render);
 /// The planes of the cuts, with normalised normals.

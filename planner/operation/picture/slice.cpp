@@ -35,6 +35,7 @@ struct Subject {
   std::variant<const voxel::Scene*, voxel::GreyOctree, voxel::Octree> samples;
   voxel::Lattice lattice;
   std::string unit = "1";
+  bool is_share = false;  ///< of voxels, from 0 to 1
 };
 
 Subject subject_of(const voxel::Scene& scene, const Slice& slice) {
@@ -52,7 +53,8 @@ Subject subject_of(const fs::path& path, Timings& timings) {
   } else if (const auto* octree = std::get_if<voxel::Octree>(&file.tree)) {
     subject.samples = *octree;
   } else {
-    subject.samples = voxel::at_least_half(std::get<voxel::PartialOctree>(file.tree));
+    subject.samples = voxel::share_samples(std::get<voxel::PartialOctree>(file.tree));
+    subject.is_share = true;
   }
   return subject;
 }
@@ -222,7 +224,7 @@ voxel::Range shown_range(const Slice& slice, const Subject& subject, const voxel
     const double centre = slice.level[0], width = slice.level[1];
     return {centre - 0.5 * width, centre + 0.5 * width};
   }
-  if (std::holds_alternative<voxel::Octree>(subject.samples)) return {0.0, 1.0};
+  if (subject.is_share || std::holds_alternative<voxel::Octree>(subject.samples)) return {0.0, 1.0};
   std::vector<float> values;
   for (std::size_t i = 0; i < samples.inside.size(); ++i)
     if (samples.inside[i] != 0) values.push_back(samples.image.values[i]);
@@ -377,15 +379,22 @@ SlicePicture drawn(const Slice& slice, const Subject& subject, const std::vector
   return picture;
 }
 
+// Conditions of fields.
+constexpr const char* no_samples = "a binary octree and a mesh have no samples: leave it out";
+
+bool is_curved(const Slice& slice) {
+  return !slice.curve_mm.empty() || !slice.curve.empty();
+}
+
+bool cuts_samples(const Slice& slice) {
+  return !is_mesh(slice.scan.name) && octree_kind(slice.scan.name) != OctreeKind::Binary;
+}
+
 void check(const Slice& slice, const Place& place) {
   if (slice.window && !slice.level.empty())
-    place.at("level").refuse("states the same as 'window': leave one of them out");
-  if (!slice.size.empty() && !slice.curve_mm.empty())
-    place.at("size").refuse("is of planes; a curve's picture is as long as the curve");
+    place.at("level").refuse("says the same as 'window': leave one out");
   if (slice.grid_mm && !slice.curve_mm.empty())
     place.at("grid_mm").refuse("is of planes; a curved picture has none");
-  if (slice.centre_mm && slice.size.empty())
-    place.at("centre_mm").refuse("is of pictures of a 'size': add it");
   if (slice.colours.size() > slice.objects.size() + slice.hatched.size())
     place.at("colours").refuse("has more colours than there are objects and hatched objects");
   if (!slice.level.empty() && !(slice.level[1] > 0.0))
@@ -488,10 +497,17 @@ Operation slice_operation() {
       .takes(field("curve_mm", &Slice::curve_mm, "Two or more points of a curved sheet, left to right.")
                  .from(2)
                  .in_plans_only())
-      .takes(field("height_mm", &Slice::height_mm, "Height of a curved sheet.").greater_than(0.0))
+      .takes(field("height_mm", &Slice::height_mm, "Height of a curved sheet.")
+                 .greater_than(0.0)
+                 .read_if<Slice>(is_curved, "is of curved sheets: add 'curve'"))
       .takes(
-          field("up", &Slice::up, "Upwards in an oblique or curved picture. Default: the head.").direction())
-      .takes(field("window", &Slice::window, "Black and white as LOW:HIGH, or a tissue."))
+          field("up", &Slice::up, "Upwards in an oblique or curved picture. Default: the head.")
+              .direction()
+              .read_if<Slice>([](const Slice& slice) { return is_curved(slice) || !slice.oblique.empty(); },
+                              "is of oblique and curved pictures: axial, coronal and sagittal ones have "
+                              "theirs"))
+      .takes(field("window", &Slice::window, "Black and white as LOW:HIGH, or a tissue.")
+                 .read_if<Slice>(cuts_samples, no_samples))
       .takes(field("level", &Slice::level,
                    "The same as a centre and a width. Default: 500 and 2000 for Hounsfield units.")
                  .from(2)
@@ -515,13 +531,18 @@ Operation slice_operation() {
                 "Edge of a pixel. Default: the scan's smallest spacing; finer in a curved picture of fewer "
                 "than 800 columns.")
               .greater_than(0.0))
-      .takes(field("size", &Slice::size, "WxH in pixels. Default: all of the scan."))
+      .takes(field("size", &Slice::size, "WxH in pixels. Default: all of the scan.")
+                 .read_if<Slice>([](const Slice& slice) { return !is_curved(slice); },
+                                 "is of planes; a curve's picture is as long as the curve"))
       .takes(field("centre_mm", &Slice::centre_mm,
                    "X,Y,Z in LPS of a point whose place on the plane is the picture's middle. Default: the "
                    "scan's middle.")
-                 .called("centre"))
+                 .called("centre")
+                 .read_if<Slice>([](const Slice& slice) { return !slice.size.empty(); },
+                                 "is of pictures of a 'size': add it"))
       .takes(field("interpolate", &Slice::interpolate, "Between samples.")
-                 .one_of({"nearest", "linear", "cubic"}))
+                 .one_of({"nearest", "linear", "cubic"})
+                 .read_if<Slice>(cuts_samples, no_samples))
       .takes(field("plain", &Slice::plain, "No letters and no scale bar."))
       .takes(field("grid_mm", &Slice::grid_mm,
                    "Draws lines at multiples of so many millimetres; a margin that is added at the right and "

@@ -62,7 +62,21 @@ using Slot = std::variant<
     std::vector<int>*, std::vector<std::string>*, std::vector<glm::dvec3>*, std::vector<ObjectName>*, Mark*,
     std::optional<Mark>*, std::vector<Mark>*, std::optional<glm::dmat4>*, Polygons*, NamePairs*, Records>;
 
-/// The unit at the end of a name, as shown to users: "mm", "mm³", "°"; empty if there is none.
+/// A field's slot and when the operation reads the field. It stands in Field::slot, so that a field without
+/// conditions costs nothing.
+struct ConditionalSlot {
+  /// A condition, and the refusal's words where it is not met: "is of 'curve': add it".
+  struct Condition {
+    std::function<bool(const void* owner)> is_read;
+    std::string otherwise;
+  };
+  std::function<Slot(void* owner)> slot;
+  std::vector<Condition> conditions;
+
+  Slot operator()(void* owner) const { return slot(owner); }
+};
+
+/// The unit at the end of a name, for people: "mm", "mm³", "°"; empty if there is none.
 std::string unit_of_name(const std::string& name);
 
 /// One field of an operation or of a record within it.
@@ -102,6 +116,20 @@ struct Field {
   Field in_plans_only() && { return is_of_plans = true, std::move(*this); }
   Field a_file() && { return is_input = true, std::move(*this); }
   Field called(std::string as) && { return option = std::move(as), std::move(*this); }
+
+  /// Adds a condition on the whole operation, all of whose fields are then read: where it is not met, the field
+  /// would change nothing, and giving it is refused (need_fields_read()). On the command line objects are
+  /// paths of files, in a plan names.
+  template <typename Owner>
+  Field read_if(bool (*is_read)(const Owner&), std::string otherwise) && {
+    ConditionalSlot conditional{slot, {}};
+    if (const auto* before = slot.target<ConditionalSlot>()) conditional = *before;
+    conditional.conditions.push_back(
+        {[is_read](const void* owner) { return is_read(*static_cast<const Owner*>(owner)); },
+         std::move(otherwise)});
+    slot = std::move(conditional);
+    return std::move(*this);
+  }
 
   std::string unit() const;  ///< unit_of_name() of its name
 };

@@ -443,6 +443,19 @@ void read_fields(const std::vector<Field>& fields, const SortedJson& object, voi
   }
 }
 
+void need_fields_read(const std::vector<Field>& fields, const SortedJson& object, const void* owner,
+                      const Place& place) {
+  for (const Field& field : fields) {
+    const auto* conditional = field.slot.target<ConditionalSlot>();
+    const auto given = object.find(field.name);
+    if (conditional == nullptr || given == object.end() || given->is_null() || *given == false ||
+        (given->is_array() && given->empty()))
+      continue;
+    for (const ConditionalSlot::Condition& condition : conditional->conditions)
+      if (!condition.is_read(owner)) place.at(field.name).refuse(condition.otherwise);
+  }
+}
+
 Json print_fields(const std::vector<Field>& fields, void* owner) {
   Json object = Json::object();
   for (const Field& field : fields) {

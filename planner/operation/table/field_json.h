@@ -17,6 +17,12 @@ namespace octotomy::planner {
 void read_fields(const std::vector<Field>& fields, const nlohmann::json& object, void* owner,
                  const Place& place, const std::vector<std::string>& also = {});
 
+/// Throws std::runtime_error with the place for a field that `object` gives although the operation in `owner`
+/// does not read it (Field::read_if()): what changes nothing is a mistake of whoever gave it. A false flag, an
+/// empty list and null give nothing.
+void need_fields_read(const std::vector<Field>& fields, const nlohmann::json& object, const void* owner,
+                      const Place& place);
+
 /// The fields as JSON that read_fields() reads back to the same value. Optional fields that are absent, and
 /// empty lists, are left out.
 nlohmann::ordered_json print_fields(const std::vector<Field>& fields, void* owner);

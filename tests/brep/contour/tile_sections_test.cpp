@@ -129,6 +129,41 @@ TEST(TileSections, UnevenSpacingDoesNotMatter) {
   EXPECT_NEAR(expect_solid(sections, "uneven"), whole, 0.03 * whole);
 }
 
+TEST(TileSections, EveryCostGivesASolidOfContoursThatChangeMuchAndFallsBackHardly) {
+  // Stars of uneven steps, turned from section to section: the best strips by area, volume and angle cross.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  std::vector<Section> sections;
+  for (int s = 0; s < 40; ++s) {
+    Contour star;
+    for (int k = 0; k < 60; ++k) {
+      const double t = 2.0 * pi * (k + 0.5 * any(random)) / 60;
+      star.points_mm.push_back((8.0 + 2.0 * std::cos(5.0 * t + 0.5 * s) + 0.4 * any(random)) *
+                               glm::dvec2(std::cos(t), std::sin(t)));
+    }
+    sections.push_back({1.0 * s, {star}});
+  }
+  std::size_t narrowed = 0;
+  for (const TileCost cost :
+       {TileCost::shortest_span, TileCost::least_area, TileCost::greatest_volume, TileCost::least_angle}) {
+    const TiledSections tiled = tile_sections(sections, {.cost = cost});
+    const Health found = health(tiled.surface);
+    EXPECT_TRUE(found.solid()) << static_cast<int>(cost) << ": " << told(found);
+    EXPECT_EQ(tiled.strips + tiled.crossed_strips, 39u);
+    EXPECT_LE(tiled.crossed_strips, 1u) << static_cast<int>(cost);
+    narrowed += tiled.narrowed_strips;
+  }
+  EXPECT_GT(narrowed, 5u);
+}
+
+TEST(TileSections, AStripWhoseLeastAreaIsTwoConesIsNoSurfaceAndIsNarrowed) {
+  // The contours overlap at one corner only: two cones over each other's point there have less area than any
+  // strip around.
+  const std::vector<Section> sections{{0.0, {ring({0, 0}, 10.0)}}, {0.5, {ring({19.5, 0.0}, 10.0)}}};
+  for (const TileCost cost : {TileCost::least_area, TileCost::greatest_volume, TileCost::least_angle})
+    EXPECT_TRUE(health(tile_sections(sections, {.cost = cost}).surface).solid()) << static_cast<int>(cost);
+}
+
 TEST(TileSections, AnyNestedContoursWillDo) {
   // Noise, followed: contours of every shape, corner to corner, unlike their neighbours in every way.
   std::size_t strips = 0, overlaid = 0;

@@ -147,6 +147,27 @@ TEST(Tile, LeastAreaIsTheLeastOfAllStartsTheShapesAsideToo) {
   EXPECT_GT(elsewhere, 30);
 }
 
+TEST(Tile, NearTheShortestSpansABandOfNoPointIsTheirStripAndAWiderOneCostsLess) {
+  std::mt19937 random(11);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Ring lower = wobbly(random, 0.0), upper = wobbly(random, 1.5);
+    const auto shortest = tile(lower, upper, TileCost::shortest_span);
+    for (const TileCost cost : all_costs) EXPECT_EQ(tile_near(lower, upper, cost, 0), shortest) << trial;
+    const Sums of_shortest = sums_of(lower, upper, shortest);
+    double area = of_shortest.area, angle = of_shortest.angle;
+    for (const std::size_t band : {1u, 2u, 4u, 64u}) {
+      const double narrow = sums_of(lower, upper, tile_near(lower, upper, TileCost::least_area, band)).area;
+      const double flat = sums_of(lower, upper, tile_near(lower, upper, TileCost::least_angle, band)).angle;
+      EXPECT_LE(narrow, area + 1e-9) << trial << ", " << band;
+      EXPECT_LE(flat, angle + 1e-6) << trial << ", " << band;
+      area = narrow;
+      angle = flat;
+    }
+    EXPECT_LE(sums_of(lower, upper, tile(lower, upper, TileCost::least_area)).area, area + 1e-9) << trial;
+    EXPECT_EQ(tile_near(lower, upper, TileCost::least_angle, 64), tile(lower, upper, TileCost::least_angle));
+  }
+}
+
 TEST(Tile, AConesAreaIsItsClosedForm) {
   // Regular polygons of as many points, one turned by half a step: an antiprism.
   const Ring lower = ellipse(3, 3, 64, 0.0), upper = ellipse(2, 2, 64, 2.0, {0, 0}, std::numbers::pi / 64);

@@ -32,7 +32,14 @@ DisplacementField affine_field() {
   const Tetrahedra elements = ball_of_elements();
   std::vector<glm::dvec3> displacements;
   for (const glm::dvec3& p_mm : elements.nodes_mm) displacements.push_back(affine(p_mm));
-  return {elements, displacements};
+  return {elements, displacements, 20.0};
+}
+
+/// The ball with one displacement for all of its nodes. Its voxels' box is x 2.5..27.5, y 3.5..28.5,
+/// z 1.5..26.5.
+DisplacementField uniform_field(const glm::dvec3& displacement_mm, double fade_mm = 20.0) {
+  const Tetrahedra elements = ball_of_elements();
+  return {elements, std::vector<glm::dvec3>(elements.nodes_mm.size(), displacement_mm), fade_mm};
 }
 
 std::vector<glm::dvec3> random_points(double radius_mm, unsigned seed) {
@@ -46,21 +53,57 @@ std::vector<glm::dvec3> random_points(double radius_mm, unsigned seed) {
   return points;
 }
 
-TEST(DisplacementField, AnAffineDisplacementIsExactWithinAndThatOfTheSurfaceOutside) {
+TEST(DisplacementField, AnAffineDisplacementIsExactWithinAndThatOfTheSurfaceAtTheBox) {
   const DisplacementField field = affine_field();
   const std::vector<glm::dvec3> inside = random_points(11.0, 1);
   const std::vector<glm::dvec3> found = field.at(inside);
   for (std::size_t i = 0; i < inside.size(); ++i)
     EXPECT_LT(glm::distance(found[i], affine(inside[i])), 1e-9) << i;
   // The ball's voxel farthest to the right ends at x = 27.5.
-  const std::vector<glm::dvec3> outside = field.at({{40.0, 16.0, 14.0}, {27.5, 16.0, 14.0}});
-  EXPECT_LT(glm::distance(outside[0], affine({27.5, 16.0, 14.0})), 1e-9);
-  EXPECT_LT(glm::distance(outside[1], outside[0]), 1e-9);
+  const std::vector<glm::dvec3> outside = field.at({{27.5 + 1e-9, 16.0, 14.0}, {27.5, 16.0, 14.0}});
+  EXPECT_LT(glm::distance(outside[0], affine({27.5, 16.0, 14.0})), 1e-6);
+  EXPECT_LT(glm::distance(outside[1], affine({27.5, 16.0, 14.0})), 1e-9);
+}
+
+TEST(DisplacementField, FadesBeyondTheBoxToZeroAtItsDistanceAndIsHeldWithinTheBox) {
+  const glm::dvec3 moved_mm(0.0, -4.0, 1.0);
+  const DisplacementField field = uniform_field(moved_mm);
+  // (1-r)^4 (4r+1) at r = 0, 1/4, 1/2, 1 and 2; the first is a corner of the box, outside of the ball.
+  const std::vector<glm::dvec3> found =
+      field.at({{27.5, 28.5, 26.5}, {32.5, 16, 14}, {15, 16, 36.5}, {47.5, 16, 14}, {15, -36.5, 14}});
+  const std::array<double, 5> shares{1.0, 0.6328125, 0.1875, 0.0, 0.0};
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    EXPECT_LT(glm::distance(found[i], shares[i] * moved_mm), 1e-9) << i;
+  EXPECT_EQ(found[3], glm::dvec3(0.0));
+  EXPECT_EQ(found[4], glm::dvec3(0.0));
+}
+
+TEST(DisplacementField, TheInverseLeadsBackBeyondTheBox) {
+  const DisplacementField field = uniform_field({6.0, -5.0, 3.0});
+  const DisplacementField back = field.inverse();
+  for (const double x_mm : {27.6, 30.0, 33.0, 38.0, 44.0, 47.4, 60.0}) {
+    const glm::dvec3 p_mm(x_mm, 16.0, 14.0);
+    const glm::dvec3 there_mm = p_mm + field.at({p_mm})[0];
+    EXPECT_LT(glm::distance(there_mm + back.at({there_mm})[0], p_mm), 1e-9) << x_mm;
+  }
+}
+
+TEST(DisplacementField, MayNotFadeSoFastThatSpaceFolds) {
+  EXPECT_DOUBLE_EQ(least_fade_mm(4.0), 8.4375);
+  EXPECT_THROW(uniform_field({0, 4, 0}, 8.4375), std::invalid_argument);
+  // Just above the limit, points along the direction of the motion keep their order.
+  const DisplacementField field = uniform_field({0, 4, 0}, 8.44);
+  double last_mm = 0.0;
+  for (double y_mm = 28.0; y_mm < 40.0; y_mm += 0.05) {
+    const double there_mm = y_mm + field.at({{15.0, y_mm, 14.0}})[0].y;
+    EXPECT_GT(there_mm, last_mm) << y_mm;
+    last_mm = there_mm;
+  }
 }
 
 TEST(DisplacementField, TheInverseLeadsBackToWherePointsCameFrom) {
   const DisplacementField field = affine_field();
-  EXPECT_EQ(field.turned_over(), 0u);
+  EXPECT_TRUE(field.turned_over().empty());
   const std::vector<glm::dvec3> points = random_points(11.0, 2);
   const std::vector<glm::dvec3> there = field.at(points);
   std::vector<glm::dvec3> displaced;
@@ -70,11 +113,17 @@ TEST(DisplacementField, TheInverseLeadsBackToWherePointsCameFrom) {
     EXPECT_LT(glm::distance(displaced[i] + back[i], points[i]), 1e-9) << i;
 }
 
-TEST(DisplacementField, ElementsPushedThroughThemselvesAreCounted) {
+TEST(DisplacementField, ElementsPushedThroughThemselvesAreFoundWithTheirPlace) {
   const Tetrahedra elements = ball_of_elements();
   std::vector<glm::dvec3> mirrored;
-  for (const glm::dvec3& p_mm : elements.nodes_mm) mirrored.push_back({-2.0 * p_mm.x, 0.0, 0.0});
-  EXPECT_EQ(DisplacementField(elements, mirrored).turned_over(), elements.tets.size());
+  for (const glm::dvec3& p_mm : elements.nodes_mm) mirrored.push_back({-3.0 * p_mm.x, 0.0, 0.0});
+  const std::vector<TurnedOver> all = DisplacementField(elements, mirrored, 200.0).turned_over();
+  ASSERT_EQ(all.size(), elements.tets.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_NEAR(all[i].volume_ratio, -2.0, 1e-9);
+    const TetCorners c = corners_mm(elements, i);
+    EXPECT_LT(glm::distance(all[i].centre_mm, (c[0] + c[1] + c[2] + c[3]) / 4.0), 1e-9);
+  }
 }
 
 TEST(DisplacementField, AWarpedSurfaceHasTheVolumeOfItsStretch) {
@@ -98,7 +147,7 @@ TEST(DisplacementField, AWarpedScanShowsWhatWasThereBefore) {
   scan.samples = std::move(samples);
   const Tetrahedra elements = ball_of_elements();
   const DisplacementField moved(elements,
-                                std::vector<glm::dvec3>(elements.nodes_mm.size(), {0.5, 0.25, -1.0}));
+                                std::vector<glm::dvec3>(elements.nodes_mm.size(), {0.5, 0.25, -1.0}), 20.0);
   const voxel::Scene after = warped(scan, moved);
   const auto& before_samples = std::get<voxel::Int16Samples>(scan.samples);
   const auto& after_samples = std::get<voxel::Int16Samples>(after.samples);
@@ -106,15 +155,16 @@ TEST(DisplacementField, AWarpedScanShowsWhatWasThereBefore) {
   for (const auto& [x, y, z] : {std::array{15, 16, 14}, {12, 13, 9}, {20, 20, 10}})
     EXPECT_NEAR(after_samples[at(x, y, z)], before_samples[at(x, y, z)] - 100 * 0.5 - 10 * 0.25 - 30 * 1.0,
                 0.51);
-  EXPECT_EQ(std::get<voxel::Int16Samples>(
-                warped(scan, DisplacementField(elements, std::vector<glm::dvec3>(elements.nodes_mm.size())))
-                    .samples),
-            before_samples);
+  EXPECT_EQ(
+      std::get<voxel::Int16Samples>(
+          warped(scan, DisplacementField(elements, std::vector<glm::dvec3>(elements.nodes_mm.size()), 20.0))
+              .samples),
+      before_samples);
 }
 
 TEST(DisplacementField, NeedsElementsAndADisplacementANode) {
-  EXPECT_THROW(DisplacementField({}, {}), std::invalid_argument);
-  EXPECT_THROW(DisplacementField(ball_of_elements(), {{1, 0, 0}}), std::invalid_argument);
+  EXPECT_THROW(DisplacementField({}, {}, 20.0), std::invalid_argument);
+  EXPECT_THROW(DisplacementField(ball_of_elements(), {{1, 0, 0}}, 20.0), std::invalid_argument);
 }
 
 class SolvedFile : public testing::Test {

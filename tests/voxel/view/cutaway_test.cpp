@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit_universe.h"
+#include "tests/voxel/all_samples.h"
 #include "tests/voxel/dense.h"
 #include "tests/voxel/view/ball.h"
 #include "voxel/solid/combine.h"
@@ -121,7 +122,7 @@ TEST(Cutaway, GreyFacesShowTheSamplesThatAreThereAndNothingElseIsPainted) {
   RenderOptions options = options_for("anterior", Algorithm::NodeTrace);
   options.antialias = false;
   options.cuts = {HalfSpace{glm::normalize(glm::dvec3(0, -1.0, 0.2)), 3.0}};
-  options.cut_tones = CutTones{grey_octree_of(universe, scene), -320.0, 320.0};
+  options.cut_tones = CutTones{tests::all_samples(grey_octree_of(universe, scene)), -320.0, 320.0};
   const DrawnObject red{"ball", whole_ball(), {0.9f, 0.1f, 0.1f}};
   const Picture picture = render({red}, options);
   int painted = 0;
@@ -149,7 +150,7 @@ TEST(Cutaway, RefusesNormalsThatAreNoneAndSamplesOfAnotherUniverse) {
   RenderOptions options = options_for("anterior", Algorithm::NodeTrace);
   options.cuts = {HalfSpace{}};
   const Universe other{3, glm::dmat4(1.0)};
-  options.cut_tones = CutTones{grey_octree_of_bricks(other, 0, {}, {}), 0.0, 1.0};
+  options.cut_tones = CutTones{tests::all_samples(grey_octree_of_bricks(other, 0, {}, {})), 0.0, 1.0};
   EXPECT_THROW(render({{"ball", whole_ball()}}, options), std::invalid_argument);
 }
 

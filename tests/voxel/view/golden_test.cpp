@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <memory>
 
+#include "tests/voxel/all_samples.h"
 #include "tests/voxel/field_scene.h"
 #include "voxel/scan/image_file.h"
 #include "voxel/solid/combine.h"
@@ -114,7 +115,7 @@ Pixels draw(const Case& picture) {
     return over(composite(subjects.grey, plane, {preset_transfer("skin"), {}, {}}), glm::vec3(1.0f));
   if (picture.kind == "cut") {
     options.cuts = {HalfSpace{glm::normalize(glm::dvec3(1.0, -0.4, 0.3)), 6.0}};
-    options.cut_tones = CutTones{subjects.grey, -200.0, 1000.0};
+    options.cut_tones = CutTones{tests::all_samples(subjects.grey), -200.0, 1000.0};
   }
   if (picture.kind == "translucent") {
     objects.front().opacity = 0.45f;

@@ -8,6 +8,7 @@
 #include "tests/voxel/dense.h"
 #include "tests/voxel/field_scene.h"
 #include "voxel/solid/combine.h"
+#include "voxel/solid/digitise.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -232,6 +233,49 @@ TEST(Render, RefusesWhatItCannotDraw) {
   options = whole_universe("10,0");
   options.algorithm = Algorithm::NodeTrace;
   EXPECT_THROW(render({{"a", block}}, options), std::invalid_argument);
+}
+
+/// Mean and largest distance of picked points from a sphere of shares, outside of it positive, in voxels, where
+/// the sight meets it at less than 50 degrees.
+std::pair<double, double> surface_error_voxels(const std::string& view, Algorithm algorithm) {
+  const Universe universe = universe_of_128_mm();
+  const glm::dvec3 centre_mm(0.7, -0.4, 0.3);
+  constexpr double radius_mm = 48.3, voxel_mm = 2.0;
+  const PartialOctree partial = digitise_partial(universe, Expression(Sphere{centre_mm, radius_mm}));
+  DrawnObject ball{"ball", at_least_half(partial)};
+  ball.grey = share_samples(partial);
+  ball.threshold = half_share;
+  RenderOptions options = whole_universe(view, 200);
+  options.algorithm = algorithm;
+  const Picture picture = render({ball}, options);
+  double sum = 0.0, largest = 0.0;
+  int count = 0;
+  for (int y = 0; y < 200; ++y)
+    for (int x = 0; x < 200; ++x) {
+      const auto point_mm = picture.point_mm({x, y});
+      if (!point_mm) continue;
+      const glm::dvec3 from_centre_mm = *point_mm - centre_mm;
+      const double ahead_mm = glm::dot(from_centre_mm, options.view.look);
+      const double aside_mm = glm::length(from_centre_mm - ahead_mm * options.view.look);
+      if (aside_mm > 0.766 * radius_mm) continue;
+      const double error = (glm::length(from_centre_mm) - radius_mm) / voxel_mm;
+      sum += error;
+      largest = std::max(largest, std::abs(error));
+      ++count;
+    }
+  EXPECT_GT(count, 8000);
+  return {sum / count, largest};
+}
+
+TEST(Render, SharesOfASphereShowItsSurfaceToATwentiethOfAVoxelInTheMean) {
+  for (const auto& [view, algorithm] :
+       {std::pair("anterior", Algorithm::NodeTrace), std::pair("superior", Algorithm::NodeTrace),
+        std::pair("anterior", Algorithm::RayCast), std::pair("30,20", Algorithm::RayCast),
+        std::pair("30,20", Algorithm::FrontToBack)}) {
+    const auto [mean, largest] = surface_error_voxels(view, algorithm);
+    EXPECT_LT(std::abs(mean), 0.05) << view;
+    EXPECT_LT(largest, 0.65) << view;
+  }
 }
 
 }  // namespace

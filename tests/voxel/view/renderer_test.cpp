@@ -6,6 +6,7 @@
 #include <random>
 
 #include "tests/unit_universe.h"
+#include "tests/voxel/all_samples.h"
 #include "tests/voxel/field_scene.h"
 #include "tests/voxel/view/ball.h"
 #include "voxel/solid/combine.h"
@@ -82,7 +83,7 @@ std::string change(std::mt19937& random, const GreyOctree& grey, std::vector<Dra
       return "cut";
     case 7:
       options.cut_tones.reset();
-      if (below(2) == 0) options.cut_tones = CutTones{grey, -500.0, 900.0 + below(3)};
+      if (below(2) == 0) options.cut_tones = CutTones{tests::all_samples(grey), -500.0, 900.0 + below(3)};
       return "tones";
     default:
       options.lights = {Light{glm::vec3(below(5) - 2, below(5) - 2, -2), 0.9f}};

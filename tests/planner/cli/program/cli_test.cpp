@@ -317,7 +317,30 @@ TEST_F(CommandLine, AnAnnotatedPictureIsAnotherPictureOfTheSamePixels) {
   EXPECT_EQ(plain["lit_pixels"], annotated["lit_pixels"]);
   EXPECT_EQ(plain["pixel_mm"], annotated["pixel_mm"]);
   EXPECT_NE(std::filesystem::file_size(folder_ / "p.png"), std::filesystem::file_size(folder_ / "a.png"));
-  EXPECT_EQ(run(ball + " --shading mip --annotate -o " + at("m.png")).status, 0);
+  EXPECT_EQ(run("render " + at("ball.nrrd") + " --shading mip --annotate -o " + at("m.png")).status, 0);
+}
+
+TEST_F(CommandLine, AnOptionThatChangesNothingIsRefused) {
+  ASSERT_EQ(run("octree " + at("ball.nrrd") + " --window 0: -o " + at("b.octree")).status, 0);
+  ASSERT_EQ(run("octree " + at("ball.nrrd") + " --grey -o " + at("g.octree")).status, 0);
+  const std::string octree = "octree " + at("b.octree") + " -o " + at("x.octree");
+  expect_refused(run(octree + " --voxel 2"), "--voxel");
+  expect_refused(run(octree + " --grey"), "--grey");
+  expect_refused(run(octree + " --depth 6"), "--from");
+  const std::string out = " -o " + at("x.png");
+  expect_refused(run("render " + at("g.octree") + out + " --shading radiograph --window 0:"), "--window");
+  expect_refused(run("render " + at("g.octree") + out + " --shading mip --colour '#ff0000'"), "--colour");
+  expect_refused(run("render " + at("b.octree") + out + " --window 0:"), "--window");
+  expect_refused(run("render " + at("b.octree") + out + " --voxel 2"), "--voxel");
+  expect_refused(run("render " + at("g.octree") + out + " --range 3"), "--colour-by");
+  expect_refused(run("slice " + at("b.octree") + out + " --interpolate cubic"), "--interpolate");
+  expect_refused(run("slice " + at("g.octree") + out + " --height 20"), "--curve");
+  expect_refused(run("slice " + at("g.octree") + out + " --up 0,0,1"), "--up");
+  const std::string mesh = "mesh " + at("b.octree") + " -o " + at("x.stl");
+  expect_refused(run(mesh + " --tiling least-area"), "--surface");
+  expect_refused(run(mesh + " --touching together"), "--surface");
+  EXPECT_EQ(run(mesh + " --touching together --surface cuberille").status, 0);
+  EXPECT_EQ(run("render " + at("g.octree") + out + " --shading radiograph").status, 0);
 }
 
 TEST_F(CommandLine, APointPickedInTwoViewsIsMarkedWhereTheyMeet) {

@@ -2,6 +2,9 @@
 //
 // The soft-tissue example that stands beside the first: from the phantom's head to the skin that a solver
 // moved.
+#include <cmath>
+
+#include "planner/operation/file/mesh_in.h"
 #include "tests/planner/cli/program/command_line.h"
 #include "tests/reference_data.h"
 
@@ -25,9 +28,34 @@ TEST_F(SoftTissue, OfTheExamplePlanIsSolvedAndMovesTheSkinAsFarAsThePieceAtMost)
                                    " -o " + at("predicted.stl") + " --json");
   ASSERT_EQ(warped.status, 0) << warped.errors;
   // The piece goes 4.12 mm; tissue that it presses aside may go little more.
-  const double largest_mm = SortedJson::parse(warped.out)["largest_displacement_mm"];
+  const SortedJson answer = SortedJson::parse(warped.out);
+  const double largest_mm = answer["largest_displacement_mm"];
   EXPECT_GT(largest_mm, 3.0);
   EXPECT_LT(largest_mm, 4.5);
+  EXPECT_EQ(answer["fade_mm"], 20.0);
+
+  // Skin farther than 20 mm beyond the deck's box (y up to -20, z from -85) stays where it was: the neck
+  // below, and the headrest behind. The lips, in front of the moved teeth, come forward.
+  const brep::Triangles before = read_mesh_in(folder_ / "report" / "skin.stl");
+  const brep::Triangles after = read_mesh_in(folder_ / "predicted.stl");
+  ASSERT_EQ(before.points_mm.size(), after.points_mm.size());
+  std::size_t neck = 0, behind = 0, lips = 0;
+  for (std::size_t i = 0; i < before.points_mm.size(); ++i) {
+    const glm::dvec3& p_mm = before.points_mm[i];
+    const glm::dvec3 moved_mm = after.points_mm[i] - p_mm;
+    neck += p_mm.z < -106.0 ? 1 : 0;
+    behind += p_mm.y > 1.0 ? 1 : 0;
+    if (p_mm.z < -106.0 || p_mm.y > 1.0) {
+      ASSERT_LT(glm::length(moved_mm), 1e-5) << i;
+    }
+    if (std::abs(p_mm.x) < 10.0 && p_mm.y < -85.0 && p_mm.z > -50.0 && p_mm.z < -35.0) {
+      ++lips;
+      EXPECT_LT(moved_mm.y, -1.0) << i;
+    }
+  }
+  EXPECT_GT(neck, 100u);
+  EXPECT_GT(behind, 1000u);
+  EXPECT_GT(lips, 10u);
 }
 
 }  // namespace

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "voxel/solid/expression.h"
+#include "voxel/solid/resampling.h"
+
+namespace octotomy::voxel {
+
+/// A sample in the steps of its grey octree.
+struct OwnedSample {
+  double in_steps = 0.0;
+  double step = 1.0;
+
+  double value() const { return step * in_steps; }
+};
+
+/// An expression whose windows give samples.
+struct SampleSource {
+  Expression expression;
+  std::optional<Octree> voxels = {};  ///< the only ones that its windows own; none: no such limit
+};
+
+/// The samples of expressions at places, without a scan of them being made. The owner of a voxel is the first
+/// window, in the order of the expressions and in reading order within each, that contains the voxel and is
+/// not under a complement or to the right of a minus; if there is none, the first window whose complement
+/// contains the voxel. Of a union's operands only those that contain the voxel own it. Value semantics:
+/// copies share.
+class GreyOwners {
+ public:
+  /// Precondition: the sources' voxels are of the universe. Cost: combine() for each operand of a union that
+  /// holds windows and is neither a window nor a union itself. Memory: these octrees.
+  GreyOwners(const Universe& universe, const std::vector<SampleSource>& sources,
+             const Resampling& resampling = {});
+
+  /// The sample at p_voxel, a position in voxels of the universe, of the window that owns `voxel`: moved with
+  /// it and interpolated in its own samples' frame. None if no window owns the voxel.
+  std::optional<OwnedSample> at(const glm::ivec3& voxel, const glm::dvec3& p_voxel) const;
+
+  const Universe& universe() const;
+  /// All windows in their order.
+  std::vector<Window> windows() const;
+  /// Whether both surely answer alike: of one universe, the same voxels and the same terms in memory. Windows
+  /// and their motions made anew are compared by value.
+  bool is_same(const GreyOwners& other) const;
+
+ private:
+  struct Storage;
+  std::shared_ptr<const Storage> storage_;
+};
+
+}  // namespace octotomy::voxel
