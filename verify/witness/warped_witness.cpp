@@ -86,13 +86,23 @@ double bent_mm(const brep::Triangles& still, const NodeMotion& motion) {
 
 }  // namespace
 
-NodeMotion::NodeMotion(const convert::Tetrahedra& elements, std::vector<glm::dvec3> displacement_mm)
-    : nodes_mm_(elements.nodes_mm), displacement_mm_(std::move(displacement_mm)), tets_(elements.tets) {
+NodeMotion::NodeMotion(const convert::Tetrahedra& elements, std::vector<glm::dvec3> displacement_mm,
+                       double fade_mm)
+    : nodes_mm_(elements.nodes_mm),
+      displacement_mm_(std::move(displacement_mm)),
+      fade_mm_(fade_mm),
+      low_mm_(std::numeric_limits<double>::infinity()),
+      high_mm_(-low_mm_),
+      tets_(elements.tets) {
   if (tets_.empty()) throw std::invalid_argument("a motion of nodes needs elements");
   if (displacement_mm_.size() != nodes_mm_.size())
     throw std::invalid_argument("a motion of nodes needs one displacement for each node, not " +
                                 std::to_string(displacement_mm_.size()) + " of " +
                                 std::to_string(nodes_mm_.size()));
+  for (const glm::dvec3& node_mm : nodes_mm_) {
+    low_mm_ = glm::min(low_mm_, node_mm);
+    high_mm_ = glm::max(high_mm_, node_mm);
+  }
   std::vector<BoxGrid::Box> boxes;
   double sum_mm = 0.0;
   for (const auto& tet : tets_) {
@@ -126,8 +136,11 @@ glm::dvec3 NodeMotion::displacement_mm(const glm::dvec3& p_mm) const {
   if (found) return *found;
   const auto foot = surface_->nearest(p_mm, std::numeric_limits<double>::infinity());
   const auto& [a, b, c] = surface_->triangles().faces[foot->face];
-  return foot->weights.x * displacement_mm_[a] + foot->weights.y * displacement_mm_[b] +
-         foot->weights.z * displacement_mm_[c];
+  const glm::dvec3 beyond_mm = glm::max(glm::max(low_mm_ - p_mm, p_mm - high_mm_), glm::dvec3(0.0));
+  const double r = std::min(glm::length(beyond_mm) / fade_mm_, 1.0);
+  return std::pow(1.0 - r, 4) * (4.0 * r + 1.0) *
+         (foot->weights.x * displacement_mm_[a] + foot->weights.y * displacement_mm_[b] +
+          foot->weights.z * displacement_mm_[c]);
 }
 
 bool NodeMotion::turns_over() const {

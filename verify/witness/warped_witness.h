@@ -15,11 +15,13 @@
 namespace octotomy::verify {
 
 /// Displacements of tetrahedra's nodes as a field over space: linear within an element, outside of all of
-/// them that of the nearest point of their surface. By code of this source alone. LPS millimetres.
+/// them that of the nearest point of their surface. At a distance d from the box of all nodes it is multiplied by
+/// (1 - r)^4 (4 r + 1) with r = d / fade_mm, and beyond fade_mm it is zero. By code of this source alone. LPS
+/// millimetres.
 class NodeMotion {
  public:
   /// Throws std::invalid_argument without elements, or unless each node has one displacement.
-  NodeMotion(const convert::Tetrahedra& elements, std::vector<glm::dvec3> displacement_mm);
+  NodeMotion(const convert::Tetrahedra& elements, std::vector<glm::dvec3> displacement_mm, double fade_mm);
 
   glm::dvec3 displacement_mm(const glm::dvec3& p_mm) const;
   /// Whether the displacements turn an element over. Points then may have several origins.
@@ -32,6 +34,8 @@ class NodeMotion {
 
  private:
   std::vector<glm::dvec3> nodes_mm_, displacement_mm_;
+  double fade_mm_;
+  glm::dvec3 low_mm_, high_mm_;  ///< corners of the nodes' box
   std::vector<std::array<std::uint32_t, 4>> tets_;
   BoxGrid cells_;
   std::optional<TriangleGrid> surface_;  ///< of the elements; its points are all nodes

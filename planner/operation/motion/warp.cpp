@@ -118,12 +118,14 @@ void bound(const Warp& warp, const BoundBench& bench, Object& made) {
   // Read now, because the file may have changed when the certificate is asked for.
   const auto deck =
       std::make_shared<const convert::SolvedDeck>(convert::read_solved_deck(bench.folder / warp.result));
-  made.witness = verify::witness_of_reshaped([still = *object.mesh.whole, witness = object.witness,
-                                              deck]() -> verify::Reshaped {
-    const auto motion = std::make_shared<const verify::NodeMotion>(deck->tetrahedra, deck->displacement_mm);
-    return {verify::surface_warped(still.triangles(), *motion),
-            verify::witness_of_warped(witness, still.triangles(), motion)};
-  });
+  const double fade_mm = made.mesh.details.at("fade_mm");
+  made.witness = verify::witness_of_reshaped(
+      [still = *object.mesh.whole, witness = object.witness, deck, fade_mm]() -> verify::Reshaped {
+        const auto motion =
+            std::make_shared<const verify::NodeMotion>(deck->tetrahedra, deck->displacement_mm, fade_mm);
+        return {verify::surface_warped(still.triangles(), *motion),
+                verify::witness_of_warped(witness, still.triangles(), motion)};
+      });
 }
 
 FileAnswer on_files(const Warp& warp, const FileBench& bench) {

@@ -23,6 +23,7 @@ namespace {
 class AWarpedBall : public testing::Test {
  protected:
   static constexpr double endless = std::numeric_limits<double>::infinity();
+  static constexpr double fade_mm = 20.0;
   static convert::Tetrahedra elements() {
     return convert::tetrahedra_of(voxel::combine(tests::unit_universe(5), voxel::Sphere{{16, 16, 16}, 13.0}));
   }
@@ -37,11 +38,11 @@ class AWarpedBall : public testing::Test {
   }
   static std::shared_ptr<const NodeMotion> motion() {
     const convert::Tetrahedra all = elements();
-    return std::make_shared<const NodeMotion>(all, displacements(all));
+    return std::make_shared<const NodeMotion>(all, displacements(all), fade_mm);
   }
   static convert::DisplacementField field(double share = 1.0) {
     const convert::Tetrahedra all = elements();
-    return {all, displacements(all, share)};
+    return {all, displacements(all, share), fade_mm};
   }
 
   static std::shared_ptr<const voxel::Scene> scan() {
@@ -126,12 +127,12 @@ TEST_F(AWarpedBall, WhereAPointFindsNoOriginTheSideIsNotKnown) {
     quarter_turn.push_back(glm::dvec3(-q.y, q.x, q.z) - q);
     over.push_back(-2.5 * q);
   }
-  const auto turn = std::make_shared<const NodeMotion>(all, quarter_turn);
+  const auto turn = std::make_shared<const NodeMotion>(all, quarter_turn, fade_mm);
   EXPECT_FALSE(turn->turns_over());
   EXPECT_FALSE(turn->origin_mm({17, 15, 18}));
   const Witness window = witness_of_window(scan(), 0.0, endless, tests::unit_universe(5));
   EXPECT_EQ(witness_of_warped(window, still().triangles(), turn).words({17, 15, 18}).mesh, untold);
-  const auto turned_over = std::make_shared<const NodeMotion>(all, over);
+  const auto turned_over = std::make_shared<const NodeMotion>(all, over, fade_mm);
   EXPECT_TRUE(turned_over->turns_over());
   EXPECT_FALSE(witness_of_warped(window, still().triangles(), turned_over));
   EXPECT_FALSE(witness_of_warped(Witness(), still().triangles(), motion()));
@@ -165,8 +166,8 @@ TEST_F(AWarpedBall, DistancesSeeAHundredthOfTheMotion) {
 }
 
 TEST_F(AWarpedBall, AMotionNeedsElementsAndADisplacementForEachNode) {
-  EXPECT_THROW(NodeMotion(convert::Tetrahedra{}, {}), std::invalid_argument);
-  EXPECT_THROW(NodeMotion(elements(), {glm::dvec3(0.0)}), std::invalid_argument);
+  EXPECT_THROW(NodeMotion(convert::Tetrahedra{}, {}, fade_mm), std::invalid_argument);
+  EXPECT_THROW(NodeMotion(elements(), {glm::dvec3(0.0)}, fade_mm), std::invalid_argument);
 }
 
 }  // namespace
