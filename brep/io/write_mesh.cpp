@@ -140,11 +140,10 @@ void write_off(const Triangles& triangles, Sink& sink) {
   }
 }
 
-/// The code of a failed call that creates or writes a file: Resource if memory, the disk or one of their
-/// limits is exhausted, or the place may not be written.
+/// The code of a failed system call: Resource if memory, the disk or one of their limits is exhausted.
 ErrorCode code_of(int number) {
   return number == ENOSPC || number == EDQUOT || number == EFBIG || number == EIO || number == ENOMEM ||
-                 number == EMFILE || number == EACCES || number == EPERM || number == EROFS
+                 number == EMFILE
              ? ErrorCode::Resource
              : ErrorCode::Input;
 }

@@ -256,7 +256,7 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
     const auto fail = [&](const char* what) {
       const int number = errno;
       throw voxel::Error(
-          voxel::code_of_failed_write(number),
+          voxel::code_of_errno(number),
           part.path.string() + ": " + what + ": " + std::strerror(number) + voxel::way_out_of(number));
     };
     errno = 0;

@@ -280,7 +280,7 @@ class StagedSeries {
   }
   void need_made(const std::error_code& error) const {
     if (error)
-      refuse(folder_, "the folder cannot be made: " + error.message(), code_of_failed_write(error.value()));
+      refuse(folder_, "the folder cannot be made: " + error.message(), code_of_errno(error.value()));
   }
 
   fs::path folder_, place_;

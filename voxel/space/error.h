@@ -40,10 +40,4 @@ inline ErrorCode code_of_errno(int number) {
              : ErrorCode::Input;
 }
 
-/// The code of a failed call that creates or writes a file: also Resource if the place may not be written,
-/// otherwise as code_of_errno() has it.
-inline ErrorCode code_of_failed_write(int number) {
-  return number == EACCES || number == EPERM || number == EROFS ? ErrorCode::Resource : code_of_errno(number);
-}
-
 }  // namespace octotomy::voxel

@@ -88,7 +88,7 @@ UnfinishedFolder::UnfinishedFolder(const fs::path& beside, const std::string& pr
     {
       const std::lock_guard held(folders().mutex);
       if (mkdtemp(name.data()) == nullptr)
-        throw Error(code_of_failed_write(errno),
+        throw Error(code_of_errno(errno),
                     beside.string() + ": cannot be written to: " + std::generic_category().message(errno) +
                         "; choose a folder that exists and is yours");
       folders().paths.emplace_back(name);

@@ -21,7 +21,7 @@ inline std::string way_out_of(int number) {
 /// Input or Resource. The number 0 stands for a stream that failed for an unknown reason, most likely a full
 /// disk.
 [[noreturn]] inline void refuse_unwritten(const std::filesystem::path& path, int number) {
-  throw Error(number == 0 ? ErrorCode::Resource : code_of_failed_write(number),
+  throw Error(number == 0 ? ErrorCode::Resource : code_of_errno(number),
               path.string() + ": cannot be written" +
                   (number == 0 ? "; is the disk full, or a limit on the size of files met (ulimit -f)?"
                                : ": " + std::generic_category().message(number) + way_out_of(number)));

@@ -17,13 +17,6 @@ TEST(Error, OfASystemCallIsOfResourcesOnlyWhereDiskOrMemoryGaveOut) {
   EXPECT_EQ(code_of_errno(EACCES), ErrorCode::Input);
 }
 
-TEST(Error, OfAPlaceThatMayNotBeWrittenIsOfResources) {
-  for (const int number : {EACCES, EPERM, EROFS, ENOSPC})
-    EXPECT_EQ(code_of_failed_write(number), ErrorCode::Resource) << number;
-  for (const int number : {ENOENT, ENOTDIR, ENAMETOOLONG, EISDIR})
-    EXPECT_EQ(code_of_failed_write(number), ErrorCode::Input) << number;
-}
-
 TEST(Progress, ThatIsStoppedThrowsAnErrorOfCancellationAndReportsNothing) {
   std::stop_source stop;
   double reported = -1.0;
