@@ -255,9 +255,8 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
     WatchedFile file(written);
     const auto fail = [&](const char* what) {
       const int number = errno;
-      throw voxel::Error(
-          voxel::code_of_errno(number),
-          part.path.string() + ": " + what + ": " + std::strerror(number) + voxel::way_out_of(number));
+      throw voxel::Error(voxel::code_of_errno(number), part.path.string() + ": " + what + ": " +
+                                                           std::strerror(number) + voxel::way_out_of(number));
     };
     errno = 0;
     if (file.open(staged_files.folder() / part.path.filename(), std::ios::out | std::ios::binary) == nullptr)

@@ -233,7 +233,8 @@ std::vector<std::string> ladder(const TetOptions& options) {
 /// Divides the triangles of a surface that TetGen keeps, in their planes, where a regular element on one
 /// would be larger than allowed. Returns the number of triangles before where that changed it.
 std::optional<std::size_t> divide_for_volume(MesherInput& surface, double max_volume_mm3) {
-  constexpr double regular = 0.75;  // right triangles of halved sides have elements as large as equilateral ones of 4/3
+  constexpr double regular =
+      0.75;  // right triangles of halved sides have elements as large as equilateral ones of 4/3
   const double side_mm = regular * std::cbrt(6.0 * std::sqrt(2.0) * max_volume_mm3);
   brep::Triangles given{std::move(surface.points_mm), std::move(surface.triangles)};
   const std::size_t before = given.faces.size();

@@ -279,8 +279,7 @@ class StagedSeries {
     return place_.parent_path();
   }
   void need_made(const std::error_code& error) const {
-    if (error)
-      refuse(folder_, "the folder cannot be made: " + error.message(), code_of_errno(error.value()));
+    if (error) refuse(folder_, "the folder cannot be made: " + error.message(), code_of_errno(error.value()));
   }
 
   fs::path folder_, place_;

@@ -20,8 +20,7 @@ constexpr const char* prefix = ".octotomy-";
 
 void check(const std::error_code& error, const fs::path& target) {
   if (error)
-    throw Error(code_of_errno(error.value()),
-                target.string() + ": cannot be written: " + error.message());
+    throw Error(code_of_errno(error.value()), target.string() + ": cannot be written: " + error.message());
 }
 
 /// A staged file or folder and its destination.
