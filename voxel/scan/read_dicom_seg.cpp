@@ -253,7 +253,7 @@ class SegReader {
     if (stated)
       warn_spacing(
           print("the file states a distance of %.6g mm and its planes lie %.6g mm apart: the positions are "
-                "taken",
+                "used",
                 *stated_step_mm_, usual.step_mm));
     return usual;
   }

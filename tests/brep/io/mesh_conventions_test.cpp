@@ -324,9 +324,9 @@ TEST(MeshConventions, WhatIsNoFrameOrUnitIsNoStatement) {
   for (const char* unit : {"", "km", "mmm", "pixel"}) EXPECT_FALSE(length_unit(unit)) << unit;
   Row wrong{"", "a.ply", ply(in_file("LPS", 1), "")};
   wrong.options.frame = "up";
-  EXPECT_NE(refusal(wrong).find("'up' is no frame"), std::string::npos);
+  EXPECT_NE(refusal(wrong).find("'up' is not a frame"), std::string::npos);
   wrong.options = {{}, "ell"};
-  EXPECT_NE(refusal(wrong).find("'ell' is no unit"), std::string::npos);
+  EXPECT_NE(refusal(wrong).find("'ell' is not a unit"), std::string::npos);
 }
 
 /// The millimetres of a length of 1 in a file with that comment, or 0 where it is refused.

@@ -211,7 +211,7 @@ TEST(ReadDicomSeg, ADistanceOfPlanesThatPositionsContradictIsReported) {
   for (const char* stated : {"", "7"})
     expect(
         read({"49", "42", "35", "28"}, stated, "1"), 4, 7.0,
-        "each plane stands for 7 mm of its segments. Nothing was drawn in 6 mm of them; volumes are 7 times");
+        "each plane represents 7 mm of its segments. Nothing was drawn in 6 mm of them; volumes are 7 times");
   expect(read({"42", "40", "38", "36"}, "", "1.4"), 4, 2.0, "Nothing was drawn in 0.6 mm");
   expect(read({"42", "40", "38", "36"}, "2", "2"), 4, 2.0, "");
   expect(read({"42", "40", "38", "36"}, "", "1.99"), 4, 2.0, "");
