@@ -188,7 +188,7 @@ Witness witness_of_warped(Witness still, const brep::Triangles& still_surface,
   return Witness([still = std::move(still), motion = std::move(motion), off_mm](
                      const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
     const auto origin = motion->origin_mm(p_mm);
-    if (!origin) return {untold, untold, 0};
+    if (!origin) return {on_surface, on_surface, 2};
     return still(*origin, slack_mm + off_mm, asked);
   });
 }

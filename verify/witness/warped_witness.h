@@ -46,8 +46,8 @@ ReshapedSurface surface_warped(const brep::Triangles& still, const NodeMotion& m
 
 /// An object that moved with a field: at a point, the still object's witness at the origin of that point.
 /// Triangles stay flat between points that moved; the witness allows what that is off by, which is measured
-/// at three points of each side and in the middle of each triangle. Where a point has no origin, the side is
-/// not known. Empty where the still object has no witness, and where elements turn over.
+/// at three points of each side and in the middle of each triangle. Where a point has no origin, any answer
+/// is allowed. Empty where the still object has no witness, and where elements turn over.
 Witness witness_of_warped(Witness still, const brep::Triangles& still_surface,
                           std::shared_ptr<const NodeMotion> motion);
 

@@ -24,7 +24,8 @@ inline verify::Certificate altered_certificate(const planner::Evaluation& evalua
     object.voxel.measures = voxel::measure(object.voxel.octree);
   }
   if (which != Altered::Voxels)
-    object.mesh.whole = object.mesh.within = by.empty() ? brep::Solid() : *evaluation.object(by).mesh.within;
+    object.mesh.whole = object.mesh.within =
+        by.empty() ? brep::Solid() : evaluation.object(by).mesh.within.value();
   planner::certify(object, "altered");
   return *object.certificate;
 }

@@ -56,8 +56,8 @@ TEST(WarpStep, TheCertificateMovesPointsBackAndWarnsThatOneKernelMadeIt) {
       {"id": "more", "do": "warp", "object": "ball", "result": "other.frd"},
       {"id": "half", "do": "mask", "regions": [{"view": "anterior",
         "polygons_mm": [[[-30, -30], [30, -30], [30, 15], [-30, 15]]]}]},
-      {"id": "part_lost", "do": "combine", "expression": "face & half"},
-      {"id": "wider", "do": "offset", "object": "face", "by_mm": 1})"));
+      {"id": "part_lost", "do": "combine", "expression": "ball & half"},
+      {"id": "wider", "do": "offset", "object": "ball", "by_mm": 1})"));
   const Object& face = evaluation.object("face");
   expect_not_independent(face, face.mesh.within->measures().volume_mm3, 0.01);
   EXPECT_EQ(face.certificate->reasons.size(), 1U) << testing::PrintToString(face.certificate->reasons);
