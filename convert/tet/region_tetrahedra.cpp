@@ -5,12 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <tuple>
 
 #include "convert/tet/element_faces.h"
 #include "convert/tet/improve_tetrahedra.h"
 #include "convert/tet/mesher_process.h"
+#include "convert/tet/tetrahedralise.h"
 #include "voxel/space/rounded.h"
 #include "voxel/tree/slice_bits.h"
 #include "voxel/tree/slice_build.h"
@@ -20,7 +22,9 @@
 // region
 //   and no part of one. Denser start points would show it the voxels' steps, on which refinement for good
 //   angles never ends.
-// 3 The nodes are moved to the patient's frame, and then to mend flat elements.
+// 3 The nodes are moved to the patient's frame. Where regions meet in a plane, the nodes along its rim, where
+//   three labels meet and no surface is, are put on it: a contact that is not flat interlocks. Then nodes move
+//   to mend flat elements.
 // 4 The answer counts only if all volumes are positive and each region's is near that of its voxels.
 
 namespace octotomy::convert {
@@ -173,6 +177,71 @@ std::vector<Counted> add_starts(Labelled& labelled, double size_mm, std::size_t 
   return counted;
 }
 
+/// A plane that most nodes of an interface lie on.
+struct InterfacePlane {
+  glm::dvec3 on_mm{0.0}, normal{0.0};
+  double away_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm - on_mm, normal); }
+};
+
+std::optional<InterfacePlane> plane_of(const Tetrahedra& made, const Interface& between,
+                                       const std::vector<std::uint32_t>& nodes, double near_mm) {
+  constexpr std::size_t most_tried = 200;
+  constexpr double least_share = 0.6;
+  std::optional<InterfacePlane> best;
+  std::size_t most = 0;
+  const std::size_t step = std::max<std::size_t>(1, between.faces.size() / most_tried);
+  for (std::size_t f = 0; f < between.faces.size(); f += step) {
+    const auto [a, b, c] = corners_of(made, between.faces[f]);
+    const glm::dvec3& p_mm = made.nodes_mm[a];
+    const glm::dvec3 across = glm::cross(made.nodes_mm[b] - p_mm, made.nodes_mm[c] - p_mm);
+    if (!(glm::length(across) > 0.0)) continue;
+    const InterfacePlane plane{p_mm, glm::normalize(across)};
+    const auto count =
+        static_cast<std::size_t>(std::count_if(nodes.begin(), nodes.end(), [&](std::uint32_t v) {
+          return std::abs(plane.away_mm(made.nodes_mm[v])) <= near_mm;
+        }));
+    if (count <= most) continue;
+    most = count;
+    best = plane;
+  }
+  if (static_cast<double>(most) < least_share * static_cast<double>(nodes.size())) return std::nullopt;
+  return best;
+}
+
+/// Puts the nodes of interfaces that are flat but for their rims on their planes, where no element about them
+/// comes to have a smaller angle than `least_deg` or turns over.
+void flatten_interfaces(Tetrahedra& made, const RegionMeshOptions& options, double voxel_mm,
+                        double least_deg) {
+  const double near_mm = 0.05 * voxel_mm;  // five times what surfaces between labels are found to
+  const double far_mm = 0.5 * options.size_mm;
+  std::vector<std::vector<std::uint32_t>> about(made.nodes_mm.size());
+  for (std::uint32_t t = 0; t < made.tets.size(); ++t)
+    for (const std::uint32_t v : made.tets[t]) about[v].push_back(t);
+  for (const Interface& between : interfaces(made)) {
+    std::vector<std::uint32_t> nodes;
+    for (const ElementFace& face : between.faces)
+      for (const std::uint32_t v : corners_of(made, face)) nodes.push_back(v);
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    const std::optional<InterfacePlane> plane = plane_of(made, between, nodes, near_mm);
+    if (!plane) continue;
+    for (const std::uint32_t v : nodes) {
+      const double away_mm = plane->away_mm(made.nodes_mm[v]);
+      if (std::abs(away_mm) > far_mm) continue;
+      const glm::dvec3 before_mm = made.nodes_mm[v];
+      made.nodes_mm[v] -= away_mm * plane->normal;
+      const bool is_unfit = std::any_of(about[v].begin(), about[v].end(), [&](std::uint32_t t) {
+        const TetCorners p = corners_mm(made, t);
+        Tetrahedra alone;
+        alone.nodes_mm.assign(p.begin(), p.end());
+        alone.tets = {{0, 1, 2, 3}};
+        return !(six_volumes(p) > 0.0) || quality(alone).min_dihedral_deg < least_deg;
+      });
+      if (is_unfit) made.nodes_mm[v] = before_mm;
+    }
+  }
+}
+
 /// Pass 3. Nodes of interfaces count as nodes of surfaces.
 void mend(Tetrahedra& made, const RegionMeshOptions& options) {
   std::vector<std::uint32_t> outer = made.boundary_nodes;
@@ -249,7 +318,11 @@ Tetrahedra smooth_tetrahedra_of(const std::vector<voxel::Octree>& regions, const
   if (!lattice.right_handed())
     for (auto& tet : made.tets) std::swap(tet[0], tet[1]);
   made.boundary_nodes = boundary_nodes(made.tets);
+  const double voxel_mm = std::min({edge_mm.x, edge_mm.y, edge_mm.z});
+  flatten_interfaces(made, options, voxel_mm, 0.0);
   mend(made, options);
+  // Nodes that mending took off a plane go back where that leaves elements fit.
+  flatten_interfaces(made, options, voxel_mm, std::min(options.min_dihedral_deg, fit_dihedral_deg()));
   check_volumes(made, counted, image);
   return made;
 }
