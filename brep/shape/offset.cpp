@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 halve blocks of the lattice and keep those that the surface may cross; 2 compute the offset distance at
-// their corners; 3 find the surface on each tetrahedron's edge whose ends lie on different sides; 4 join
-// those points.
+// 1 bisect tetrahedra until the offset distance is linear in each that the surface may pass; 2 find the surface on
+// each of their edges whose ends lie on either side; 3 join those points.
 #include "brep/shape/offset.h"
 
 #include <algorithm>
@@ -18,14 +17,13 @@
 #include <vector>
 
 #include "brep/mesh/sample_surface.h"
+#include "brep/shape/bisected_lattice.h"
 #include "brep/shape/kuhn_cells.h"
 
 namespace octotomy::brep {
 namespace {
 
-constexpr std::size_t most_blocks = std::size_t{1} << 20;  // blocks of eight cells each
-
-/// Signed distance to the offset surface, negative inside.
+/// Signed distance to the offset surface, negative within.
 class Field {
  public:
   Field(const Solid& solid, double by_mm) : tree_(solid.tree()), by_mm_(by_mm) {}
@@ -42,14 +40,19 @@ class Field {
   double by_mm_;
 };
 
-/// A cube of cells around the offset solid; the number of cells a side is a power of two.
+/// A lattice of places about the offset solid, a power of two along each side.
 struct Lattice {
   glm::dvec3 origin_mm{0.0};
-  double cell_mm = 1.0;
+  double step_mm = 1.0;
   int side = 2;
 
-  glm::dvec3 at(const Place& p) const { return origin_mm + cell_mm * glm::dvec3(p); }
+  glm::dvec3 at(const glm::dvec3& place) const { return origin_mm + step_mm * place; }
+  glm::dvec3 at(std::uint64_t key) const { return at(glm::dvec3(place_of(key))); }
 };
+
+/// Sharp edges of the offset surface are cut off within a step: they get finer ones than its rounded parts,
+/// which end where they are flat enough.
+constexpr double steps_a_cell = 4.0;
 
 Lattice lattice_about(const Solid& solid, const OffsetOptions& options) {
   const Size& size = solid.size();
@@ -58,95 +61,18 @@ Lattice lattice_about(const Solid& solid, const OffsetOptions& options) {
   const double margin = std::max(options.by_mm, 0.0) + 2.0 * options.cell_mm;
   const glm::dvec3 odd_mm = options.cell_mm * glm::dvec3(0.2718281828, 0.3141592653, 0.1414213562);
   const glm::dvec3 extent = size.high_mm - size.low_mm + 2.0 * margin;
-  const double cells = std::max({extent.x, extent.y, extent.z}) / options.cell_mm;
-  if (!(cells < (1 << side_bits) - 2))
+  const double steps = steps_a_cell * std::max({extent.x, extent.y, extent.z}) / options.cell_mm;
+  if (!(steps < (1 << (side_bits - 1))))
     throw std::length_error(
         "cells of " + std::to_string(options.cell_mm) + " mm are too small for a solid of " +
-        std::to_string(std::max({extent.x, extent.y, extent.z})) + " mm: a side has at most 2^20 of them");
-  Lattice lattice{size.low_mm - margin + odd_mm, options.cell_mm, 2};
-  while (lattice.side < cells) lattice.side *= 2;
+        std::to_string(std::max({extent.x, extent.y, extent.z})) + " mm: a side has at most 2^17 of them");
+  Lattice lattice{size.low_mm - margin + odd_mm, options.cell_mm / steps_a_cell, 2};
+  while (lattice.side < steps) lattice.side *= 2;
   return lattice;
 }
 
-/// Lower corners of the blocks of two cells a side that the surface may cross.
-std::vector<std::uint64_t> blocks_near(const Field& field, const Lattice& lattice,
-                                       const OffsetOptions& options) {
-  std::vector<std::uint64_t> blocks = {0};
-  for (int side = lattice.side; side > 2; side /= 2) {
-    options.progress.at(0.0);
-    std::vector<std::uint64_t> halves;
-    std::vector<glm::dvec3> centres_mm;
-    for (const std::uint64_t block : blocks)
-      for (int corner = 0; corner < 8; ++corner) {
-        const Place low = place_of(block) + side / 2 * corner_place(corner);
-        halves.push_back(key_of(low));
-        centres_mm.push_back(lattice.at(low) + 0.25 * side * lattice.cell_mm);
-      }
-    const std::vector<double> values = field.at(centres_mm);
-    const double to_corner_mm = 0.25 * side * lattice.cell_mm * std::sqrt(3.0) * (1.0 + 1e-9);
-    blocks.clear();
-    for (std::size_t i = 0; i < halves.size(); ++i)
-      if (std::abs(values[i]) <= to_corner_mm) blocks.push_back(halves[i]);
-    if (blocks.size() > most_blocks)
-      throw std::length_error("the offset surface passes more than 2^23 cells of " +
-                              std::to_string(lattice.cell_mm) + " mm: take larger ones");
-  }
-  return blocks;
-}
-
-/// The lattice points of blocks, and the field there.
-struct Corners {
-  std::vector<std::uint64_t> keys;  // ascending
-  std::vector<double> values;
-
-  /// The index of a point in the lists. Precondition: it is in them.
-  std::size_t number_of(const Place& p) const {
-    const auto found = std::lower_bound(keys.begin(), keys.end(), key_of(p));
-    assert(found != keys.end() && *found == key_of(p));
-    return static_cast<std::size_t>(found - keys.begin());
-  }
-  double at(const Place& p) const { return values[number_of(p)]; }
-
-  /// The values at a block's points, x fastest. Three points along x are adjacent in the lists.
-  std::array<double, 27> of_block(const Place& low) const {
-    std::array<double, 27> at_points{};
-    for (int row = 0; row < 9; ++row) {
-      const auto first =
-          values.begin() + static_cast<std::ptrdiff_t>(number_of(low + Place(0, row % 3, row / 3)));
-      std::copy_n(first, 3, at_points.begin() + 3 * row);
-    }
-    return at_points;
-  }
-};
-
-Corners corners_of(const std::vector<std::uint64_t>& blocks, const Field& field, const Lattice& lattice) {
-  std::vector<std::uint64_t> ascending = blocks;
-  tbb::parallel_sort(ascending.begin(), ascending.end());
-  Corners corners;
-  corners.keys = points_about(ascending, 2);
-  std::vector<glm::dvec3> points_mm;
-  points_mm.reserve(corners.keys.size());
-  for (const std::uint64_t key : corners.keys) points_mm.push_back(lattice.at(place_of(key)));
-  corners.values = field.at(points_mm);
-  return corners;
-}
-
-std::vector<EdgeTriangle> triangles_in(const std::vector<std::uint64_t>& blocks, const Corners& corners) {
-  return appended<EdgeTriangle>(blocks, [&](const Place& low, std::vector<EdgeTriangle>& triangles) {
-    const std::array<double, 27> at_points = corners.of_block(low);
-    for (int i = 0; i < 8; ++i) {
-      std::array<double, 8> values{};
-      for (int k = 0; k < 8; ++k) {
-        const Place p = corner_place(i) + corner_place(k);
-        values[static_cast<std::size_t>(k)] = at_points[static_cast<std::size_t>(p.x + 3 * p.y + 9 * p.z)];
-      }
-      add_triangles(low + corner_place(i), values, triangles);
-    }
-  });
-}
-
-/// A root between two positions of different sign, by regula falsi. The value at an end that does not move is
-/// halved, so that this end moves too (Illinois).
+/// A root between two places of either sign, by regula falsi; an end that stays has its value halved, so that
+/// it moves too (Illinois).
 struct Root {
   double low = 0.0, high = 1.0, at_low = 0.0, at_high = 0.0, share = 0.5;
   int kept = 0;  // the end that did not move: -1 low, 1 high
@@ -170,24 +96,23 @@ struct Root {
   }
 };
 
-/// The point at which the surface crosses each edge, within a thousandth of a cell.
-std::vector<glm::dvec3> points_on(const std::vector<LatticeEdge>& edges, const Corners& corners,
+/// Where the surface passes each edge, within a thousandth of a cell.
+std::vector<glm::dvec3> points_on(const std::vector<CutEdge>& edges, const BisectedLattice& bisected,
                                   const Field& field, const Lattice& lattice) {
   std::vector<Root> roots(edges.size());
   std::vector<std::size_t> open(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Place from = place_of(edges[i].from());
-    roots[i].at_low = corners.at(from);
-    roots[i].at_high = corners.at(from + corner_place(edges[i].along()));
+    roots[i].at_low = bisected.distances_mm.at(edges[i].from);
+    roots[i].at_high = bisected.distances_mm.at(edges[i].to);
     roots[i].guess();
     open[i] = i;
   }
   const auto place = [&](std::size_t i) {
-    return lattice.at(place_of(edges[i].from())) +
-           roots[i].share * lattice.cell_mm * glm::dvec3(corner_place(edges[i].along()));
+    const glm::dvec3 from = lattice.at(edges[i].from);
+    return from + roots[i].share * (lattice.at(edges[i].to) - from);
   };
-  // Twenty rounds suffice even by bisection alone.
-  for (int round = 0; round < 20 && !open.empty(); ++round) {
+  // Twenty-four rounds would do by halving alone, were it ever needed.
+  for (int round = 0; round < 24 && !open.empty(); ++round) {
     std::vector<glm::dvec3> tried_mm;
     tried_mm.reserve(open.size());
     for (const std::size_t i : open) tried_mm.push_back(place(i));
@@ -195,7 +120,7 @@ std::vector<glm::dvec3> points_on(const std::vector<LatticeEdge>& edges, const C
     assert(values.size() == open.size());
     std::vector<std::size_t> still_open;
     for (std::size_t k = 0; k < open.size(); ++k) {
-      if (std::abs(values[k]) <= 0x1p-11 * lattice.cell_mm) continue;
+      if (std::abs(values[k]) <= 0x1p-9 * lattice.step_mm) continue;
       Root& root = roots[open[k]];
       root.learn(values[k]);
       root.guess();
@@ -211,6 +136,21 @@ std::vector<glm::dvec3> points_on(const std::vector<LatticeEdge>& edges, const C
   return points_mm;
 }
 
+/// The edges, each once, ascending, and the triangles by their places in that list.
+std::vector<std::array<std::uint32_t, 3>> numbered(const std::vector<std::array<CutEdge, 3>>& triangles,
+                                                   std::vector<CutEdge>& edges) {
+  for (const auto& triangle : triangles) edges.insert(edges.end(), triangle.begin(), triangle.end());
+  tbb::parallel_sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::vector<std::array<std::uint32_t, 3>> faces(triangles.size());
+  tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t f) {
+    for (std::size_t k = 0; k < 3; ++k)
+      faces[f][k] = static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), triangles[f][k]) -
+                                               edges.begin());
+  });
+  return faces;
+}
+
 void check(const Solid& solid, const OffsetOptions& options) {
   if (solid.empty()) throw std::invalid_argument("a surface without triangles has no offset");
   if (!std::isfinite(options.by_mm)) throw std::invalid_argument("an offset is by a finite length");
@@ -220,20 +160,34 @@ void check(const Solid& solid, const OffsetOptions& options) {
 
 }  // namespace
 
+double offset_tolerance_mm(const OffsetOptions& options) {
+  const double by = std::abs(options.by_mm), cell = options.cell_mm;
+  return std::min(cell / 16.0, cell * cell / (4.0 * std::max(by, 0.25 * cell)));
+}
+
 Solid offset(const Solid& solid, const OffsetOptions& options) {
   check(solid, options);
   const Lattice lattice = lattice_about(solid, options);
   const Field field(solid, options.by_mm);
-  const std::vector<std::uint64_t> blocks = blocks_near(field, lattice, options);
-  options.progress.at(0.25);
-  const Corners corners = corners_of(blocks, field, lattice);
-  options.progress.at(0.5);
-  const std::vector<EdgeTriangle> triangles = triangles_in(blocks, corners);
-  const std::vector<LatticeEdge> edges = edges_of(triangles);
+  // A ball of the offset's length rolls along its surface: bumps and dents are as wide as that.
+  const BisectionOptions bisection{.side = lattice.side,
+                                   .step_mm = lattice.step_mm,
+                                   .tolerance_mm = offset_tolerance_mm(options),
+                                   .narrowest_mm = std::max(std::abs(options.by_mm), 2.0 * options.cell_mm)};
+  const BisectedLattice bisected = bisected_lattice(
+      bisection,
+      [&](const std::vector<glm::dvec3>& places) {
+        std::vector<glm::dvec3> points_mm;
+        points_mm.reserve(places.size());
+        for (const glm::dvec3& place : places) points_mm.push_back(lattice.at(place));
+        return field.at(points_mm);
+      },
+      [&] { options.progress.at(0.1); });
   options.progress.at(0.6);
+  std::vector<CutEdge> edges;
   Triangles surface;
-  surface.points_mm = points_on(edges, corners, field, lattice);
-  surface.faces = numbered(triangles, edges);
+  surface.faces = numbered(triangles_of(bisected), edges);
+  surface.points_mm = points_on(edges, bisected, field, lattice);
   options.progress.at(1.0);
   return trusted_solid(std::move(surface), Proof::Construction);
 }

@@ -7,9 +7,10 @@
 //           2/3 D from the corner, so that d is off by at most that. Between voxels' centres, as under a
 //           motion, the kernel interpolates distances at a cell's corners, D / 2 from its middle.
 //           Of an object that is known by whole voxels the surface lies up to h / 2 elsewhere, too.
-//   mesh    The surface's triangles lie in cells' tetrahedra, with edges of at most sqrt(3) c and vertices
-//           within c / 1000 of the surface, and are thinned by at most c / 50. A point of a triangle is
-//           within sqrt(3) c / sqrt(3) = c of a vertex (Jung), and distances change no faster than places do.
+//   mesh    The surface's triangles have vertices within c / 1000 of the surface and are thinned by at most
+//           c / 50. Between vertices they lie within c / 16 of it where distances are linear; elsewhere
+//           edges are at most sqrt(3) c / 4, so that a point is within c / 4 of a vertex (Jung), and distances
+//           change no faster than places do. Counted is c, as triangles between levels are longer.
 //   witness An edge between voxels' centres meets the operand's surface between a place that is certainly
 //           inside and one that is certainly outside. The places between, h / 8 apart, are all taken. Any
 //           point of the surface is within 2/3 D of such an edge's crossing, as above.
@@ -18,7 +19,7 @@
 //           within a third of that squared: D^2 / 36. That lengthens d by D^2 / 72 (1 / d + 1 / r), r the
 //           radius with which the operand bends; three voxels at least, below which nothing is resolved.
 //           Of whole voxels an offset takes those that stick out farthest, up to h / 2.
-//   mesh    Chords of a surface of radius b: 2/3 of c^2 / (8 b), and the two shares of c above.
+//   mesh    Chords: a third of the kernel's tolerance, c^2 / (4 b), and the two shares of c above.
 //   edges   Across an operand's edge with an exterior angle t the offset is a sector of a ball. A cell cuts
 //           the edge off: with u and v how far its two crossings lie from the voxel's centre the sector's
 //           radius is low by min(u cos s, v sin s) h in direction s, over a right angle at most 0.59 h, which

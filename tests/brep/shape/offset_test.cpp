@@ -45,22 +45,22 @@ TEST(Offset, WallsThinnerThanACellAreFoundMissing) {
     const OffsetOptions options{.by_mm = by_mm, .cell_mm = cell_mm};
     return missed_walls(solid, offset(solid, options), options);
   };
-  EXPECT_EQ(missed(crate, 0.1, 0.2).area_share, 0.0);
-  EXPECT_GT(missed(crate, 0.02, 1.2).area_share, 0.1);
+  EXPECT_EQ(missed(crate, 0.1, 0.4).area_share, 0.0);
+  EXPECT_GT(missed(crate, 0.02, 6.0).area_share, 0.1);
   EXPECT_EQ(missed(turned_box(), 0.1, 0.5).area_share, 0.0);
   EXPECT_EQ(missed(turned_box(), -0.5, 0.25).area_share, 0.0);
   // A cleft of 0.3 mm within a box is a wall of what is not in it.
   const Solid cleft = solid_of(shapes::together(
       shapes::box({0, 0, 0}, {30, 30, 30}), shapes::inside_out(shapes::box({5, 5, 14.85}, {25, 25, 15.15}))));
-  EXPECT_EQ(missed(cleft, -0.1, 0.15).area_share, 0.0);
-  const MissedWalls closed = missed(cleft, -0.02, 1.9);
+  EXPECT_EQ(missed(cleft, -0.1, 0.4).area_share, 0.0);
+  const MissedWalls closed = missed(cleft, -0.02, 4.0);
   EXPECT_GT(closed.area_share, 0.05);
   EXPECT_NEAR(closed.at_mm.z, 15.0, 0.2);
   EXPECT_EQ(missed_walls(cleft, Solid(), {.by_mm = -20.0}).area_share, 0.0);
   EXPECT_EQ(missed_walls(cleft, Solid(), {.by_mm = 1.0}).area_share, 1.0);
 }
 
-TEST(Offset, ABallGrowsAndShrinksToBallsAtSecondOrder) {
+TEST(Offset, ABallGrowsAndShrinksToBallsWithinTheTolerance) {
   for (const double by : {3.0, -3.0}) {
     double last = 0.0;
     for (const double cell : {2.0, 1.0, 0.5}) {
@@ -70,9 +70,9 @@ TEST(Offset, ABallGrowsAndShrinksToBallsAtSecondOrder) {
       const double truth = 4.0 / 3.0 * pi * std::pow(10 + by, 3);
       const double error = (truth - volume_mm3(grown)) / truth;
       EXPECT_GT(error, 0.0) << "chords lie within";
-      EXPECT_LT(error, 0.35 * cell * cell / (10 + by) + 2e-3) << cell;
+      EXPECT_LT(error, 3 * offset_tolerance_mm({.by_mm = by, .cell_mm = cell}) / (10 + by) + 2e-3) << cell;
       if (last > 0.0) {
-        EXPECT_LT(error, 0.45 * last) << cell;
+        EXPECT_LT(error, 0.7 * last) << cell;
       }
       last = error;
     }

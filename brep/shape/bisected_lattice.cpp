@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// 1 level by level, drop tetrahedra that lie farther from the surface than their corners from their middle, keep
+// those in which distances are linear, and bisect the others; 2 bisect what is kept and has the middle of an
+// edge where a neighbour was bisected, until there is none.
+// A tetrahedron that is dropped has no corner on the other side, and no neighbour has one within its faces: it
+// needs no bisection for the surface to close.
+#include "brep/shape/bisected_lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <tbb/parallel_for.h>
+#include <unordered_set>
+#include <utility>
+
+namespace octotomy::brep {
+namespace {
+
+constexpr std::size_t most_simplices = std::size_t{1} << 22;
+constexpr double most_narrow = 64.0;  ///< edges of flat parts, by the narrowest part
+constexpr std::array<std::array<std::size_t, 2>, 6> sides = {
+    {{{0, 1}}, {{0, 2}}, {{0, 3}}, {{1, 2}}, {{1, 3}}, {{2, 3}}}};
+
+glm::dvec3 at(std::uint64_t key) {
+  return glm::dvec3(place_of(key));
+}
+
+/// Keys are sums of coordinates times powers of two: the middle has half the sum where that has no remainders.
+bool has_middle(std::uint64_t a, std::uint64_t b) {
+  return glm::all(glm::equal((place_of(a) + place_of(b)) & 1, Place(0)));
+}
+std::uint64_t middle_of(std::uint64_t a, std::uint64_t b) {
+  return key_of((place_of(a) + place_of(b)) / 2);
+}
+
+std::uint64_t middle_of(const Simplex& simplex) {
+  return middle_of(simplex.corners[0], simplex.corners[simplex.tag]);
+}
+bool can_be_bisected(const Simplex& simplex) {
+  return has_middle(simplex.corners[0], simplex.corners[simplex.tag]);
+}
+
+std::array<Simplex, 2> halves(const Simplex& simplex) {
+  const std::uint64_t middle = middle_of(simplex);
+  std::array<Simplex, 2> made{simplex, simplex};
+  made[0].corners[simplex.tag] = middle;
+  for (std::size_t i = 0; i < simplex.tag; ++i) made[1].corners[i] = simplex.corners[i + 1];
+  made[1].corners[simplex.tag] = middle;
+  for (Simplex& half : made) {
+    half.tag = simplex.tag > 1 ? static_cast<std::uint8_t>(simplex.tag - 1) : 3;
+    ++half.level;
+  }
+  return made;
+}
+
+std::vector<Simplex> whole_cube(int side) {
+  std::vector<Simplex> simplices;
+  for (const auto& order : {std::array{0, 1, 2}, std::array{0, 2, 1}, std::array{1, 0, 2},
+                            std::array{1, 2, 0}, std::array{2, 0, 1}, std::array{2, 1, 0}}) {
+    Simplex simplex;
+    Place corner(0);
+    simplex.corners[0] = key_of(corner);
+    for (std::size_t i = 0; i < 3; ++i) {
+      corner[order[i]] = side;
+      simplex.corners[i + 1] = key_of(corner);
+    }
+    simplices.push_back(simplex);
+  }
+  return simplices;
+}
+
+class Bisection {
+ public:
+  Bisection(const BisectionOptions& options, const DistancesAt& distances_at)
+      : options_(options), distances_at_(distances_at) {}
+
+  BisectedLattice run(const std::function<void()>& report) {
+    std::vector<Simplex> level = whole_cube(options_.side);
+    while (!level.empty()) {
+      report();
+      level = refined(level);
+    }
+    // The first round looks for all middles, each other one for those that the one before added.
+    for (std::vector<std::uint64_t> added = close(middles_); !added.empty();) {
+      report();
+      added = close(Middles(added.begin(), added.end()));
+    }
+    keep_passed();
+    return std::move(found_);
+  }
+
+ private:
+  using Middles = std::unordered_set<std::uint64_t, KeyHash>;
+
+  /// Adds the distances at places that have none yet.
+  void learn(const std::vector<std::uint64_t>& keys) {
+    std::vector<std::uint64_t> unknown;
+    std::vector<glm::dvec3> places;
+    for (const std::uint64_t key : keys)
+      if (found_.distances_mm.try_emplace(key, 0.0).second) {
+        unknown.push_back(key);
+        places.push_back(at(key));
+      }
+    const std::vector<double> distances = distances_at_(places);
+    for (std::size_t i = 0; i < unknown.size(); ++i) found_.distances_mm[unknown[i]] = distances[i];
+  }
+  double known(std::uint64_t key) const { return found_.distances_mm.at(key); }
+
+  void check_count(std::size_t more) const {
+    if (found_.simplices.size() + more > most_simplices)
+      throw std::length_error(
+          "the offset surface passes more than 2^22 tetrahedra of a lattice with steps of " +
+          std::to_string(options_.step_mm) + " mm: take larger cells");
+  }
+
+  static glm::dvec3 centre_of(const Simplex& simplex) {
+    return 0.25 * (at(simplex.corners[0]) + at(simplex.corners[1]) + at(simplex.corners[2]) +
+                   at(simplex.corners[3]));
+  }
+  double longest_mm(const Simplex& simplex) const {
+    double longest = 0.0;
+    for (const auto& [i, j] : sides)
+      longest = std::max(longest, glm::distance(at(simplex.corners[i]), at(simplex.corners[j])));
+    return longest * options_.step_mm;
+  }
+  bool may_be_passed(const Simplex& simplex, double at_centre_mm) const {
+    const glm::dvec3 centre = centre_of(simplex);
+    double reach = 0.0;
+    for (const std::uint64_t corner : simplex.corners)
+      reach = std::max(reach, glm::distance(centre, at(corner)));
+    return std::abs(at_centre_mm) <= options_.step_mm * reach * (1.0 + 1e-9);
+  }
+  bool is_linear(const Simplex& simplex, double at_centre_mm) const {
+    double sum = 0.0;
+    for (const std::uint64_t corner : simplex.corners) sum += known(corner);
+    if (std::abs(0.25 * sum - at_centre_mm) > options_.tolerance_mm) return false;
+    return std::all_of(sides.begin(), sides.end(), [&](const auto& side) {
+      const std::uint64_t a = simplex.corners[side[0]], b = simplex.corners[side[1]];
+      return !has_middle(a, b) ||
+             std::abs(0.5 * (known(a) + known(b)) - known(middle_of(a, b))) <= options_.tolerance_mm;
+    });
+  }
+
+  /// Points of the piece of plane in a tetrahedron where its corners' distances are 0, if these are linear: as
+  /// far apart as the narrowest part allows. None where the tetrahedron is no longer than that.
+  void add_piece(const Simplex& simplex, std::vector<glm::dvec3>& places) const {
+    if (longest_mm(simplex) <= 2.0 * options_.narrowest_mm) return;
+    std::vector<glm::dvec3> corners;
+    for (const auto& [i, j] : sides) {
+      const std::uint64_t a = simplex.corners[i], b = simplex.corners[j];
+      const double at_a = known(a), at_b = known(b);
+      if ((at_a < 0.0) != (at_b < 0.0)) corners.push_back(at(a) + at_a / (at_a - at_b) * (at(b) - at(a)));
+    }
+    // Of four corners any three make a triangle; together these cover the piece.
+    for (std::size_t left_out = 0; left_out < (corners.size() == 4 ? 4 : corners.size() / 3); ++left_out) {
+      std::array<glm::dvec3, 3> triangle{};
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < corners.size() && count < 3; ++i)
+        if (corners.size() == 3 || i != left_out) triangle[count++] = corners[i];
+      const glm::dvec3 u = triangle[1] - triangle[0], v = triangle[2] - triangle[0];
+      const double longest = std::max({glm::length(u), glm::length(v), glm::length(v - u)});
+      const int steps = 1 + static_cast<int>(longest * options_.step_mm / options_.narrowest_mm);
+      for (int i = 0; i <= steps; ++i)
+        for (int j = 0; i + j <= steps; ++j)
+          places.push_back(triangle[0] + (double(i) * u + double(j) * v) / double(steps));
+    }
+  }
+
+  /// Of tetrahedra in which distances seem linear, those whose piece of plane the surface does not follow.
+  void drop_bumpy(const std::vector<Simplex>& level, std::vector<std::uint8_t>& is_kept) const {
+    std::vector<glm::dvec3> places;
+    std::vector<std::size_t> owners;
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      if (is_kept[i] == 0) continue;
+      add_piece(level[i], places);
+      owners.resize(places.size(), i);
+    }
+    const std::vector<double> distances = distances_at_(places);
+    for (std::size_t k = 0; k < distances.size(); ++k)
+      if (std::abs(distances[k]) > 2.0 * options_.tolerance_mm) is_kept[owners[k]] = 0;
+  }
+
+  /// Keeps the tetrahedra of a level that are fine enough, and returns the halves of the others.
+  std::vector<Simplex> refined(std::vector<Simplex>& level) {
+    check_count(level.size());
+    std::vector<glm::dvec3> centres;
+    centres.reserve(level.size());
+    for (const Simplex& simplex : level) centres.push_back(centre_of(simplex));
+    const std::vector<double> at_centres = distances_at_(centres);
+    std::vector<std::size_t> passed, short_enough;
+    std::vector<std::uint64_t> keys;
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      const Simplex& simplex = level[i];
+      if (!may_be_passed(simplex, at_centres[i])) continue;
+      passed.push_back(i);
+      if (!can_be_bisected(simplex)) {
+        keys.insert(keys.end(), simplex.corners.begin(), simplex.corners.end());
+      } else if (longest_mm(simplex) <= most_narrow * options_.narrowest_mm) {
+        short_enough.push_back(i);
+        keys.insert(keys.end(), simplex.corners.begin(), simplex.corners.end());
+        for (const auto& [a, b] : sides)
+          if (has_middle(simplex.corners[a], simplex.corners[b]))
+            keys.push_back(middle_of(simplex.corners[a], simplex.corners[b]));
+      }
+    }
+    learn(keys);
+    std::vector<std::uint8_t> is_kept(level.size(), 0);
+    tbb::parallel_for(std::size_t{0}, short_enough.size(), [&](std::size_t k) {
+      const std::size_t i = short_enough[k];
+      is_kept[i] = is_linear(level[i], at_centres[i]) ? 1 : 0;
+    });
+    drop_bumpy(level, is_kept);
+    std::vector<Simplex> next;
+    for (const std::size_t i : passed) {
+      if (is_kept[i] != 0 || !can_be_bisected(level[i])) {
+        found_.simplices.push_back(level[i]);
+        continue;
+      }
+      middles_.insert(middle_of(level[i]));
+      const auto [one, other] = halves(level[i]);
+      next.push_back(one);
+      next.push_back(other);
+    }
+    return next;
+  }
+
+  static bool hangs(const Simplex& simplex, const Middles& middles) {
+    return can_be_bisected(simplex) && std::any_of(sides.begin(), sides.end(), [&](const auto& side) {
+             const std::uint64_t a = simplex.corners[side[0]], b = simplex.corners[side[1]];
+             return has_middle(a, b) && middles.contains(middle_of(a, b));
+           });
+  }
+
+  /// Bisects a tetrahedron, and its halves in turn, until none has the middle of a neighbour's edge.
+  void bisect(const Simplex& simplex, std::vector<Simplex>& closed, std::vector<std::uint64_t>& added) {
+    if (middles_.insert(middle_of(simplex)).second) added.push_back(middle_of(simplex));
+    for (const Simplex& half : halves(simplex))
+      hangs(half, middles_) ? bisect(half, closed, added) : closed.push_back(half);
+  }
+
+  /// Bisects what has one of these middles on an edge; the middles that this adds. One concerns tetrahedra of
+  /// its own level and coarser ones, so that fine ones come first: few rounds are needed.
+  std::vector<std::uint64_t> close(const Middles& middles) {
+    check_count(0);
+    std::vector<Simplex> open = std::move(found_.simplices);
+    std::stable_sort(open.begin(), open.end(),
+                     [](const Simplex& a, const Simplex& b) { return a.level > b.level; });
+    std::vector<std::uint64_t> added;
+    found_.simplices.clear();
+    found_.simplices.reserve(open.size());
+    for (const Simplex& simplex : open)
+      hangs(simplex, middles) ? bisect(simplex, found_.simplices, added)
+                              : found_.simplices.push_back(simplex);
+    learn(added);
+    return added;
+  }
+
+  void keep_passed() {
+    std::erase_if(found_.simplices, [&](const Simplex& simplex) {
+      const auto inside = std::count_if(simplex.corners.begin(), simplex.corners.end(),
+                                        [&](std::uint64_t corner) { return known(corner) < 0.0; });
+      return inside == 0 || inside == 4;
+    });
+  }
+
+  const BisectionOptions& options_;
+  const DistancesAt& distances_at_;
+  Middles middles_;  ///< of the edges that were bisected
+  BisectedLattice found_;
+};
+
+CutEdge edge_between(std::uint64_t a, std::uint64_t b) {
+  return a < b ? CutEdge{a, b} : CutEdge{b, a};
+}
+
+/// Twice three times the volume, exactly: coordinates have 20 bits, products of three 60.
+std::int64_t volume_of(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d) {
+  const glm::i64vec3 from(place_of(a)), u = glm::i64vec3(place_of(b)) - from,
+                                        v = glm::i64vec3(place_of(c)) - from,
+                                        w = glm::i64vec3(place_of(d)) - from;
+  return u.x * (v.y * w.z - v.z * w.y) - u.y * (v.x * w.z - v.z * w.x) + u.z * (v.x * w.y - v.y * w.x);
+}
+
+}  // namespace
+
+BisectedLattice bisected_lattice(const BisectionOptions& options, const DistancesAt& distances_at,
+                                 const std::function<void()>& report) {
+  return Bisection(options, distances_at).run(report);
+}
+
+std::vector<std::array<CutEdge, 3>> triangles_of(const BisectedLattice& lattice) {
+  std::vector<std::array<CutEdge, 3>> triangles;
+  for (const Simplex& simplex : lattice.simplices) {
+    std::array<std::uint64_t, 4> in_order = simplex.corners;
+    const auto outside = std::partition(in_order.begin(), in_order.end(), [&](std::uint64_t corner) {
+      return lattice.distances_mm.at(corner) < 0.0;
+    });
+    const auto inside = outside - in_order.begin();
+    auto [a, b, c, d] = in_order;
+    // The corners inside come first, in an order that makes the tetrahedron positive.
+    if (volume_of(a, b, c, d) < 0) inside == 3 ? std::swap(a, b) : std::swap(c, d);
+    if (inside == 1) {
+      triangles.push_back({edge_between(a, b), edge_between(a, c), edge_between(a, d)});
+    } else if (inside == 3) {
+      triangles.push_back({edge_between(d, a), edge_between(d, b), edge_between(d, c)});
+    } else if (inside == 2) {
+      triangles.push_back({edge_between(a, c), edge_between(a, d), edge_between(b, d)});
+      triangles.push_back({edge_between(a, c), edge_between(b, d), edge_between(b, c)});
+    }
+  }
+  return triangles;
+}
+
+}  // namespace octotomy::brep
