@@ -13,7 +13,8 @@
 #include "planner/operation/table/sample_window.h"
 
 // The fields of operations: the name, type and meaning of each. Reading and printing JSON, error messages,
-// the schema, the command line's options and their help all derive from this one description.
+// the schema, the command line's options and their help all derive from this one description. The header is
+// long because it contains Field, its slot and the functions that build it.
 namespace octotomy::planner {
 
 /// The name of an object that an earlier step makes.

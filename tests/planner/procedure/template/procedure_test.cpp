@@ -265,6 +265,9 @@ TEST(Procedure, TheThesissThreeOperationsComeOutOfAFewTypedValues) {
     EXPECT_TRUE(has(mandible, "mandible", taken)) << taken;
   for (const char* left : {"incisor", "molar_left", "zygoma_left", "brow"})
     EXPECT_FALSE(has(mandible, "mandible", left)) << left;
+  // Of this head no neck bone lies in the jaw's space, and none of the jaw is taken for it.
+  EXPECT_TRUE(mandible.object("neck_bone").voxel.octree.is_empty());
+  EXPECT_EQ(mandible.object("mandible").voxel.octree, mandible.object("jaw_space").voxel.octree);
   const auto parts = voxel::components(mandible.object("mandible").voxel.octree).voxel_counts;
   EXPECT_GT(static_cast<double>(parts.front()),
             0.95 * static_cast<double>(mandible.object("mandible").voxel.octree.voxel_count()));
