@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A ball that touches a plane at one point lies within every larger one that touches there. So one walk through
-// the tree does: the ball shrinks at each triangle that it holds a point of, and a node that it does not reach
-// stays out of reach of the smaller ones.
+// A ball that touches a plane at one point lies within every larger one that touches there. So one walk
+// through the tree does: the ball shrinks at each triangle that it holds a point of, and a node that it does
+// not reach stays out of reach of the smaller ones.
 #include "brep/measure/inscribed_balls.h"
 
 #include <algorithm>
@@ -19,9 +19,9 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
-/// Relative to a radius: the rounding of distances, with three decimals to spare, and what a radius may be too
-/// large by after `exact_nodes`. A sphere's triangles all touch the largest ball: to exclude each exactly would
-/// cost n a ball.
+/// Relative to a radius: the rounding of distances, with three decimals to spare, and what a radius may be
+/// too large by after `exact_nodes`. A sphere's triangles all touch the largest ball: to exclude each exactly
+/// would cost n a ball.
 constexpr double rounding = 1e-12, coarse = 5e-3;
 constexpr int exact_nodes = 128;
 constexpr double touching_share = 0.025;
@@ -221,7 +221,8 @@ Ball InscribedBalls::touching(const glm::dvec3& p_mm, const glm::dvec3& normal, 
 bool InscribedBalls::touches_opposite(const Ball& ball, const glm::dvec3& p_mm, double least_rad) const {
   const glm::dvec3 to_point = p_mm - ball.centre_mm, opposite = ball.centre_mm - to_point;
   const double reach = (1.0 + touching_share) * ball.radius_mm;
-  // Points as near to the centre, in directions that enclose so much, are as near as this to the opposite one.
+  // Points as near to the centre, in directions that enclose so much, are as near as this to the opposite
+  // one.
   const double from_opposite = (2.0 * std::sin(0.5 * (std::acos(-1.0) - least_rad)) + touching_share) * reach;
   const double most_cosine = std::cos(least_rad);
   Pending pending(0);

@@ -63,9 +63,9 @@ class LargestBall {
  public:
   explicit LargestBall(std::vector<Ball> balls);
 
-  /// The largest ball that holds the point, or `known` where that is larger: its radius is too small by at most
-  /// 0.1 %, so that balls of nearly one size are not all compared. Cost: about log n where radii vary slowly
-  /// from place to place.
+  /// The largest ball that holds the point, or `known` where that is larger: its radius is too small by at
+  /// most 0.1 %, so that balls of nearly one size are not all compared. Cost: about log n where radii vary
+  /// slowly from place to place.
   Ball about(const glm::dvec3& p_mm, const Ball& known) const;
 
  private:

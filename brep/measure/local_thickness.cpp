@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 spread points over the surface and over the volume, these along lines; 2 find the largest ball that touches
-// the surface inside at each point of the surface, and at the foot of each point of the volume, whose ball
-// holds that point; 3 find the largest of all these balls that holds each point; 4 again with every fourth ball,
-// to learn how much the mean rises with more of them.
+// 1 spread points over the surface and over the volume, these along lines; 2 find the largest ball that
+// touches the surface inside at each point of the surface, and at the foot of each point of the volume, whose
+// ball holds that point; 3 find the largest of all these balls that holds each point; 4 again with every
+// fourth ball, to learn how much the mean rises with more of them.
 #include "brep/measure/local_thickness.h"
 
 #include <algorithm>

@@ -18,10 +18,10 @@ struct LocalThicknessOptions {
   /// the average fall with its square root on solids with edges.
   std::size_t samples = 20000;
   double least_angle_deg = 30.0;  ///< as of ThicknessOptions
-  /// A wall's point: its ball touches the surface, within 2.5 % of its radius, at a second place, whose direction from the ball's centre
-  /// encloses at least this with that to the point, 91..179. The two sides of a wedge of angle a touch balls
-  /// at 180 - a, so that 150 leaves out edges sharper or blunter than walls whose sides converge by up to 30
-  /// degrees.
+  /// A wall's point: its ball touches the surface, within 2.5 % of its radius, at a second place, whose
+  /// direction from the ball's centre encloses at least this with that to the point, 91..179. The two sides
+  /// of a wedge of angle a touch balls at 180 - a, so that 150 leaves out edges sharper or blunter than walls
+  /// whose sides converge by up to 30 degrees.
   double wall_angle_deg = 150.0;
   std::function<void(double)> progress = {};  ///< is called with 0..1, from the calling thread
   std::stop_token stop = {};
@@ -51,8 +51,8 @@ struct LocalThickness {
 
 /// Local thickness: the diameter of the largest ball inside that holds the point. On a smooth part of the
 /// surface that is the ball that touches there; towards a sharp edge it falls to 0, as no ball reaches the
-/// edge. LPS millimetres. Throws std::invalid_argument if the solid is empty or an option is out of its range;
-/// Stopped. The same bits on any number of threads. Cost: n log n for the tree, about log n a sample;
+/// edge. LPS millimetres. Throws std::invalid_argument if the solid is empty or an option is out of its
+/// range; Stopped. The same bits on any number of threads. Cost: n log n for the tree, about log n a sample;
 /// parallel. Source: Hildebrand and Ruegsegger, "A new method for the model-independent assessment of
 /// thickness in three-dimensional images", Journal of Microscopy 185, 1997; balls after Ma, Bae and Choi (see
 /// thickness.h). Departure: balls are those that touch at samples and at the feet of the volume's points, not

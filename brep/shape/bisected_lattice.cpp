@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 level by level, drop tetrahedra that lie farther from the surface than their corners from their middle, keep
-// those in which distances are linear, and bisect the others; 2 bisect what is kept and has the middle of an
-// edge where a neighbour was bisected, until there is none.
-// A tetrahedron that is dropped has no corner on the other side, and no neighbour has one within its faces: it
-// needs no bisection for the surface to close.
+// 1 level by level, drop tetrahedra that lie farther from the surface than their corners from their middle,
+// keep those in which distances are linear, and bisect the others; 2 bisect what is kept and has the middle
+// of an edge where a neighbour was bisected, until there is none. A tetrahedron that is dropped has no corner
+// on the other side, and no neighbour has one within its faces: it needs no bisection for the surface to
+// close.
 #include "brep/shape/bisected_lattice.h"
 
 #include <algorithm>
@@ -26,7 +26,8 @@ glm::dvec3 at(std::uint64_t key) {
   return glm::dvec3(place_of(key));
 }
 
-/// Keys are sums of coordinates times powers of two: the middle has half the sum where that has no remainders.
+/// Keys are sums of coordinates times powers of two: the middle has half the sum where that has no
+/// remainders.
 bool has_middle(std::uint64_t a, std::uint64_t b) {
   return glm::all(glm::equal((place_of(a) + place_of(b)) & 1, Place(0)));
 }
@@ -142,8 +143,8 @@ class Bisection {
     });
   }
 
-  /// Points of the piece of plane in a tetrahedron where its corners' distances are 0, if these are linear: as
-  /// far apart as the narrowest part allows. None where the tetrahedron is no longer than that.
+  /// Points of the piece of plane in a tetrahedron where its corners' distances are 0, if these are linear:
+  /// as far apart as the narrowest part allows. None where the tetrahedron is no longer than that.
   void add_piece(const Simplex& simplex, std::vector<glm::dvec3>& places) const {
     if (longest_mm(simplex) <= 2.0 * options_.narrowest_mm) return;
     std::vector<glm::dvec3> corners;

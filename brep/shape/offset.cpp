@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 bisect tetrahedra until the offset distance is linear in each that the surface may pass; 2 find the surface on
-// each of their edges whose ends lie on either side; 3 join those points.
+// 1 bisect tetrahedra until the offset distance is linear in each that the surface may pass; 2 find the
+// surface on each of their edges whose ends lie on either side; 3 join those points.
 #include "brep/shape/offset.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 compute the distance to places outside from voxels' centres and from half-way between them; 2 build a pyramid of the
-// largest distances of blocks of 2^3, 4^3 ...; 3 for each sampled voxel, find the largest ball that holds it:
-// blocks are passed over that have no larger distance than the best so far, or lie farther than their largest;
-// 4 correct each ball's radius by the lattice planes that it touches, and list where it touches.
-// Places are counted in steps of the finer lattice, from the lowest corner of the object's extent.
+// 1 compute the distance to places outside from voxels' centres and from half-way between them; 2 build a
+// pyramid of the largest distances of blocks of 2^3, 4^3 ...; 3 for each sampled voxel, find the largest ball
+// that holds it: blocks are passed over that have no larger distance than the best so far, or lie farther
+// than their largest; 4 correct each ball's radius by the lattice planes that it touches, and list where it
+// touches. Places are counted in steps of the finer lattice, from the lowest corner of the object's extent.
 #include "voxel/measure/local_thickness.h"
 
 #include <algorithm>
@@ -156,8 +156,8 @@ struct LatticeBall {
 };
 
 /// Half the distance of the lattice planes across a direction, given in steps: the outside begins between two
-/// of them. Along an axis half a voxel; towards oblique directions it falls to 0. For voxels with unequal edges
-/// oblique planes are taken for those of cubes of the shortest.
+/// of them. Along an axis half a voxel; towards oblique directions it falls to 0. For voxels with unequal
+/// edges oblique planes are taken for those of cubes of the shortest.
 double half_planes_mm(const glm::ivec3& direction, const Pyramid& pyramid) {
   const glm::dvec3 voxel_mm = double(pyramid.finer()) * pyramid.step_mm();
   const glm::ivec3 a = glm::abs(direction);

@@ -14,9 +14,9 @@ namespace octotomy::voxel {
 struct LocalThicknessOptions {
   std::size_t samples =
       20000;  ///< about how many voxels are measured, of all and of the surface; at least 64
-  /// A wall's ball touches the outside, within a voxel's shortest edge, at two places whose directions from its centre enclose at least this,
-  /// 91..179 degrees. Sides of a wedge of angle a touch balls at 180 - a: 150 leaves out its edge unless the
-  /// sides converge by 30 degrees or less.
+  /// A wall's ball touches the outside, within a voxel's shortest edge, at two places whose directions from
+  /// its centre enclose at least this, 91..179 degrees. Sides of a wedge of angle a touch balls at 180 - a:
+  /// 150 leaves out its edge unless the sides converge by 30 degrees or less.
   double wall_angle_deg = 150.0;
   Progress progress = {};
 };
@@ -31,25 +31,25 @@ struct ThicknessAtVoxel {
 /// Over an object's voxels.
 struct VoxelThickness {
   double mean_mm = 0.0, deviation_mm = 0.0, median_mm = 0.0, largest_mm = 0.0;
-  /// The mean is within this of the truth in 99 of 100 cases: half a voxel's longest edge for each of a ball's
-  /// two sides, as digitising moves parallel walls alike, a quarter for the steps of its centre, and 2.6
-  /// standard errors of the sampled voxels.
+  /// The mean is within this of the truth in 99 of 100 cases: half a voxel's longest edge for each of a
+  /// ball's two sides, as digitising moves parallel walls alike, a quarter for the steps of its centre, and
+  /// 2.6 standard errors of the sampled voxels.
   double mean_half_width_mm = 0.0;
   std::vector<ThicknessAtVoxel> surface;
   std::optional<std::size_t> thinnest_wall;  ///< in `surface`; none where no sampled voxel is of a wall
 };
 
-/// Local thickness of an octree's voxels: the diameter of the largest ball inside that holds a voxel's centre.
-/// Centres of balls are voxels' centres and the points half-way between them; where that takes more than 2^26
-/// points, voxels' centres alone. A ball reaches to the nearest of those places that no voxel of the object
-/// touches, less half the distance of the lattice planes that are parallel there: a flat wall along the lattice is measured to its
-/// voxels' faces, an oblique or round one to where the outside begins. Voxels beyond the universe are outside.
-/// All zero for an empty octree. Throws std::invalid_argument if the universe's axes are not perpendicular or
-/// an option is out of its range, std::length_error above 2^28 voxels in the object's extent; Stopped. The
-/// same bits on any number of threads. Cost: linear in the extent, 5 bytes for each centre, and about log n a
-/// sample; parallel. Source: Hildebrand and Ruegsegger, Journal of Microscopy 185, 1997; distances as
-/// distance_map(). Departure: a pyramid of largest distances is searched at sampled voxels, where the source
-/// paints a ball at each point of the distance ridge.
+/// Local thickness of an octree's voxels: the diameter of the largest ball inside that holds a voxel's
+/// centre. Centres of balls are voxels' centres and the points half-way between them; where that takes more
+/// than 2^26 points, voxels' centres alone. A ball reaches to the nearest of those places that no voxel of
+/// the object touches, less half the distance of the lattice planes that are parallel there: a flat wall
+/// along the lattice is measured to its voxels' faces, an oblique or round one to where the outside begins.
+/// Voxels beyond the universe are outside. All zero for an empty octree. Throws std::invalid_argument if the
+/// universe's axes are not perpendicular or an option is out of its range, std::length_error above 2^28
+/// voxels in the object's extent; Stopped. The same bits on any number of threads. Cost: linear in the
+/// extent, 5 bytes for each centre, and about log n a sample; parallel. Source: Hildebrand and Ruegsegger,
+/// Journal of Microscopy 185, 1997; distances as distance_map(). Departure: a pyramid of largest distances is
+/// searched at sampled voxels, where the source paints a ball at each point of the distance ridge.
 VoxelThickness local_thickness(const Octree& octree, const LocalThicknessOptions& options = {});
 
 }  // namespace octotomy::voxel
