@@ -348,6 +348,13 @@ Shadow shadow(const Octree& octree, const Expression& solid, const ShadowAsked& 
   return {{std::move(grey), 0.0, points_a_voxel}, depths.far_end_mm()};
 }
 
+double far_end_mm(const Octree& octree, const Expression& solid, const glm::dvec3& direction) {
+  check_voxels(octree);
+  check_unit(direction);
+  return FirstDepths(octree.universe(), ColumnFrame(direction), SurfaceCrossings(octree, solid).points())
+      .far_end_mm();
+}
+
 std::vector<double> filled_mm3(const Octree& octree, const Expression& solid,
                                const std::vector<glm::dvec3>& directions, const Progress& progress) {
   check_voxels(octree);

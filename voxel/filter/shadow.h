@@ -40,6 +40,10 @@ struct Shadow {
 /// that hold a part of the shadow.
 Shadow shadow(const Octree& octree, const Expression& solid, const ShadowAsked& asked);
 
+/// The largest p . direction of the object's surface as voxels have it, for a unit direction. Throws as
+/// shadow(). Cost: the crossings.
+double far_end_mm(const Octree& octree, const Expression& solid, const glm::dvec3& direction);
+
 /// The volume that shadow() adds to the object along each of some unit directions, up to the object's far end:
 /// the columns' lengths less the object's voxels. Good to the columns' noise and to half a voxel edge of the
 /// object's far end. Throws as shadow(). Parallel; same bits on any thread count. Cost: the crossings once, and

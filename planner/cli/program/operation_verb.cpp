@@ -74,9 +74,10 @@ class OperationRun {
       objects_.add(std::move(object));
     }
     Object made("answer", operation_.name, universe_);
-    made.definition = operation_.definition(action_.value(), objects_);
+    settle(made);
+    made.definition = operation_.definition(value(), objects_);
     if (with_voxels)
-      operation_.voxel(action_.value(), {universe_, objects_, no_scan_, timings_, progress(), {}, no_scans_},
+      operation_.voxel(value(), {universe_, objects_, no_scan_, timings_, progress(), {}, no_scans_},
                        made.voxel);
     if (!wants_octree || !with_voxels || text_.certify) answer_by_mesh(made);
     if (wants_octree && !with_voxels) voxelise_answer(made);
@@ -86,6 +87,14 @@ class OperationRun {
   }
 
  private:
+  /// What the operation finds out once for both kernels.
+  void settle(Object& made) {
+    if (!operation_.settle) return;
+    settled_ = operation_.settle(
+        action_.value(), {objects_, no_scan_, timings_, progress(), {}, settled_details_, made.findings});
+  }
+  const void* value() const { return settled_ ? settled_.get() : action_.value(); }
+
   voxel::Progress progress() const { return {program_.stop.get_token(), program_.progress(operation_.name)}; }
 
   void read_objects() {
@@ -160,8 +169,7 @@ class OperationRun {
             " its mesh first by octotomy mesh");
     const voxel::Box box = voxel::bounds(universe_.lattice());
     verify::MeshExpressions expressions({});
-    operation_.mesh(action_.value(),
-                    {box.low_mm, box.high_mm, objects_, no_scan_, expressions, timings_, progress()},
+    operation_.mesh(value(), {box.low_mm, box.high_mm, objects_, no_scan_, expressions, timings_, progress()},
                     made.mesh);
     made.findings = made.mesh.findings;
     if (made.mesh.whole->empty())
@@ -181,7 +189,7 @@ class OperationRun {
   void certify_answer(Object& made) {
     const Stopwatch watch(timings_, "certify");
     made.mesh.within = made.mesh.whole;
-    operation_.bound(action_.value(), {universe_, objects_, no_scan_}, made);
+    operation_.bound(value(), {universe_, objects_, no_scan_}, made);
     certify(made, operation_.name + " = " + made.definition, progress());
   }
 
@@ -215,6 +223,7 @@ class OperationRun {
     json["area_estimator"] = "triangles";
     json["health"] = to_json(health);
     json.update(made.mesh.details);
+    json.update(settled_details_);
     if (made.certificate) json["certificate"] = to_json(*made.certificate);
     json["findings"] = made.findings;
     std::vector<std::pair<std::string, std::string>> rows{
@@ -240,6 +249,8 @@ class OperationRun {
   std::vector<std::string> mended_;  ///< repairs of meshes that are not solids
   std::vector<Object> inputs_;
   Objects objects_;
+  std::shared_ptr<void> settled_;  ///< the operation's value with what it found out; empty: as typed
+  nlohmann::ordered_json settled_details_ = nlohmann::ordered_json::object();
 };
 
 /// One run of a verb that answers from files by itself.

@@ -40,17 +40,27 @@ void check(const Shadow& shadow, const Place& place) {
   check(shadow.insertion, place);
 }
 
-/// The object within the universe, of which both kernels make the shadow.
+/// The object within the universe, of which both kernels make the shadow. Precondition: it has a mesh.
 const brep::Solid& solid_within(const Object& object) {
   return object.mesh.within ? *object.mesh.within : *object.mesh.whole;
+}
+
+/// By the mesh, whose tips are exact; by voxels where there is none.
+std::optional<double> far_end_mm(const Object& object, const glm::dvec3& along) {
+  if (object.mesh.whole) {
+    const brep::Solid& solid = solid_within(object);
+    if (solid.empty()) return std::nullopt;
+    return brep::far_end_mm(solid, along);
+  }
+  if (object.voxel.octree.is_empty()) return std::nullopt;
+  return voxel::far_end_mm(object.voxel.octree, *object.voxel.symbol, along);
 }
 
 Shadow settle(const Shadow& asked, const SettleBench& bench) {
   Shadow settled = asked;
   settled.along = direction_of(asked.insertion, bench.objects.lps_from_head);
-  bench.object(asked.object.name);  // Refuses an object without a mesh.
-  const brep::Solid& solid = solid_within(bench.objects.at(asked.object.name));
-  if (!solid.empty()) settled.end_mm = brep::far_end_mm(solid, settled.along) + asked.beyond_mm;
+  if (const auto far_mm = far_end_mm(bench.objects.at(asked.object.name), settled.along))
+    settled.end_mm = *far_mm + asked.beyond_mm;
   bench.details = {{"direction", to_json(settled.along)}, {"end_mm", settled.end_mm}};
   return settled;
 }
@@ -66,11 +76,13 @@ double cell_mm(const brep::Solid& solid, double tolerance_mm) {
 }
 
 /// The part of a shadow within the universe, where voxels end, too. A plane across an oblique direction reaches
-/// beyond the universe by nature, and nothing is lost there.
-brep::BooleanResult cut_at_universe(const brep::Solid& shadow, const MeshBench& bench) {
+/// beyond the universe by nature, and nothing is lost there. Where a verb works on meshes alone there is no
+/// universe.
+brep::BooleanResult cut_at_universe(const brep::Solid& shadow, bool has_voxels, const MeshBench& bench) {
   const glm::dvec3 &low = bench.low_mm, &high = bench.high_mm;
-  if (shadow.empty() || (glm::all(glm::greaterThanEqual(shadow.size().low_mm, low)) &&
-                         glm::all(glm::lessThanEqual(shadow.size().high_mm, high))))
+  if (!has_voxels || shadow.empty() ||
+      (glm::all(glm::greaterThanEqual(shadow.size().low_mm, low)) &&
+       glm::all(glm::lessThanEqual(shadow.size().high_mm, high))))
     return {shadow, {}, 0.0, {}};
   brep::Prism world;
   world.polygons_mm = {{{low.x, low.z}, {high.x, low.z}, {high.x, high.z}, {low.x, high.z}}};
@@ -119,7 +131,8 @@ void voxels(const Shadow& shadow, const VoxelBench& bench, VoxelSide& made) {
 
 void triangles(const Shadow& shadow, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "shadow");
-  const brep::Solid& solid = solid_within(bench.objects.at(shadow.object.name));
+  const Object& object = bench.objects.at(shadow.object.name);
+  const brep::Solid& solid = solid_within(object);
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
   brep::Solid deep = solid;
   if (shadow.tolerance_mm && !solid.empty()) {
@@ -133,7 +146,7 @@ void triangles(const Shadow& shadow, const MeshBench& bench, MeshSide& made) {
     made.details["cell_mm"] = options.cell_mm;
   }
   const brep::Shadow found = brep::shadow(deep, {shadow.along, shadow.end_mm, progress});
-  brep::BooleanResult whole = cut_at_universe(found.solid, bench);
+  brep::BooleanResult whole = cut_at_universe(found.solid, object.voxel.symbol.has_value(), bench);
   made.shift_mm = whole.shift_mm;
   made.findings.insert(made.findings.end(), whole.findings.begin(), whole.findings.end());
   if (shadow.tolerance_mm) {

@@ -59,6 +59,23 @@ TEST_F(MeshVerbs, AnOffsetByNothingIsRefusedBeforeTheMeshIsRead) {
   expect_refused(run("offset " + at("no.stl") + " --by 0 -o " + at("o.stl")), "0 moves nothing: say how far");
 }
 
+TEST_F(MeshVerbs, AShadowGoesAlongTheTypedDirectionToTheObjectsFarEnd) {
+  brep::write_mesh(brep::mesh_of(brep::shapes::box({-2, -3, -5}, {2, 3, 5})), folder_ / "box.off");
+  // The silhouette's area times half the depth, and half the box: it is its own mirror image about its middle.
+  const double silhouette_mm2 = 0.6 * 4 * 10 + 0.8 * 4 * 6, half_depth_mm = 0.5 * (0.6 * 6 + 0.8 * 10);
+  const double truth_mm3 = silhouette_mm2 * half_depth_mm + 0.5 * 240.0;
+  for (const char* direction : {"0,0.6,0.8", "0,-3,-4"}) {
+    const CommandAnswer made =
+        run("shadow " + at("box.off") + " --direction=" + direction + " -o " + at("shadow.off") + " --json");
+    ASSERT_EQ(made.status, 0) << made.errors;
+    const SortedJson json = SortedJson::parse(made.out);
+    EXPECT_NEAR(json["volume_mm3"].get<double>(), truth_mm3, 1e-6) << direction;
+    EXPECT_NEAR(json["filled_mm3"].get<double>(), truth_mm3 - 240.0, 1e-6) << direction;
+    EXPECT_NEAR(json["end_mm"].get<double>(), half_depth_mm, 1e-9) << direction;
+  }
+  expect_refused(run("shadow " + at("box.off") + " -o " + at("s.off")), "the insertion direction is missing");
+}
+
 TEST_F(MeshVerbs, AScansContoursAreTiledToASolidByAnyCost) {
   const SortedJson iso =
       SortedJson::parse(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("i.ply") + " --json").out);
