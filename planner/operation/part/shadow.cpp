@@ -170,6 +170,10 @@ void bound(const Shadow& shadow, const BoundBench& bench, Object& made) {
         made.mesh.whole->measures().area_mm2);
     made.bound.reshaped = {shadow.object.name};
   }
+  // The outline of whole voxels stands out by up to half an edge.
+  const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
+  if (is_whole_voxels(object.voxel))
+    made.bound.measured_apart_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   // Where the end plane is parallel to voxels' faces, all of it is rounded alike.
   constexpr double rounding = 1e-9;
   for (int axis = 0; axis < 3; ++axis)
