@@ -81,9 +81,11 @@ void bound(const Decimate& decimate, const BoundBench& bench, Object& made) {
   const Object& object = bench.objects.at(decimate.object.name);
   made.bound.shift_mm = object.bound.shift_mm;
   if (made.mesh.whole && object.mesh.whole)
-    made.witness = verify::witness_of_reshaped([still = *object.mesh.whole, decimate]() -> verify::Reshaped {
-      return {verify::surface_decimated(still.triangles(), decimate.max_error_mm)};
-    });
+    made.witness = verify::witness_of_reshaped(
+        [still = *object.mesh.whole,
+         error_mm = max_error_mm(decimate, object.mesh.whole->mesh())]() -> verify::Reshaped {
+          return {verify::surface_decimated(still.triangles(), error_mm)};
+        });
   made.bound.reshaped = {decimate.object.name};
   made.ends_with_universe = true;
 }
