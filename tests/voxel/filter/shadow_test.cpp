@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-const glm::dvec3 oblique = glm::normalize(glm::dvec3(1.0, -2.0, 0.5));
+const glm::dvec3 askew = glm::normalize(glm::dvec3(1.0, -2.0, 0.5));
 
 Shadow shadow_of(const Universe& universe, const Expression& solid, const glm::dvec3& direction,
                  double end_mm) {
@@ -31,13 +31,13 @@ TEST(VoxelShadow, OfABallIsItsHalfAndARoundPost) {
     const glm::dvec3 centre_mm = universe.lattice().lps_mm(glm::dvec3(0.5 * universe.side())) + 0.21;
     const double radius_mm = 10.0;
     const Expression ball(Sphere{centre_mm, radius_mm});
-    for (const glm::dvec3& direction : {glm::dvec3(0, 1, 0), glm::dvec3(0, 0, -1), oblique, -oblique}) {
+    for (const glm::dvec3& direction : {glm::dvec3(0, 1, 0), glm::dvec3(0, 0, -1), askew, -askew}) {
       const double end_mm = glm::dot(centre_mm, direction) + radius_mm;
       const Shadow made = shadow_of(universe, ball, direction, end_mm);
       const double truth_mm3 = (2.0 / 3.0 + 1.0) * pi * std::pow(radius_mm, 3.0);
       const double area_mm2 = (2.0 + 2.0 + 1.0) * pi * radius_mm * radius_mm;
       // Three deviations of a count, and the flat end, which lies anywhere between planes of voxels' middles.
-      const bool is_along_axis = direction != oblique && direction != -oblique;
+      const bool is_along_axis = direction != askew && direction != -askew;
       const double allowed_mm3 =
           3.0 * 0.32 * std::pow(spacing_mm.z, 2.0) * std::sqrt(area_mm2) +
           0.5 * spacing_mm.z / (is_along_axis ? 1.0 : std::sqrt(21.0)) * pi * radius_mm * radius_mm;
@@ -70,11 +70,11 @@ TEST(VoxelShadow, AnObliqueWedgeIsFilledDownToTheEnd) {
   // Faces lie between voxels: else all of a face is rounded alike.
   const glm::dvec3 m_mm = universe.lattice().lps_mm(glm::dvec3(64.0)) + 0.25;
   const Expression slab(Box{m_mm - glm::dvec3(8, 8, 1.5), m_mm + glm::dvec3(8, 8, 1.5)});
-  const double end_mm = glm::dot(m_mm, oblique) + 16.0;
-  const Shadow made = shadow_of(universe, slab, oblique, end_mm);
+  const double end_mm = glm::dot(m_mm, askew) + 16.0;
+  const Shadow made = shadow_of(universe, slab, askew, end_mm);
   // The silhouette's area times the way from the front to the end, on the mean over the silhouette: from the
   // middle of the box to the end, and half the box's own depth in each line of sight.
-  const glm::dvec3 n = glm::abs(oblique), a(16.0, 16.0, 3.0);
+  const glm::dvec3 n = glm::abs(askew), a(16.0, 16.0, 3.0);
   const double silhouette_mm2 = n.x * a.y * a.z + n.y * a.z * a.x + n.z * a.x * a.y;
   const double truth_mm3 = silhouette_mm2 * 16.0 + 0.5 * a.x * a.y * a.z;
   EXPECT_NEAR(volume_mm3(universe, Expression(made.window)), truth_mm3, 0.006 * truth_mm3);
@@ -84,7 +84,7 @@ TEST(VoxelShadow, WhatItAddsIsKnownForManyDirectionsAtOnce) {
   const Universe universe = tests::spaced_universe(6);
   const Expression ball(Sphere{universe.lattice().lps_mm(glm::dvec3(31.3)), 12.0});
   const std::vector<double> filled =
-      filled_mm3(combine(universe, ball), ball, {oblique, glm::dvec3(0, 0, 1), -oblique});
+      filled_mm3(combine(universe, ball), ball, {askew, glm::dvec3(0, 0, 1), -askew});
   ASSERT_EQ(filled.size(), 3u);
   const double truth_mm3 = pi / 3.0 * 12.0 * 12.0 * 12.0;
   for (const double mm3 : filled) EXPECT_NEAR(mm3, truth_mm3, 0.03 * truth_mm3);
@@ -95,7 +95,7 @@ TEST(VoxelShadow, TheSameBitsOnOneThreadAndMany) {
   const Universe universe = tests::spaced_universe(6);
   const Expression ball(Sphere{universe.lattice().lps_mm(glm::dvec3(31.3)), 12.0});
   const auto made = [&] {
-    return combine(universe, Expression(shadow_of(universe, ball, oblique, 1e3).window));
+    return combine(universe, Expression(shadow_of(universe, ball, askew, 1e3).window));
   };
   const Octree many = made();
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
