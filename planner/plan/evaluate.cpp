@@ -314,8 +314,14 @@ class Evaluator {
     MadeScan made;
     {
       const Stopwatch watch(result_.timings, operation.name);
-      made = operation.scan(step.action.value(),
-                            {scan_, result_.objects, result_.timings, {options_.stop, {}}, plan_.folder});
+      made = operation.scan(step.action.value(), {[this](const std::string& name) -> const voxel::Scene& {
+                                                    return loaded_.at(name).scene();
+                                                  },
+                                                  result_.timings,
+                                                  {options_.stop, {}},
+                                                  plan_.folder,
+                                                  &scan_,
+                                                  &result_.objects});
     }
     ScanRecord record = record_of(step.id, {}, made.scene);
     record.made_by = operation.name + " of " + scans_used(step.action).front();

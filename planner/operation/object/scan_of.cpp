@@ -129,9 +129,9 @@ std::optional<double> expected(const Owned& owned, const glm::dvec3& p_mm,
 Compared compare(const ScanOf& step, const ScanBench& bench, const voxel::ExpressionScan& made) {
   constexpr int drawn = 20000;
   const voxel::Lattice& lattice = made.scene.lattice;
-  const LoadedScan& frame = bench.scan(step.scan.name);
+  const LoadedScan& frame = (*bench.scans)(step.scan.name);
   const glm::dvec3 spacing = lattice.spacing_mm();
-  const SecondReading reading(step.expression, bench.objects, std::max({spacing.x, spacing.y, spacing.z}));
+  const SecondReading reading(step.expression, *bench.objects, std::max({spacing.x, spacing.y, spacing.z}));
   // A sample is rounded to a step of its scan.
   const double allowed = 0.5 * frame.grey.step() * (1.0 + 1e-6) + 1e-6;
   Compared result;
@@ -153,10 +153,10 @@ Compared compare(const ScanOf& step, const ScanBench& bench, const voxel::Expres
 }
 
 MadeScan made(const ScanOf& step, const ScanBench& bench) {
-  const LoadedScan& frame = bench.scan(step.scan.name);
+  const LoadedScan& frame = (*bench.scans)(step.scan.name);
   voxel::Names names;
   names.object = [&](std::string_view name) -> voxel::Expression {
-    const VoxelSide& object = bench.objects.at(std::string(name)).voxel;
+    const VoxelSide& object = bench.objects->at(std::string(name)).voxel;
     return object.symbol ? *object.symbol : voxel::Expression(object.octree);
   };
   voxel::ExpressionScanOptions options{step.hole_value, step.filled_value, bench.progress};

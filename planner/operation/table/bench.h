@@ -49,13 +49,15 @@ struct ScanRecord {
 
 /// The bench of operations that make a scan of another one.
 struct ScanBench {
-  const Scans& scan;  ///< earlier ones
-  const Objects& objects;
+  /// The samples of an earlier scan.
+  std::function<const voxel::Scene&(const std::string& name)> samples;
   Timings& timings;
   voxel::Progress progress;
   std::filesystem::path folder = {};  ///< paths of files are relative to it
-
-  const voxel::Scene& samples(const std::string& name) const { return scan(name).scene(); }
+  /// The scans with their octrees, and the objects before the step. Null where no plan is evaluated: an
+  /// operation that takes objects is a step of plans only.
+  const Scans* scans = nullptr;
+  const Objects* objects = nullptr;
 };
 
 /// A scan that an operation made.
