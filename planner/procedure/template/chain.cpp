@@ -123,30 +123,44 @@ class Renaming {
   Json operator()(const Json& step) const {
     Json made = step;
     made["id"] = names_.at(step.at("id"));
-    for (const auto& [key, value] : step.items())
-      if (key != "id" && key != "do") made[key] = renamed(value, key);
+    const Json& fields = fields_of(step.at("do"));
+    for (const auto& [key, value] : step.items()) {
+      if (key == "id" || key == "do") continue;
+      // What a field may name stands in the schema.
+      const std::string schema = fields.value(key, Json::object()).dump();
+      const bool names_objects = schema.find("x-names") != std::string::npos;
+      const bool names_points = schema.find("oneOf") != std::string::npos;
+      if (key == "expression")
+        made[key] = words_renamed(value.get<std::string>());
+      else if (key == "scan" && value == "ct")
+        made[key] = scan_;
+      else if (names_objects || names_points || key == "scan")
+        made[key] = renamed(value, names_objects || key == "scan", names_points);
+    }
     return made;
   }
 
  private:
-  /// In an expression each word; elsewhere a text that is the name of a step, or of a landmark, whose place is
-  /// written, as it may have moved.
-  Json renamed(const Json& value, const std::string& key) const {
+  static const Json& fields_of(const std::string& operation) {
+    static const Json all = plan_schema();
+    static const Json none = Json::object();
+    for (const Json& step : all["properties"]["steps"]["items"]["anyOf"])
+      if (step.value("title", "") == operation) return step["properties"];
+    return none;
+  }
+
+  /// Names of steps, and landmarks, whose place is written, as it may have moved.
+  Json renamed(const Json& value, bool names_objects, bool names_points) const {
     if (value.is_string()) {
       const auto& text = value.get_ref<const std::string&>();
-      if (key == "expression") return words_renamed(text);
-      if (key == "scan" && text == "ct") return scan_;
-      if (const auto name = names_.find(text); name != names_.end()) return name->second;
-      if (const auto place = places_.find(text); place != places_.end())
+      if (const auto name = names_.find(text); names_objects && name != names_.end()) return name->second;
+      if (const auto place = places_.find(text); names_points && place != places_.end())
         return {place->second.x, place->second.y, place->second.z};
       return value;
     }
     if (!value.is_structured()) return value;
     Json made = value;
-    if (value.is_array())
-      for (Json& part : made) part = renamed(part, key);
-    else
-      for (const auto& [inner, part] : value.items()) made[inner] = renamed(part, inner);
+    for (Json& part : made) part = renamed(part, names_objects, names_points);
     return made;
   }
 

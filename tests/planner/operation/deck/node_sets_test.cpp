@@ -3,6 +3,7 @@
 
 #include "brep/io/write_mesh.h"
 #include "convert/deck/calculix_result.h"
+#include "planner/operation/table/comma_numbers.h"
 #include "tests/brep/shapes.h"
 #include "tests/file_bytes.h"
 #include "tests/planner/cli/program/command_line.h"
