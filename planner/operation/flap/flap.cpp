@@ -25,8 +25,10 @@ void check(const Flap& flap, const Place& place) {
   const std::size_t count = flap.curve.size() - 1;
   if (flap.segments.size() != count)
     place.at("segments").refuse("must name " + std::to_string(count) + " objects, one a segment");
-  if (flap.contacts.size() != count + 1)
-    place.at("contacts").refuse("must name " + std::to_string(count + 1) + " objects, one an osteotomy");
+  if (flap.contacts.size() != count + 1 && flap.contacts.size() != count)
+    place.at("contacts")
+        .refuse("must name " + std::to_string(count + 1) +
+                " objects, one an osteotomy; without the last where the new bone ends free");
 }
 
 Json cut_json(const FlapPlane& cut, double at_mm, double tilt_deg) {
@@ -93,7 +95,7 @@ Json measure(const Flap& flap, const AnswerBench& bench) {
   for (std::size_t i = 0; i < segments.size(); ++i)
     json["flap_segments"].push_back(
         segment_json(segments[i], bench.objects.at(flap.segments[i].name), i + 1));
-  for (std::size_t cut = 0; cut <= segments.size(); ++cut)
+  for (std::size_t cut = 0; cut < flap.contacts.size(); ++cut)
     json["osteotomies"].push_back(
         contact_json(flap, bench.objects.at(flap.contacts[cut].name), segments, cut));
   return json;
@@ -107,9 +109,11 @@ Operation flap_operation() {
   for (Field& each : flap_fields<Flap>()) std::move(entry).takes(std::move(each));
   return std::move(entry)
       .takes(field("segments", &Flap::segments, "The placed segments, in order along the curve.").required())
-      .takes(field("contacts", &Flap::contacts,
-                   "What both bones share in each osteotomy's slab, in order along the curve.")
-                 .required())
+      .takes(
+          field("contacts", &Flap::contacts,
+                "What both bones share in each osteotomy's slab, in order along the curve; without the last "
+                "where the new bone ends free, as in a joint.")
+              .required())
       .takes(field("slab_mm", &Flap::slab_mm, "The thickness of these slabs.").greater_than(0).to(10))
       .example(R"({"id": "flap", "do": "flap", "segments": ["skull"], "contacts": ["skull", "skull"],
         "curve": [[-30, -60, -80], [0, -80, -85]],

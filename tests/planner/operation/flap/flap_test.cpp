@@ -138,6 +138,9 @@ TEST(FlapSteps, RefusalsPointAtThePlace) {
             std::string::npos);
   EXPECT_NE(refusal(R"("do": "flap", "segments": [], "contacts": [], )" + same).find("segments"),
             std::string::npos);
+  const std::string two = R"("do": "flap", "segments": ["a", "b"], "contacts": ["c"], )";
+  EXPECT_NE(refusal(two + same).find("must name 3 objects, one an osteotomy; without the last"),
+            std::string::npos);
 }
 
 }  // namespace
