@@ -319,10 +319,11 @@ Tetrahedra smooth_tetrahedra_of(const std::vector<voxel::Octree>& regions, const
     for (auto& tet : made.tets) std::swap(tet[0], tet[1]);
   made.boundary_nodes = boundary_nodes(made.tets);
   const double voxel_mm = std::min({edge_mm.x, edge_mm.y, edge_mm.z});
-  flatten_interfaces(made, options, voxel_mm, 0.0);
+  const double least_deg = std::min(options.min_dihedral_deg, fit_dihedral_deg());
+  flatten_interfaces(made, options, voxel_mm, least_deg);
   mend(made, options);
   // Nodes that mending took off a plane go back where that leaves elements fit.
-  flatten_interfaces(made, options, voxel_mm, std::min(options.min_dihedral_deg, fit_dihedral_deg()));
+  flatten_interfaces(made, options, voxel_mm, least_deg);
   check_volumes(made, counted, image);
   return made;
 }

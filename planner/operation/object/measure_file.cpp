@@ -166,6 +166,9 @@ std::optional<OneSurface> one_surface(const brep::Triangles& given, const brep::
   if (!now.closed || !now.manifold || now.misoriented_edges > 0 || now.shells > most_united)
     return std::nullopt;
   std::optional<brep::UnitedShells> united = brep::united_shells(joined, stop);
+  // A union whose shells touch in a point is no manifold: the shells stay as they are.
+  if (!united && is_split && brep::health(joined).self_intersections == 0)
+    return OneSurface{std::move(joined), ", of " + std::to_string(now.shells) + " shells that touch"};
   if (!united || united->surface.faces.empty()) return std::nullopt;
   return OneSurface{std::move(united->surface),
                     now.shells > 1 ? ", of the union of " + std::to_string(now.shells) + " shells"

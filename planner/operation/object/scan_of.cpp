@@ -206,7 +206,7 @@ Operation scan_of_operation() {
       .takes(field("filled_value", &ScanOf::filled_value,
                    "Sample of objects that come from no scan, such as a plate. Default: 3071 of Hounsfield "
                    "units, otherwise the scan's largest sample."))
-      .example(R"({"id": "operated", "do": "scan_of", "scan": "ct", "expression": "moved | rest"})")
+      .example(R"({"id": "operated", "do": "scan_of", "scan": "ct", "expression": "advanced | rest"})")
       .check(check)
       .scan(made)
       .uses(uses);

@@ -203,37 +203,21 @@ TEST(BooleanPairs, TouchingSolidsComeOutRightInEveryPose) {
   EXPECT_GT(shifted, 24);  // shared edges at least
 }
 
-TEST(BooleanPairs, FilmsBetweenFacesThatCoincideButForRoundingAreLeftOutAndCounted) {
-  const auto number_before = [](const std::string& finding, const std::string& word) {
-    const std::size_t end = finding.find(word);
-    return end == std::string::npos ? -1 : std::stoi(finding.substr(finding.rfind(' ', end - 1) + 1));
-  };
-  // One box on a side of another, with little to roughen its face, and two, so that there are more films.
+TEST(BooleanPairs, FacesThatCoincideButForRoundingLeaveNoFilmInAnyPose) {
+  // One box on a side of another, with little to roughen its face, and two.
   const Triangles cube = shapes::box({0, 0, 0}, {2, 2, 2}), one = shapes::box({2, 0.25, 0.25}, {4, 0.5, 0.5}),
                   two = shapes::together(one, shapes::box({2, 1.25, 1.25}, {4, 1.75, 1.75}));
-  std::array<int, 3> told{};  // by the number of films: none, one, more
   for (int i = 0; i < 68; ++i) {
     // Turned only: a shift's rounding may exceed the last places of where it leads to.
     const glm::dmat4 motion(glm::dmat3(poses().at(static_cast<std::size_t>(i / 2))));
     const Booleans results =
         booleans(moved(solid_of(cube), motion), moved(solid_of(i % 2 ? two : one), motion));
-    int films = 0;
-    for (const std::string& finding : results.findings) {
-      EXPECT_EQ(finding.find(" 0 "), std::string::npos) << finding;
-      if (finding.rfind("the intersection is without", 0) != 0) continue;
-      films = std::max(number_before(finding, " film thinner"), number_before(finding, " films thinner"));
-      EXPECT_EQ(films == 1, finding.find(" film thinner") != std::string::npos) << finding;
-      EXPECT_EQ(results.intersection.value().mesh().n_faces(), 0u) << finding;
-    }
-    EXPECT_GE(films, 0);
+    for (const std::string& finding : results.findings)
+      EXPECT_EQ(finding.find("film"), std::string::npos) << i << ": " << finding;
+    EXPECT_EQ(results.intersection.value().mesh().n_faces(), 0u) << i;
     // The parts of `two` are apart: one must not be taken for inside because it all but touches.
     EXPECT_NEAR(volume_mm3(results.united.value()), i % 2 ? 8.625 : 8.125, 1e-12);
-    EXPECT_NEAR(volume_mm3(results.intersection.value()), 0.0, 1e-12);
-    ++told.at(static_cast<std::size_t>(std::min(films, 2)));
   }
-  EXPECT_GE(told[0], 48) << "axis-parallel faces coincide to the last place";
-  EXPECT_GT(told[1], 0);
-  EXPECT_GT(told[2], 0);
 }
 
 TEST(BooleanPairs, SurfacesARoundingApartEndAndAddUp) {

@@ -135,8 +135,8 @@ TEST(ImproveTetrahedra, FlatFacesOfTheSurfaceStayFlatWhereItsNodesHavePlay) {
   };
   const Tetrahedra given = cube;
   ImproveOptions options;
-  options.min_dihedral_deg = 50.0;
-  options.rounds = 2;
+  options.min_dihedral_deg = 60.0;
+  options.rounds = 4;
   options.surface_play_mm.assign(cube.boundary_nodes.size(), 0.3);
   improve(cube, options);
   std::size_t moved = 0;

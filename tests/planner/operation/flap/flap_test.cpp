@@ -121,7 +121,9 @@ TEST(FlapSteps, RefusalsPointAtThePlace) {
     const tests::ScratchFolder folder;
     try {
       parse_plan(
-          R"({"octotomy_plan": 1, "name": "f", "scans": {"ct": {"path": "a.nrrd"}}, "steps": [{"id": "a", )" +
+          R"({"octotomy_plan": 1, "name": "f", "scans": {"ct": {"path": "a.nrrd"}}, "steps": [
+              {"id": "p", "do": "window", "scan": "ct", "low": 0}, {"id": "q", "do": "window", "scan": "ct", "low": 0},
+              {"id": "a", )" +
               fields + "}]}",
           folder.path());
     } catch (const std::runtime_error& error) {
@@ -138,7 +140,7 @@ TEST(FlapSteps, RefusalsPointAtThePlace) {
             std::string::npos);
   EXPECT_NE(refusal(R"("do": "flap", "segments": [], "contacts": [], )" + same).find("segments"),
             std::string::npos);
-  const std::string two = R"("do": "flap", "segments": ["a", "b"], "contacts": ["c"], )";
+  const std::string two = R"("do": "flap", "segments": ["p", "q"], "contacts": ["p"], )";
   EXPECT_NE(refusal(two + same).find("must name 3 objects, one an osteotomy; without the last"),
             std::string::npos);
 }

@@ -62,7 +62,7 @@ TEST(ImportStep, AnUnknownFrameIsRefusedWhenThePlanIsRead) {
     ball_plan(folder, R"({"id": "block", "do": "import", "path": "block.stl", "frame": "up"})");
     FAIL() << "was taken";
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("'up' is no frame"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("'up' is not a frame"), std::string::npos) << error.what();
   }
 }
 

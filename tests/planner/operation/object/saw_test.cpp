@@ -50,7 +50,7 @@ TEST(SawStep, ALineOfOnePointOrWithoutDirectionIsRefused) {
             std::string::npos);
   EXPECT_NE(ball_refusal(folder, R"({"id": "s", "do": "saw", "object": "ball",
       "line_mm": [[0, 0, 0], [0, 9, 0]], "direction": [0, 1, 0]})")
-                .find("apart"),
+                .find("distinct"),
             std::string::npos);
 }
 
