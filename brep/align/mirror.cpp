@@ -216,7 +216,7 @@ std::vector<Tried> tried(const std::vector<MirrorPlane>& starts, const Cloud& cl
 /// A residual this many times that of the trials, which keep less of the surface, tells of samples without a
 /// counterpart.
 constexpr double far_worse() {
-  return 3.0;
+  return 5.0;
 }
 
 /// Reports a second plane that fits nearly as well.
