@@ -164,7 +164,8 @@ class Improving {
       play_mm_[tetrahedra.boundary_nodes[i]] =
           options.surface_play_mm.empty() ? 0.0 : options.surface_play_mm[i];
     if (std::any_of(options.surface_play_mm.begin(), options.surface_play_mm.end(),
-                    [](double play_mm) { return play_mm > 0.0; }))
+                    [](double play_mm) { return play_mm > 0.0; }) &&
+        options.keeps_flat)
       freedoms_ = freedoms_of(tetrahedra);
   }
 

@@ -258,6 +258,10 @@ void mend(Tetrahedra& made, const RegionMeshOptions& options) {
   improving.rounds = 30;
   improving.progress.stop = options.progress.stop;
   improve(made, improving);
+  // An element whose nodes all lie on a flat face can be mended off it alone.
+  improving.min_dihedral_deg = std::min(options.min_dihedral_deg, fit_dihedral_deg());
+  improving.keeps_flat = false;
+  if (quality(made).min_dihedral_deg < improving.min_dihedral_deg) improve(made, improving);
   made.boundary_nodes = std::move(outer);
 }
 

@@ -162,6 +162,8 @@ std::optional<OneSurface> one_surface(const brep::Triangles& given, const brep::
     joined = brep::repair(given, options).surface;
   }
   if (is_split) joined = brep::joined_surface(std::move(joined)).surface;
+  // Merged points may be where shells touch.
+  if (is_split) joined = brep::split_fans(joined).surface;
   const brep::Health now = is_split ? brep::health(joined, {.self_intersections = false}) : health;
   if (!now.closed || !now.manifold || now.misoriented_edges > 0 || now.shells > most_united)
     return std::nullopt;

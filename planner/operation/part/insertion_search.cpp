@@ -114,7 +114,7 @@ Operation insertion_search_operation() {
       .takes(field("step_deg", &InsertionSearch::step_deg, "The angle between neighbouring directions.")
                  .from(1.0)
                  .to(45.0))
-      .example(R"({"id": "way_in", "do": "insertion_search", "object": "teeth", "direction": [0, 0, 1],
+      .example(R"({"id": "way_in", "do": "insertion_search", "object": "maxilla", "direction": [0, 0, 1],
         "within_deg": 20, "step_deg": 5})")
       .of_head()
       .check(check)

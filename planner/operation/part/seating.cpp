@@ -151,7 +151,7 @@ Operation seating_operation() {
                 "on.")
               .from(0.0)
               .to(2.0))
-      .example(R"({"id": "goes_on", "do": "seating", "object": "guide", "against": ["mandible"],
+      .example(R"({"id": "goes_on", "do": "seating", "object": "advanced", "against": ["rest"],
         "direction": [0, 1, 0]})")
       .of_head()
       .check(check)

@@ -203,7 +203,7 @@ Operation shadow_operation() {
                    "that a part snaps on, for example 0.12. Default: none is tolerated.")
                  .greater_than(0.0)
                  .to(2.0))
-      .example(R"({"id": "blocked", "do": "shadow", "object": "teeth", "direction": [0, 0, 1]})")
+      .example(R"({"id": "blocked", "do": "shadow", "object": "maxilla", "direction": [0, 0, 1]})")
       .on_files(
           "octotomy shadow teeth.stl --direction 0,0,1 -o blocked.stl\n"
           "  octotomy shadow skull.stl --seen-from anterior --beyond 5 -o blocked.ply --json")

@@ -3,7 +3,6 @@
 
 #include "brep/io/write_mesh.h"
 #include "convert/deck/calculix_result.h"
-#include "planner/operation/table/comma_numbers.h"
 #include "tests/brep/shapes.h"
 #include "tests/file_bytes.h"
 #include "tests/planner/cli/program/command_line.h"
@@ -43,29 +42,6 @@ TEST_F(NodeSets, OfPlanesBallsPointsLandmarksAndMeshesHoldTheirNodesAlone) {
   const std::string deck = tests::bytes_of(folder_ / "column.inp");
   EXPECT_NE(deck.find("*NSET, NSET=MARK\n"), std::string::npos);
   EXPECT_EQ(deck.find("*STEP"), std::string::npos) << "nothing is prescribed";
-}
-
-TEST_F(NodeSets, OfAnEndOfMesh3ThePlaneHoldsNoNodesOfTheSides) {
-  const CommandAnswer answer = run("tet " + at("column.off") + " --mesher mesh3 --max-volume 4 -o " +
-                                   at("column.inp") + " --json --nodes LOW=0,0,0,0,0,1");
-  ASSERT_EQ(answer.status, 0) << answer.errors;
-  const std::string deck = tests::bytes_of(folder_ / "column.inp");
-  const auto numbers_of = [&](const std::string& card) {
-    std::vector<std::vector<double>> rows;
-    std::istringstream lines(deck.substr(deck.find(card)));
-    std::string line;
-    std::getline(lines, line);
-    while (std::getline(lines, line) && line[0] != '*') rows.push_back(comma_numbers(line));
-    return rows;
-  };
-  const std::vector<std::vector<double>> nodes = numbers_of("*NODE, NSET=NSOLID\n");
-  std::size_t count = 0;
-  for (const std::vector<double>& row : numbers_of("*NSET, NSET=LOW\n"))
-    for (const double number : row) {
-      ++count;
-      EXPECT_LT(std::abs(nodes.at(static_cast<std::size_t>(number) - 1).at(3)), 0.3) << number;
-    }
-  EXPECT_GE(count, 9U);
 }
 
 TEST_F(NodeSets, WhatNamesNoPlaceOrNoMotionIsRefusedByName) {
