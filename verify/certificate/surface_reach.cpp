@@ -3,13 +3,16 @@
 // 1 Samples. The vertices, and points of each side and triangle on a regular grid of barycentric weights. A
 //   vertex belongs to the first triangle that has it, a side to the one that passes it from its smaller
 //   vertex to its larger one.
-// 2 Distances. Each sample's distance to the other surface, up to some multiples of the reach. Samples beyond
-//   that are far; the exact distance is computed for some of them, evenly through their order.
+// 2 Distances. Each sample's distance to the other surface, up to some multiples of the reach. A search ends
+//   where the sample is surely nearer than one before it, of whatever thread: only the largest distance and
+//   the first sample that has it are told. Samples beyond the multiples are far; the exact distance is
+//   computed for some of them, evenly through their order.
 // 3 Border. The answer is cut at the world's border. Its samples on the border have no counterpart, and
 //   neither do the surface's samples that are no farther from it than the comparison allows.
 #include "verify/certificate/surface_reach.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -77,19 +80,28 @@ void for_samples(const brep::Triangles& mesh, const std::vector<std::uint32_t>& 
   if (steps == 2) visit((a + b + c) / 3.0);
 }
 
+/// Raises a number that several threads raise.
+void raise(std::atomic<double>& number, double to) {
+  double now = number.load(std::memory_order_relaxed);
+  while (now < to && !number.compare_exchange_weak(now, to, std::memory_order_relaxed)) {
+  }
+}
+
 /// The sample that is farthest from a surface, of those that `counts`.
 FarSample farthest(const brep::Triangles& mesh, const TriangleGrid& from, double spacing_mm, double search_mm,
                    const std::function<bool(const glm::dvec3&)>& counts, const voxel::Progress& progress) {
   constexpr std::size_t some = 1024;
   const std::vector<std::uint32_t> first = first_faces(mesh);
   std::vector<FarSample> of_face(mesh.faces.size());
+  std::atomic<double> largest_mm{0.0};  // so far; the largest is not below it
   voxel::SharedProgress done(progress, mesh.faces.size() / some + 1);
   tbb::parallel_for(std::size_t{0}, mesh.faces.size() / some + 1, [&](std::size_t part) {
     if (progress.stop.stop_requested()) return;
     for (std::size_t face = part * some; face < std::min(of_face.size(), (part + 1) * some); ++face)
       for_samples(mesh, first, face, spacing_mm, [&](const glm::dvec3& p_mm) {
         if (!counts(p_mm)) return;
-        const auto foot = from.nearest(p_mm, search_mm);
+        const auto foot = from.nearest(p_mm, search_mm, largest_mm.load(std::memory_order_relaxed));
+        if (foot) raise(largest_mm, foot->distance_mm);
         of_face[face].take({foot ? foot->distance_mm : std::numeric_limits<double>::infinity(), p_mm});
       });
     done.one_more();

@@ -62,6 +62,18 @@ bool crosses(const glm::dvec3& p, glm::dvec3 a, glm::dvec3 b) {
   return p.z < a.z + (p.y - a.y) / (b.y - a.y) * (b.z - a.z);
 }
 
+/// A distance to a box of triangles beyond which none of them is computed to be within `mm`. Coordinates and
+/// what is computed of them are accurate to some 2^-50 of the largest; boxes lie within a cell's length of the
+/// point's distance to them.
+double surely_beyond_mm(double mm, const glm::dvec3& p_mm) {
+  return mm + 0x1p-40 * (mm + 1.0 + std::abs(p_mm.x) + std::abs(p_mm.y) + std::abs(p_mm.z));
+}
+
+double distance_to_box_mm(const glm::dvec3& p, const Corners& t) {
+  const glm::dvec3 low = glm::min(glm::min(t.a, t.b), t.c), high = glm::max(glm::max(t.a, t.b), t.c);
+  return glm::length(glm::max(glm::max(low - p, p - high), glm::dvec3(0.0)));
+}
+
 std::vector<BoxGrid::Box> boxes_of(const brep::Triangles& triangles) {
   std::vector<BoxGrid::Box> boxes(triangles.faces.size());
   for (std::size_t face = 0; face < boxes.size(); ++face) {
@@ -136,6 +148,11 @@ bool BoxGrid::has(const glm::ivec3& cell) const {
   return glm::all(glm::greaterThanEqual(cell, glm::ivec3(0))) && glm::all(glm::lessThan(cell, dims_));
 }
 
+double BoxGrid::distance_mm(const glm::ivec3& cell, const glm::dvec3& p_mm) const {
+  const glm::dvec3 from_mm = low_mm_ + glm::dvec3(cell) * cell_mm_;
+  return glm::length(glm::max(glm::max(from_mm - p_mm, p_mm - (from_mm + cell_mm_)), glm::dvec3(0.0)));
+}
+
 std::size_t BoxGrid::index(const glm::ivec3& cell) const {
   return static_cast<std::size_t>(cell.x) +
          static_cast<std::size_t>(dims_.x) *
@@ -152,8 +169,9 @@ TriangleGrid::TriangleGrid(brep::Triangles triangles) : triangles_(std::move(tri
 }
 
 // Cells are read in shells about the point's own. A triangle of no shell up to the n-th is n cells away or
-// more.
-std::optional<TriangleGrid::Foot> TriangleGrid::nearest(const glm::dvec3& p_mm, double most_mm) const {
+// more. Cells and triangles' boxes beyond the least distance so far are passed over.
+std::optional<TriangleGrid::Foot> TriangleGrid::nearest(const glm::dvec3& p_mm, double most_mm,
+                                                        double enough_mm) const {
   if (cells_.empty() || !(most_mm >= 0.0)) return std::nullopt;
   const glm::ivec3 at = cells_.cell_of(p_mm), dims = cells_.dims();
   // The first shell that meets the grid, and the last one.
@@ -161,19 +179,22 @@ std::optional<TriangleGrid::Foot> TriangleGrid::nearest(const glm::dvec3& p_mm, 
   const int first = std::max({before.x, before.y, before.z, 0});
   const int last = std::max({beyond.x, beyond.y, beyond.z});
   Foot best{std::numeric_limits<double>::infinity()};
-  const auto read = [&](const glm::ivec3& cell) {
-    cells_.any_in(cell, [&](std::uint32_t face) {
+  double beyond_mm = surely_beyond_mm(most_mm, p_mm);
+  const auto reads_enough = [&](const glm::ivec3& cell) {
+    if (cells_.distance_mm(cell, p_mm) > beyond_mm) return false;
+    return cells_.any_in(cell, [&](std::uint32_t face) {
       const Corners t = corners_of(triangles_, face);
+      if (distance_to_box_mm(p_mm, t) > beyond_mm) return false;
       const glm::dvec3 weights = weights_at(p_mm, t);
       const double distance_mm = distance_at(weights, p_mm, t);
-      if (distance_mm < best.distance_mm || (distance_mm == best.distance_mm && face < best.face))
+      if (distance_mm < best.distance_mm || (distance_mm == best.distance_mm && face < best.face)) {
         best = {distance_mm, face, weights};
-      return false;
+        beyond_mm = surely_beyond_mm(std::min(most_mm, distance_mm), p_mm);
+      }
+      return distance_mm < enough_mm;
     });
   };
-  for (int shell = first; shell <= last; ++shell) {
-    const double passed_mm = (shell - 1) * cells_.cell_mm();
-    if (passed_mm > most_mm || passed_mm > best.distance_mm) break;
+  const auto reads_enough_of = [&](int shell) {
     const glm::ivec3 from = glm::max(at - shell, glm::ivec3(0)), to = glm::min(at + shell, dims - 1);
     for (int z = from.z; z <= to.z; ++z)
       for (int y = from.y; y <= to.y; ++y) {
@@ -181,8 +202,13 @@ std::optional<TriangleGrid::Foot> TriangleGrid::nearest(const glm::dvec3& p_mm, 
         const int step = is_whole_row || shell == 0 ? 1 : 2 * shell;
         for (int x = is_whole_row ? from.x : at.x - shell; x <= (is_whole_row ? to.x : at.x + shell);
              x += step)
-          if (cells_.has({x, y, z})) read({x, y, z});
+          if (cells_.has({x, y, z}) && reads_enough({x, y, z})) return true;
       }
+    return false;
+  };
+  for (int shell = first; shell <= last; ++shell) {
+    const double passed_mm = (shell - 1) * cells_.cell_mm();
+    if (passed_mm > most_mm || passed_mm > best.distance_mm || reads_enough_of(shell)) break;
   }
   if (!(best.distance_mm <= most_mm)) return std::nullopt;
   return best;
@@ -192,12 +218,14 @@ bool TriangleGrid::has_within(const glm::dvec3& p_mm, double reach_mm) const {
   if (cells_.empty() || !(reach_mm >= 0.0)) return false;
   const glm::ivec3 from = glm::max(cells_.cell_of(p_mm - reach_mm), glm::ivec3(0)),
                    to = glm::min(cells_.cell_of(p_mm + reach_mm), cells_.dims() - 1);
+  const double beyond_mm = surely_beyond_mm(reach_mm, p_mm);
   for (int z = from.z; z <= to.z; ++z)
     for (int y = from.y; y <= to.y; ++y)
       for (int x = from.x; x <= to.x; ++x)
         if (cells_.any_in({x, y, z}, [&](std::uint32_t face) {
               const Corners t = corners_of(triangles_, face);
-              return distance_at(weights_at(p_mm, t), p_mm, t) <= reach_mm;
+              return distance_to_box_mm(p_mm, t) <= beyond_mm &&
+                     distance_at(weights_at(p_mm, t), p_mm, t) <= reach_mm;
             }))
           return true;
   return false;

@@ -28,6 +28,8 @@ class BoxGrid {
   /// The cell of a point; a point beside the grid has a cell beside it.
   glm::ivec3 cell_of(const glm::dvec3& p_mm) const;
   bool has(const glm::ivec3& cell) const;
+  /// The distance of a point to a cell, up to rounding.
+  double distance_mm(const glm::ivec3& cell, const glm::dvec3& p_mm) const;
   /// Calls `visit` with the number of each box that overlaps a cell of the grid. Stops where that returns
   /// true.
   template <typename Visit>
@@ -60,8 +62,9 @@ class TriangleGrid {
     std::uint32_t face = 0;
     glm::dvec3 weights{0.0};  ///< of the face's corners
   };
-  /// None if all triangles are farther away than `most_mm`.
-  std::optional<Foot> nearest(const glm::dvec3& p_mm, double most_mm) const;
+  /// None if all triangles are farther away than `most_mm`. The search ends at the first distance below
+  /// `enough_mm`, which need not be the least.
+  std::optional<Foot> nearest(const glm::dvec3& p_mm, double most_mm, double enough_mm = 0.0) const;
   bool has_within(const glm::dvec3& p_mm, double reach_mm) const;
   /// Whether a ray along x from the point crosses an odd number of triangles. A crossing through an edge or a
   /// corner counts once. Precondition: the surface is closed.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "verify/witness/triangle_grid.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "brep/mesh/distance.h"
 #include "brep/mesh/solid.h"
@@ -64,6 +66,55 @@ TEST(TriangleGrid, AgreesWithTheSearchTreeOnATorusAndFarFromIt) {
     inside += is_inside ? 1 : 0;
   }
   EXPECT_GT(inside, 50);
+}
+
+TEST(TriangleGrid, ASearchThatMayEndEarlyEndsBelowWhatIsEnoughOrAtTheLeast) {
+  const TriangleGrid grid(brep::shapes::torus(10.0, 3.0, 48, 24));
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> coordinate(-16.0, 16.0);
+  int early = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const glm::dvec3 p(coordinate(random), coordinate(random), 0.3 * coordinate(random));
+    const auto least = grid.nearest(p, any_distance_mm), any = grid.nearest(p, any_distance_mm, 2.0);
+    ASSERT_TRUE(least && any);
+    EXPECT_GE(any->distance_mm, least->distance_mm);
+    if (least->distance_mm < 2.0) {
+      EXPECT_LT(any->distance_mm, 2.0);
+      early += any->distance_mm > least->distance_mm;
+      continue;
+    }
+    EXPECT_EQ(any->distance_mm, least->distance_mm);
+    EXPECT_EQ(any->face, least->face);
+    EXPECT_EQ(any->weights, least->weights);
+  }
+  EXPECT_GT(early, 50);
+}
+
+TEST(TriangleGrid, NoTriangleThatIsPassedOverIsNearer) {
+  const brep::Triangles torus = brep::shapes::torus(10.0, 3.0, 24, 12);
+  const TriangleGrid grid(torus);
+  std::vector<TriangleGrid> alone;  // one triangle each: nothing is passed over
+  for (const auto& face : torus.faces) alone.emplace_back(brep::Triangles{torus.points_mm, {face}});
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> coordinate(-16.0, 16.0);
+  for (std::size_t i = 0; i < 300; ++i) {
+    // Corners as well, where several triangles are equally near.
+    const glm::dvec3 p =
+        i < 100 ? torus.points_mm[i] : glm::dvec3(coordinate(random), coordinate(random), coordinate(random));
+    TriangleGrid::Foot least{any_distance_mm};
+    for (std::uint32_t face = 0; face < alone.size(); ++face)
+      if (const auto foot = alone[face].nearest(p, any_distance_mm); foot->distance_mm < least.distance_mm)
+        least = {foot->distance_mm, face, foot->weights};
+    const auto found = grid.nearest(p, any_distance_mm);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->distance_mm, least.distance_mm);
+    EXPECT_EQ(found->face, least.face);
+    EXPECT_EQ(found->weights, least.weights);
+    EXPECT_TRUE(grid.has_within(p, least.distance_mm));
+    if (least.distance_mm > 0.0) {
+      EXPECT_FALSE(grid.has_within(p, std::nextafter(least.distance_mm, 0.0)));
+    }
+  }
 }
 
 TEST(TriangleGrid, NothingIsNearNoTriangles) {
