@@ -418,7 +418,7 @@ class Evaluator {
     }
     if (object.ends_with_universe) {
       object.mesh.whole = object.mesh.within;
-      object.witness = verify::both(object.witness, verify::witness_of_box(box_));
+      object.witness = verify::cut_by_box(object.witness, box_);
     }
     if (options_.cache != nullptr && !options_.only_look_up) options_.cache->keep(key_of(step), object);
     result_.objects.add(std::move(object));

@@ -24,6 +24,8 @@
 #include <utility>
 #include <vector>
 
+#include "verify/witness/witness.h"
+
 namespace octotomy::verify {
 namespace {
 
@@ -47,12 +49,14 @@ std::vector<std::vector<std::uint32_t>> neighbours_of(const brep::Triangles& tri
   return neighbours;
 }
 
-/// Copies share what was made.
+/// Copies share what was made. Where a box cuts the object, `cut` reads its points.
 class ReshapedReader {
  public:
   explicit ReshapedReader(std::function<Reshaped()> make) : state_(std::make_shared<State>()) {
     state_->make = std::move(make);
   }
+
+  ReshapedReader(const ReshapedReader& whole, Witness cut) : state_(whole.state_), cut_(std::move(cut)) {}
 
   const Reshaped& made() const {
     std::call_once(state_->once, [this] {
@@ -64,6 +68,7 @@ class ReshapedReader {
   }
 
   Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked) const {
+    if (cut_) return cut_(p_mm, slack_mm, asked);
     const Reshaped& by = made();
     if (by.sides) {
       // The voxels are digitised triangles, so that the mesh's word holds for both kernels.
@@ -87,12 +92,24 @@ class ReshapedReader {
     std::optional<Reshaped> made;
   };
   std::shared_ptr<State> state_;
+  Witness cut_;
 };
 
 }  // namespace
 
 Witness witness_of_reshaped(std::function<Reshaped()> make) {
   return ReshapedReader(std::move(make));
+}
+
+Witness cut_by_box(const Witness& whole, const voxel::Box& box) {
+  Witness cut = both(whole, witness_of_box(box));
+  const auto* reader = whole.reader<ReshapedReader>();
+  if (reader == nullptr) return cut;
+  LineReading lines = cut.lines();
+  std::vector<PartChoice> choices = cut.choices();
+  return Witness(ReshapedReader(*reader, std::move(cut)))
+      .with_lines(std::move(lines))
+      .with_choices(std::move(choices));
 }
 
 bool is_reshaped(const Witness& witness) {

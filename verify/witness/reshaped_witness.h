@@ -7,6 +7,7 @@
 #include "brep/mesh/triangles.h"
 #include "verify/witness/reading.h"
 #include "verify/witness/triangle_grid.h"
+#include "voxel/space/lattice.h"
 
 // Witnesses of objects whose surface one step made of another object's surface.
 namespace octotomy::verify {
@@ -33,6 +34,11 @@ struct Reshaped {
 /// or expected_surface(), once, from any thread. Preconditions: the surface is closed; `make` does not read
 /// this witness. Cost of a reading: some triangles of the surface.
 Witness witness_of_reshaped(std::function<Reshaped()> make);
+
+/// The object where it lies in a box. Such a witness stays one, with the surface that the step made, so that
+/// an object that ends at its universe's border is judged as one that does not. Of any other witness it is
+/// both() with the box.
+Witness cut_by_box(const Witness& whole, const voxel::Box& box);
 
 /// Whether a witness is such a one, and not a Boolean or a motion of others.
 bool is_reshaped(const Witness& witness);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -11,10 +12,15 @@
 namespace octotomy::tests {
 
 constexpr double ball_radius_mm = 20.0;
+/// Of balls for tests that certify many answers: an eighth of the voxels.
+constexpr double small_radius_mm = 10.0;
 
-/// A plan on a ball of 20 mm about the origin, in voxels of 1 mm: the object "ball", then the steps.
-inline planner::Plan ball_plan(const ScratchFolder& folder, const std::string& steps) {
-  voxel::write_scene(ball_scene(ball_radius_mm), folder / "ball.nrrd");
+/// A plan on a ball about the origin, in voxels of 1 mm: the object "ball", then the steps. The scan is 3.2
+/// radii a side.
+inline planner::Plan ball_plan(const ScratchFolder& folder, const std::string& steps,
+                               double radius_mm = ball_radius_mm) {
+  voxel::write_scene(ball_scene(radius_mm, static_cast<int>(std::lround(3.2 * radius_mm))),
+                     folder / "ball.nrrd");
   return planner::parse_plan(R"({"octotomy_plan": 1, "name": "ball", "scans": {"ct": {"path": "ball.nrrd"}},
       "universe": {"voxel_mm": 1.0}, "steps": [{"id": "ball", "do": "window", "scan": "ct", "low": 0}, )" +
                                  steps + "]}",

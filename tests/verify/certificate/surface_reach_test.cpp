@@ -199,5 +199,25 @@ TEST_F(ReshapedBalls, ReadsOnceAndIsNoneOfItsCopiesUnderABoolean) {
   EXPECT_FALSE(is_reshaped(Witness()));
 }
 
+TEST_F(ReshapedBalls, CutByABoxItIsReadAsBothAndKeepsItsSurface) {
+  const Witness whole = decimation(0.1);
+  const voxel::Box world{glm::dvec3(-30.0), {30.0, 30.0, 6.0}};
+  const Witness with_box = both(whole, witness_of_box(world)), cut = cut_by_box(whole, world);
+  for (double z = -13.0; z < 13.0; z += 0.25) {
+    const Reading expected = with_box({0, 0, z}, 0.1), read = cut({0, 0, z}, 0.1);
+    EXPECT_EQ(read.mesh, expected.mesh) << z;
+    EXPECT_EQ(read.voxel, expected.voxel) << z;
+    EXPECT_EQ(read.surfaces, expected.surfaces) << z;
+  }
+  EXPECT_EQ(cut.words({0, 0, 9.0}).mesh, certainly_out);
+  EXPECT_EQ(whole.words({0, 0, 9.0}).mesh, certainly_in);
+  const Witness again = cut_by_box(cut, world);
+  ASSERT_TRUE(is_reshaped(cut) && is_reshaped(again));
+  EXPECT_EQ(&expected_surface(cut), &expected_surface(whole));
+  EXPECT_EQ(&expected_surface(again), &expected_surface(whole));
+  EXPECT_FALSE(is_reshaped(cut_by_box(with_box, world)));
+  EXPECT_FALSE(cut_by_box(Witness(), world));
+}
+
 }  // namespace
 }  // namespace octotomy::verify

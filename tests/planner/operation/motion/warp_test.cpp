@@ -14,10 +14,10 @@ namespace {
 
 using namespace tests;
 
-/// CalculiX's result of a ball of elements of 26 mm about the origin that bends and stretches by millimetres.
+/// CalculiX's result of a ball of elements of 13 mm about the origin that bends and stretches by millimetres.
 void write_frd(const std::filesystem::path& path, double share) {
   const convert::Tetrahedra elements = convert::tetrahedra_of(
-      voxel::combine(universe_about_origin(6), voxel::Expression(voxel::Sphere{{0, 0, 0}, 26.0})));
+      voxel::combine(universe_about_origin(5), voxel::Expression(voxel::Sphere{{0, 0, 0}, 13.0})));
   std::ofstream out(path);
   char line[120];
   const auto put = [&](const char* head, std::size_t node, const glm::dvec3& p) {
@@ -41,7 +41,7 @@ void write_frd(const std::filesystem::path& path, double share) {
          " -4  DISP        4    1\n -5  D1          1    2    1    0\n -5  D2          1    2    2    0\n"
          " -5  D3          1    2    3    0\n -5  ALL         1    2    0    0    1ALL\n";
   for (std::size_t i = 0; i < elements.nodes_mm.size(); ++i) {
-    const glm::dvec3 q = elements.nodes_mm[i] / 26.0;
+    const glm::dvec3 q = elements.nodes_mm[i] / 13.0;
     put("-1", i + 1, share * glm::dvec3(1.5 + 1.6 * q.y * q.y, -1.0 + 1.8 * q.z, 1.4 * q.x * q.y + q.x));
   }
   out << " -3\n 9999\n";
@@ -55,9 +55,10 @@ TEST(WarpStep, TheCertificateMovesPointsBackAndWarnsThatOneKernelMadeIt) {
       {"id": "face", "do": "warp", "object": "ball", "result": "solved.frd"},
       {"id": "more", "do": "warp", "object": "ball", "result": "other.frd"},
       {"id": "half", "do": "mask", "regions": [{"view": "anterior",
-        "polygons_mm": [[[-30, -30], [30, -30], [30, 15], [-30, 15]]]}]},
+        "polygons_mm": [[[-15, -15], [15, -15], [15, 7.5], [-15, 7.5]]]}]},
       {"id": "part_lost", "do": "combine", "expression": "ball & half"},
-      {"id": "wider", "do": "offset", "object": "ball", "by_mm": 1})"));
+      {"id": "wider", "do": "offset", "object": "ball", "by_mm": 1})",
+                                                   small_radius_mm));
   const Object& face = evaluation.object("face");
   expect_not_independent(face, face.mesh.within->measures().volume_mm3, 0.01);
   EXPECT_EQ(face.certificate->reasons.size(), 1U) << testing::PrintToString(face.certificate->reasons);

@@ -24,15 +24,15 @@ TEST(DecimateStep, APartLostASurfacePushedOutAndNothingFail) {
   const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "top", "do": "mask", "regions": [{"view": "anterior",
-          "polygons_mm": [[[-30, 12], [30, 12], [30, 30], [-30, 30]]]}]},
+          "polygons_mm": [[[-15, 7], [15, 7], [15, 15], [-15, 15]]]}]},
       {"id": "bottom", "do": "mask", "regions": [{"view": "anterior",
-          "polygons_mm": [[[-30, 8], [30, 8], [30, -30], [-30, -30]]]}]},
-      {"id": "two", "do": "combine", "expression": "ball & top | ball & bottom"
-},
+          "polygons_mm": [[[-15, 4], [15, 4], [15, -15], [-15, -15]]]}]},
+      {"id": "two", "do": "combine", "expression": "ball & top | ball & bottom"},
       {"id": "light", "do": "decimate", "object": "two", "max_error_mm": 0.1},
       {"id": "without_top", "do": "combine", "expression": "light & bottom"},
       {"id": "wider", "do": "offset", "object": "light", "by_mm": 1},
-      {"id": "moved", "do": "move", "object": "light", "translate_mm": [1, 0, 0]})"));
+      {"id": "moved", "do": "move", "object": "light", "translate_mm": [1, 0, 0]})",
+                                                   small_radius_mm));
   const verify::Certificate& certificate = *evaluation.object("light").certificate;
   EXPECT_EQ(verify::to_string(certificate.verdict), "WARN") << testing::PrintToString(certificate.reasons);
   // A layer of four times the error could go unseen.

@@ -31,10 +31,11 @@ TEST(SmoothStep, APartLostASurfacePushedOutAndNothingFail) {
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "even", "do": "smooth", "object": "ball", "rounds": 5},
       {"id": "bottom", "do": "mask", "regions": [{"view": "anterior",
-          "polygons_mm": [[[-30, 15], [30, 15], [30, -30], [-30, -30]]]}]},
+          "polygons_mm": [[[-15, 7.5], [15, 7.5], [15, -15], [-15, -15]]]}]},
       {"id": "without_top", "do": "combine", "expression": "ball & bottom"},
       {"id": "wider", "do": "offset", "object": "ball", "by_mm": 1},
-      {"id": "moved", "do": "move", "object": "ball", "translate_mm": [0.5, 0, 0]})"));
+      {"id": "moved", "do": "move", "object": "ball", "translate_mm": [0.5, 0, 0]})",
+                                                   small_radius_mm));
   for (const char* by : {"without_top", "wider", "moved", ""}) expect_fails_as(evaluation, "even", by);
 }
 
