@@ -35,6 +35,9 @@ class CollapsedMesh : public Mesh {
   /// Returns a collapse's error; negative if it is too large.
   std::function<float(OpenMesh::HalfedgeHandle)> error_of;
 
+  /// The edge that is tested next is no other's successor in turn.
+  void start_anew() { next_in_turn_.invalidate(); }
+
   /// The error of the collapse that was tested last.
   float error() const { return error_; }
   /// Records that this collapse is allowed.
@@ -81,7 +84,10 @@ class CollapsedMesh : public Mesh {
   float least_error_ = std::numeric_limits<float>::infinity();
 };
 
-using Decimater = OpenMesh::Decimater::DecimaterT<CollapsedMesh>;
+/// A vertex that goes, and the one that takes its place.
+struct Collapse {
+  OpenMesh::VertexHandle from, to;
+};
 
 /// The planes about a vertex that may each be as far from it as the error, of triangles of mean area. Of the
 /// six about a vertex most are nearer; the surface that comes of it is measured, see decimate().
@@ -102,6 +108,8 @@ class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
     };
   }
 
+  std::vector<Collapse> made;  ///< in their order
+
   void limit(const DecimateOptions& options, double mean_mm2) {
     // The library keeps errors as floats, and weighs each plane's squared distance by its triangle's area.
     constexpr double largest = 1e37;
@@ -114,7 +122,10 @@ class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
     Error::initialize();
     aspect_.initialize();
   }
-  void preprocess_collapse(const CollapseInfo& collapse) override { aspect_.preprocess_collapse(collapse); }
+  void preprocess_collapse(const CollapseInfo& collapse) override {
+    made.push_back({collapse.v0, collapse.v1});
+    aspect_.preprocess_collapse(collapse);
+  }
   float collapse_priority(const CollapseInfo& collapse) override {
     // OpenMesh has called is_collapse_ok() for this collapse just before.
     const float error = mesh().error();
@@ -129,6 +140,27 @@ class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
  private:
   OpenMesh::Decimater::ModNormalFlippingT<CollapsedMesh> normals_;
   OpenMesh::Decimater::ModAspectRatioT<CollapsedMesh> aspect_;
+};
+
+class Decimater : public OpenMesh::Decimater::DecimaterT<CollapsedMesh> {
+ public:
+  explicit Decimater(CollapsedMesh& mesh) : BaseDecimaterT(mesh), DecimaterT(mesh) {}
+
+  /// Makes those of the collapses that may still be, in their order.
+  void make_again(const std::vector<Collapse>& collapses) {
+    for (const auto& [from, to] : collapses) {
+      if (mesh().status(from).locked()) continue;
+      const OpenMesh::HalfedgeHandle edge = mesh().find_halfedge(from, to);
+      if (!edge.is_valid()) continue;
+      OpenMesh::Decimater::CollapseInfoT<CollapsedMesh> collapse(mesh(), edge);
+      mesh().start_anew();
+      if (!is_collapse_legal(collapse) || collapse_priority(collapse) < 0.0F) continue;
+      preprocess_collapse(collapse);
+      mesh().collapse(edge);
+      for (const auto face : mesh().vf_range(to)) mesh().set_normal(face, mesh().calc_face_normal(face));
+      postprocess_collapse(collapse);
+    }
+  }
 };
 
 /// Vertices of the original mesh are locked within this multiple of the extent of a triangle that intersects
@@ -156,8 +188,16 @@ std::vector<bool> border_of(const Mesh& mesh) {
   return locked;
 }
 
-Mesh round_of_collapses(const Mesh& mesh, double mean_mm2, const DecimateOptions& options,
-                        const std::vector<bool>& locked) {
+/// A mesh and how it came about.
+struct Coarse {
+  Mesh mesh;
+  std::vector<Collapse> collapses;            ///< of the given mesh's vertices
+  std::vector<OpenMesh::VertexHandle> given;  ///< the vertex of the given mesh that each one is
+};
+
+/// Makes `before` again as far as it may be, or looks for collapses where there are none before.
+Coarse round_of_collapses(const Mesh& mesh, double mean_mm2, const DecimateOptions& options,
+                          const std::vector<bool>& locked, const std::vector<Collapse>& before) {
   CollapsedMesh coarse(mesh);
   coarse.request_face_normals();
   coarse.update_face_normals();
@@ -170,12 +210,45 @@ Mesh round_of_collapses(const Mesh& mesh, double mean_mm2, const DecimateOptions
   decimater.add(collapses);
   decimater.module(collapses).limit(options, mean_mm2);
   decimater.initialize();
-  decimater.decimate_to_faces(0, options.faces.value_or(0));
+  if (before.empty())
+    decimater.decimate_to_faces(0, options.faces.value_or(0));
+  else
+    decimater.make_again(before);
 
+  // The library's own record of where vertices go is a map and slow.
+  OpenMesh::VPropHandleT<OpenMesh::VertexHandle> was;
+  coarse.add_property(was);
+  for (std::size_t v = 0; v < coarse.n_vertices(); ++v) {
+    const OpenMesh::VertexHandle vertex(static_cast<int>(v));
+    coarse.property(was, vertex) = vertex;
+  }
   coarse.garbage_collection();
+  std::vector<OpenMesh::VertexHandle> given;
+  given.reserve(coarse.n_vertices());
+  for (const auto vertex : coarse.vertices()) given.push_back(coarse.property(was, vertex));
+  coarse.remove_property(was);
   for (const auto vertex : coarse.vertices()) coarse.status(vertex).set_locked(false);
   coarse.release_face_normals();
-  return coarse;
+  return {coarse, decimater.module(collapses).made, std::move(given)};
+}
+
+/// Locks the vertices that went into a corner of some triangles. Returns the number of newly locked ones.
+std::size_t lock_what_went_into(const std::vector<std::uint32_t>& faces, const Coarse& coarse,
+                                std::vector<bool>& locked) {
+  std::vector<bool> is_corner(locked.size(), false);
+  for (const std::uint32_t face : faces)
+    for (const auto corner : coarse.mesh.fv_range(OpenMesh::FaceHandle(static_cast<int>(face))))
+      is_corner[static_cast<std::size_t>(coarse.given[static_cast<std::size_t>(corner.idx())].idx())] = true;
+  std::size_t count = 0;
+  // Backwards: where a vertex went on to is known before it.
+  for (auto collapse = coarse.collapses.rbegin(); collapse != coarse.collapses.rend(); ++collapse) {
+    const auto from = static_cast<std::size_t>(collapse->from.idx());
+    if (!is_corner[static_cast<std::size_t>(collapse->to.idx())]) continue;
+    is_corner[from] = true;
+    count += !locked[from];
+    locked[from] = true;
+  }
+  return count;
 }
 
 /// Locks the vertices of `mesh` around a triangle of `coarse`. Returns the number of newly locked vertices.
@@ -207,7 +280,7 @@ class Given {
   }
 
   FarPlaces far_places_of(const Mesh& coarse) const {
-    return tree_ ? far_places(surface_, *tree_, triangles_of(coarse), limit_mm_) : FarPlaces{};
+    return tree_ ? far_places(surface_, *tree_, triangles_of(coarse), limit_mm_, limit_mm_) : FarPlaces{};
   }
 
  private:
@@ -226,28 +299,28 @@ Mesh decimate(const Mesh& mesh, const DecimateOptions& options) {
   std::vector<bool> locked = border_of(mesh);
   DecimateOptions now = options;
   std::size_t intersections = 0;
+  std::vector<Collapse> before;
   for (int round = 0; round < options.max_rounds; ++round) {
-    Mesh coarse = round_of_collapses(mesh, mean_mm2, now, locked);
-    const Health found = health(coarse);
+    Coarse coarse = round_of_collapses(mesh, mean_mm2, now, locked, before);
+    const Health found = health(coarse.mesh);
     intersections = found.self_intersections;
     std::size_t more = 0;
     if (intersections == 0) {
-      const FarPlaces far = given.far_places_of(coarse);
-      if (far.given_points.empty()) return coarse;
+      const FarPlaces far = given.far_places_of(coarse.mesh);
+      if (far.given_points.empty()) return std::move(coarse.mesh);
       for (const std::uint32_t v : far.given_points) {
         more += !locked[v];
         locked[v] = true;
       }
-      const bool is_late = 2 * (round + 1) >= options.max_rounds;
-      if (more == 0 || is_late)
-        for (const std::uint32_t f : far.coarse_faces)
-          more += lock_about(coarse, static_cast<int>(f), mesh, locked);
-      if (is_late) now.max_error_mm *= 0.5;
-      continue;
+      more += lock_what_went_into(far.coarse_faces, coarse, locked);
+      constexpr int careful_rounds = 2;
+      if (more == 0 || round + careful_rounds >= options.max_rounds - 1) now.max_error_mm *= 0.5;
     }
     for (const auto& [a, b] : found.crossing)
-      more += lock_about(coarse, a, mesh, locked) + lock_about(coarse, b, mesh, locked);
-    if (more == 0) break;
+      more += lock_about(coarse.mesh, a, mesh, locked) + lock_about(coarse.mesh, b, mesh, locked);
+    if (intersections > 0 && more == 0) break;
+    // Made again, collapses end above a number of faces that was asked for.
+    if (!options.faces) before = std::move(coarse.collapses);
   }
   if (intersections == 0) return mesh;
   throw Error(ErrorCode::Geometry,

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <tbb/parallel_for.h>
 
 namespace octotomy::brep {
 namespace {
@@ -38,6 +40,26 @@ void spread(const Triangles& surface, std::uint32_t face, double spacing_mm, std
     }
 }
 
+struct Nearest {
+  double distance_mm = 0.0;
+  std::uint32_t face = 0;  ///< beyond the limit
+};
+
+std::vector<Nearest> nearest_of(const SurfaceTree& tree, const std::vector<glm::dvec3>& points,
+                                double limit_mm, double enough_mm) {
+  std::vector<Nearest> nearest(points.size());
+  // Blocks are fixed, so that the start of each search does not depend on the threads.
+  constexpr std::size_t block = 256;
+  tbb::parallel_for(std::size_t{0}, (points.size() + block - 1) / block, [&](std::size_t b) {
+    std::uint32_t triangle = 0;
+    for (std::size_t i = b * block; i < std::min((b + 1) * block, points.size()); ++i) {
+      nearest[i].distance_mm = tree.distance_mm(points[i], triangle, enough_mm);
+      if (nearest[i].distance_mm > limit_mm) nearest[i].face = tree.foot(points[i], triangle).face;
+    }
+  });
+  return nearest;
+}
+
 void sort_once(std::vector<std::uint32_t>& numbers) {
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
@@ -46,7 +68,8 @@ void sort_once(std::vector<std::uint32_t>& numbers) {
 }  // namespace
 
 FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Triangles& coarse,
-                     double limit_mm) {
+                     double limit_mm, double enough_mm) {
+  assert(enough_mm <= limit_mm);
   FarPlaces far;
   const std::vector<std::array<std::uint32_t, 2>> sides = sides_of(given);
   double sum_mm = 0.0;
@@ -61,7 +84,7 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
   points.reserve(used.size() + sides.size());
   for (const std::uint32_t v : used) points.push_back(given.points_mm[v]);
   for (const auto& [a, b] : sides) points.push_back(0.5 * (given.points_mm[a] + given.points_mm[b]));
-  const std::vector<Foot> to_coarse = SurfaceTree(coarse).feet(points);
+  const std::vector<Nearest> to_coarse = nearest_of(SurfaceTree(coarse), points, limit_mm, enough_mm);
   for (std::size_t i = 0; i < to_coarse.size(); ++i) {
     far.largest_mm = std::max(far.largest_mm, to_coarse[i].distance_mm);
     if (to_coarse[i].distance_mm <= limit_mm) continue;
@@ -77,7 +100,7 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
   points.clear();
   std::vector<std::uint32_t> face_of;
   for (std::uint32_t f = 0; f < coarse.faces.size(); ++f) spread(coarse, f, spacing_mm, points, face_of);
-  const std::vector<Foot> to_given = tree.feet(points);
+  const std::vector<Nearest> to_given = nearest_of(tree, points, limit_mm, enough_mm);
   for (std::size_t i = 0; i < to_given.size(); ++i) {
     far.largest_mm = std::max(far.largest_mm, to_given[i].distance_mm);
     if (to_given[i].distance_mm <= limit_mm) continue;

@@ -83,6 +83,21 @@ TEST(Decimate, NeitherSurfaceLiesFurtherFromTheOtherThanTheError) {
   EXPECT_GT(redone, 0) << "no case was a hard one";
 }
 
+TEST(Decimate, ASearchForFarPlacesThatMayEndEarlyFindsTheSame) {
+  const Triangles fine = shapes::torus(20.0, 6.0, 120, 60);
+  DecimateOptions options;
+  options.max_error_mm = 0.5;
+  const Triangles coarse = triangles_of(plain_decimation(mesh_of(fine), options));
+  const SurfaceTree tree(fine);
+  const double limit_mm = 0.5 * far_places(fine, tree, coarse, 1.0).largest_mm;
+  const FarPlaces whole = far_places(fine, tree, coarse, limit_mm),
+                  early = far_places(fine, tree, coarse, limit_mm, limit_mm);
+  EXPECT_FALSE(whole.given_points.empty());
+  EXPECT_EQ(early.largest_mm, whole.largest_mm);
+  EXPECT_EQ(early.given_points, whole.given_points);
+  EXPECT_EQ(early.coarse_faces, whole.coarse_faces);
+}
+
 TEST(Decimate, FarPlacesAreMeasuredBothWays) {
   const Triangles low = shapes::box({0, 0, 0}, {10, 10, 10}), high = shapes::box({0, 0, 0}, {10, 10, 12});
   for (const auto& [given, coarse] : {std::pair(low, high), std::pair(high, low)}) {
