@@ -456,9 +456,19 @@ void need_fields_read(const std::vector<Field>& fields, const SortedJson& object
   }
 }
 
+/// Whether the operation reads a field of this value: need_fields_read() refuses one that is printed all the
+/// same.
+static bool is_read(const Field& field, const void* owner) {
+  const auto* conditional = field.slot.target<ConditionalSlot>();
+  return conditional == nullptr ||
+         std::all_of(conditional->conditions.begin(), conditional->conditions.end(),
+                     [&](const ConditionalSlot::Condition& condition) { return condition.is_read(owner); });
+}
+
 Json print_fields(const std::vector<Field>& fields, void* owner) {
   Json object = Json::object();
   for (const Field& field : fields) {
+    if (!is_read(field, owner)) continue;
     Json value = std::visit(Printer{field}, field.slot(owner));
     if (!value.is_null()) object[field.name] = std::move(value);
   }

@@ -24,7 +24,7 @@ void need_fields_read(const std::vector<Field>& fields, const nlohmann::json& ob
                       const Place& place);
 
 /// The fields as JSON that read_fields() reads back to the same value. Optional fields that are absent, and
-/// empty lists, are left out.
+/// empty lists, are left out, and those that the operation does not read (Field::read_if()).
 nlohmann::ordered_json print_fields(const std::vector<Field>& fields, void* owner);
 
 /// The fields as a JSON schema's object (draft 2020-12). `fresh` is an owner with all defaults; a field that
