@@ -274,8 +274,9 @@ TEST(ReadImageStack, TakesTheSpacingThatImageJAndOmeState) {
     const Scene given = read_scene(folder / "a.tif", spaced());
     EXPECT_EQ(given.lattice.spacing_mm(), *spaced().spacing_mm);
     EXPECT_EQ(verdict(given, "picture_spacing"), Verdict::Warn);
-    EXPECT_NE(tests::finding(given, "picture_spacing")->detail.find("0.25 mm high, but --spacing states 0.75 mm"),
-              std::string::npos);
+    EXPECT_NE(
+        tests::finding(given, "picture_spacing")->detail.find("0.25 mm high, but --spacing states 0.75 mm"),
+        std::string::npos);
   }
   for (const std::string micrometre : {"micron", "\\u00B5m", "\xb5m"}) {
     SCOPED_TRACE(micrometre);

@@ -430,7 +430,8 @@ TEST_F(MeshVerbs, ShellsThatOverlapAreToldWhereTheirVolumeCountsTwice) {
   };
   const brep::Triangles one = box({0, 0, 0}, {8, 8, 8});
   for (const brep::Triangles& other : {box({6, 6, 6}, {14, 14, 14}), one})
-    EXPECT_NE(findings(together(one, other)).find("measured is the union of its closed shells"), std::string::npos);
+    EXPECT_NE(findings(together(one, other)).find("measured is the union of its closed shells"),
+              std::string::npos);
   for (const brep::Triangles& sound : {one, together(one, box({9, 0, 0}, {17, 8, 8}))})
     EXPECT_EQ(findings(sound).find("WARN"), std::string::npos);
 }
@@ -486,7 +487,8 @@ TEST_F(MeshVerbs, WhatAMeshFileSaysOfItselfIsShownAndOverriddenByOptions) {
                                  at("u.stl") + " --json --unit ras.obj=cm");
   EXPECT_NEAR(SortedJson::parse(both.out)["volume_mm3"].get<double>(), 6e6, 1.0) << both.errors;
   expect_refused(run("measure " + at("ras.obj") + " --unit ell"), "'ell' is not a unit");
-  expect_refused(run("compare " + at("ras.obj") + " " + at("ras.obj") + " --frame up"), "'up' is not a frame");
+  expect_refused(run("compare " + at("ras.obj") + " " + at("ras.obj") + " --frame up"),
+                 "'up' is not a frame");
 }
 
 }  // namespace
