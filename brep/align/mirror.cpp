@@ -157,6 +157,7 @@ std::vector<MirrorPlane> voted_planes(const Cloud& cloud, std::size_t count) {
       votes.along_mm += along_mm;
     }
   std::vector<Votes> peaks;
+  peaks.reserve(cells.size());
   for (const auto& [cell, votes] : cells) peaks.push_back(votes);
   std::stable_sort(peaks.begin(), peaks.end(),
                    [](const Votes& a, const Votes& b) { return a.count > b.count; });

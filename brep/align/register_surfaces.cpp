@@ -461,7 +461,7 @@ SurfaceFit register_surfaces(const Mesh& moving, const Mesh& fixed, const Surfac
   const Cloud fixed_cloud = cloud_of(fixed, options.samples, "fixed");
   const OrientedSurface surface(fixed);
   const glm::dmat4 start = options.start ? *options.start : search(moving, fixed_cloud, surface, options);
-  const SurfaceFit answer = fit_cloud(cloud, surface, start, options);
+  SurfaceFit answer = fit_cloud(cloud, surface, start, options);
   if (options.progress) options.progress(1.0);
   return answer;
 }
