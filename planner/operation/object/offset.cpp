@@ -32,11 +32,11 @@ void check(const Offset& offset, const Place& place) {
         "0 moves nothing: say how far outward, or inward as a number below 0, or use the object itself");
 }
 
-/// The cell of the distance lattice: small enough for the rounding of edges by the offset, but not below
-/// about 1/200 of the solid's extent.
+/// The cell of the distance lattice, whose steps along edges are a quarter of it: small enough for the rounding
+/// of edges by the offset, but not below about 1/100 of the solid's extent.
 double cell_for(const brep::Solid& solid, double by_mm) {
   const glm::dvec3 extent = solid.size().high_mm - solid.size().low_mm;
-  return std::max(0.25 * std::abs(by_mm), std::max({extent.x, extent.y, extent.z}) / 200.0);
+  return std::max(0.5 * std::abs(by_mm), std::max({extent.x, extent.y, extent.z}) / 100.0);
 }
 
 /// A lattice's surface without the triangles that flat parts do not need. The remaining points do not move.
@@ -187,8 +187,8 @@ Operation offset_operation() {
           field("by_mm", &Offset::by_mm, "The distance outward; below 0 it goes inward. Not 0.").required())
       .takes(
           field("cell_mm", &Offset::cell_mm,
-                "About the edge of the mesh's smallest triangles. Default: a quarter of the distance, or a "
-                "200th of the object, whichever is larger, and halved up to three times until the volume is "
+                "About the edge of the mesh's smallest triangles. Default: half of the distance, or a "
+                "100th of the object, whichever is larger, and halved up to three times until the volume is "
                 "known "
                 "to 1 %; a convex object goes inward exactly.")
               .greater_than(0.0))
