@@ -93,20 +93,46 @@ bool is_axis(const glm::dvec3& normal) {
   return (normal.x != 0.0) + (normal.y != 0.0) + (normal.z != 0.0) == 1;
 }
 
+/// A plane by how far it lies from a common origin along its normal, or along the turned one.
+struct Offset {
+  double along_mm = 0.0;
+  const Plane* plane = nullptr;
+  bool is_turned = false;
+};
+
 /// Directions of the planes in common, in the order in which they are found; of each the widest triangle's.
-std::vector<Direction> common_directions(const std::vector<Plane>& of_a, std::vector<Plane> of_b,
+/// Cost: n log n, and the pairs of triangles whose planes lie equally far from the origin.
+std::vector<Direction> common_directions(const std::vector<Plane>& of_a, const std::vector<Plane>& of_b,
                                          double tolerance_mm) {
-  std::sort(of_b.begin(), of_b.end(), [](const Plane& p, const Plane& q) { return p.normal.x < q.normal.x; });
+  if (of_a.empty() || of_b.empty()) return {};
+  const glm::dvec3 origin_mm = of_a.front().on_mm;
+  double reach_mm = 0.0;
+  for (const std::vector<Plane>* planes : {&of_a, &of_b})
+    for (const Plane& plane : *planes) reach_mm = std::max(reach_mm, glm::distance(plane.on_mm, origin_mm));
+  // Of planes in common the points lie within the tolerance, and the normals differ by `same_direction`.
+  const double range_mm = tolerance_mm + 2.0 * same_direction() * reach_mm;
+  std::vector<Offset> offsets;
+  for (const Plane& plane : of_b) {
+    const double along_mm = glm::dot(plane.normal, plane.on_mm - origin_mm);
+    // Normals whose largest parts all but tie may have come with either sign.
+    offsets.push_back({along_mm, &plane, false});
+    offsets.push_back({-along_mm, &plane, true});
+  }
+  std::stable_sort(offsets.begin(), offsets.end(),
+                   [](const Offset& p, const Offset& q) { return p.along_mm < q.along_mm; });
   std::vector<Direction> directions;
   std::vector<double> widest_mm2;
   for (const Plane& a : of_a) {
-    auto b = std::lower_bound(of_b.begin(), of_b.end(), a.normal.x - same_direction(),
-                              [](const Plane& p, double x) { return p.normal.x < x; });
-    for (; b != of_b.end() && b->normal.x <= a.normal.x + same_direction(); ++b) {
-      // Normals whose largest parts all but tie may have come with either sign.
-      if (glm::length(glm::cross(a.normal, b->normal)) > same_direction()) continue;
-      const bool is_a_wider = a.area_mm2 >= b->area_mm2;
-      const Plane &wide = is_a_wider ? a : *b, &narrow = is_a_wider ? *b : a;
+    const double along_mm = glm::dot(a.normal, a.on_mm - origin_mm);
+    auto at = std::lower_bound(offsets.begin(), offsets.end(), along_mm - range_mm,
+                               [](const Offset& p, double mm) { return p.along_mm < mm; });
+    for (; at != offsets.end() && at->along_mm <= along_mm + range_mm; ++at) {
+      const Plane& b = *at->plane;
+      if (at->is_turned != (glm::dot(a.normal, b.normal) < 0.0) ||
+          glm::length(glm::cross(a.normal, b.normal)) > same_direction())
+        continue;
+      const bool is_a_wider = a.area_mm2 >= b.area_mm2;
+      const Plane &wide = is_a_wider ? a : b, &narrow = is_a_wider ? b : a;
       if (!are_on(narrow.corners_mm, wide, tolerance_mm)) continue;
       auto known = std::find_if(directions.begin(), directions.end(), [&](const Direction& d) {
         return glm::length(glm::cross(d.normal, wide.normal)) <= same_direction();

@@ -31,8 +31,9 @@ struct CommonFrame {
 /// or of floats where all coordinates are such. The plane of most common area is square to one axis, the
 /// largest of those square to it, of common ones first, to the second. None where no plane is common, or all of
 /// them are square to the axes of LPS exactly already, where a solid's points are nearer to each other than
-/// their rounding, and where more than 200 000 triangles reach into the other's box. Cost: n log n of the triangles in the common
-/// box, and of all points where there is a frame.
+/// their rounding, and where more than 200 000 triangles reach into the other's box. Cost: n log n of the triangles in the
+/// common box, their pairs on planes that lie equally far from one point, and n log n of all points where there
+/// is a frame.
 std::optional<CommonFrame> common_frame(const Solid& a, const Solid& b);
 
 }  // namespace octotomy::brep
