@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
-
 #include "voxel/solid/expression.h"
 #include "voxel/solid/resampling.h"
 
 namespace octotomy::voxel {
 
 struct GreyResult {
-  /// Sample of the voxels that the expression does not contain. These voxels are not part of the result's
-  /// scan.
-  std::int16_t background = -1024;
-  /// Sample of the voxels that only objects without samples (octrees, masks, primitives) fill. Default: the
-  /// largest sample of 12-bit scanners.
-  std::int16_t filled = 3071;
+  /// Sample, in the scan's unit, of the voxels that the expression does not contain. These voxels are not part
+  /// of the result's scan.
+  double background = -1024.0;
+  /// Sample, in the scan's unit, of the voxels that only objects without samples (octrees, masks, primitives)
+  /// fill. Default: the largest sample of 12-bit scanners.
+  double filled = 3071.0;
   Resampling resampling;
 };
 

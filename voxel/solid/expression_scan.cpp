@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <tbb/parallel_for.h>
 
 #include "voxel/solid/combine_grey.h"
@@ -49,6 +50,17 @@ double value_below(const Scene& frame) {
   return below;
 }
 
+/// Throws where samples that count in steps, of 16 bits, cannot have a value. A step of 0: any finite value.
+void need_sample(double value, double step, const std::string& of) {
+  const double steps = step > 0.0 ? value / step : 0.0;
+  if (std::isfinite(value) && steps >= -32768.0 && steps <= 32767.0) return;
+  std::ostringstream told;
+  told << "the value of " << of << ", " << value
+       << ", is none that the scan's samples can have: they lie from " << -32768.0 * step << " to "
+       << 32767.0 * step;
+  throw Error(ErrorCode::Input, told.str());
+}
+
 template <typename Sample>
 Sample stored(double value) {
   if constexpr (std::is_same_v<Sample, float>) return static_cast<float>(value);
@@ -60,7 +72,9 @@ Sample stored(double value) {
 ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, const Expression& expression,
                                const ExpressionScanOptions& options) {
   const GreyOctree& own = of_frame.on_scan_lattice();
-  if (own.universe().lps_from_voxel != frame.lattice.lps_from_voxel)
+  const glm::ivec3& dims = frame.lattice.dims;
+  if (own.universe().lps_from_voxel != frame.lattice.lps_from_voxel ||
+      own.universe().side() < std::max({dims.x, dims.y, dims.z}))
     throw Error(ErrorCode::Input,
                 "the scan has more samples along an axis than an octree can: crop it, or average it down");
   ExpressionScan made{frame};
@@ -70,11 +84,13 @@ ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, c
   made.filled = options.filled                         ? *options.filled
                 : frame.meaning == Meaning::Hounsfield ? largest_of_12_bits
                                                        : range(frame).high;
-  GreyResult result;
-  result.background = own.background();
   const double step = own.step();
-  // combine_grey() counts `filled` in the scan's unit, as 16 bits.
-  result.filled = static_cast<std::int16_t>(std::clamp(made.filled, -32768.0, 32767.0));
+  need_sample(made.hole, std::holds_alternative<FloatSamples>(frame.samples) ? 0.0 : 1.0, "holes");
+  need_sample(made.filled, step, "objects without samples");
+  if (std::holds_alternative<Int16Samples>(frame.samples)) made.hole = std::floor(made.hole + 0.5);
+  GreyResult result;
+  result.background = own.background() * step;
+  result.filled = made.filled;
   options.progress.at(0.0);
   GreyOctree samples = own;
   try {
@@ -85,7 +101,6 @@ ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, c
   if (samples.step() != step)
     throw Error(ErrorCode::Input, "the objects' samples count in other steps than the scan's own");
 
-  const glm::ivec3 dims = frame.lattice.dims;
   std::atomic<std::uint64_t> holes = 0, changed = 0;
   const Progress writing = part_of(options.progress, 0.6, 1.0);
   SharedProgress slices(writing, static_cast<std::size_t>(dims.z));

@@ -34,8 +34,8 @@ struct ExpressionScan {
 /// and the patient's identity are the frame's. `of_frame` is a grey octree that keeps the frame
 /// (GreyOctree::with_scan()); the expression's windows are of this or of others with samples in the same steps.
 ///
-/// Throws Error (Input) if the frame has more than 1,024 samples a side, if the steps differ, or if no value
-/// is left for holes; Stopped. Parallel; same bits on any thread count. Cost and memory: those of
+/// Throws Error (Input) if the frame has more than 1,024 samples a side, if the steps differ, if a typed value
+/// is none that the samples can have, or if no value is left for holes; Stopped. Parallel; same bits on any thread count. Cost and memory: those of
 /// combine_grey() on the frame's lattice, and a copy of the frame's samples. Source: thesis, chapter 7: grey
 /// octrees of a plan's objects.
 ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, const Expression& expression,

@@ -176,6 +176,15 @@ MadeScan made(const ScanOf& step, const ScanBench& bench) {
                  {"differing", compared.differing},
                  {"largest_difference", compared.largest}}}};
   std::vector<std::string> findings;
+  for (const std::string& name : uses(step)) {
+    const std::optional<Shown>& shown = bench.objects->at(name).shown;
+    if (shown && shown->scan != step.scan.name)
+      findings.push_back("the samples of '" + name + "' come from '" + shown->scan +
+                         "' and stand beside those of '" + step.scan.name +
+                         "' as they are: their units and scanners may differ");
+  }
+  if (compared.compared == 0)
+    findings.emplace_back("no sample could be read a second time: nothing confirms this scan");
   if (compared.differing > 0)
     findings.push_back(std::to_string(compared.differing) + " of " + std::to_string(compared.compared) +
                        " samples that were read a second time differ, by up to " +
