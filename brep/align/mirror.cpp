@@ -185,8 +185,8 @@ bool are_same(const MirrorPlane& a, const MirrorPlane& b, const Spread& spread) 
   const double cosine = glm::dot(a.normal, b.normal);
   const double size_mm =
       std::sqrt(spread.covariance[0][0] + spread.covariance[1][1] + spread.covariance[2][2]);
-  const double apart_mm = std::abs(glm::dot(spread.centre_mm - a.point_mm, a.normal)) -
-                          std::abs(glm::dot(spread.centre_mm - b.point_mm, b.normal));
+  const double apart_mm = glm::dot(spread.centre_mm - a.point_mm, a.normal) -
+                          std::copysign(1.0, cosine) * glm::dot(spread.centre_mm - b.point_mm, b.normal);
   return std::abs(cosine) > std::cos(same_plane_deg() * std::numbers::pi / 180.0) &&
          std::abs(apart_mm) < 0.05 * size_mm;
 }

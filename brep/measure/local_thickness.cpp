@@ -250,6 +250,8 @@ class Measurement {
 void check(const Solid& solid, const LocalThicknessOptions& options) {
   if (solid.empty())
     throw std::invalid_argument("local thickness: a surface without triangles has no inside");
+  if (!(solid.size().volume_mm3 > 0.0))
+    throw std::invalid_argument("local thickness: the surface faces inward, so that it has no inside");
   if (options.samples < 64) throw std::invalid_argument("local thickness: takes at least 64 samples");
   if (!(options.least_angle_deg >= 1.0 && options.least_angle_deg <= 120.0))
     throw std::invalid_argument("local thickness: the least angle of two sheets is from 1 to 120 degrees");

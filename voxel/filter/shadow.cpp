@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -29,8 +30,9 @@ namespace {
 
 constexpr int points_an_edge = 5;  ///< of a voxel, and columns of one
 constexpr int points_a_voxel = points_an_edge * points_an_edge * points_an_edge;
-/// A cell cuts an edge off by at most 0.59 of its own edge.
-constexpr int columns_beside_outline = 3;
+/// Of a cell's longest edge: by how much it cuts an edge of the solid off at most, and how far the middles of
+/// its triangles are moved out at most (SurfaceCrossings).
+constexpr double cut_off = 0.59, moved_out = 0.75;
 /// In voxel edges: where the object is looked for about the depth of an outline, which is a jump by more
 /// than that, and how finely. At an edge of
 /// 90 degrees half a step is lost.
@@ -59,6 +61,9 @@ class FirstDepths {
       : frame_(frame), lattice_(universe.lattice()) {
     const glm::dvec3 spacing_mm = lattice_.spacing_mm();
     pitch_mm_ = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z}) / points_an_edge;
+    const double longest = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z}) / pitch_mm_;
+    beside_outline_ = static_cast<int>(std::ceil(cut_off * longest));
+    const int margin = static_cast<int>(std::ceil(moved_out * longest));
     glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
     for (const glm::dvec3& p : points_voxel) {
       const glm::dvec3 at = of_voxel(p);
@@ -68,8 +73,8 @@ class FirstDepths {
     }
     const glm::dvec2 centre(of_voxel(glm::dvec3(0.0)));
     origin_ =
-        centre + (glm::floor((low - centre) / pitch_mm_) - double{1 + columns_beside_outline}) * pitch_mm_;
-    dims_ = glm::ivec2(glm::ceil((high - origin_) / pitch_mm_)) + 2 + columns_beside_outline;
+        centre + (glm::floor((low - centre) / pitch_mm_) - double(margin)) * pitch_mm_;
+    dims_ = glm::ivec2(glm::ceil((high - origin_) / pitch_mm_)) + 1 + margin;
     depths_ = std::vector<std::atomic<float>>(static_cast<std::size_t>(dims_.x) *
                                               static_cast<std::size_t>(dims_.y));
     tbb::parallel_for(std::size_t{0}, depths_.size(),
@@ -95,6 +100,7 @@ class FirstDepths {
     const glm::dvec2 low = glm::min(glm::min(glm::dvec2(p[0]), glm::dvec2(p[1])), glm::dvec2(p[2])),
                      high = glm::max(glm::max(glm::dvec2(p[0]), glm::dvec2(p[1])), glm::dvec2(p[2]));
     const glm::ivec2 from(glm::ceil(low - on_edge)), to(glm::floor(high + on_edge));
+    assert(glm::all(glm::greaterThanEqual(from, glm::ivec2(0))) && glm::all(glm::lessThan(to, dims_)));
     for (int y = from.y; y <= to.y; ++y)
       for (int x = from.x; x <= to.x; ++x) {
         const glm::dvec2 at(x, y);
@@ -193,8 +199,8 @@ class FirstDepths {
     tbb::parallel_for(0, dims_.y, [&](int y) {
       for (int x = 0; x < dims_.x; ++x) {
         float least = no_surface;
-        const int last = std::min(x + columns_beside_outline, dims_.x - 1);
-        for (int at = std::max(x - columns_beside_outline, 0); at <= last; ++at)
+        const int last = std::min(x + beside_outline_, dims_.x - 1);
+        for (int at = std::max(x - beside_outline_, 0); at <= last; ++at)
           least = std::min(least, depths_[index({at, y})].load(std::memory_order_relaxed));
         in_rows[index({x, y})] = least;
       }
@@ -202,8 +208,8 @@ class FirstDepths {
     tbb::parallel_for(0, dims_.y, [&](int y) {
       for (int x = 0; x < dims_.x; ++x) {
         float least = no_surface;
-        const int last = std::min(y + columns_beside_outline, dims_.y - 1);
-        for (int at = std::max(y - columns_beside_outline, 0); at <= last; ++at)
+        const int last = std::min(y + beside_outline_, dims_.y - 1);
+        for (int at = std::max(y - beside_outline_, 0); at <= last; ++at)
           least = std::min(least, in_rows[index({x, at})]);
         found[index({x, y})] = least;
       }
@@ -221,6 +227,7 @@ class FirstDepths {
   ColumnFrame frame_;
   Lattice lattice_;
   double pitch_mm_ = 1.0;
+  int beside_outline_ = 0;  ///< columns within which an outline may have been cut off
   double far_end_mm_ = -std::numeric_limits<double>::infinity();
   glm::dvec2 origin_{0.0};
   glm::ivec2 dims_{0}, tiles_{0};

@@ -228,12 +228,8 @@ class MetaReader {
   void take_meaning() {
     header_.meaning = text_.field(meaning_key).value_or("");
     header_.modality = text_.field(modality_key).value_or("");
-    // MetaIO's names of modalities are MET_MOD_CT, _MR, _NM, _US, _OTHER and _UNKNOWN.
-    const std::string met = text_.field("modality").value_or("");
-    if (header_.modality.empty() &&
-        (met == "MET_MOD_CT" || met == "MET_MOD_MR" || met == "MET_MOD_NM" || met == "MET_MOD_US"))
-      header_.modality = met.substr(8);
     take_padding(text_.field(padding_key), header_);
+    // MetaIO's names of modalities are MET_MOD_CT, _MR, _NM, _US, _OTHER and _UNKNOWN.
     const std::string modality = text_.field("modality").value_or("");
     if (header_.modality.empty() && (modality == "MET_MOD_CT" || modality == "MET_MOD_MR" ||
                                      modality == "MET_MOD_NM" || modality == "MET_MOD_US"))
