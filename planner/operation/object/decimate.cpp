@@ -46,6 +46,11 @@ double max_error_mm(const Decimate& decimate, const brep::Mesh& mesh) {
                   default_share() * std::max({extent.x, extent.y, extent.z}));
 }
 
+bool is_closed(const brep::Mesh& mesh) {
+  return std::none_of(mesh.edges_begin(), mesh.edges_end(),
+                      [&](const auto& edge) { return mesh.is_boundary(edge); });
+}
+
 brep::Mesh fewer(const Decimate& decimate, const brep::Mesh& mesh, Json& details,
                  std::vector<std::string>& findings) {
   brep::DecimateOptions options;
@@ -57,10 +62,17 @@ brep::Mesh fewer(const Decimate& decimate, const brep::Mesh& mesh, Json& details
   details["faces_before"] = mesh.n_faces();
   details["volume_change_mm3"] = after_mm3 - before_mm3;
   details["max_error_mm"] = options.max_error_mm;
-  if (std::abs(after_mm3 - before_mm3) > told_share() * std::abs(before_mm3))
+  if (made.n_faces() == mesh.n_faces())
+    findings.push_back("no triangle was taken out within an error of " + three_figures(options.max_error_mm) +
+                       " mm: allow a larger one");
+  else if (decimate.faces && made.n_faces() > options.faces)
+    findings.push_back(std::to_string(made.n_faces()) +
+                       " triangles are left, more than were asked for: fewer would be off by more than " +
+                       three_figures(options.max_error_mm) + " mm");
+  if (is_closed(mesh) && std::abs(after_mm3 - before_mm3) > told_share() * std::abs(before_mm3))
     findings.push_back("WARN volume: it went from " + three_figures(before_mm3) + " to " +
                        three_figures(after_mm3) + " mm\u00b3 within an error of " +
-                       three_figures(options.max_error_mm) + " mm: give a smaller one, --max-error");
+                       three_figures(options.max_error_mm) + " mm: allow a smaller one");
   return made;
 }
 

@@ -109,6 +109,7 @@ FileAnswer reshaped_file(const ReshapeFile& asked, const FileBench& bench, const
   answer.json["area_estimator"] = "triangles";
   answer.json["health"] = to_json(health);
   answer.json.update(details);
+  if (given.is_open && details.contains("volume_change_mm3")) answer.json["volume_change_mm3"] = nullptr;
   answer.json["findings"] = findings;
   answer.findings = findings;
   answer.rows = {

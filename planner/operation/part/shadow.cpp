@@ -69,7 +69,8 @@ std::string definition(const Shadow& shadow, const Objects&) {
   return "shadow of " + shadow.object.name + " along " + in_words(shadow.insertion);
 }
 
-/// Edge of the cells in which the mesh kernel looks for points as deep as the tolerance: as offset's default.
+/// Edge of the cells in which the mesh kernel looks for points as deep as the tolerance: a quarter of it, but
+/// not below about 1/200 of the solid's extent.
 double cell_mm(const brep::Solid& solid, double tolerance_mm) {
   const glm::dvec3 extent = solid.size().high_mm - solid.size().low_mm;
   return std::max(0.25 * tolerance_mm, std::max({extent.x, extent.y, extent.z}) / 200.0);
@@ -166,7 +167,7 @@ void bound(const Shadow& shadow, const BoundBench& bench, Object& made) {
   if (shadow.tolerance_mm && made.mesh.whole && object.mesh.whole && !made.mesh.whole->empty()) {
     made.bound.measured_apart_mm += verify::offset_allowance_mm(
         {object.witness, object.voxel.octree, *object.mesh.whole, is_whole_voxels(object.voxel)},
-        {-*shadow.tolerance_mm, cell_mm(*object.mesh.whole, *shadow.tolerance_mm)},
+        {-*shadow.tolerance_mm, cell_mm(solid_within(object), *shadow.tolerance_mm)},
         made.mesh.whole->measures().area_mm2);
     made.bound.reshaped = {shadow.object.name};
   }
