@@ -2,12 +2,14 @@
 #include "planner/procedure/template/chain.h"
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 #include <set>
 #include <stdexcept>
 
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/operation.h"
+#include "planner/plan/dependence.h"
 
 namespace octotomy::planner {
 namespace {
@@ -51,18 +53,25 @@ Nearest nearest(const glm::dvec3& p_mm, const voxel::Octree& piece,
   return found;
 }
 
-/// Where a point of the scan lies after the plan's motions.
-glm::dvec3 carried_mm(glm::dvec3 p_mm, const Plan& plan, const Evaluation& evaluated) {
+/// Where a point of the scan lies after the motions that the outcome is made of. Once it goes with a piece, only
+/// pieces that were cut from that one carry it further. A mirror image leaves its original where it is.
+glm::dvec3 carried_mm(glm::dvec3 p_mm, const Plan& plan, const Evaluation& evaluated,
+                      const std::set<std::string>& in_outcome) {
+  std::optional<std::string> owner;
   for (const Object& moved : evaluated.objects) {
-    if (!moved.moved) continue;
+    if (!moved.moved || moved.is_tool || !in_outcome.contains(moved.id) ||
+        glm::determinant(glm::dmat3(moved.moved->motion)) < 0.0)
+      continue;
     const Object& still = evaluated.objects.at(moved.moved->object);
+    if (owner && !needed_for(plan, {still.id}).contains(*owner)) continue;
     std::vector<const voxel::Octree*> whole;
     for (const std::string& operand : objects_used(step_of(plan, still.id).action))
       if (!evaluated.objects.at(operand).is_tool)
         whole.push_back(&evaluated.objects.at(operand).voxel.octree);
     const Nearest found = nearest(p_mm, still.voxel.octree, whole);
-    if (found.piece < std::numeric_limits<double>::infinity() && found.piece <= found.other)
-      p_mm = glm::dvec3(moved.moved->motion * glm::dvec4(p_mm, 1.0));
+    if (found.piece == std::numeric_limits<double>::infinity() || found.piece > found.other) continue;
+    p_mm = glm::dvec3(moved.moved->motion * glm::dvec4(p_mm, 1.0));
+    owner = moved.id;
   }
   return p_mm;
 }
@@ -110,6 +119,10 @@ void add_scans(const Procedure& procedure, const ProcedureInput& input, Json& wh
     if (!whole["scans"].contains(scan.name))
       throw std::runtime_error("procedure " + procedure.name + " lacks a scan: '" + scan.name + "', " +
                                scan.says + ": give it by --" + scan.name);
+}
+
+bool is_letter(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
 /// Gives a procedure's steps names of their own.
@@ -165,9 +178,6 @@ class Renaming {
   }
 
   std::string words_renamed(const std::string& text) const {
-    const auto is_letter = [](char c) {
-      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-    };
     std::string made;
     for (std::size_t i = 0; i < text.size();) {
       std::size_t end = i;
@@ -189,11 +199,15 @@ class Renaming {
   std::string scan_;
 };
 
-/// The names of values that a step's formulas use.
+/// Whether a formula of a step uses a value.
 bool uses_value(const Json& value, const std::string& name) {
   if (value.is_string()) {
     const auto& text = value.get_ref<const std::string&>();
-    return text.starts_with('=') && text.find(name) != std::string::npos;
+    if (!text.starts_with('=')) return false;
+    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1))
+      if (!is_letter(text[at - 1]) && (at + name.size() == text.size() || !is_letter(text[at + name.size()])))
+        return true;
+    return false;
   }
   return value.is_structured() &&
          std::any_of(value.begin(), value.end(), [&](const Json& part) { return uses_value(part, name); });
@@ -250,8 +264,9 @@ Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& 
 
   std::vector<brep::Landmark> now;
   std::map<std::string, glm::dvec3> places;
+  const std::set<std::string> in_outcome = needed_for(plan, {*outcome});
   for (const NamedPoint& landmark : placed.landmarks) {
-    const glm::dvec3 p_mm = carried_mm(landmark.p_mm, plan, evaluated);
+    const glm::dvec3 p_mm = carried_mm(landmark.p_mm, plan, evaluated, in_outcome);
     now.push_back({landmark.name, p_mm});
     places[landmark.name] = p_mm;
     const bool is_asked =
@@ -262,9 +277,11 @@ Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& 
 
   std::set<std::string> taken;
   for (const Step& step : placed.steps) taken.insert(step.id);
+  // Of the procedure's own names: "le_fort_i_" begins those of le_fort_i_two_piece, too.
   const auto is_free = [&](const std::string& prefix) {
-    return std::none_of(taken.begin(), taken.end(),
-                        [&](const std::string& id) { return id.starts_with(prefix); });
+    return std::none_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& step) {
+      return taken.contains(prefix + step.at("id").get<std::string>());
+    });
   };
   std::string prefix = procedure.name + "_";
   for (int number = 2; !is_free(prefix); ++number)

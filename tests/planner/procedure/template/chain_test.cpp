@@ -96,6 +96,34 @@ TEST_F(Chain, AChinIsCutFromTheJawWhereTheJawHasGone) {
   EXPECT_EQ(outcome_of(read(made)), "genioplasty_planned");
 }
 
+TEST_F(Chain, ALandmarkGoesWithItsOwnPieceAloneAndNeverWithAMirrorImage) {
+  // Two pieces, of which the first is moved to where the second one was.
+  const Plan plan =
+      parse_plan(R"json({"octotomy_plan": 1, "name": "p", "scans": {"ct": {"path": "head.nrrd"}},
+      "universe": {"voxel_mm": 2}, "steps": [
+      {"id": "skull", "do": "window", "scan": "ct", "low": 300},
+      {"id": "lower", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-60, -110], [60, -110], [60, -86], [-60, -86]]]}]},
+      {"id": "upper", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-60, -86], [60, -86], [60, -62], [-60, -62]]]}]},
+      {"id": "chin_piece", "do": "combine", "expression": "skull & lower"},
+      {"id": "tooth_piece", "do": "combine", "expression": "skull & upper"},
+      {"id": "chin_up", "do": "move", "object": "chin_piece", "translate_mm": [0, 0, 20]},
+      {"id": "tooth_up", "do": "move", "object": "tooth_piece", "translate_mm": [0, 0, 30]},
+      {"id": "image", "do": "mirror", "object": "skull", "point_mm": [0, 0, 0], "normal": [0, 1, 0]},
+      {"id": "planned", "do": "combine", "expression": "(skull - lower - upper) | chin_up | tooth_up | image"}]})json",
+                 folder_.path());
+  const Chained made = after(plan, "genioplasty", {});
+  for (const Json& step : made.plan["steps"])
+    if (step["id"] == "genioplasty_chin_moved") {
+      const Json& about = step["turn"]["about_mm"];  // the pogonion
+      EXPECT_NEAR(about[0].get<double>(), 0.0, 1e-9);
+      EXPECT_NEAR(about[1].get<double>(), -87.0, 1e-9);
+      EXPECT_NEAR(about[2].get<double>(), -73.0, 1e-9) << "once, with the chin";
+    }
+  EXPECT_NE(std::find(made.carried.begin(), made.carried.end(), "menton"), made.carried.end());
+}
+
 TEST_F(Chain, EachProcedureHasNamesOfItsOwnAndEachStaysEditable) {
   const Plan first = planned("genioplasty", {{"forward_mm", 4}});
   const Plan second = read(after(first, "genioplasty", {{"up_mm", 2}}));
