@@ -429,7 +429,7 @@ class Kinds {
     add("landmarks", "marks.json", marks, registration);
     add("landmarks_markups", "marks.mrk.json", points, registration);
     add("curve", "curve.json", R"({"points_mm": [[-30, 10, 5], [-15.5, -25, 5], [1.5e1, -25, 5]]})",
-        {"slice", at("head.nrrd"), "--curve", "MUTANT", "--size", "16x16", "-o", "OUT.png"});
+        {"slice", at("head.nrrd"), "--curve", "MUTANT", "--pixel", "4", "-o", "OUT.png"});
     add("transfer", "transfer.json", transfer,
         {"render", at("head.nrrd"), "--shading", "composite", "--transfer", "MUTANT", "--size", "16x16", "-o",
          "OUT.png"});
