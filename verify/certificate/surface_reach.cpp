@@ -139,11 +139,15 @@ double on_border_mm(const voxel::Box& world_mm) {
 
 void add_reach(Certificate& certificate, const FarSample& found, double reach_mm, const std::string& formula,
                bool is_of_answer) {
+  if (!(found.distance_mm >= 0.0))
+    return lower(certificate, Verdict::Warn,
+                 std::string("No sample of ") + (is_of_answer ? "the answer" : "what the step makes") +
+                     " lies far enough within the universe to be compared.");
   add_comparison(certificate,
                  {.quantity = is_of_answer ? "answer's surface from where it must lie"
                                            : "where it must lie from the answer's surface",
                   .unit = "mm",
-                  .difference = std::max(found.distance_mm, 0.0),
+                  .difference = found.distance_mm,
                   .tolerance = reach_mm,
                   .formula = formula,
                   .statement = is_of_answer ? "The answer's surface lies up to % from where it must lie"

@@ -4,14 +4,8 @@
 //   smooth    Each of 2 n steps adds up the coordinates of some neighbours, six on average and rarely over
 //             thirty: 32 roundings of numbers as large as the largest coordinate. Steps in and out leave
 //             waves nearly as they were or take them off, so that roundings add up and do not grow.
-//   decimate  A collapse puts a vertex w in the place of a vertex v. Both fans of triangles fill the same
-//             polygon, and w is within the step's error e of the planes of v's triangles. With v above a new
-//             triangle (w, b, c), v's height over the side b c is at most w's, so that v is within e of the
-//             new triangle in the direction across, for triangles that turn by up to 45 degrees within
-//             sqrt(2) e. Where an old side passes over a new one, the new one ends on a plane of v's triangles
-//             and begins within e of it. The step's error is weighted by areas in mm2, so that small triangles
-//             may be farther off: 3.1 e was the largest distance on pieces of a head with samples half a
-//             millimetre apart. 2 e is used, which makes that a WARN.
+//   decimate  The largest error that was asked for: the step measures both surfaces at samples and takes back
+//             what is farther off. Between its samples a right answer may be somewhat farther, a WARN.
 #include "verify/witness/reshaped_witness.h"
 
 #include <algorithm>
@@ -144,7 +138,7 @@ ReshapedSurface surface_smoothed(const brep::Triangles& still, int rounds, doubl
 }
 
 ReshapedSurface surface_decimated(const brep::Triangles& still, double max_error_mm) {
-  return {TriangleGrid(still), 2.0 * max_error_mm, "twice the largest error of a collapse"};
+  return {TriangleGrid(still), max_error_mm, "the largest error that was asked for"};
 }
 
 }  // namespace octotomy::verify

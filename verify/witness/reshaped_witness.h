@@ -50,7 +50,7 @@ const ReshapedSurface& expected_surface(const Witness& witness);
 /// steps' sums. Cost: rounds times triangles.
 ReshapedSurface surface_smoothed(const brep::Triangles& still, int rounds, double pass_band);
 
-/// The still surface, near which `decimate` must stay. The source derives the reach.
+/// The still surface, near which `decimate` must stay: within the largest error that was asked for.
 ReshapedSurface surface_decimated(const brep::Triangles& still, double max_error_mm);
 
 }  // namespace octotomy::verify

@@ -2,6 +2,7 @@
 #include "planner/operation/object/certify.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "planner/operation/object/trace.h"
 #include "verify/certificate/certify_alone.h"
@@ -37,9 +38,8 @@ void lower_by_caveats(Object& made) {
   for (const Caveat& caveat : made.caveats) verify::lower(*made.certificate, caveat.verdict, caveat.reason);
 }
 
-}  // namespace
-
-void certify(Object& made, const std::string& title, const voxel::Progress& progress) {
+/// Certifies, but for the time that it takes.
+void judge(Object& made, const std::string& title, const voxel::Progress& progress) {
   if (!made.mesh.within) {
     made.certificate = verify::certify_alone(
         made.voxel.octree, {title, made.voxel.lineage, made.voxel.makers, within_universe(made)}, progress);
@@ -70,6 +70,15 @@ void certify(Object& made, const std::string& title, const voxel::Progress& prog
   if (reshaped) judge_reshaped(made, voxel::part_of(progress, 0.6, 1.0));
   verify::judge_independence(*made.certificate);
   lower_by_caveats(made);
+}
+
+}  // namespace
+
+void certify(Object& made, const std::string& title, const voxel::Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  judge(made, title, progress);
+  made.certificate->milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace octotomy::planner

@@ -140,7 +140,7 @@ TEST_F(ReshapedBalls, ALostPartASurfacePushedOutAndNothingFail) {
   }
 }
 
-/// No voxel and no vertex shows it: a plate thinner than a voxel and than the reach.
+/// No voxel shows it: a plate thinner than a voxel and than what the reach leaves open.
 TEST_F(ReshapedBalls, ALostPlateThinnerThanTheReachFails) {
   const brep::Triangles plate = brep::shapes::box({-10.03, 18.0, -10.03}, {10.07, 18.1, 10.07});
   const brep::Solid with = solid(brep::shapes::together(large().triangles(), plate));
@@ -179,6 +179,15 @@ TEST_F(ReshapedBalls, TheAnswerEndsWithTheWorldAndItsSurfaceDoesNot) {
   Certificate uncut;
   judge_reach(uncut, cut, expected, {{glm::dvec3(-30.0), glm::dvec3(30.0)}, 0.0, 0.5});
   EXPECT_EQ(uncut.verdict, Verdict::Fail);
+}
+
+TEST_F(ReshapedBalls, WhereNoSampleCanBeComparedNothingPasses) {
+  const brep::Triangles whole = brep::shapes::sphere({0, 0, 0}, 12.0, 4);
+  // The border is nearer to every place than what could go unseen.
+  Certificate certificate;
+  judge_reach(certificate, whole, surface_decimated(whole, 20.0),
+              {{glm::dvec3(-12.5), glm::dvec3(12.5)}, 0.0, 0.5});
+  EXPECT_EQ(certificate.verdict, Verdict::Warn) << told(certificate);
 }
 
 TEST_F(ReshapedBalls, ReadsOnceAndIsNoneOfItsCopiesUnderABoolean) {

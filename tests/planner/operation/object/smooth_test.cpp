@@ -15,10 +15,13 @@ TEST(SmoothStep, TheVolumeStaysAndTheCertificateWarnsThatOneKernelMadeIt) {
       evaluate(ball_plan(folder, R"({"id": "even", "do": "smooth", "object": "ball", "rounds": 5})"));
   const Object& even = evaluation.object("even");
   expect_not_independent(even, ball_mm3(ball_radius_mm), 0.01);
+  int compared = 0;
   for (const verify::Comparison& comparison : even.certificate->comparisons)
     if (comparison.unit == "mm" && comparison.quantity.find("must lie") != std::string::npos) {
       EXPECT_LT(comparison.difference, 1e-11) << comparison.quantity;
+      ++compared;
     }
+  EXPECT_EQ(compared, 2);
   EXPECT_TRUE(even.certificate->resolved());
   const double moved_mm = even.mesh.details["largest_move_mm"];
   EXPECT_GT(moved_mm, 0.0);
