@@ -10,20 +10,21 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr int side = 24;
+constexpr int samples_a_side = 24;
 
 /// Samples between 0 and 0.75, in steps of a grey octree far below 1.
 std::shared_ptr<const Scene> map_of_shares() {
   Scene scene;
-  scene.lattice = axis_aligned_lattice(glm::ivec3(side), glm::dvec3(1.0), glm::dvec3(0.0));
+  scene.lattice = axis_aligned_lattice(glm::ivec3(samples_a_side), glm::dvec3(1.0), glm::dvec3(0.0));
   FloatSamples samples(scene.lattice.sample_count());
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = 0.75f * static_cast<float>(i % 17) / 16.0f;
   scene.samples = std::move(samples);
   return std::make_shared<const Scene>(std::move(scene));
 }
 
-float sample(const Scene& scene, const glm::ivec3& at) {
-  return std::get<FloatSamples>(scene.samples)[static_cast<std::size_t>(at.x + side * (at.y + side * at.z))];
+float share_at(const Scene& scene, const glm::ivec3& at) {
+  return std::get<FloatSamples>(
+      scene.samples)[static_cast<std::size_t>(at.x + samples_a_side * (at.y + samples_a_side * at.z))];
 }
 
 class AnExpressionScan : public testing::Test {
@@ -36,13 +37,13 @@ class AnExpressionScan : public testing::Test {
 TEST_F(AnExpressionScan, KeepsSamplesAtRestToTheBitAndMarksHoles) {
   const ExpressionScan made = expression_scan(*scene_, grey_, head_ - Sphere{{12, 12, 12}, 4.0});
   std::uint64_t holes = 0;
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x) {
+  for (int z = 0; z < samples_a_side; ++z)
+    for (int y = 0; y < samples_a_side; ++y)
+      for (int x = 0; x < samples_a_side; ++x) {
         const bool is_hole = glm::distance(glm::dvec3(x, y, z), glm::dvec3(12)) <= 4.0;
         holes += is_hole ? 1 : 0;
-        ASSERT_EQ(sample(made.scene, {x, y, z}),
-                  is_hole ? static_cast<float>(made.hole) : sample(*scene_, {x, y, z}));
+        ASSERT_EQ(share_at(made.scene, {x, y, z}),
+                  is_hole ? static_cast<float>(made.hole) : share_at(*scene_, {x, y, z}));
       }
   EXPECT_EQ(made.hole_samples, holes);
   EXPECT_EQ(made.changed_samples, holes);
@@ -54,11 +55,11 @@ TEST_F(AnExpressionScan, FillsObjectsWithoutSamplesByAValueThatIsNoWholeNumber) 
   const Expression with_plate = Sphere{{12, 12, 12}, 4.0} | (head_ - Sphere{{12, 12, 12}, 4.0});
   const ExpressionScan made = expression_scan(*scene_, grey_, with_plate);
   EXPECT_EQ(made.filled, 0.75) << "the largest sample";
-  EXPECT_NEAR(sample(made.scene, {12, 12, 12}), 0.75, 0.5 * grey_.step());
+  EXPECT_NEAR(share_at(made.scene, {12, 12, 12}), 0.75, 0.5 * grey_.step());
   EXPECT_EQ(made.hole_samples, 0u);
   ExpressionScanOptions options;
   options.filled = 0.3;
-  EXPECT_NEAR(sample(expression_scan(*scene_, grey_, with_plate, options).scene, {12, 12, 12}), 0.3,
+  EXPECT_NEAR(share_at(expression_scan(*scene_, grey_, with_plate, options).scene, {12, 12, 12}), 0.3,
               0.5 * grey_.step());
 }
 
