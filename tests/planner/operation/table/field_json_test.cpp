@@ -49,10 +49,12 @@ TEST(NeedFieldsRead, WhatGivesNothingIsNotRefused) {
   EXPECT_EQ(refusal({{"list", {1.0}}}), "step 'a', list: is of curves");
 }
 
-TEST(NeedFieldsRead, ConditionsLeaveReadingAndPrintingAsTheyAre) {
+TEST(PrintFields, LeavesOutAFieldWhoseConditionIsNotMet) {
   Drawn drawn;
   read_fields(fields(), {{"height_mm", 2.5}}, &drawn, {});
   EXPECT_EQ(drawn.height_mm, 2.5);
+  EXPECT_FALSE(print_fields(fields(), &drawn).contains("height_mm"));
+  drawn.curved = true;
   EXPECT_EQ(print_fields(fields(), &drawn)["height_mm"], 2.5);
 }
 
