@@ -124,12 +124,11 @@ TEST(Shadow, OfAWedgeThatLeansIsFilledToItsEnd) {
   const Shadow made = to_far_end(bar, {0, 0, -1});
   expect_healthy(made.solid);
   EXPECT_NEAR(volume_mm3(made.solid) - volume_mm3(bar), 0.5 * 16.0 * 10.0, 1e-9);
-  // Along the leaning side nothing is undercut but the other side, which leans in by 45 degrees.
-  const glm::dvec3 along = glm::normalize(glm::dvec3(0, prism.right.y > 0 ? -1 : 1, -1));
-  const Shadow leaning = to_far_end(bar, along);
+  // Along the leaning side the lines of sight enter through the top, which is 8 wide, and end on the plane
+  // through the corner at (0, 0). What they cover is a right triangle with legs of 8.
+  const Shadow leaning = to_far_end(bar, glm::normalize(-prism.right - prism.up));
   expect_healthy(leaning.solid);
-  // In the view across `along` the bar is 8 sqrt(1/2) wide; its front is 8 wide on top and 4 at the side.
-  EXPECT_GT(volume_mm3(leaning.solid), volume_mm3(bar));
+  EXPECT_NEAR(volume_mm3(leaning.solid), 0.5 * 8.0 * 8.0 * 10.0, 1e-8);
 }
 
 TEST(Shadow, WhatLiesBehindIsCoveredWhereItIsHidden) {
@@ -151,6 +150,9 @@ TEST(Shadow, CavitiesAndClefsAreFilledAndTheResultIsItsOwnShadow) {
                                                 shapes::inside_out(shapes::box({1, 1, 1}, {8, 8, 8}))));
   const Shadow full = to_far_end(crate, oblique);
   expect_healthy(full.solid);
+  // The silhouette's area times the way from the middle to the end, and half the box.
+  const double sum = std::abs(oblique.x) + std::abs(oblique.y) + std::abs(oblique.z);
+  EXPECT_NEAR(volume_mm3(full.solid), 81.0 * sum * 4.5 * sum + 0.5 * 729.0, 1e-8);
   const Solid ring = solid_of(shapes::torus(8.0, 2.5, 60, 30));
   for (const glm::dvec3& direction : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1), oblique}) {
     const Shadow once = to_far_end(ring, direction);

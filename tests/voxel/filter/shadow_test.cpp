@@ -65,7 +65,7 @@ TEST(VoxelShadow, OfAMushroomFillsBelowItsCapButNotAboveIt) {
   EXPECT_NEAR(volume_mm3(universe, Expression(twice.window)), 18 * 18 * 16, 1e-3 * 18 * 18 * 16);
 }
 
-TEST(VoxelShadow, AnObliqueWedgeIsFilledDownToTheEnd) {
+TEST(VoxelShadow, ASlabAlongAnObliqueDirectionIsFilledDownToTheEnd) {
   const Universe universe = tests::spaced_universe(7, glm::dvec3(0.5));
   // Faces lie between voxels: else all of a face is rounded alike.
   const glm::dvec3 m_mm = universe.lattice().lps_mm(glm::dvec3(64.0)) + 0.25;

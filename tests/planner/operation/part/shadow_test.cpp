@@ -56,20 +56,20 @@ TEST(ShadowStep, ATolerableUndercutIsLeftIn) {
   expect_certified(evaluation.object("snap"), half_ball_mm3() + rim + post, 0.005);
 }
 
-TEST(ShadowStep, IsCombinedAsAnyOtherObject) {
+TEST(ShadowStep, WhatIsCutByItCanBeSlidOn) {
   const ScratchFolder folder;
-  const Evaluation evaluation = evaluate(ball_plan(folder, ball_caps(R"(
-      {"id": "blocked", "do": "shadow", "object": "upper", "direction": [0.3, 0, 1], "beyond_mm": 3},
-      {"id": "grown", "do": "offset", "object": "upper", "by_mm": 2},
-      {"id": "cap", "do": "combine", "expression": "grown - blocked"})")));
-  const Object& cap = evaluation.object("cap");
-  ASSERT_TRUE(cap.certificate);
-  EXPECT_NE(verify::to_string(cap.certificate->verdict), "FAIL")
-      << testing::PrintToString(cap.certificate->reasons);
-  EXPECT_GT(cap.voxel.measures.volume_mm3, 1000.0);
+  const Evaluation evaluation = evaluate(ball_plan(folder, R"(
+      {"id": "blocked", "do": "shadow", "object": "ball", "direction": [0, 0, 1]},
+      {"id": "grown", "do": "offset", "object": "ball", "by_mm": 4},
+      {"id": "cup", "do": "combine", "expression": "grown - blocked"})"));
+  // A ball of 24 mm less half a ball and a post of 20 mm. The post ends within the larger ball up to a radius
+  // of sqrt(24^2 - 20^2), and beyond it at that ball's surface.
+  const double larger = 24.0, flat2 = larger * larger - 400.0;
+  const double post = pi * flat2 * 20.0 + 2.0 / 3.0 * pi * (8000.0 - std::pow(larger * larger - 400.0, 1.5));
+  expect_certified(evaluation.object("cup"), ball_mm3(larger) - half_ball_mm3() - post, 0.02);
 }
 
-TEST(ShadowStep, RefusesADirectionThatIsMissingDoubledOrUnknown) {
+TEST(ShadowStep, RefusesADirectionThatIsMissingStatedTwiceOrUnknown) {
   const ScratchFolder folder;
   const auto refusal = [&](const std::string& fields) {
     return ball_refusal(folder, R"({"id": "s", "do": "shadow", "object": "ball")" + fields + "}");
@@ -77,9 +77,10 @@ TEST(ShadowStep, RefusesADirectionThatIsMissingDoubledOrUnknown) {
   EXPECT_NE(refusal("").find("the insertion direction is missing: add 'direction'"), std::string::npos);
   EXPECT_NE(refusal(R"(, "direction": [0, 0, 1], "seen_from": "left")").find("leave out 'direction'"),
             std::string::npos);
-  EXPECT_NE(refusal(R"(, "direction": [0, 0, 0])"), "");
-  EXPECT_NE(refusal(R"(, "seen_from": "behind")").find("seen_from"), std::string::npos);
-  EXPECT_NE(refusal(R"(, "direction": [0, 0, 1], "beyond_mm": -1)").find("beyond_mm"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "direction": [0, 0, 0])").find("has no direction"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "seen_from": "behind")").find("seen_from: no view 'behind'"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "direction": [0, 0, 1], "beyond_mm": -1)").find("beyond_mm: must be from 0"),
+            std::string::npos);
   EXPECT_EQ(refusal(R"(, "seen_from": "35,15")"), "");
 }
 
