@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "verify/certificate/surface_reach.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -179,6 +180,38 @@ TEST_F(ReshapedBalls, TheAnswerEndsWithTheWorldAndItsSurfaceDoesNot) {
   Certificate uncut;
   judge_reach(uncut, cut, expected, {{glm::dvec3(-30.0), glm::dvec3(30.0)}, 0.0, 0.5});
   EXPECT_EQ(uncut.verdict, Verdict::Fail);
+}
+
+/// Both surfaces have the same vertices: a top that is not flat, with one diagonal and with the other.
+TEST_F(ReshapedBalls, ADifferenceBetweenVerticesIsFound) {
+  const brep::Triangles one = changed(brep::shapes::box({0, 0, 0}, {10, 10, 10}), [](const glm::dvec3& p) {
+    return p == glm::dvec3(10.0) ? glm::dvec3(10.0, 10.0, 12.0) : p;
+  });
+  brep::Triangles other = one;
+  std::vector<std::size_t> top;
+  for (std::size_t face = 0; face < one.faces.size(); ++face)
+    if (std::ranges::all_of(one.faces[face],
+                            [&](std::uint32_t corner) { return one.points_mm[corner].z >= 10.0; }))
+      top.push_back(face);
+  ASSERT_EQ(top.size(), 2u);
+  auto &first = other.faces[top[0]], &second = other.faces[top[1]];
+  // Begins each triangle with the corner that the other one lacks.
+  const auto has = [](const auto& face, std::uint32_t corner) {
+    return std::ranges::find(face, corner) != face.end();
+  };
+  while (has(second, first[0])) std::ranges::rotate(first, first.begin() + 1);
+  while (has(first, second[0])) std::ranges::rotate(second, second.begin() + 1);
+  first = {first[0], first[1], second[0]};
+  second = {second[0], second[1], first[0]};
+  const voxel::Box world{glm::dvec3(-30.0), glm::dvec3(30.0)};
+  Certificate certificate;
+  judge_reach(certificate, other, surface_decimated(one, 0.2), {world, 0.0, 0.5});
+  EXPECT_EQ(certificate.verdict, Verdict::Fail) << told(certificate);
+  // At the middle of the top the diagonals lie at heights of 10 and 11.
+  EXPECT_NEAR(certificate.worst->size_mm, 1.0, 0.05);
+  Certificate same;
+  judge_reach(same, one, surface_decimated(one, 0.2), {world, 0.0, 0.5});
+  EXPECT_EQ(same.verdict, Verdict::Pass) << told(same);
 }
 
 TEST_F(ReshapedBalls, WhereNoSampleCanBeComparedNothingPasses) {
