@@ -38,7 +38,7 @@ struct OperationText {
   FieldWords words;
   fs::path out;
   std::optional<double> voxel_mm;
-  bool certify = false, mend = false;
+  bool certify = false, mend = false, orient = false;
   ScanIn scan;
   CLI::App* verb = nullptr;
 };
@@ -125,9 +125,13 @@ class OperationRun {
       return read_mended_solid(path, timings_, mended_, {mending.stop, mending.report});
     }
     try {
-      return read_solid(path, timings_);
+      return text_.orient ? read_turned_solid(path, timings_, mended_) : read_solid(path, timings_);
     } catch (const brep::Error& error) {
-      throw brep::Error(error.code(), std::string(error.what()) + "; or take --mend");
+      throw brep::Error(error.code(),
+                        std::string(error.what()) +
+                            (text_.orient ? "; or take --mend"
+                                          : "; or take --mend, or --orient where triangles only face the "
+                                            "wrong way"));
     }
   }
 
@@ -172,8 +176,11 @@ class OperationRun {
     operation_.mesh(value(), {box.low_mm, box.high_mm, objects_, no_scan_, expressions, timings_, progress()},
                     made.mesh);
     made.findings = made.mesh.findings;
-    if (made.mesh.whole->empty())
-      throw std::runtime_error("nothing is left of " + made.definition + ": there is no surface to write");
+    if (!made.mesh.whole->empty()) return;
+    std::string why;
+    for (const std::string& finding : made.findings) why += "; " + finding;
+    throw std::runtime_error("nothing is left of " + made.definition + ": there is no surface to write" +
+                             why);
   }
 
   /// Voxelises an answer that only the mesh kernel has.
@@ -277,6 +284,8 @@ void add_object_options(CLI::App& verb, const Operation& operation, OperationTex
                       (by_both ? "objects' extent" : "answer's extent"))
       ->check(above_zero());
   verb.add_flag("--mend", text.mend, "Repair meshes that are not solids first, as repair --solid does");
+  verb.add_flag("--orient", text.orient,
+                "Turn triangles that face the wrong way first, as repair --orient does");
   CLI::Option* certify = verb.add_flag("--certify", text.certify,
                                        "Compute the answer in both kernels and print the certificate");
   if (!by_both) certify->group("");  // hidden: it is refused with a reason
