@@ -151,7 +151,7 @@ struct AnswerBench {
   voxel::Progress progress(const std::string& doing) const;
 };
 
-/// The bench of a verb that answers from files by itself.
+/// The bench of a verb that answers from files by itself, and of a step that writes the same file of objects.
 struct FileBench {
   Timings& timings;
   std::stop_token stop = {};
@@ -161,6 +161,8 @@ struct FileBench {
   /// timed.
   std::function<voxel::Scene(const std::filesystem::path& path, const voxel::SlicesFinal& slices_final)>
       scan_reader = {};
+  /// The bench of the step; null for a verb, whose names of objects are paths of files.
+  const AnswerBench* step = nullptr;
   voxel::Scene read_scan(const std::filesystem::path& path,
                          const voxel::SlicesFinal& slices_final = {}) const {
     return scan_reader(path, slices_final);

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/file/step_on_files.h"
+
+#include <nlohmann/json.hpp>
+
+#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/mesh_in.h"
+#include "planner/operation/file/octree_in.h"
+#include "planner/operation/table/fault.h"
+
+namespace octotomy::planner {
+
+bool names_octree(const std::string& name, const FileBench& bench) {
+  return bench.step != nullptr || is_octree(name);
+}
+
+voxel::OctreeFile octree_named(const std::string& name, const FileBench& bench) {
+  if (bench.step == nullptr) return read_timed(name, bench.timings);
+  const Object& object = bench.step->objects.at(name);
+  return {object.voxel.octree, object.id,
+          nlohmann::ordered_json{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
+                                 {"definition", object.definition}}
+              .dump()};
+}
+
+brep::Triangles triangles_named(const std::string& name, const FileBench& bench) {
+  if (bench.step == nullptr) return read_mesh_in(name);
+  const Object& object = bench.step->objects.at(name);
+  if (!object.mesh.within) throw std::runtime_error("'" + name + "' has no mesh, see its findings");
+  return object.mesh.within->triangles();
+}
+
+void write_by_verb(const std::string& object, const std::filesystem::path& path,
+                   const std::function<FileAnswer(const FileBench& bench)>& run, const AnswerBench& bench,
+                   Exported& made) {
+  made.object = object;
+  made.path = output_path(path).generic_string();
+  try {
+    FileAnswer answer = run({bench.timings, bench.stop, bench.report, {}, &bench});
+    made.findings = std::move(answer.findings);
+    for (const char* key : {"octotomy", "timings_ms", "path", "findings"}) answer.json.erase(key);
+    made.details = std::move(answer.json);
+    for (const auto& [name, text] : answer.rows)
+      if (name != "written") made.content += (made.content.empty() ? "" : ", ") + name + " " + text;
+    made.written = true;
+  } catch (const std::exception& error) {
+    if (!is_no_answer(error)) throw;
+    made.findings.push_back("not written: " + message_of(error));
+  }
+}
+
+}  // namespace octotomy::planner
