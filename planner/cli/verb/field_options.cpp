@@ -33,12 +33,14 @@ std::string help_of(const Field& field, void* fresh) {
   return printed.empty() ? text : text + " Default: " + printed.begin()->dump() + ".";
 }
 
-/// An error message with the names of fields replaced by those of options.
+/// An error message with the names of fields replaced by those of options, "--out" for "-o,--out".
 std::string in_options(std::string text, const std::string& operation, const std::vector<Field>& fields) {
-  for (const Field& field : fields)
+  for (const Field& field : fields) {
+    const std::string option = option_of(field), name = option.substr(option.rfind(',') + 1);
     for (const std::string& said : {operation + ", " + field.name + ":", "'" + field.name + "'"})
       for (std::size_t at = 0; (at = text.find(said, at)) != std::string::npos; ++at)
-        text.replace(at, said.size(), option_of(field) + (said.ends_with(':') ? ":" : ""));
+        text.replace(at, said.size(), name + (said.ends_with(':') ? ":" : ""));
+  }
   return text;
 }
 
