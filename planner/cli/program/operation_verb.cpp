@@ -27,6 +27,7 @@
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
+#include "voxel/scan/dicom_source.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -265,10 +266,15 @@ int answer_from_files(const Program& program, const Action& action, const Operat
   Timings timings;
   for (const auto& [field, words] : text.words)
     if (field.starts_with("window")) program.note_tissues(words);
-  const FileBench bench{timings, program.stop.get_token(), program.progress(),
-                        [&](const fs::path& path, const voxel::SlicesFinal& slices_final) {
-                          return read_scan(program, path, text.scan, timings, slices_final);
-                        }};
+  FileBench bench{timings, program.stop.get_token(), program.progress()};
+  bench.scan_reader = [&](const fs::path& path, const voxel::SlicesFinal& slices_final) {
+    return read_scan(program, path, text.scan, timings, slices_final);
+  };
+  bench.dicom_source = [&](const fs::path& path, const voxel::Scene& scene) {
+    return is_dicom(scene) ? std::make_shared<const voxel::DicomSource>(
+                                 voxel::dicom_source(path, read_options(program, text.scan)))
+                           : nullptr;
+  };
   return say(program, action.operation().on_files(action.value(), bench), timings);
 }
 
