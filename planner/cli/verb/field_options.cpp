@@ -13,8 +13,8 @@ namespace {
 
 /// A field's option: its name without the unit, words joined by hyphens.
 std::string option_of(const Field& field) {
-  if (field.name == "out") return "-o,--out";
   std::string name = field.option.empty() ? field.name : field.option;
+  if (name == "out") return "-o,--out";
   for (const char* ending : {"_mm", "_mm2", "_mm3", "_deg"})
     if (field.option.empty() && name.ends_with(ending)) name.resize(name.size() - std::string(ending).size());
   std::replace(name.begin(), name.end(), '_', '-');

@@ -294,7 +294,7 @@ convert::DeckOptions deck_of(const FileBench& bench, const Tet& asked, Filled& f
 
 void check(const Tet& asked, const Place& place) {
   if (place.scope == nullptr) return;
-  check_output_path(asked.out, {".inp", ".feb", ".vtu", ".msh", ".node"}, place.at("out"));
+  check_output_path(asked.out, {".inp", ".feb", ".vtu", ".msh", ".node"}, place.at("path"));
   if (!asked.of_voxels && (!asked.regions.empty() || asked.size_mm || asked.contact))
     place.refuse("'regions', 'size_mm' and 'contact' are of voxels: add 'of_voxels' true");
 }
@@ -362,9 +362,10 @@ Operation tet_operation() {
                  .required()
                  .positional("file"))
       .takes(
-          field("out", &Tet::out,
+          field("path", &Tet::out,
                 "A deck: .inp (Abaqus, CalculiX), .feb (FEBio 4), .vtu, .msh (Gmsh 4.1) or .node (TetGen).")
-              .required())
+              .required()
+              .called("out"))
       .takes(field("mesher", &Tet::mesher,
                    "tetgen keeps the surface. mesh3 (CGAL) makes a new surface within a tenth of a "
                    "triangle's size of it. stuffing cuts a lattice's cells at the surface: angles above 10 "
@@ -434,7 +435,8 @@ Operation tet_operation() {
       .verb_takes(field("scan", &Tet::scan, "Takes each element's stiffness from this scan in HU."))
       .verb_takes(&Tet::stiffness, stiffness_fields())
       .reads_scans()
-      .example(R"({"id": "deck", "do": "tet", "object": "maxilla", "mesher": "mesh3", "out": "maxilla.inp"})")
+      .example(
+          R"({"id": "deck", "do": "tet", "object": "maxilla", "mesher": "mesh3", "path": "maxilla.inp"})")
       .on_files(
           "octotomy tet maxilla.stl -o maxilla.inp --radius-edge 1.4 --json\n"
           "  octotomy tet scan.vtp --mend -o scan.inp\n"

@@ -81,7 +81,7 @@ glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
 /// Of a step: the expression names objects of the plan and motions of its own.
 void check(const Eval& asked, const Place& place) {
   if (place.scope == nullptr) return;
-  check_output_path(asked.out, {".octree"}, place.at("out"));
+  check_output_path(asked.out, {".octree"}, place.at("path"));
   const Place at = place.at("expression");
   try {
     const auto motions = bound(asked.motions, "motions", "X,Y,Z");
@@ -262,7 +262,9 @@ Operation eval_operation() {
       .takes(field("expression", &Eval::expression, "For example \"(a | b) - c\".")
                  .required()
                  .positional("expression"))
-      .takes(field("out", &Eval::out, "An .octree file, in the universe of the first name.").required())
+      .takes(field("path", &Eval::out, "An .octree file, in the universe of the first name.")
+                 .required()
+                 .called("out"))
       .verb_takes(field("lets", &Eval::lets, "NAME=FILE: what a name stands for, an .octree file.")
                       .repeated()
                       .called("let"))
@@ -285,7 +287,7 @@ Operation eval_operation() {
       .verb_takes(field("interpolate", &Eval::interpolate,
                         "How samples of a moved grey octree are read: nearest, linear or cubic.")
                       .one_of({"nearest", "linear", "cubic"}))
-      .example(R"({"id": "rest", "do": "eval", "expression": "skull - cut", "out": "rest.octree"})")
+      .example(R"({"id": "rest", "do": "eval", "expression": "skull - cut", "path": "rest.octree"})")
       .on_files(
           "octotomy eval \"skull - cut\" -o rest.octree --let skull=skull.octree --let cut=cut.octree\n"
           "  Files of filled shares (--digitise partial) give shares again, with bounds of the volume.",

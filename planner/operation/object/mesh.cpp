@@ -154,7 +154,7 @@ Finished finished(Made made, const Meshed& asked, Timings& timings) {
 
 void check(const Meshed& asked, const Place& place) {
   if (place.scope == nullptr) return;
-  check_output_path(asked.out, {".stl", ".ply", ".obj", ".off", ".vtp", ".glb"}, place.at("out"));
+  check_output_path(asked.out, {".stl", ".ply", ".obj", ".off", ".vtp", ".glb"}, place.at("path"));
   if (asked.surface == "contours")
     place.at("surface").refuse("contours are followed on a scan's slices, which an object has none of");
 }
@@ -218,10 +218,12 @@ Operation mesh_operation() {
                                   "is of a cuberille: add 'surface' cuberille"))
       .takes(field("smooth", &Meshed::smooth, "Takes noise off the surface and keeps its volume."))
       .takes(field("faces", &Meshed::faces, "Decimates to so many triangles.").from(4).to(100000000))
-      .takes(field("out", &Meshed::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.").required())
+      .takes(field("path", &Meshed::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.")
+                 .required()
+                 .called("out"))
       .reads_scans()
       .example(
-          R"({"id": "steps", "do": "mesh", "object": "skull", "surface": "cuberille", "out": "skull.stl"})")
+          R"({"id": "steps", "do": "mesh", "object": "skull", "surface": "cuberille", "path": "skull.stl"})")
       .on_files(
           "octotomy mesh head.nrrd -o skull.stl --window 300:\n"
           "  octotomy mesh maxilla.octree -o maxilla.ply --surface cuberille\n"

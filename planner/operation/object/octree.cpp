@@ -154,7 +154,7 @@ void check(const Build& asked, const Place& place) {
   if (place.scope == nullptr) return;
   if (!asked.as.empty()) need_form_name(asked);
   check_output_path(asked.out, {asked.as.empty() ? ".octree" : asked.out.extension().string()},
-                    place.at("out"));
+                    place.at("path"));
 }
 
 FileAnswer on_files(const Build& asked, const FileBench& bench) {
@@ -181,8 +181,9 @@ Operation octree_operation() {
                  .required()
                  .positional("file"))
       .takes(
-          field("out", &Build::out, "An .octree file, or with --as the representation's, for example .txt.")
-              .required())
+          field("path", &Build::out, "An .octree file, or with --as the representation's, for example .txt.")
+              .required()
+              .called("out"))
       .verb_takes(
           field("window", &Build::window, "LOW:HIGH or LOW: in sample units, or a tissue: a binary octree.")
               .read_if<Build>([](const Build& build) { return build.from.empty(); },
@@ -211,7 +212,7 @@ Operation octree_operation() {
               .to(voxel::Universe::max_depth)
               .read_if<Build>([](const Build& build) { return !build.from.empty(); }, "is of 'from': add it"))
       .reads_scans()
-      .example(R"({"id": "tree", "do": "octree", "object": "skull", "out": "skull.octree"})")
+      .example(R"({"id": "tree", "do": "octree", "object": "skull", "path": "skull.octree"})")
       .on_files(
           "octotomy octree head.nrrd -o skull.octree --window 300:\n"
           "  octotomy octree skull.octree -o skull.txt --as linear\n"

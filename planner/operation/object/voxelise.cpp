@@ -221,11 +221,11 @@ FileAnswer write_labels(const FileBench& bench, const Voxelise& asked, const std
 void check(const Voxelise& asked, const Place& place) {
   const bool labels = !is_octree(asked.out);
   if (place.scope != nullptr)
-    check_output_path(asked.out, {".octree", ".nrrd", ".nii.gz", ".mha"}, place.at("out"));
+    check_output_path(asked.out, {".octree", ".nrrd", ".nii.gz", ".mha"}, place.at("path"));
   else if (labels && !voxel::volume_format(asked.out))
     need_octree_extension(asked.out);
   if (!labels && asked.meshes.size() > 1)
-    place.at("out").refuse("an .octree holds one object: write several as a label map, .nrrd");
+    place.at("path").refuse("an .octree holds one object: write several as a label map, .nrrd");
   if (labels && asked.digitise == "partial")
     place.at("digitise").refuse("a label map has no shares of voxels: write an .octree for those");
 }
@@ -255,8 +255,9 @@ Operation voxelise_operation() {
                  .required()
                  .from(1)
                  .positional("mesh"))
-      .takes(
-          field("out", &Voxelise::out, "An .octree file, or a label map: .nrrd, .nii.gz, .mha.").required())
+      .takes(field("path", &Voxelise::out, "An .octree file, or a label map: .nrrd, .nii.gz, .mha.")
+                 .required()
+                 .called("out"))
       .takes(field("voxel_mm", &Voxelise::voxel_mm,
                    "Edge of a voxel. Default: 1; of a step that of the plan's universe.")
                  .greater_than(0.0))
@@ -268,7 +269,7 @@ Operation voxelise_operation() {
               "Which voxels: inside (D1), touching (D2), centre (D3), half (D4), or partial, with the share "
               "of each that is filled.")
               .one_of({"inside", "touching", "centre", "half", "partial"}))
-      .example(R"({"id": "plate", "do": "voxelise", "meshes": ["skull"], "out": "plate.octree"})")
+      .example(R"({"id": "plate", "do": "voxelise", "meshes": ["skull"], "path": "plate.octree"})")
       .on_files(
           "octotomy voxelise maxilla.stl -o maxilla.octree --voxel 0.5\n"
           "  octotomy voxelise maxilla.stl mandible.stl -o jaws.nii.gz --voxel 0.5\n"

@@ -36,7 +36,7 @@ Written written(const ScratchFolder& folder, const std::string& steps) {
 TEST(StepOnFiles, AnOctreeIsTheObjectsOwn) {
   const ScratchFolder folder;
   const Written made =
-      written(folder, R"({"id": "tree", "do": "octree", "object": "ball", "out": "trees/ball.octree"})");
+      written(folder, R"({"id": "tree", "do": "octree", "object": "ball", "path": "trees/ball.octree"})");
   ASSERT_TRUE(made.file.written);
   EXPECT_EQ(made.file.object, "ball");
   EXPECT_EQ(made.file.path, "trees/ball.octree");
@@ -48,7 +48,7 @@ TEST(StepOnFiles, AnOctreeIsTheObjectsOwn) {
 TEST(StepOnFiles, AnOctreesOtherFormIsThatOfItsFile) {
   const ScratchFolder folder;
   const Written made = written(
-      folder, R"({"id": "tree", "do": "octree", "object": "ball", "as": "linear", "out": "ball.txt"})");
+      folder, R"({"id": "tree", "do": "octree", "object": "ball", "as": "linear", "path": "ball.txt"})");
   ASSERT_TRUE(made.file.written);
   EXPECT_EQ(made.file.details.at("bytes_representation"), std::filesystem::file_size(folder / "ball.txt"));
 }
@@ -56,7 +56,7 @@ TEST(StepOnFiles, AnOctreesOtherFormIsThatOfItsFile) {
 TEST(StepOnFiles, ACuberilleHasTheVolumeOfItsVoxels) {
   const ScratchFolder folder;
   const Written made = written(
-      folder, R"({"id": "m", "do": "mesh", "object": "ball", "surface": "cuberille", "out": "ball.off"})");
+      folder, R"({"id": "m", "do": "mesh", "object": "ball", "surface": "cuberille", "path": "ball.off"})");
   ASSERT_TRUE(made.file.written);
   const double voxels_mm3 = made.evaluation.object("ball").voxel.measures.volume_mm3;
   EXPECT_NEAR(made.file.details.at("volume_mm3").get<double>(), voxels_mm3, 1e-6 * voxels_mm3);
@@ -67,7 +67,7 @@ TEST(StepOnFiles, ACuberilleHasTheVolumeOfItsVoxels) {
 TEST(StepOnFiles, VoxelsOfAMeshLieInThePlansUniverse) {
   const ScratchFolder folder;
   const Written made =
-      written(folder, R"({"id": "v", "do": "voxelise", "meshes": ["ball"], "out": "ball.octree"})");
+      written(folder, R"({"id": "v", "do": "voxelise", "meshes": ["ball"], "path": "ball.octree"})");
   ASSERT_TRUE(made.file.written);
   const voxel::OctreeFile read = voxel::read_octree(folder / "ball.octree");
   const auto& octree = std::get<voxel::Octree>(read.tree);
@@ -79,7 +79,7 @@ TEST(StepOnFiles, AnExpressionsOctreeIsThatOfCombine) {
   const ScratchFolder folder;
   const Written made = written(folder, ball_caps(R"(
       {"id": "cap", "do": "combine", "expression": "ball & high"},
-      {"id": "e", "do": "eval", "expression": "ball & high", "out": "cap.octree"})"));
+      {"id": "e", "do": "eval", "expression": "ball & high", "path": "cap.octree"})"));
   ASSERT_TRUE(made.file.written) << made.file.findings.front();
   EXPECT_EQ(std::get<voxel::Octree>(voxel::read_octree(folder / "cap.octree").tree),
             made.evaluation.object("cap").voxel.octree);
@@ -88,13 +88,13 @@ TEST(StepOnFiles, AnExpressionsOctreeIsThatOfCombine) {
 TEST(StepOnFiles, AnExpressionsMotionIsOfTheStep) {
   const ScratchFolder folder;
   const Written made = written(folder, R"plan({"id": "e", "do": "eval", "expression": "move(ball, up)",
-      "motions": ["up=0,0,3"], "out": "up.octree"})plan");
+      "motions": ["up=0,0,3"], "path": "up.octree"})plan");
   ASSERT_TRUE(made.file.written) << made.file.findings.front();
   const voxel::Measures up =
       voxel::measure(std::get<voxel::Octree>(voxel::read_octree(folder / "up.octree").tree));
   EXPECT_NEAR(up.centroid_mm->z - made.evaluation.object("ball").voxel.measures.centroid_mm->z, 3.0, 0.05);
   EXPECT_NE(ball_refusal(folder, R"plan({"id": "e", "do": "eval", "expression": "move(ball, up)",
-      "out": "up.octree"})plan")
+      "path": "up.octree"})plan")
                 .find("no motion is called 'up'"),
             std::string::npos);
 }
@@ -102,7 +102,7 @@ TEST(StepOnFiles, AnExpressionsMotionIsOfTheStep) {
 TEST(StepOnFiles, TetrahedraOfItsVoxelsFillThemAll) {
   const ScratchFolder folder;
   const Written made =
-      written(folder, R"({"id": "t", "do": "tet", "object": "ball", "of_voxels": true, "out": "ball.vtu"})");
+      written(folder, R"({"id": "t", "do": "tet", "object": "ball", "of_voxels": true, "path": "ball.vtu"})");
   ASSERT_TRUE(made.file.written) << made.file.findings.front();
   const double voxels_mm3 = made.evaluation.object("ball").voxel.measures.volume_mm3;
   EXPECT_NEAR(made.file.details.at("volume_mm3").get<double>(), voxels_mm3, 1e-6 * voxels_mm3);
@@ -112,7 +112,7 @@ TEST(StepOnFiles, WhatCannotBeWrittenIsAFindingAndNoFile) {
   const ScratchFolder folder;
   const Written made = written(folder, ball_caps(R"(
       {"id": "none", "do": "combine", "expression": "ball - ball"},
-      {"id": "m", "do": "mesh", "object": "none", "out": "none.off"})"));
+      {"id": "m", "do": "mesh", "object": "none", "path": "none.off"})"));
   EXPECT_FALSE(made.file.written);
   ASSERT_EQ(made.file.findings.size(), 1u);
   EXPECT_EQ(made.file.findings.front(), "not written: none: nothing is in it");
@@ -121,13 +121,13 @@ TEST(StepOnFiles, WhatCannotBeWrittenIsAFindingAndNoFile) {
 
 TEST(StepOnFiles, AnOutputOfAnotherKindOrOutsideOfTheResultIsRefused) {
   const ScratchFolder folder;
-  for (const char* step : {R"({"id": "t", "do": "octree", "object": "ball", "out": "ball.stl"})",
-                           R"({"id": "t", "do": "octree", "object": "ball", "out": "../ball.octree"})",
-                           R"({"id": "t", "do": "mesh", "object": "ball", "out": "ball.octree"})",
-                           R"({"id": "t", "do": "voxelise", "meshes": ["ball"], "out": "ball.off"})",
-                           R"({"id": "t", "do": "tet", "object": "ball", "out": "ball.off"})",
-                           R"({"id": "t", "do": "eval", "expression": "ball", "out": "ball.nrrd"})"})
-    EXPECT_NE(ball_refusal(folder, step).find("out"), std::string::npos) << step;
+  for (const char* step : {R"({"id": "t", "do": "octree", "object": "ball", "path": "ball.stl"})",
+                           R"({"id": "t", "do": "octree", "object": "ball", "path": "../ball.octree"})",
+                           R"({"id": "t", "do": "mesh", "object": "ball", "path": "ball.octree"})",
+                           R"({"id": "t", "do": "voxelise", "meshes": ["ball"], "path": "ball.off"})",
+                           R"({"id": "t", "do": "tet", "object": "ball", "path": "ball.off"})",
+                           R"({"id": "t", "do": "eval", "expression": "ball", "path": "ball.nrrd"})"})
+    EXPECT_NE(ball_refusal(folder, step).find("path"), std::string::npos) << step;
 }
 
 }  // namespace
