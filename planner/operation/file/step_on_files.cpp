@@ -36,7 +36,10 @@ void write_by_verb(const std::string& object, const std::filesystem::path& path,
   made.object = object;
   made.path = output_path(path).generic_string();
   try {
-    FileAnswer answer = run({bench.timings, bench.stop, bench.report, {}, &bench});
+    const auto samples = [&](const std::filesystem::path& scan, const voxel::SlicesFinal&) {
+      return bench.samples(scan.string());
+    };
+    FileAnswer answer = run({bench.timings, bench.stop, bench.report, samples, &bench});
     made.findings = std::move(answer.findings);
     for (const char* key : {"octotomy", "timings_ms", "path", "findings"}) answer.json.erase(key);
     made.details = std::move(answer.json);
@@ -44,7 +47,8 @@ void write_by_verb(const std::string& object, const std::filesystem::path& path,
       if (name != "written") made.content += (made.content.empty() ? "" : ", ") + name + " " + text;
     made.written = true;
   } catch (const std::exception& error) {
-    if (!is_no_answer(error)) throw;
+    // A full disk or exhausted memory is no property of the object.
+    if (fault_of(error) != Fault::Input && fault_of(error) != Fault::Geometry) throw;
     made.findings.push_back("not written: " + message_of(error));
   }
 }

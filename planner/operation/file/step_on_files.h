@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "brep/mesh/triangles.h"
 #include "planner/operation/file/output_path.h"
@@ -22,8 +23,8 @@ voxel::OctreeFile octree_named(const std::string& name, const FileBench& bench);
 /// Throws as read_mesh_in(), and std::runtime_error if the object has no mesh.
 brep::Triangles triangles_named(const std::string& name, const FileBench& bench);
 
-/// Writes a step's file by a verb's function `run`. `object` is the first object that it uses, `path` the file
-/// within the result's folder. If `run` has no answer, its reason becomes a finding, and no file is written.
+/// Writes a step's file by a verb's function `run`. `object` is the first object that it uses, empty if it uses a
+/// scan; `path` is the file within the result's folder. Scans are those of the plan. If `run` has no answer, its reason becomes a finding, and no file is written.
 void write_by_verb(const std::string& object, const std::filesystem::path& path,
                    const std::function<FileAnswer(const FileBench& bench)>& run, const AnswerBench& bench,
                    Exported& made);
@@ -32,8 +33,9 @@ void write_by_verb(const std::string& object, const std::filesystem::path& path,
 /// `Value::out`.
 template <typename Value, FileAnswer (*on_files)(const Value&, const FileBench&)>
 void write_step(const Value& asked, const AnswerBench& bench, Exported& made) {
+  const std::vector<std::string> objects = asked.inputs();
   write_by_verb(
-      asked.inputs().front(), asked.out,
+      objects.empty() ? "" : objects.front(), asked.out,
       [&](const FileBench& files) {
         Value there = asked;
         there.out = output_file(bench.folder, output_path(asked.out));
