@@ -9,6 +9,18 @@
 #include "planner/operation/table/fault.h"
 
 namespace octotomy::planner {
+namespace {
+
+/// The text with the paths of the result's folder as they are within it: results are written to a folder of
+/// another name first.
+std::string within(std::string text, const std::filesystem::path& folder) {
+  const std::string beginning = (folder / "").string();
+  for (std::size_t at = 0; (at = text.find(beginning, at)) != std::string::npos;)
+    text.erase(at, beginning.size());
+  return text;
+}
+
+}  // namespace
 
 bool names_octree(const std::string& name, const FileBench& bench) {
   return bench.step != nullptr || is_octree(name);
@@ -40,7 +52,8 @@ void write_by_verb(const std::string& object, const std::filesystem::path& path,
       return bench.samples(scan.string());
     };
     FileAnswer answer = run({bench.timings, bench.stop, bench.report, samples, &bench});
-    made.findings = std::move(answer.findings);
+    for (std::string& finding : answer.findings)
+      made.findings.push_back(within(std::move(finding), bench.folder));
     for (const char* key : {"octotomy", "timings_ms", "path", "findings"}) answer.json.erase(key);
     made.details = std::move(answer.json);
     for (const auto& [name, text] : answer.rows)
@@ -49,7 +62,7 @@ void write_by_verb(const std::string& object, const std::filesystem::path& path,
   } catch (const std::exception& error) {
     // A full disk or exhausted memory is no property of the object.
     if (fault_of(error) != Fault::Input && fault_of(error) != Fault::Geometry) throw;
-    made.findings.push_back("not written: " + message_of(error));
+    made.findings.push_back("not written: " + within(message_of(error), bench.folder));
   }
 }
 

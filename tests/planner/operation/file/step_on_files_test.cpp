@@ -75,6 +75,16 @@ TEST(StepOnFiles, VoxelsOfAMeshLieInThePlansUniverse) {
   EXPECT_NEAR(voxel::measure(octree).volume_mm3, ball_mm3(ball_radius_mm), 0.01 * ball_mm3(ball_radius_mm));
 }
 
+TEST(StepOnFiles, AFindingNamesAFileWithinTheResult) {
+  const ScratchFolder folder;
+  const Written made =
+      written(folder, R"({"id": "v", "do": "voxelise", "meshes": ["ball"], "path": "maps/ball.nrrd"})");
+  ASSERT_TRUE(made.file.written);
+  ASSERT_EQ(made.file.findings.size(), 1u);
+  EXPECT_NE(made.file.findings.front().find(" maps/ball.tsv"), std::string::npos)
+      << made.file.findings.front();
+}
+
 TEST(StepOnFiles, AnExpressionsOctreeIsThatOfCombine) {
   const ScratchFolder folder;
   const Written made = written(folder, ball_caps(R"(
