@@ -103,17 +103,10 @@ std::map<std::string, ScanSource> scans_of(const Keys& top) {
   return scans;
 }
 
-/// Whether plans have such a step. An operation that only converts files has a counterpart in plans, such as
-/// deck for tet.
-bool is_step(const Operation& operation) {
-  return operation.makes != Makes::File || operation.write;
-}
-
 /// The words for a step's `do`: the operations, and "export".
 std::vector<std::string> step_words() {
   std::vector<std::string> words;
-  for (const Operation& operation : operations())
-    if (is_step(operation)) words.push_back(operation.name);
+  for (const Operation& operation : operations()) words.push_back(operation.name);
   words.emplace_back("export");
   return words;
 }
@@ -139,7 +132,7 @@ Step step_of(const SortedJson& value, std::size_t index, Scope& scope) {
     place.refuse("'do' is missing" + suggestion("", step_words()));
   const std::string word = found->get<std::string>();
   const Operation* operation = find_operation(word == "export" ? export_of(value) : word);
-  if (operation == nullptr || !is_step(*operation))
+  if (operation == nullptr)
     place.at("do").refuse("unknown step '" + word + "'" + suggestion(word, step_words()));
   const auto id = value.find("id");
   if (id == value.end() || id->is_null()) place.refuse("'id' is missing: add it");
@@ -269,8 +262,7 @@ Json plan_schema() {
                   {"required", {"path"}},
                   {"additionalProperties", false}};
   Json steps = Json::array();
-  for (const Operation& operation : operations())
-    if (is_step(operation)) steps.push_back(step_schema(operation));
+  for (const Operation& operation : operations()) steps.push_back(step_schema(operation));
   // "export" denotes the operation that writes the path's extension.
   for (const char* name : {"surface", "deck", "label_map"}) {
     Json schema = step_schema(*find_operation(name));

@@ -238,7 +238,6 @@ int parse_and_run(int count, char** arguments) {
   cli::add_convert(program);
   cli::add_mark(program);
   cli::add_prepare(program);
-  cli::add_segment(program);
   cli::add_operation_verbs(program);
   cli::add_phantom(program);
   cli::add_cohort(program);

@@ -27,6 +27,7 @@
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
+#include "voxel/scan/dicom_source.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -38,7 +39,7 @@ struct OperationText {
   FieldWords words;
   fs::path out;
   std::optional<double> voxel_mm;
-  bool certify = false, mend = false;
+  bool certify = false, mend = false, orient = false;
   ScanIn scan;
   CLI::App* verb = nullptr;
 };
@@ -125,9 +126,13 @@ class OperationRun {
       return read_mended_solid(path, timings_, mended_, {mending.stop, mending.report});
     }
     try {
-      return read_solid(path, timings_);
+      return text_.orient ? read_turned_solid(path, timings_, mended_) : read_solid(path, timings_);
     } catch (const brep::Error& error) {
-      throw brep::Error(error.code(), std::string(error.what()) + "; or take --mend");
+      throw brep::Error(error.code(),
+                        std::string(error.what()) +
+                            (text_.orient ? "; or take --mend"
+                                          : "; or take --mend, or --orient where triangles only face the "
+                                            "wrong way"));
     }
   }
 
@@ -172,8 +177,11 @@ class OperationRun {
     operation_.mesh(value(), {box.low_mm, box.high_mm, objects_, no_scan_, expressions, timings_, progress()},
                     made.mesh);
     made.findings = made.mesh.findings;
-    if (made.mesh.whole->empty())
-      throw std::runtime_error("nothing is left of " + made.definition + ": there is no surface to write");
+    if (!made.mesh.whole->empty()) return;
+    std::string why;
+    for (const std::string& finding : made.findings) why += "; " + finding;
+    throw std::runtime_error("nothing is left of " + made.definition + ": there is no surface to write" +
+                             why);
   }
 
   /// Voxelises an answer that only the mesh kernel has.
@@ -258,10 +266,15 @@ int answer_from_files(const Program& program, const Action& action, const Operat
   Timings timings;
   for (const auto& [field, words] : text.words)
     if (field.starts_with("window")) program.note_tissues(words);
-  const FileBench bench{timings, program.stop.get_token(), program.progress(),
-                        [&](const fs::path& path, const voxel::SlicesFinal& slices_final) {
-                          return read_scan(program, path, text.scan, timings, slices_final);
-                        }};
+  FileBench bench{timings, program.stop.get_token(), program.progress()};
+  bench.scan_reader = [&](const fs::path& path, const voxel::SlicesFinal& slices_final) {
+    return read_scan(program, path, text.scan, timings, slices_final);
+  };
+  bench.dicom_source = [&](const fs::path& path, const voxel::Scene& scene) {
+    return is_dicom(scene) ? std::make_shared<const voxel::DicomSource>(
+                                 voxel::dicom_source(path, read_options(program, text.scan)))
+                           : nullptr;
+  };
   return say(program, action.operation().on_files(action.value(), bench), timings);
 }
 
@@ -277,6 +290,8 @@ void add_object_options(CLI::App& verb, const Operation& operation, OperationTex
                       (by_both ? "objects' extent" : "answer's extent"))
       ->check(above_zero());
   verb.add_flag("--mend", text.mend, "Repair meshes that are not solids first, as repair --solid does");
+  verb.add_flag("--orient", text.orient,
+                "Turn triangles that face the wrong way first, as repair --orient does");
   CLI::Option* certify = verb.add_flag("--certify", text.certify,
                                        "Compute the answer in both kernels and print the certificate");
   if (!by_both) certify->group("");  // hidden: it is refused with a reason

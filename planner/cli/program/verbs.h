@@ -13,7 +13,6 @@ void add_info(Program& program);
 void add_convert(Program& program);
 void add_phantom(Program& program);
 void add_prepare(Program& program);
-void add_segment(Program& program);
 void add_plan_verbs(Program& program);
 void add_plan_document(Program& program);  ///< plan diff, plan merge, plan history
 void add_procedure(Program& program);

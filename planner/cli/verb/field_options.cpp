@@ -13,8 +13,8 @@ namespace {
 
 /// A field's option: its name without the unit, words joined by hyphens.
 std::string option_of(const Field& field) {
-  if (field.name == "out") return "-o,--out";
   std::string name = field.option.empty() ? field.name : field.option;
+  if (name == "out") return "-o,--out";
   for (const char* ending : {"_mm", "_mm2", "_mm3", "_deg"})
     if (field.option.empty() && name.ends_with(ending)) name.resize(name.size() - std::string(ending).size());
   std::replace(name.begin(), name.end(), '_', '-');
@@ -33,12 +33,14 @@ std::string help_of(const Field& field, void* fresh) {
   return printed.empty() ? text : text + " Default: " + printed.begin()->dump() + ".";
 }
 
-/// An error message with the names of fields replaced by those of options.
+/// An error message with the names of fields replaced by those of options, "--out" for "-o,--out".
 std::string in_options(std::string text, const std::string& operation, const std::vector<Field>& fields) {
-  for (const Field& field : fields)
+  for (const Field& field : fields) {
+    const std::string option = option_of(field), name = option.substr(option.rfind(',') + 1);
     for (const std::string& said : {operation + ", " + field.name + ":", "'" + field.name + "'"})
       for (std::size_t at = 0; (at = text.find(said, at)) != std::string::npos; ++at)
-        text.replace(at, said.size(), option_of(field) + (said.ends_with(':') ? ":" : ""));
+        text.replace(at, said.size(), name + (said.ends_with(':') ? ":" : ""));
+  }
   return text;
 }
 

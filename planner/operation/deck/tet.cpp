@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tetrahedra of a closed mesh or of octrees in files; in a plan it is the step deck.
+// Tetrahedra of one closed mesh, or of octrees: the verb of files, the step of objects. The step `deck` fills several
+// objects together, with materials of their scan and motions of the plan.
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +23,7 @@
 #include "planner/operation/file/landmarks_file.h"
 #include "planner/operation/file/mesh_file.h"
 #include "planner/operation/file/mesh_in.h"
-#include "planner/operation/file/octree_in.h"
+#include "planner/operation/file/step_on_files.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/comma_numbers.h"
 #include "planner/operation/table/fault.h"
@@ -45,10 +46,17 @@ struct Tet {
   std::vector<ObjectName> regions;
   int order = 1;
   std::filesystem::path scan;
-  std::vector<double> density;
-  std::string law = Stiffness{}.law;
-  int bins = Stiffness{}.bins;
-  double surface_depth_mm = Stiffness{}.surface_depth_mm, poisson_ratio = Stiffness{}.poisson_ratio;
+  Stiffness stiffness;     ///< of that scan
+  bool of_voxels = false;  ///< of a step: of the object's octree, as the verb is of an .octree file
+
+  std::vector<std::string> inputs() const {
+    std::vector<std::string> names{file.name};
+    for (const ObjectName& region : regions) names.push_back(region.name);
+    return names;
+  }
+  bool is_of_voxels(const FileBench& bench) const {
+    return bench.step != nullptr ? of_voxels : is_octree(file.name);
+  }
 };
 
 /// Places of --finer: WHERE=SIZE, where a place is a point, a landmark's name or a mesh file.
@@ -98,10 +106,6 @@ convert::TetOptions options_of(const Tet& asked, const FileBench& bench) {
   return options;
 }
 
-Stiffness stiffness_of(const Tet& asked) {
-  return {{}, asked.density, asked.law, asked.bins, asked.surface_depth_mm, asked.poisson_ratio};
-}
-
 /// What a deck is made of, and how it came about.
 struct Filled {
   convert::Tetrahedra tetrahedra;
@@ -131,7 +135,8 @@ voxel::Octree voxels_of(const Tet& asked, const brep::Triangles& triangles, bool
 
 /// Elements as they are made, or why the fallback is to be taken. Without --fallback throws where none are
 /// made, and keeps unfit ones with a finding.
-void fill(const Tet& asked, Filled& filled, const std::function<convert::Tetrahedra()>& make) {
+void fill(const Tet& asked, bool is_of_voxels, Filled& filled,
+          const std::function<convert::Tetrahedra()>& make) {
   try {
     filled.tetrahedra = make();
     filled.findings = filled.tetrahedra.findings;
@@ -140,7 +145,7 @@ void fill(const Tet& asked, Filled& filled, const std::function<convert::Tetrahe
     if (asked.fallback)
       filled.fallback = unfit;
     else
-      filled.findings.push_back(*unfit + (is_octree(asked.file.name)
+      filled.findings.push_back(*unfit + (is_of_voxels
                                               ? ": take another --size, or --fallback"
                                               : ": mend or simplify the surface, or take --fallback"));
   } catch (const std::exception& error) {
@@ -177,7 +182,7 @@ CheckedMesh checked_mesh(const FileBench& bench, const Tet& asked, std::vector<s
         read_mended_solid(asked.file.name, bench.timings, findings, {progress.stop, progress.report}));
   } else {
     const Stopwatch watch(bench.timings, "read");
-    surface.triangles = read_mesh_in(asked.file.name);
+    surface.triangles = triangles_named(asked.file.name, bench);
   }
   if (surface.triangles.faces.empty()) throw std::runtime_error(asked.file.name + ": holds no triangles");
   const Stopwatch watch(bench.timings, "health");
@@ -198,7 +203,7 @@ Filled of_mesh(const FileBench& bench, const Tet& asked) {
   if (health.solid()) {
     const brep::Mesh solid = brep::mesh_of(triangles);
     filled.regions = brep::components(solid).size();
-    fill(asked, filled, [&] { return convert::tetrahedralise(solid, options_of(asked, bench)); });
+    fill(asked, false, filled, [&] { return convert::tetrahedralise(solid, options_of(asked, bench)); });
   } else {
     filled.fallback = "the mesh is not a solid (" + health.findings.front() + ")";
   }
@@ -214,12 +219,12 @@ Filled of_mesh(const FileBench& bench, const Tet& asked) {
   return filled;
 }
 
-voxel::Octree octree_in(const std::filesystem::path& path, Timings& timings) {
-  voxel::OctreeFile file = read_timed(path, timings);
+voxel::Octree octree_in(const std::string& name, const FileBench& bench) {
+  voxel::OctreeFile file = octree_named(name, bench);
   auto* octree = std::get_if<voxel::Octree>(&file.tree);
   if (octree == nullptr)
     throw std::runtime_error(
-        path.string() +
+        name +
         ": only a binary octree's voxels become elements: make its surface by octotomy mesh "
         "and fill that");
   return std::move(*octree);
@@ -227,12 +232,11 @@ voxel::Octree octree_in(const std::filesystem::path& path, Timings& timings) {
 
 /// The octree and the regions beside it: smooth elements where a size is asked for, or else the voxels' own.
 Filled of_octrees(const FileBench& bench, const Tet& asked) {
-  Timings& timings = bench.timings;
-  std::vector<voxel::Octree> octrees{octree_in(asked.file.name, timings)};
-  for (const ObjectName& path : asked.regions) octrees.push_back(octree_in(path.name, timings));
+  std::vector<voxel::Octree> octrees;
+  for (const std::string& name : asked.inputs()) octrees.push_back(octree_in(name, bench));
   Filled filled;
   filled.regions = octrees.size();
-  const Stopwatch watch(timings, "tetrahedralise");
+  const Stopwatch watch(bench.timings, "tetrahedralise");
   if (asked.size_mm) {
     convert::RegionMeshOptions options;
     options.size_mm = *asked.size_mm;
@@ -241,7 +245,7 @@ Filled of_octrees(const FileBench& bench, const Tet& asked) {
     options.finer = common.finer;
     options.time_limit = common.time_limit;
     options.progress = common.progress;
-    fill(asked, filled, [&] { return convert::smooth_tetrahedra_of(octrees, options); });
+    fill(asked, true, filled, [&] { return convert::smooth_tetrahedra_of(octrees, options); });
   } else {
     filled.fallback = "an octree was given without a size of elements";
   }
@@ -280,16 +284,23 @@ convert::DeckOptions deck_of(const FileBench& bench, const Tet& asked, Filled& f
   if (asked.scan.empty()) return deck;
   const voxel::Scene scan = bench.read_scan(asked.scan);
   const Stopwatch watch(bench.timings, "materials");
-  for (const std::string& finding : add_stiffness(stiffness_of(asked), filled.tetrahedra, glm::dmat4(1.0),
-                                                  scan, bench.progress("materials"), deck)) {
+  for (const std::string& finding : add_stiffness(asked.stiffness, filled.tetrahedra, glm::dmat4(1.0), scan,
+                                                  bench.progress("materials"), deck)) {
     deck.notes.push_back(finding);
     filled.findings.push_back(finding);
   }
   return deck;
 }
 
+void check(const Tet& asked, const Place& place) {
+  if (place.scope == nullptr) return;
+  check_output_path(asked.out, {".inp", ".feb", ".vtu", ".msh", ".node"}, place.at("path"));
+  if (!asked.of_voxels && (!asked.regions.empty() || asked.size_mm || asked.contact))
+    place.refuse("'regions', 'size_mm' and 'contact' are of voxels: add 'of_voxels' true");
+}
+
 FileAnswer on_files(const Tet& asked, const FileBench& bench) {
-  const bool of_voxels = is_octree(asked.file.name);
+  const bool of_voxels = asked.is_of_voxels(bench);
   if (!convert::is_deck(asked.out))
     throw std::runtime_error(asked.out.string() + ": a deck is written as " + convert::deck_extensions());
   need_folder_of(asked.out);
@@ -343,22 +354,18 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
   return answer;
 }
 
-std::vector<std::string> law_names() {
-  std::vector<std::string> laws;
-  for (const convert::StiffnessLaw& law : convert::stiffness_laws()) laws.push_back(law.name);
-  return laws;
-}
-
 }  // namespace
 
 Operation tet_operation() {
   return Describe<Tet>("tet", "Fills a solid with quality tetrahedra for finite elements.", Makes::File)
+      .takes(field("object", &Tet::file, "The object; of the verb a closed mesh, or a binary .octree file.")
+                 .required()
+                 .positional("file"))
       .takes(
-          field("file", &Tet::file, "A closed mesh, or a binary .octree file.").required().positional("file"))
-      .takes(
-          field("out", &Tet::out,
+          field("path", &Tet::out,
                 "A deck: .inp (Abaqus, CalculiX), .feb (FEBio 4), .vtu, .msh (Gmsh 4.1) or .node (TetGen).")
-              .required())
+              .required()
+              .called("out"))
       .takes(field("mesher", &Tet::mesher,
                    "tetgen keeps the surface. mesh3 (CGAL) makes a new surface within a tenth of a "
                    "triangle's size of it. stuffing cuts a lattice's cells at the surface: angles above 10 "
@@ -373,31 +380,35 @@ Operation tet_operation() {
                  .from(1.1)
                  .to(10.0))
       .takes(field("max_volume_mm3", &Tet::max_volume_mm3, "Largest tetrahedron.").greater_than(0.0))
-      .takes(field("finer", &Tet::finer,
-                   "WHERE=MM: elements with sides of about so many mm at a point x,y,z, a landmark or along "
-                   "a mesh file's surface, growing from there; deep inside only with --size; repeated.")
-                 .repeated())
-      .takes(field("nodes", &Tet::nodes,
-                   "NAME=WHERE: a set of surface nodes at a point x,y,z or a landmark, within a ball "
-                   "x,y,z,r, on a "
-                   "plane x,y,z,u,v,w through a point with a normal, or on a mesh file's surface; repeated.")
-                 .repeated())
-      .takes(
+      .verb_takes(
+          field("finer", &Tet::finer,
+                "WHERE=MM: elements with sides of about so many mm at a point x,y,z, a landmark or along "
+                "a mesh file's surface, growing from there; deep inside only with --size; repeated.")
+              .repeated())
+      .verb_takes(
+          field("nodes", &Tet::nodes,
+                "NAME=WHERE: a set of surface nodes at a point x,y,z or a landmark, within a ball "
+                "x,y,z,r, on a "
+                "plane x,y,z,u,v,w through a point with a normal, or on a mesh file's surface; repeated.")
+              .repeated())
+      .verb_takes(
           field("fixed", &Tet::fixed, "A set of nodes that stays: the deck ends in a static step; repeated.")
               .repeated()
               .called("fix"))
-      .takes(field("moved", &Tet::moved, "NAME=DX,DY,DZ: a set of nodes that moves by so many mm; repeated.")
-                 .repeated()
-                 .called("move"))
-      .takes(field("landmarks", &Tet::landmarks,
-                   "Landmarks that --finer and --nodes name: JSON, or 3D Slicer's markups.")
-                 .a_file())
+      .verb_takes(
+          field("moved", &Tet::moved, "NAME=DX,DY,DZ: a set of nodes that moves by so many mm; repeated.")
+              .repeated()
+              .called("move"))
+      .verb_takes(field("landmarks", &Tet::landmarks,
+                        "Landmarks that --finer and --nodes name: JSON, or 3D Slicer's markups.")
+                      .a_file())
       .takes(field("refine_boundary", &Tet::refine_boundary,
                    "Lets TetGen add points on the surface; by default it is kept as it is."))
       .takes(field("seconds", &Tet::seconds, "Processor time that each run of a mesher may take.")
                  .from(1.0)
                  .to(86400.0))
-      .takes(field("mend", &Tet::mend, "A mesh that is no solid is mended first, as repair --solid does."))
+      .verb_takes(
+          field("mend", &Tet::mend, "A mesh that is no solid is mended first, as repair --solid does."))
       .takes(
           field("fallback", &Tet::fallback,
                 "Where the meshers fail or leave flat elements, or the mesh is no solid, takes an octree's "
@@ -408,6 +419,7 @@ Operation tet_operation() {
                    "A further octree of the same universe, a region of its own; repeated.")
                  .repeated()
                  .called("region"))
+      .takes(field("of_voxels", &Tet::of_voxels, "Fills the object's voxels; else its mesh.").in_plans_only())
       .takes(field("size_mm", &Tet::size_mm,
                    "Smooth quality elements of about this size, in place of the voxels' own.")
                  .greater_than(0.0))
@@ -420,29 +432,11 @@ Operation tet_operation() {
               .from(1)
               .to(2))
       .takes(field("msh_2_2", &Tet::msh_2_2, "Writes .msh in Gmsh's version 2.2.").called("msh2"))
-      .takes(field("scan", &Tet::scan, "Takes each element's stiffness from this scan in HU."))
-      .takes(field("density", &Tet::density,
-                   "SLOPE,INTERCEPT: g/cm3 = intercept + slope HU, as the scan's calibration phantom says.")
-                 .from(2)
-                 .to(2)
-                 .comma_separated()
-                 .for_example("0.0009,0.05"))
-      .takes(field("law", &Tet::law, "Stiffness of a density.").one_of(law_names()))
-      .takes(field("bins", &Tet::bins, "Materials that elements are gathered into, by stiffness.")
-                 .from(1)
-                 .to(1000))
-      .takes(
-          field("surface_depth_mm", &Tet::surface_depth_mm,
-                "Takes what is nearer to the surface from this depth, as voxels there hold bone and what is "
-                "beside it; 0: from where it is.")
-              .from(0.0)
-              .to(20.0))
-      .takes(field("poisson_ratio", &Tet::poisson_ratio, "Poisson's ratio of them.")
-                 .from(0.0)
-                 .to(0.499)
-                 .called("poisson"))
+      .verb_takes(field("scan", &Tet::scan, "Takes each element's stiffness from this scan in HU."))
+      .verb_takes(&Tet::stiffness, stiffness_fields())
       .reads_scans()
-      .example(R"({"id": "deck", "do": "tet", "file": "maxilla", "out": "maxilla.inp"})")
+      .example(
+          R"({"id": "deck", "do": "tet", "object": "maxilla", "mesher": "mesh3", "path": "maxilla.inp"})")
       .on_files(
           "octotomy tet maxilla.stl -o maxilla.inp --radius-edge 1.4 --json\n"
           "  octotomy tet scan.vtp --mend -o scan.inp\n"
@@ -451,7 +445,9 @@ Operation tet_operation() {
           "  octotomy tet maxilla.stl -o maxilla.inp --finer 12,-80,4=0.5 --finer plate.stl=0.8\n"
           "  octotomy tet maxilla.octree --region rest.octree --size 3 --contact -o head.inp\n"
           "  octotomy tet maxilla.stl -o maxilla.feb --scan head.nrrd --density 0.0009,0.05",
-          on_files);
+          on_files)
+      .check(check)
+      .write(write_step<Tet, on_files>);
 }
 
 }  // namespace octotomy::planner

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The Boolean of meshes in files, by corefinement. In a plan, the mesh kernel of `combine` does this.
+// The Boolean of two or more objects: by corefinement of their meshes, and of their octrees. `combine` evaluates
+// whole expressions; this one can prove its volumes by exact numbers.
 #include "brep/boolean/boolean.h"
 
 #include <algorithm>
@@ -7,13 +8,11 @@
 #include <limits>
 
 #include "brep/boolean/exact_boolean.h"
-#include "brep/mesh/error.h"
-#include "brep/mesh/health.h"
-#include "brep/mesh/measure.h"
-#include "planner/operation/file/mesh_file.h"
-#include "planner/operation/measure/result_json.h"
+#include "planner/operation/object/combine.h"
+#include "planner/operation/table/json.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
+#include "verify/witness/witness.h"
 
 namespace octotomy::planner {
 namespace {
@@ -22,15 +21,55 @@ struct Boolean {
   ObjectName a, b;
   std::string operation;
   std::vector<ObjectName> further;
-  bool exact = false, mend = false, orient = false;
-  std::filesystem::path out;
+  bool exact = false;
+
+  std::vector<std::string> operands() const {
+    std::vector<std::string> names{a.name, b.name};
+    for (const ObjectName& object : further) names.push_back(object.name);
+    return names;
+  }
+  brep::Operation kind() const {
+    return operation == "union"          ? brep::Operation::Union
+           : operation == "intersection" ? brep::Operation::Intersection
+                                         : brep::Operation::Difference;
+  }
+  /// Its sign in expressions.
+  char sign() const { return operation == "union" ? '|' : operation == "intersection" ? '&' : '-'; }
 };
 
+void check(const Boolean& asked, const Place& place) {
+  if (asked.exact && !asked.further.empty())
+    place.at("exact").refuse("proves one Boolean at a time: leave 'with' out");
+}
+
+/// "the difference of skull and cut".
+std::string definition(const Boolean& asked, const Objects&) {
+  const std::vector<std::string> names = asked.operands();
+  std::string text = "the " + asked.operation + " of " + names.front();
+  for (std::size_t i = 1; i < names.size(); ++i) text += (i + 1 < names.size() ? ", " : " and ") + names[i];
+  return text;
+}
+
+void voxels(const Boolean& asked, const VoxelBench& bench, VoxelSide& made) {
+  combine_voxels(
+      bench,
+      [&](const voxel::Names& names) {
+        const std::vector<std::string> operands = asked.operands();
+        voxel::Expression whole = names.object(operands.front());
+        for (std::size_t i = 1; i < operands.size(); ++i) {
+          const voxel::Expression next = names.object(operands[i]);
+          whole = asked.sign() == '|' ? whole | next : asked.sign() == '&' ? whole & next : whole - next;
+        }
+        return whole;
+      },
+      made);
+}
+
 /// The proof as JSON. Replaces the result's solid by the proven mesh.
-Json proven(const FileBench& bench, const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
+Json proven(const MeshBench& bench, const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
             brep::BooleanResult& result) {
-  const voxel::Progress progress = bench.progress("exact");
-  brep::ExactBoolean exact = brep::exact_boolean(a, operation, b, {progress.stop, progress.report});
+  brep::ExactBoolean exact =
+      brep::exact_boolean(a, operation, b, {bench.progress.stop, bench.progress.report});
   result.solid = std::move(exact.solid);
   result.residual = 0.0;
   return {{"identity", "|A| + |B| = |A u B| + |A n B|, as rational numbers"},
@@ -61,98 +100,69 @@ bool boxes_meet(const brep::Solid& a, const brep::Solid& b) {
          glm::all(glm::lessThanEqual(q.low_mm, p.high_mm));
 }
 
-FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
-  need_mesh_extension(asked.out);
-  need_folder_of(asked.out);
-  if (asked.exact && !asked.further.empty())
-    throw std::runtime_error("--exact proves one step at a time: leave --with out");
-  std::vector<std::string> mended;
-  const auto solid = [&](const ObjectName& path) {
-    if (asked.mend) {
-      const voxel::Progress progress = bench.progress("repair");
-      return read_mended_solid(path.name, bench.timings, mended, {progress.stop, progress.report});
-    }
-    try {
-      return asked.orient ? read_turned_solid(path.name, bench.timings, mended)
-                          : read_solid(path.name, bench.timings);
-    } catch (const brep::Error& error) {
-      throw brep::Error(
-          error.code(),
-          std::string(error.what()) + (asked.orient ? "; or take --mend"
-                                                    : "; or take --mend, or --orient where triangles only "
-                                                      "face the wrong way"));
-    }
-  };
-  std::vector<brep::Solid> operands = {solid(asked.a), solid(asked.b)};
-  for (const ObjectName& path : asked.further) operands.push_back(solid(path));
-  const brep::Operation operation = asked.operation == "union"          ? brep::Operation::Union
-                                    : asked.operation == "intersection" ? brep::Operation::Intersection
-                                                                        : brep::Operation::Difference;
+void triangles(const Boolean& asked, const MeshBench& bench, MeshSide& made) {
+  std::vector<brep::Solid> operands;
+  for (const std::string& name : asked.operands()) operands.push_back(bench.object(name));
+  const Stopwatch watch(bench.timings, "boolean_mesh");
   brep::BooleanResult result;
   Json proof = nullptr;
-  {
-    const Stopwatch watch(bench.timings, "boolean_mesh");
-    if (asked.exact)
-      proof = proven(bench, operands[0], operation, operands[1], result);
-    else
-      result = brep::boolean(operands, operation, bench.stop);
-    // An empty result may be due to rounding: a body thinner than the rounding of points vanishes.
-    if (!asked.exact && result.solid.empty() && operands.size() == 2 &&
-        boxes_meet(operands[0], operands[1])) {
-      proof = proven(bench, operands[0], operation, operands[1], result);
-      if (!result.solid.empty() && is_film(result.solid)) result.solid = brep::Solid();
-      if (!result.solid.empty())
-        result.findings.push_back("thinner than the rounding of points, so made with exact numbers: " +
-                                  three_figures(result.solid.size().volume_mm3) + " mm3");
-    }
+  if (asked.exact)
+    proof = proven(bench, operands[0], asked.kind(), operands[1], result);
+  else
+    result = brep::boolean(operands, asked.kind(), bench.progress.stop);
+  // An empty result may be due to rounding: a body thinner than the rounding of points vanishes.
+  if (!asked.exact && result.solid.empty() && operands.size() == 2 && boxes_meet(operands[0], operands[1])) {
+    proof = proven(bench, operands[0], asked.kind(), operands[1], result);
+    if (!result.solid.empty() && is_film(result.solid)) result.solid = brep::Solid();
+    if (!result.solid.empty())
+      result.findings.push_back("thinner than the rounding of points, so made with exact numbers: " +
+                                three_figures(result.solid.size().volume_mm3) + " mm3");
   }
-  if (result.solid.empty())
-    throw std::runtime_error(
-        "the " + asked.operation + " of " + asked.a.name + " and " + asked.b.name + " is empty" +
-        (proof.is_null() ? "" : ", as exact numbers prove but for the rounding of points") +
-        ": there is no surface to write");
-  result.findings.insert(result.findings.begin(), mended.begin(), mended.end());
-  const brep::Health health = brep::health(result.solid.triangles());
-  const brep::Measures& measures = result.solid.measures();
-  write_surface(result.solid.triangles(), asked.out, bench.timings);
-  FileAnswer answer{{{"path", asked.out.string()}}};
-  answer.findings = result.findings;
-  answer.json.update(to_json(measures));
-  answer.json["area_estimator"] = "triangles";
-  answer.json["health"] = to_json(health);
-  answer.json["residuals"] = {{"volume_relative", result.residual ? Json(*result.residual) : Json(nullptr)}};
-  answer.json["exact"] = proof;
-  answer.json["findings"] = result.findings;
-  answer.rows = {{"written", asked.out.string()},
-                 {"volume", grouped(measures.volume_mm3, 3) + " mm\u00b3"},
-                 {"area", grouped(measures.area_mm2, 3) + " mm\u00b2"}};
-  return answer;
+  if (result.solid.empty() && !proof.is_null())
+    result.findings.emplace_back("empty, as exact numbers prove but for the rounding of points");
+  made.whole = std::move(result.solid);
+  made.shift_mm = result.shift_mm;
+  made.findings = std::move(result.findings);
+  made.details = {
+      {"residuals", {{"volume_relative", result.residual ? Json(*result.residual) : Json(nullptr)}}},
+      {"exact", std::move(proof)}};
+  made.lineage = "corefinement of meshes";
+}
+
+void bound(const Boolean& asked, const BoundBench& bench, Object& made) {
+  const std::vector<std::string> names = asked.operands();
+  bound_of_operands(names, bench, made);
+  // Names of files are no names of an expression, so the operands are numbered.
+  std::string text = "_0";
+  for (std::size_t i = 1; i < names.size(); ++i)
+    text += std::string(" ") + asked.sign() + " _" + std::to_string(i);
+  made.witness = verify::witness_of_expression(text, [&](const std::string& number) {
+    return bench.objects.at(names[std::stoul(number.substr(1))]).witness;
+  });
 }
 
 }  // namespace
 
 Operation boolean_operation() {
-  return Describe<Boolean>("boolean", "Makes the Boolean of two solids, by corefinement of their meshes.",
-                           Makes::File)
-      .takes(field("a", &Boolean::a, "A mesh.").required().positional("a"))
+  return Describe<Boolean>("boolean", "Makes the Boolean of two or more objects.", Makes::Object)
+      .takes(
+          field("a", &Boolean::a, "An object; of the verb a mesh or an octree.").required().positional("a"))
       .takes(field("op", &Boolean::operation, "union, intersection or difference.")
                  .required()
                  .one_of({"union", "intersection", "difference"})
                  .positional("op"))
-      .takes(field("b", &Boolean::b, "A mesh.").required().positional("b"))
+      .takes(field("b", &Boolean::b, "Another object.").required().positional("b"))
       .takes(field("with", &Boolean::further,
-                   "Further meshes: all are united, intersected, or taken from the first."))
+                   "Further objects: all are united, intersected, or taken from the first."))
       .takes(field("exact", &Boolean::exact,
-                   "New points as exact numbers, and proof that the volumes add up as rationals; slower."))
-      .takes(field("mend", &Boolean::mend,
-                   "Meshes that are no solids are mended first, as repair --solid does."))
-      .takes(field("orient", &Boolean::orient,
-                   "Triangles that face the wrong way are turned first, as repair --orient does."))
-      .takes(field("out", &Boolean::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.").required())
-      .example(
-          R"({"id": "rest", "do": "boolean", "a": "skull", "op": "difference", "b": "cut",
-        "out": "rest.stl"})")
-      .on_files("octotomy boolean skull.stl difference box.stl -o rest.stl --json", on_files);
+                   "The mesh's new points as exact numbers, and proof that the volumes add up as rationals; "
+                   "slower."))
+      .example(R"({"id": "remainder", "do": "boolean", "a": "skull", "op": "difference", "b": "cut"})")
+      .on_files(
+          "octotomy boolean skull.stl difference box.stl -o rest.stl --json\n"
+          "  octotomy boolean skull.stl difference box.stl -o rest.stl --certify")
+      .check(check)
+      .object(definition, voxels, triangles, bound);
 }
 
 }  // namespace octotomy::planner

@@ -27,17 +27,9 @@ std::string definition(const Combine& combine, const Objects&) {
 }
 
 void voxels(const Combine& combine, const VoxelBench& bench, VoxelSide& made) {
-  voxel::Names operands, symbols;
-  operands.object = [&](std::string_view name) {
-    // A mask's expression selects the same voxel centres as its octree, and is evaluated without traversing a
-    // tree.
-    const VoxelSide& operand = bench.object(std::string(name));
-    return bench.is_tool(std::string(name)) ? *operand.symbol : voxel::Expression(operand.octree);
-  };
-  symbols.object = [&](std::string_view name) { return *bench.object(std::string(name)).symbol; };
-  made.octree = bench.combined(voxel::parse_expression(combine.expression, operands));
-  made.symbol = bench.within_universe(voxel::parse_expression(combine.expression, symbols));
-  made.lineage = "Boolean of octrees";
+  combine_voxels(
+      bench, [&](const voxel::Names& names) { return voxel::parse_expression(combine.expression, names); },
+      made);
 }
 
 void triangles(const Combine& combine, const MeshBench& bench, MeshSide& made) {
@@ -86,6 +78,18 @@ bool is_empty_of_any(const std::string& expression) {
   return true;
 }
 
+void bound(const Combine& combine, const BoundBench& bench, Object& made) {
+  bound_of_operands(uses(combine), bench, made);
+  made.is_surely_empty = is_empty_of_any(combine.expression);
+  if (made.is_surely_empty)
+    made.findings.push_back("'" + combine.expression + "' is empty, whatever its objects are");
+  else if (made.voxel.octree.is_empty())
+    made.findings.push_back("no voxel is in '" + combine.expression +
+                            "': it is empty, or thinner than the voxels are apart");
+  made.witness = verify::witness_of_expression(
+      combine.expression, [&](const std::string& name) { return bench.objects.at(name).witness; });
+}
+
 /// Adds a finding where a mask contains nothing, or all, of an object of the expression.
 void tell_idle_masks(const std::vector<std::string>& names, const BoundBench& bench, Object& made) {
   for (const std::string& tool : names) {
@@ -104,24 +108,31 @@ void tell_idle_masks(const std::vector<std::string>& names, const BoundBench& be
   }
 }
 
-void bound(const Combine& combine, const BoundBench& bench, Object& made) {
-  const std::vector<std::string> names = uses(combine);
+}  // namespace
+
+void combine_voxels(const VoxelBench& bench,
+                    const std::function<voxel::Expression(const voxel::Names& names)>& expression,
+                    VoxelSide& made) {
+  voxel::Names operands, symbols;
+  operands.object = [&](std::string_view name) {
+    // A mask's expression selects the same voxel centres as its octree, and is evaluated without traversing a
+    // tree.
+    const VoxelSide& operand = bench.object(std::string(name));
+    return bench.is_tool(std::string(name)) ? *operand.symbol : voxel::Expression(operand.octree);
+  };
+  symbols.object = [&](std::string_view name) { return *bench.object(std::string(name)).symbol; };
+  made.octree = bench.combined(expression(operands));
+  made.symbol = bench.within_universe(expression(symbols));
+  made.lineage = "Boolean of octrees";
+}
+
+void bound_of_operands(const std::vector<std::string>& names, const BoundBench& bench, Object& made) {
   tell_idle_masks(names, bench, made);
-  made.is_surely_empty = is_empty_of_any(combine.expression);
-  if (made.is_surely_empty)
-    made.findings.push_back("'" + combine.expression + "' is empty, whatever its objects are");
-  else if (made.voxel.octree.is_empty())
-    made.findings.push_back("no voxel is in '" + combine.expression +
-                            "': it is empty, or thinner than the voxels are apart");
   made.shown = shown_in_common(bench.objects, names);
   for (const std::string& name : names) inherit(bench.objects.at(name), made);
-  made.witness = verify::witness_of_expression(
-      combine.expression, [&](const std::string& name) { return bench.objects.at(name).witness; });
   // Both kernels cut the result of an expression at the universe's border. Later motions move the cut object.
   made.ends_with_universe = true;
 }
-
-}  // namespace
 
 void check_expression(const std::string& expression, const Place& place) {
   // Any object will do to check the grammar and the names; motions are steps of their own.

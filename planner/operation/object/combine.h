@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <string>
+#include <vector>
 
+#include "planner/operation/table/bench.h"
 #include "planner/operation/table/scope.h"
+#include "voxel/solid/expression.h"
 
 namespace octotomy::planner {
 
@@ -14,5 +18,14 @@ struct Combine {
 
 /// Refuses a text that is no expression of earlier objects, with the position of the fault.
 void check_expression(const std::string& expression, const Place& place);
+
+/// The voxel kernel's Boolean of earlier objects. `expression` builds it from what the names stand for; it is
+/// called twice, with the objects' octrees and with their symbols.
+void combine_voxels(const VoxelBench& bench,
+                    const std::function<voxel::Expression(const voxel::Names& names)>& expression,
+                    VoxelSide& made);
+
+/// What a Boolean inherits from its operands, with findings on masks that cut nothing of them.
+void bound_of_operands(const std::vector<std::string>& names, const BoundBench& bench, Object& made);
 
 }  // namespace octotomy::planner

@@ -3,10 +3,10 @@
 // inwards, edited.
 #include "brep/contour/contour.h"
 #include "planner/operation/file/file_kind.h"
-#include "planner/operation/file/output_path.h"
 #include "planner/operation/file/outputs.h"
 #include "planner/operation/file/region_file.h"
 #include "planner/operation/file/slice_contours.h"
+#include "planner/operation/file/step_on_files.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
@@ -17,13 +17,15 @@ namespace {
 
 struct Contours {
   ScanName scan;
-  std::filesystem::path path;
+  std::filesystem::path out;
   std::optional<SampleWindow> window;
   double least_area_mm2 = 0.0, thin_mm = 0.0, by_mm = 0.0;
   std::optional<int> harmonics;
   // Of the command only.
-  std::filesystem::path out, edits, codes;
+  std::filesystem::path edits, codes;
   double code_spacing_mm = 1.0;
+
+  std::vector<std::string> inputs() const { return {}; }
 };
 
 bool is_json(const std::filesystem::path& path) {
@@ -32,7 +34,7 @@ bool is_json(const std::filesystem::path& path) {
 
 void check(const Contours& contours, const Place& place) {
   if (place.scope == nullptr) return;
-  check_output_path(contours.path, {".json"}, place.at("path"));
+  check_output_path(contours.out, {".json"}, place.at("path"));
   if (!contours.window) place.refuse("'window' is missing: add it, for example \"bone\"");
 }
 
@@ -83,18 +85,6 @@ Sizes sizes_of(const voxel::SliceMask& mask) {
   return sizes;
 }
 
-void write(const Contours& asked, const AnswerBench& bench, Exported& made) {
-  made.path = output_path(asked.path).generic_string();
-  const voxel::SliceMask mask = finished(
-      asked, followed(asked, bench.samples(asked.scan.name), bench.timings), bench.timings, made.findings);
-  write_json(to_json(mask), output_file(bench.folder, made.path));
-  const Sizes sizes = sizes_of(mask);
-  made.written = true;
-  made.content = grouped(static_cast<double>(sizes.contours), 0) + " contours on " +
-                 std::to_string(mask.slices.size()) + " slices";
-  made.details = {{"contours", sizes.contours}, {"points", sizes.points}};
-}
-
 FileAnswer on_files(const Contours& asked, const FileBench& bench) {
   const std::filesystem::path file = asked.scan.name;
   need_extension(asked.out, {".json"}, "contours are");
@@ -141,7 +131,9 @@ Operation contours_operation() {
       .takes(field("scan", &Contours::scan, "The scan; of the verb also a .json of regions on slices.")
                  .required()
                  .positional("file"))
-      .takes(field("path", &Contours::path, "The .json file within the result's folder.").in_plans_only())
+      .takes(field("path", &Contours::out, "A .json of regions on slices, as masks read it.")
+                 .required()
+                 .called("out"))
       .takes(field("window", &Contours::window, "Of a scan: LOW:HIGH or LOW: in sample units, or a tissue."))
       .takes(field("least_area_mm2", &Contours::least_area_mm2, "Leaves contours out that enclose less.")
                  .from(0.0)
@@ -155,8 +147,6 @@ Operation contours_operation() {
       .takes(field("by_mm", &Contours::by_mm, "Moves them out by this; in where it is below zero.")
                  .from(-1e6)
                  .to(1e6))
-      .verb_takes(
-          field("out", &Contours::out, "A .json of regions on slices, as mask --slices reads it.").required())
       .verb_takes(
           field("edits", &Contours::edits, "Edits by hand, made after all else, in order: a .json file.")
               .a_file())
@@ -178,7 +168,7 @@ Operation contours_operation() {
           "its_piece), remove, add (points_mm)",
           on_files)
       .check(check)
-      .write(write);
+      .write(write_step<Contours, on_files>);
 }
 
 }  // namespace octotomy::planner

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A Boolean expression of octrees in files. In a plan, the voxel kernel of `combine` does this.
+// Writes the octree of a Boolean expression with motions: the verb of octrees in files, the step of objects' octrees.
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/step_on_files.h"
 #include "planner/operation/measure/half_width.h"
 #include "planner/operation/measure/octree_summary.h"
 #include "planner/operation/table/comma_numbers.h"
@@ -28,6 +29,8 @@ struct Eval {
   std::vector<std::string> lets, windows, motions;
   bool grey = false;
   std::string digitise = "centre", interpolate = "linear";
+
+  std::vector<std::string> inputs() const { return voxel::names_in(expression); }
 };
 
 voxel::Resampling resampling_of(const Eval& asked) {
@@ -75,19 +78,44 @@ glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
   return voxel::moved_from_still(motion);
 }
 
-/// A file as an operand, with its universe.
+/// Of a step: the expression names objects of the plan and motions of its own.
+void check(const Eval& asked, const Place& place) {
+  if (place.scope == nullptr) return;
+  check_output_path(asked.out, {".octree"}, place.at("path"));
+  const Place at = place.at("expression");
+  try {
+    const auto motions = bound(asked.motions, "motions", "X,Y,Z");
+    // Any object will do to check the grammar and the names.
+    voxel::parse_expression(asked.expression, {[&](std::string_view name) -> voxel::Expression {
+                                                 at.need_object(std::string(name));
+                                                 return voxel::Sphere{};
+                                               },
+                                               [&](std::string_view name) {
+                                                 const auto found = motions.find(std::string(name));
+                                                 if (found == motions.end())
+                                                   throw std::invalid_argument("no motion is called '" +
+                                                                               std::string(name) +
+                                                                               "': add it to 'motions'");
+                                                 return parse_motion(found->first, found->second);
+                                               }});
+  } catch (const std::invalid_argument& error) {
+    at.refuse(error.what());
+  }
+}
+
+/// A file or an object as an operand, with its universe.
 struct Operand {
   voxel::Expression expression;
   voxel::Universe universe;
   std::optional<voxel::ShareBracket> shares;  // of a file that stores the filled shares of voxels
 };
 
-Operand operand_of(const std::string& name, const fs::path& path,
+Operand operand_of(const FileBench& bench, const std::string& name, const fs::path& path,
                    const std::map<std::string, std::string>& windows) {
-  if (!is_octree(path))
+  if (!names_octree(path.string(), bench))
     throw std::runtime_error(name + "=" + path.string() +
                              ": names stand for .octree files: make one with octotomy octree");
-  const voxel::OctreeFile file = voxel::read_octree(path);
+  const voxel::OctreeFile file = octree_named(path.string(), bench);
   const auto window = windows.find(name);
   if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
     if (window == windows.end())
@@ -153,28 +181,27 @@ ShareResult combine_shares(const voxel::Expression& expression,
 FileAnswer on_files(const Eval& asked, const FileBench& bench) {
   need_octree_extension(asked.out);
   need_folder_of(asked.out);
-  const auto lets = bound(asked.lets, "--let", "FILE");
+  auto lets = bound(asked.lets, "--let", "FILE");
   const auto windows = bound(asked.windows, "--window", "LOW:HIGH");
   const auto motions = bound(asked.motions, "--motion", "X,Y,Z");
+  if (bench.step != nullptr)
+    for (const std::string& object : asked.inputs()) lets.emplace(object, object);
   const std::vector<std::string> known = names_of(lets);
   for (const auto& [name, unused] : windows)
     if (!lets.contains(name))
       throw std::runtime_error("--window: '" + name + "' is not bound by --let" + suggestion(name, known));
 
   // Only the files that the expression names are read.
-  const std::vector<std::string> used = voxel::names_in(asked.expression);
+  const std::vector<std::string> used = asked.inputs();
   std::vector<std::string> findings;
   for (const std::string& name : known)
     if (std::find(used.begin(), used.end(), name) == used.end())
       findings.push_back("--let " + name + ": the expression does not name it");
   Timings& timings = bench.timings;
   std::map<std::string, Operand> operands;
-  {
-    const Stopwatch watch(timings, "read");
-    for (const std::string& name : used)
-      if (const auto let = lets.find(name); let != lets.end())
-        operands.emplace(name, operand_of(name, let->second, windows));
-  }
+  for (const std::string& name : used)
+    if (const auto let = lets.find(name); let != lets.end())
+      operands.emplace(name, operand_of(bench, name, let->second, windows));
   const voxel::Names names{[&](std::string_view name) {
                              const auto found = operands.find(std::string(name));
                              if (found == operands.end())
@@ -235,33 +262,39 @@ Operation eval_operation() {
       .takes(field("expression", &Eval::expression, "For example \"(a | b) - c\".")
                  .required()
                  .positional("expression"))
-      .takes(field("out", &Eval::out, "An .octree file, in the universe of the first name.").required())
-      .takes(field("lets", &Eval::lets, "NAME=FILE: what a name stands for, an .octree file.")
-                 .repeated()
-                 .called("let"))
-      .takes(field("windows", &Eval::windows, "NAME=LOW:HIGH or NAME=TISSUE: which object of a grey octree.")
-                 .repeated()
-                 .called("window"))
+      .takes(field("path", &Eval::out, "An .octree file, in the universe of the first name.")
+                 .required()
+                 .called("out"))
+      .verb_takes(field("lets", &Eval::lets, "NAME=FILE: what a name stands for, an .octree file.")
+                      .repeated()
+                      .called("let"))
+      .verb_takes(
+          field("windows", &Eval::windows, "NAME=LOW:HIGH or NAME=TISSUE: which object of a grey octree.")
+              .repeated()
+              .called("window"))
       .takes(field("motions", &Eval::motions,
                    "NAME=X,Y,Z[,DEGREES,X,Y,Z[,X,Y,Z]]: a translation in mm after a rotation about an axis "
                    "through "
                    "a point.")
                  .repeated()
                  .called("motion"))
-      .takes(field("grey", &Eval::grey,
-                   "Keeps samples: each voxel has that of the first operand with samples that holds it, "
-                   "moved with it."))
+      .verb_takes(field("grey", &Eval::grey,
+                        "Keeps samples: each voxel has that of the first operand with samples that holds it, "
+                        "moved with it."))
       .takes(field("digitise", &Eval::digitise,
                    "Which voxels a moved octree becomes: those whose centre it holds, or fills to the half.")
                  .one_of({"centre", "half"}))
-      .takes(field("interpolate", &Eval::interpolate,
-                   "How samples of a moved grey octree are read: nearest, linear or cubic.")
-                 .one_of({"nearest", "linear", "cubic"}))
-      .example(R"({"id": "rest", "do": "eval", "expression": "skull - cut", "out": "rest.octree"})")
+      .verb_takes(field("interpolate", &Eval::interpolate,
+                        "How samples of a moved grey octree are read: nearest, linear or cubic.")
+                      .one_of({"nearest", "linear", "cubic"}))
+      .example(R"({"id": "rest", "do": "eval", "expression": "skull - cut", "path": "rest.octree"})")
       .on_files(
           "octotomy eval \"skull - cut\" -o rest.octree --let skull=skull.octree --let cut=cut.octree\n"
           "  Files of filled shares (--digitise partial) give shares again, with bounds of the volume.",
-          on_files);
+          on_files)
+      .uses([](const Eval& asked) { return asked.inputs(); })
+      .check(check)
+      .write(write_step<Eval, on_files>);
 }
 
 }  // namespace octotomy::planner

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The surface of a scan's window or of an octree, in files. In a plan, the mesh kernel of `window` and
-// `segment` and the step `surface` do this.
+// Writes the surface of voxels: the verb that of a scan's window or of an .octree file, the step that of an
+// object's octree. The step `surface` writes the mesh kernel's answer.
 #include <limits>
 #include <utility>
 
@@ -15,7 +15,7 @@
 #include "convert/surface/partial_surface.h"
 #include "convert/surface/trace_contours.h"
 #include "planner/operation/file/mesh_file.h"
-#include "planner/operation/file/octree_in.h"
+#include "planner/operation/file/step_on_files.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
@@ -33,6 +33,8 @@ struct Meshed {
   bool smooth = false;
   std::optional<int> faces;
   std::filesystem::path out;
+
+  std::vector<std::string> inputs() const { return {file.name}; }
 };
 
 /// A surface as it was extracted.
@@ -77,13 +79,13 @@ brep::Triangles tiled_contours(const voxel::Scene& scene, const SampleWindow& wi
   return std::move(tiled.surface);
 }
 
-Made of_octree(const Meshed& asked, Timings& timings, std::vector<std::string>& findings) {
+Made of_octree(const FileBench& bench, const Meshed& asked, std::vector<std::string>& findings) {
   if (asked.surface == "contours")
     throw std::runtime_error(asked.file.name +
                              ": contours are followed on a scan's slices: give the scan the octree is of");
-  const voxel::OctreeFile file = read_timed(asked.file.name, timings);
+  const voxel::OctreeFile file = octree_named(asked.file.name, bench);
   const bool cubes = asked.surface == "cuberille";
-  const Stopwatch watch(timings, asked.surface);
+  const Stopwatch watch(bench.timings, asked.surface);
   if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
     const SampleWindow window = window_of(asked, findings);
     if (!cubes)
@@ -150,13 +152,21 @@ Finished finished(Made made, const Meshed& asked, Timings& timings) {
   return {triangles_of(surface), measure(surface)};
 }
 
+void check(const Meshed& asked, const Place& place) {
+  if (place.scope == nullptr) return;
+  check_output_path(asked.out, {".stl", ".ply", ".obj", ".off", ".vtp", ".glb"}, place.at("path"));
+  if (asked.surface == "contours")
+    place.at("surface").refuse("contours are followed on a scan's slices, which an object has none of");
+}
+
 FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
   need_mesh_extension(asked.out);
   need_folder_of(asked.out);
-  if (is_mesh(asked.file.name)) throw std::runtime_error(asked.file.name + ": is a mesh already");
+  if (bench.step == nullptr && is_mesh(asked.file.name))
+    throw std::runtime_error(asked.file.name + ": is a mesh already");
   std::vector<std::string> findings;
-  Made made = is_octree(asked.file.name) ? of_octree(asked, bench.timings, findings)
-                                         : of_scan(bench, asked, findings);
+  Made made = names_octree(asked.file.name, bench) ? of_octree(bench, asked, findings)
+                                                   : of_scan(bench, asked, findings);
   if (made.surface.faces.empty())
     throw std::runtime_error(
         asked.file.name + ": nothing is " +
@@ -187,18 +197,20 @@ FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
 
 Operation mesh_operation() {
   return Describe<Meshed>("mesh", "Makes the surface of a scan's window or of an octree.", Makes::File)
-      .takes(field("file", &Meshed::file, "A scan, or an .octree file.").required().positional("file"))
-      .takes(field("window", &Meshed::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
+      .takes(field("object", &Meshed::file, "The object; of the verb a scan, or an .octree file.")
+                 .required()
+                 .positional("file"))
+      .verb_takes(field("window", &Meshed::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
       .takes(field("surface", &Meshed::surface,
                    "isosurface: where samples or shares cross the bound; cuberille: the voxels' own faces; "
                    "contours: followed on a scan's slices and tiled.")
                  .one_of({"isosurface", "cuberille", "contours"}))
-      .takes(field("tiling", &Meshed::tiling,
-                   "Of contours, what strips between them are chosen by: shortest-span, least-area, "
-                   "greatest-volume, least-angle; overlay: no strips.")
-                 .one_of({"shortest-span", "least-area", "greatest-volume", "least-angle", "overlay"})
-                 .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "contours"; },
-                                  "is of contours: add 'surface' contours"))
+      .verb_takes(field("tiling", &Meshed::tiling,
+                        "Of contours, what strips between them are chosen by: shortest-span, least-area, "
+                        "greatest-volume, least-angle; overlay: no strips.")
+                      .one_of({"shortest-span", "least-area", "greatest-volume", "least-angle", "overlay"})
+                      .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "contours"; },
+                                       "is of contours: add 'surface' contours"))
       .takes(field("touching", &Meshed::touching,
                    "Of a cuberille, voxels that meet at an edge or corner only: apart or together.")
                  .one_of({"apart", "together"})
@@ -206,14 +218,19 @@ Operation mesh_operation() {
                                   "is of a cuberille: add 'surface' cuberille"))
       .takes(field("smooth", &Meshed::smooth, "Takes noise off the surface and keeps its volume."))
       .takes(field("faces", &Meshed::faces, "Decimates to so many triangles.").from(4).to(100000000))
-      .takes(field("out", &Meshed::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.").required())
+      .takes(field("path", &Meshed::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.")
+                 .required()
+                 .called("out"))
       .reads_scans()
-      .example(R"({"id": "skull", "do": "mesh", "file": "skull", "out": "skull.stl"})")
+      .example(
+          R"({"id": "steps", "do": "mesh", "object": "skull", "surface": "cuberille", "path": "skull.stl"})")
       .on_files(
           "octotomy mesh head.nrrd -o skull.stl --window 300:\n"
           "  octotomy mesh maxilla.octree -o maxilla.ply --surface cuberille\n"
           "  octotomy mesh head.nrrd -o skin.stl --window=-200: --surface contours",
-          on_files);
+          on_files)
+      .check(check)
+      .write(write_step<Meshed, on_files>);
 }
 
 }  // namespace octotomy::planner

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes an octree of a scan's window or of all its samples, or an octree in another form. In a plan,
-// `window` makes it.
+// Writes an octree: the verb that of a scan's window or of all its samples, or one of a file in another form; the
+// step that of an object.
 #include <algorithm>
 #include <array>
 #include <fstream>
 
 #include "convert/deck/deck.h"
 #include "planner/operation/file/file_kind.h"
-#include "planner/operation/file/octree_in.h"
 #include "planner/operation/file/output_path.h"
 #include "planner/operation/file/representation.h"
+#include "planner/operation/file/step_on_files.h"
 #include "planner/operation/measure/octree_summary.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/operation.h"
@@ -36,6 +36,7 @@ struct Build {
   std::optional<int> depth;
 
   fs::path in() const { return file.name; }
+  std::vector<std::string> inputs() const { return {file.name}; }
 };
 
 voxel::Octree windowed(const voxel::GreyOctree& grey, const SampleWindow& window) {
@@ -71,13 +72,13 @@ voxel::OctreeFile from_representation(const Build& asked, Timings& timings) {
   }
 }
 
-voxel::OctreeFile from_octree(const Build& asked, Timings& timings) {
-  voxel::OctreeFile file = read_timed(asked.in(), timings);
+voxel::OctreeFile from_octree(const FileBench& bench, const Build& asked) {
+  voxel::OctreeFile file = octree_named(asked.file.name, bench);
   if (!asked.window) return file;
   const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree);
   if (grey == nullptr)
     throw std::runtime_error(asked.file.name + ": holds no samples to take a --window of: leave it out");
-  const Stopwatch watch(timings, "octree");
+  const Stopwatch watch(bench.timings, "octree");
   return {windowed(*grey, *asked.window), file.name, file.metadata};
 }
 
@@ -149,14 +150,21 @@ void need_form_name(const Build& asked) {
                            asked.as + " is written as .txt or under a name of your own, as ." + asked.as);
 }
 
+void check(const Build& asked, const Place& place) {
+  if (place.scope == nullptr) return;
+  if (!asked.as.empty()) need_form_name(asked);
+  check_output_path(asked.out, {asked.as.empty() ? ".octree" : asked.out.extension().string()},
+                    place.at("path"));
+}
+
 FileAnswer on_files(const Build& asked, const FileBench& bench) {
   asked.as.empty() ? need_octree_extension(asked.out) : need_form_name(asked);
   if (asked.window && asked.grey)
     throw std::runtime_error("--grey: a tree is --grey or an object by --window, not both");
   need_folder_of(asked.out);
-  const voxel::OctreeFile file = !asked.from.empty()     ? from_representation(asked, bench.timings)
-                                 : is_octree(asked.in()) ? from_octree(asked, bench.timings)
-                                                         : from_scan(bench, asked);
+  const voxel::OctreeFile file = !asked.from.empty() ? from_representation(asked, bench.timings)
+                                 : names_octree(asked.file.name, bench) ? from_octree(bench, asked)
+                                                                        : from_scan(bench, asked);
   return asked.as.empty() ? octree_written(file, asked.out, bench.stop, bench.timings)
                           : export_as(bench, asked, file);
 }
@@ -168,46 +176,50 @@ Operation octree_operation() {
              "octree",
              "Builds an octree of a scan's window or of all its samples, or puts one into another form.",
              Makes::File)
-      .takes(field("file", &Build::file, "A scan, an .octree file, or with --from a representation.")
+      .takes(field("object", &Build::file,
+                   "The object; of the verb a scan, an .octree file, or with --from a representation.")
                  .required()
                  .positional("file"))
       .takes(
-          field("out", &Build::out, "An .octree file, or with --as the representation's, for example .txt.")
-              .required())
-      .takes(
+          field("path", &Build::out, "An .octree file, or with --as the representation's, for example .txt.")
+              .required()
+              .called("out"))
+      .verb_takes(
           field("window", &Build::window, "LOW:HIGH or LOW: in sample units, or a tissue: a binary octree.")
               .read_if<Build>([](const Build& build) { return build.from.empty(); },
                               "a representation holds no samples to take a window of: leave it out"))
-      .takes(
+      .verb_takes(
           field("grey", &Build::grey, "A min-max octree of all samples.")
               .read_if<Build>([](const Build& build) { return build.from.empty() && !is_octree(build.in()); },
                               "only a scan is made a tree of all its samples: leave it out"))
-      .takes(field("voxel_mm", &Build::voxel_mm,
-                   "Edge of a voxel. Default: as fine as the scan, at most 512 a side; with --from 1.")
-                 .greater_than(0.0)
-                 .read_if<Build>(
-                     [](const Build& build) { return !build.from.empty() || !is_octree(build.in()); },
-                     "an .octree file keeps its own voxels: leave it out"))
+      .verb_takes(field("voxel_mm", &Build::voxel_mm,
+                        "Edge of a voxel. Default: as fine as the scan, at most 512 a side; with --from 1.")
+                      .greater_than(0.0)
+                      .read_if<Build>(
+                          [](const Build& build) { return !build.from.empty() || !is_octree(build.in()); },
+                          "an .octree file keeps its own voxels: leave it out"))
       .takes(
           field(
               "as", &Build::as,
               "Writes treecode, linear, explicit, runs, segments, marginal, faces or array (text), packed or "
               "bits (bytes).")
               .one_of(representation_names()))
-      .takes(field("from", &Build::from, "Reads the file as such a representation.")
-                 .one_of(representation_names()))
-      .takes(
+      .verb_takes(field("from", &Build::from, "Reads the file as such a representation.")
+                      .one_of(representation_names()))
+      .verb_takes(
           field("depth", &Build::depth, "With --from: the universe has 2^N voxels a side.")
               .from(2)
               .to(voxel::Universe::max_depth)
               .read_if<Build>([](const Build& build) { return !build.from.empty(); }, "is of 'from': add it"))
       .reads_scans()
-      .example(R"({"id": "tree", "do": "octree", "file": "skull", "out": "skull.octree", "window": "300:"})")
+      .example(R"({"id": "tree", "do": "octree", "object": "skull", "path": "skull.octree"})")
       .on_files(
           "octotomy octree head.nrrd -o skull.octree --window 300:\n"
           "  octotomy octree skull.octree -o skull.txt --as linear\n"
           "  octotomy octree skull.txt -o skull.octree --from linear --depth 8",
-          on_files);
+          on_files)
+      .check(check)
+      .write(write_step<Build, on_files>);
 }
 
 }  // namespace octotomy::planner

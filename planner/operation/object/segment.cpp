@@ -493,9 +493,11 @@ int label_of_name(const Segment& segment, const std::filesystem::path& label_map
 
 Operation segment_operation() {
   return Describe<Segment>("segment", "Makes an object of a scan, then chooses its parts.", Makes::Object)
-      .takes(field("scan", &Segment::scan, "The scan; with a label, a label map.").required())
+      .takes(
+          field("scan", &Segment::scan, "The scan; with a label, a label map.").required().positional("scan"))
       .takes(field("window", &Segment::window, "LOW:HIGH or LOW: in the scan's unit, or a tissue.")
-                 .for_example("\"bone\""))
+                 .for_example("\"bone\"")
+                 .in_plans_only())
       .takes(field("otsu", &Segment::otsu,
                    "Parts the samples into so many classes of least variance; the object is one of them.")
                  .from(2)
@@ -553,6 +555,37 @@ Operation segment_operation() {
       .takes(field("fill", &Segment::fill, "Fills cavities."))
       .takes(
           field("neighbours", &Segment::neighbours, "Parts touch by faces (6), edges (18) or corners (26)."))
+      .verb_takes(field("windows", &Segment::windows,
+                        "LOW:HIGH or LOW: in sample units, or a tissue: " + names_of_tissues() +
+                            "; again for more objects.")
+                      .repeated()
+                      .called("window"))
+      .verb_takes(field("out", &Segment::out,
+                        "An .octree file for one object; a label map (.nrrd, .nii.gz, .mha) or a DICOM "
+                        "segmentation (.dcm) on the scan's lattice."))
+      .verb_takes(
+          field("objects", &Segment::objects, "An .octree file to be put into the label map, again for more.")
+              .repeated()
+              .called("object")
+              .a_file())
+      .verb_takes(
+          field("contours", &Segment::contours,
+                "Writes the contours of the first window's lower bound on every slice, a JSON file of "
+                "regions."))
+      .verb_takes(field("voxel_mm", &Segment::voxel_mm,
+                        "Edge of the voxels that choose parts, and of an octree's. Default: as fine as the "
+                        "scan, at most 512 a side.")
+                      .greater_than(0.0))
+      .reads_scans()
+      .on_files(
+          "octotomy segment head.nrrd -o skull.octree --window bone --largest\n"
+          "  octotomy segment head.nrrd -o tissues.nii.gz --window bone --window soft_tissue --window fat\n"
+          "  octotomy segment dicom_folder -o tissues.dcm --window bone --window soft_tissue\n"
+          "  octotomy segment head.nrrd --otsu 3 --json\n"
+          "  octotomy segment tissues.nii.gz -o fat.octree --label 3\n"
+          "  octotomy segment organs.nii.gz -o mandible.octree --named mandible --names organs.json\n"
+          "  octotomy segment head.nrrd --window bone --contours skull.json",
+          segment_file)
       .example(R"({"id": "skull", "do": "segment", "scan": "ct", "window": "bone", "largest": true})")
       .check(check)
       .settle(settle)

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "planner/operation/table/field.h"
+#include "planner/operation/table/bench.h"
 #include "voxel/space/progress.h"
 #include "voxel/tree/grey_octree.h"
 #include "voxel/tree/octree.h"
@@ -39,7 +39,18 @@ struct Segment {
   std::vector<glm::dvec3> keep_bridges_mm, cut_bridges_mm;  ///< as BridgeDecisions
   double bridge_mm = 5.0;
   std::vector<glm::dvec3> agreed_mm = {};  ///< as BridgeDecisions
+  // Of the verb, which makes an object for each window and octree.
+  std::vector<std::string> windows, objects;
+  std::filesystem::path out, contours;
+  std::optional<double> voxel_mm;
 };
+
+/// The verb on files: an octree, a label map or a DICOM segmentation of the objects, and contours of the first
+/// window. Throws std::runtime_error if the options contradict each other or an output cannot be written, and as
+/// segmented().
+FileAnswer segment_file(const Segment& segment, const FileBench& bench);
+/// "bone, soft_tissue, ...".
+std::string names_of_tissues();
 
 /// What an object is segmented from.
 struct SegmentSource {

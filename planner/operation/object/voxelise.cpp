@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Octrees and label maps of meshes in files. In a plan, `import` digitises a mesh.
+// Writes octrees and label maps of meshes: the verb of meshes in files, the step of objects' meshes.
 #include "convert/voxel/voxelise.h"
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/mesh_in.h"
 #include "planner/operation/file/octree_in.h"
+#include "planner/operation/file/step_on_files.h"
 #include "planner/operation/file/write_label_table.h"
 #include "planner/operation/measure/octree_summary.h"
 #include "planner/operation/measure/result_json.h"
@@ -31,6 +32,12 @@ struct Voxelise {
   std::optional<double> voxel_mm;
   std::optional<ObjectName> like;
   std::string digitise = "centre";
+
+  std::vector<std::string> inputs() const {
+    std::vector<std::string> names;
+    for (const ObjectName& mesh : meshes) names.push_back(mesh.name);
+    return names;
+  }
 };
 
 struct Subject {
@@ -59,19 +66,19 @@ void turn_alike(const std::filesystem::path& path, brep::Triangles& triangles,
 }
 
 /// Throws where it holds no triangles, or is to be shared out exactly and is no solid; tells what is guessed.
-Subject read_subject(const std::filesystem::path& path, const std::string& digitise, Timings& timings,
+Subject read_subject(const FileBench& bench, const std::filesystem::path& path, const std::string& digitise,
                      std::vector<std::string>& findings) {
   Subject subject{path, {}, {}};
   {
-    const Stopwatch watch(timings, "read");
-    subject.triangles = read_mesh_in(path);
+    const Stopwatch watch(bench.timings, "read");
+    subject.triangles = triangles_named(path.string(), bench);
     turn_alike(path, subject.triangles, findings);
     // Welded, as each open edge is a rim that costs.
     subject.triangles = brep::joined_surface(std::move(subject.triangles)).surface;
   }
   if (subject.triangles.faces.empty()) throw std::runtime_error(path.string() + ": holds no triangles");
   {
-    const Stopwatch watch(timings, "health");
+    const Stopwatch watch(bench.timings, "health");
     subject.health = brep::health(subject.triangles);
   }
   if (subject.health.solid()) return subject;
@@ -107,8 +114,10 @@ void add_findings_beside(const ObjectName& like, const std::vector<Subject>& sub
   }
 }
 
-voxel::Universe universe_of(const Voxelise& asked, const std::vector<Subject>& subjects, Timings& timings) {
-  if (asked.like) return voxel::universe(read_timed(asked.like->name, timings));
+voxel::Universe universe_of(const FileBench& bench, const Voxelise& asked,
+                            const std::vector<Subject>& subjects) {
+  if (asked.like) return voxel::universe(read_timed(asked.like->name, bench.timings));
+  if (bench.step != nullptr && !asked.voxel_mm) return bench.step->universe;
   try {
     return voxel::universe_around(box_of(subjects), asked.voxel_mm.value_or(1.0));
   } catch (const std::length_error& error) {
@@ -148,7 +157,7 @@ decltype(voxel::OctreeFile::tree) voxelised(const FileBench& bench, const Voxeli
 
 FileAnswer write_octree(const FileBench& bench, const Voxelise& asked, const Subject& subject,
                         const std::vector<std::string>& findings) {
-  const voxel::Universe universe = universe_of(asked, {subject}, bench.timings);
+  const voxel::Universe universe = universe_of(bench, asked, {subject});
   voxel::OctreeFile file{voxelised(bench, asked, subject, universe), subject.path.stem().string(), ""};
   file.metadata = json_text(Json{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
                                  {"mesh", subject.path.filename().string()},
@@ -170,7 +179,7 @@ voxel::Lattice lattice_of(const voxel::Universe& universe, const voxel::Box& box
 
 FileAnswer write_labels(const FileBench& bench, const Voxelise& asked, const std::vector<Subject>& subjects,
                         std::vector<std::string>& findings) {
-  const voxel::Universe universe = universe_of(asked, subjects, bench.timings);
+  const voxel::Universe universe = universe_of(bench, asked, subjects);
   std::vector<voxel::Octree> octrees;
   octrees.reserve(subjects.size());
   for (const Subject& subject : subjects)
@@ -209,23 +218,29 @@ FileAnswer write_labels(const FileBench& bench, const Voxelise& asked, const std
   return {std::move(json), std::move(rows), findings};
 }
 
+void check(const Voxelise& asked, const Place& place) {
+  const bool labels = !is_octree(asked.out);
+  if (place.scope != nullptr)
+    check_output_path(asked.out, {".octree", ".nrrd", ".nii.gz", ".mha"}, place.at("path"));
+  else if (labels && !voxel::volume_format(asked.out))
+    need_octree_extension(asked.out);
+  if (!labels && asked.meshes.size() > 1)
+    place.at("path").refuse("an .octree holds one object: write several as a label map, .nrrd");
+  if (labels && asked.digitise == "partial")
+    place.at("digitise").refuse("a label map has no shares of voxels: write an .octree for those");
+}
+
 FileAnswer on_files(const Voxelise& asked, const FileBench& bench) {
   need_folder_of(asked.out);
-  const bool labels = !is_octree(asked.out) && voxel::volume_format(asked.out);
-  if (!labels) need_octree_extension(asked.out);
   if (asked.like && asked.voxel_mm)
     throw std::runtime_error("--like has voxels of its own: leave --voxel out");
-  if (!labels && asked.meshes.size() > 1)
-    throw std::runtime_error("--out: an .octree holds one object: write several as a label map, .nrrd");
-  if (labels && asked.digitise == "partial")
-    throw std::runtime_error("--digitise: a label map has no shares of voxels: write an .octree for those");
   std::vector<std::string> findings;
   std::vector<Subject> subjects;
   for (const ObjectName& path : asked.meshes)
-    subjects.push_back(read_subject(path.name, asked.digitise, bench.timings, findings));
+    subjects.push_back(read_subject(bench, path.name, asked.digitise, findings));
   if (asked.like) add_findings_beside(*asked.like, subjects, bench.timings, findings);
-  return labels ? write_labels(bench, asked, subjects, findings)
-                : write_octree(bench, asked, subjects.front(), findings);
+  return is_octree(asked.out) ? write_octree(bench, asked, subjects.front(), findings)
+                              : write_labels(bench, asked, subjects, findings);
 }
 
 }  // namespace
@@ -233,28 +248,35 @@ FileAnswer on_files(const Voxelise& asked, const FileBench& bench) {
 Operation voxelise_operation() {
   return Describe<Voxelise>("voxelise", "Makes an octree of a mesh, or a label map of several.", Makes::File)
       .takes(field("meshes", &Voxelise::meshes,
-                   "One or more mesh files (.stl, .ply, .obj, .vtp, .glb, ...); where one is no solid, its "
+                   "Objects; of the verb mesh files (.stl, .ply, .obj, .vtp, .glb, ...); where one is no "
+                   "solid, its "
                    "holes and "
                    "crossings are bridged by the winding number.")
                  .required()
                  .from(1)
                  .positional("mesh"))
-      .takes(
-          field("out", &Voxelise::out, "An .octree file, or a label map: .nrrd, .nii.gz, .mha.").required())
-      .takes(field("voxel_mm", &Voxelise::voxel_mm, "Edge of a voxel. Default: 1.").greater_than(0.0))
-      .takes(field("like", &Voxelise::like, "Takes the universe of this .octree file, to combine with it."))
+      .takes(field("path", &Voxelise::out, "An .octree file, or a label map: .nrrd, .nii.gz, .mha.")
+                 .required()
+                 .called("out"))
+      .takes(field("voxel_mm", &Voxelise::voxel_mm,
+                   "Edge of a voxel. Default: 1; of a step that of the plan's universe.")
+                 .greater_than(0.0))
+      .verb_takes(
+          field("like", &Voxelise::like, "Takes the universe of this .octree file, to combine with it."))
       .takes(
           field(
               "digitise", &Voxelise::digitise,
               "Which voxels: inside (D1), touching (D2), centre (D3), half (D4), or partial, with the share "
               "of each that is filled.")
               .one_of({"inside", "touching", "centre", "half", "partial"}))
-      .example(R"({"id": "plate", "do": "voxelise", "meshes": ["skull"], "out": "plate.octree"})")
+      .example(R"({"id": "plate", "do": "voxelise", "meshes": ["skull"], "path": "plate.octree"})")
       .on_files(
           "octotomy voxelise maxilla.stl -o maxilla.octree --voxel 0.5\n"
           "  octotomy voxelise maxilla.stl mandible.stl -o jaws.nii.gz --voxel 0.5\n"
           "  octotomy voxelise plate.stl -o plate.octree --like skull.octree --digitise partial",
-          on_files);
+          on_files)
+      .check(check)
+      .write(write_step<Voxelise, on_files>);
 }
 
 }  // namespace octotomy::planner

@@ -18,6 +18,10 @@
 
 // The inputs of an operation's functions. Each kernel has its own bench, which gives access to that kernel's
 // answers only. All are in one header, because an operation uses most of them.
+namespace octotomy::voxel {
+struct DicomSource;
+}  // namespace octotomy::voxel
+
 namespace octotomy::planner {
 
 /// A scan while steps need its samples.
@@ -151,7 +155,7 @@ struct AnswerBench {
   voxel::Progress progress(const std::string& doing) const;
 };
 
-/// The bench of a verb that answers from files by itself.
+/// The bench of a verb that answers from files by itself, and of a step that writes the same file of objects.
 struct FileBench {
   Timings& timings;
   std::stop_token stop = {};
@@ -161,6 +165,12 @@ struct FileBench {
   /// timed.
   std::function<voxel::Scene(const std::filesystem::path& path, const voxel::SlicesFinal& slices_final)>
       scan_reader = {};
+  /// The bench of the step; null for a verb, whose names of objects are paths of files.
+  const AnswerBench* step = nullptr;
+  /// The DICOM series that a scan was read from; null if it is of another kind.
+  std::function<std::shared_ptr<const voxel::DicomSource>(const std::filesystem::path& path,
+                                                          const voxel::Scene& scene)>
+      dicom_source = {};
   voxel::Scene read_scan(const std::filesystem::path& path,
                          const voxel::SlicesFinal& slices_final = {}) const {
     return scan_reader(path, slices_final);

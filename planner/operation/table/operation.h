@@ -102,6 +102,17 @@ class Describe {
   Describe&& verb_takes(Field field) && {
     return entry_.verb_fields.push_back(std::move(field)), std::move(*this);
   }
+  /// The fields of a part of the value, which stand among the value's own. Precondition: none has read_if().
+  template <typename Part>
+  Describe&& verb_takes(Part Value::*part, std::vector<Field> fields) && {
+    for (Field& field : fields) {
+      field.slot = [slot = field.slot, part](void* owner) {
+        return slot(&(static_cast<Value*>(owner)->*part));
+      };
+      entry_.verb_fields.push_back(std::move(field));
+    }
+    return std::move(*this);
+  }
   Describe&& reads_scans() && { return entry_.reads_scans = true, std::move(*this); }
   Describe&& of_head() && { return entry_.is_of_head = true, std::move(*this); }
   Describe&& tool() && { return entry_.is_tool = true, std::move(*this); }

@@ -49,6 +49,21 @@ TEST_F(OperationVerbs, EveryKernelAnswersOnFilesAndNoCertificateFails) {
   }
 }
 
+TEST_F(OperationVerbs, ABooleanIsASurfaceOrVoxelsWithTheCertificateOfBoth) {
+  brep::write_mesh(brep::shapes::box({0, -20, -20}, {20, 20, 20}), folder_ / "half.off");
+  const double whole = volume_mm3("measure " + at("ball.off"));
+  for (const char* out : {"rest.ply", "rest.octree"}) {
+    const CommandAnswer answer = run("boolean " + at("ball.off") + " difference " + at("half.off") +
+                                     " --voxel 0.5 --certify --json -o " + at(out));
+    ASSERT_EQ(answer.status, 0) << out << answer.errors;
+    const SortedJson certificate = SortedJson::parse(answer.out).at("certificate");
+    EXPECT_NE(certificate["verdict"], "FAIL") << out << certificate.dump(1);
+    for (const char* kernel : {"voxel", "mesh"})
+      EXPECT_NEAR(certificate[kernel]["volume_mm3"].get<double>(), 0.5 * whole, 0.02 * whole)
+          << out << kernel;
+  }
+}
+
 TEST_F(OperationVerbs, WhatTheMeshKernelAloneMakesIsVoxelised) {
   const double ball = volume_mm3("measure " + at("ball.off"));
   const double even = volume_mm3("smooth " + at("ball.off") + " --rounds 5 -o " + at("even.ply"));

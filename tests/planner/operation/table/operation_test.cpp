@@ -66,7 +66,7 @@ TEST(Operation, EveryFieldSaysWhatItIsInOneSentence) {
                           : operation.makes == Makes::Scan        ? static_cast<bool>(operation.scan)
                           : operation.makes == Makes::Measurement ? static_cast<bool>(operation.measure)
                           : operation.makes == Makes::Names       ? static_cast<bool>(operation.check)
-                                                                  : operation.write || operation.on_files;
+                                                                  : static_cast<bool>(operation.write);
     EXPECT_TRUE(is_whole) << operation.name;
   }
 }
