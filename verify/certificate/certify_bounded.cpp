@@ -351,7 +351,7 @@ void compare_with_lines(Certificate& certificate, const Evidence& evidence, cons
          evidence.voxels.volume_mm3);
   else
     told(evidence.mesh.volume_mm3 < third.volume_mm3
-             ? "the mesh, whose triangles pass over what lies between two samples, loses "
+             ? "the mesh, whose triangles are flat between samples, loses "
              : "the mesh has ",
          evidence.mesh.volume_mm3);
 }
