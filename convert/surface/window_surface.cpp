@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <unordered_set>
 #include <utility>
@@ -355,49 +357,70 @@ class WindowSurface {
     }
   }
 
-  /// All triangles in the order of their cells' kinds, and the points that they use.
+  /// All triangles, and the points that they use.
   brep::Triangles join() {
     brep::Triangles joined;
-    joined.faces.reserve(low_.faces.size() + high_.faces.size());
+    std::size_t count = low_.faces.size() + high_.faces.size();
+    for (const SharedCell& shared : cells_)
+      if (shared.is_replaced)
+        count = count + shared.triangles.size() - (shared.low_end - shared.low_begin) -
+                (shared.high_end - shared.high_begin);
+    joined.faces.resize(count);
     std::size_t low = 0, high = 0;
-    const auto copy_low = [&](std::size_t end) {
-      joined.faces.insert(joined.faces.end(), low_.faces.begin() + static_cast<std::ptrdiff_t>(low),
-                          low_.faces.begin() + static_cast<std::ptrdiff_t>(end));
-    };
-    const auto copy_high = [&](std::size_t end) {
-      for (; high < end; ++high) {
-        const auto& [a, b, c] = high_.faces[high];
-        joined.faces.push_back({a + behind_low_, c + behind_low_, b + behind_low_});
-      }
+    Face* at = joined.faces.data();
+    const auto copy_to = [&](std::size_t low_end, std::size_t high_end) {
+      for_ranges(low_end - low, [&](std::size_t i) { at[i] = low_.faces[low + i]; });
+      at += low_end - low;
+      for_ranges(high_end - high, [&](std::size_t i) {
+        const auto& [a, b, c] = high_.faces[high + i];
+        at[i] = {a + behind_low_, c + behind_low_, b + behind_low_};
+      });
+      at += high_end - high;
     };
     for (const SharedCell& shared : cells_) {
       if (!shared.is_replaced) continue;
-      copy_low(shared.low_begin);
-      copy_high(shared.high_begin);
+      copy_to(shared.low_begin, shared.high_begin);
       low = shared.low_end;
       high = shared.high_end;
-      joined.faces.insert(joined.faces.end(), shared.triangles.begin(), shared.triangles.end());
+      at = std::copy(shared.triangles.begin(), shared.triangles.end(), at);
     }
-    copy_low(low_.faces.size());
-    copy_high(high_.faces.size());
+    copy_to(low_.faces.size(), high_.faces.size());
+    assert(at == joined.faces.data() + joined.faces.size());
     number_points(joined);
     return joined;
+  }
+
+  /// Calls f(i) for i below `count`, on all threads if that is worth it.
+  template <typename F>
+  static void for_ranges(std::size_t count, const F& f) {
+    constexpr std::size_t grain = 4096;
+    if (count <= grain) {
+      for (std::size_t i = 0; i < count; ++i) f(i);
+      return;
+    }
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) f(i);
+    });
   }
 
   void number_points(brep::Triangles& joined) const {
     const bool mirrored = !lattice_.right_handed();
     constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> number(low_.points_mm.size() + high_.points_mm.size(), unused);
-    for (const Face& face : joined.faces)
-      for (const std::uint32_t point : face) number[point] = 0;
-    for (std::size_t i = 0; i < number.size(); ++i) {
-      if (number[i] == unused) continue;
-      number[i] = static_cast<std::uint32_t>(joined.points_mm.size());
-      joined.points_mm.push_back(i < behind_low_ ? low_.points_mm[i] : high_.points_mm[i - behind_low_]);
-    }
-    tbb::parallel_for(std::size_t{0}, joined.points_mm.size(),
-                      [&](std::size_t i) { joined.points_mm[i] = lattice_.lps_mm(joined.points_mm[i]); });
-    tbb::parallel_for(std::size_t{0}, joined.faces.size(), [&](std::size_t i) {
+    for_ranges(joined.faces.size(), [&](std::size_t i) {
+      for (const std::uint32_t point : joined.faces[i])
+        std::atomic_ref(number[point]).store(0, std::memory_order_relaxed);
+    });
+    std::uint32_t count = 0;
+    for (std::uint32_t& each : number)
+      if (each != unused) each = count++;
+    joined.points_mm.resize(count);
+    for_ranges(number.size(), [&](std::size_t i) {
+      if (number[i] == unused) return;
+      joined.points_mm[number[i]] =
+          lattice_.lps_mm(i < behind_low_ ? low_.points_mm[i] : high_.points_mm[i - behind_low_]);
+    });
+    for_ranges(joined.faces.size(), [&](std::size_t i) {
       for (std::uint32_t& point : joined.faces[i]) point = number[point];
       if (mirrored) std::swap(joined.faces[i][1], joined.faces[i][2]);
     });
