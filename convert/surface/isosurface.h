@@ -31,7 +31,7 @@ namespace octotomy::convert {
 /// Throws std::invalid_argument if the scene fails check() or a bound is not a number; voxel::Error
 /// (Resource) if 32 bits do not number the triangles; voxel::Stopped. Parallel; same bits on any thread
 /// count. Cost: two passes over a bit a sample, one over the samples; memory one bit a sample beside the
-/// surface. Source: Lorensen, Cline 1987; tables derived by following the loops of each of the 256 cases.
+/// surface. With samples on either side of the window four times that, and memory of both surfaces twice. Source: Lorensen, Cline 1987; tables derived by following the loops of each of the 256 cases.
 brep::Triangles isosurface(const voxel::Scene& scene, double low, double high,
                            const voxel::Progress& progress = {});
 
