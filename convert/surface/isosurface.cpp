@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "convert/surface/surface_extraction.h"
+#include "convert/surface/window_surface.h"
 #include "voxel/tree/octree_node.h"
 #include "voxel/tree/window_bits.h"
 
@@ -35,6 +36,24 @@ double crossing(double first, double second, bool first_inside, double low, doub
   const double t = (bound - first) / (second - first);
   if (std::isnan(t)) return 0.5;
   return std::clamp(t, closest_to_sample(), 1.0 - closest_to_sample());
+}
+
+/// The same on an edge from below the lower of two bounds, or from within them, to above the upper one. An edge
+/// from below to above crosses both; there the crossings keep the same distance from each other.
+double crossing_of_two(double first, double second, bool first_inside, double low, double high,
+                       bool is_upper) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double from = std::min(first, second), to = std::max(first, second);
+  if (!(from < low && to > high))
+    return crossing(first, second, first_inside, is_upper ? high : low, infinity);
+  const auto part = [&](double bound) {
+    const double t = (bound - from) / (to - from);
+    return std::isnan(t) ? 0.5 : t;
+  };
+  const double least = closest_to_sample();
+  double t = std::clamp(part(low), least, 1.0 - 2.0 * least);
+  if (is_upper) t = std::clamp(part(high), t + least, 1.0 - least);
+  return first < second ? t : 1.0 - t;
 }
 
 /// Eight flags of one byte each, the first in the lowest byte, as eight bits.
@@ -85,6 +104,12 @@ class SceneSamples {
       : lattice_(lattice), samples_(samples), padding_(padding) {}
   const voxel::Lattice& lattice() const { return lattice_; }
 
+  InsideBits measured() const {
+    const double lowest = padding_ ? std::nextafter(*padding_, std::numeric_limits<double>::infinity())
+                                   : -std::numeric_limits<double>::infinity();
+    return inside(lowest, std::numeric_limits<double>::infinity());
+  }
+
   InsideBits inside(double low, double high) const {
     InsideBits bits(lattice_.dims, 1);
     if constexpr (std::is_integral_v<Sample>) {
@@ -128,11 +153,17 @@ class GreySamples {
   explicit GreySamples(const voxel::GreyOctree& grey) : grey_(grey), lattice_(grey.universe().lattice()) {}
   const voxel::Lattice& lattice() const { return lattice_; }
 
+  InsideBits measured() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return inside(-infinity, infinity);
+  }
+
+  /// From the first call on whose window contains the background, samples beyond the scan are not measured.
   InsideBits inside(double low, double high) {
     InsideBits bits(lattice_.dims, 16);
     const std::optional<voxel::Window16> window = voxel::window16(low, high);
     if (!window) return bits;
-    meets_background_ = grey_.window_meets_background(low, high);
+    meets_background_ = meets_background_ || grey_.window_meets_background(low, high);
     const int blocks = (lattice_.dims.x + 15) / 16;
     tbb::parallel_for(0, blocks, [&](int z) {
       for (int y = 0; y < blocks; ++y)
@@ -213,7 +244,7 @@ class GreySamples {
 
   const voxel::GreyOctree& grey_;
   voxel::Lattice lattice_;
-  bool meets_background_ = false;  ///< whether the window contains the background
+  bool meets_background_ = false;  ///< whether a window contained the background
 };
 
 void check_bounds(double low, double high) {
@@ -221,17 +252,58 @@ void check_bounds(double low, double high) {
     throw std::invalid_argument("isosurface: a bound of the window is not a number");
 }
 
+/// Whether any bit of the first is set that the second has not.
+bool any_beyond(const InsideBits& first, const InsideBits& second) {
+  for (std::size_t i = 0; i < first.bits.size(); ++i)
+    if ((first.bits[i] & ~second.bits[i]) != 0) return true;
+  return false;
+}
+
+/// The bits of a window with samples on either side of it. None: one bound alone makes the surface, or the
+/// window is a single value, whose level sets have nothing between them.
+template <typename Samples>
+std::optional<WindowBits> two_sided(Samples& samples, double low, double high) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (!(low < high) || low == -infinity || high == infinity) return std::nullopt;
+  InsideBits measured = samples.measured();
+  InsideBits above = samples.inside(std::nextafter(high, infinity), infinity);
+  if (std::none_of(above.bits.begin(), above.bits.end(), [](std::uint64_t word) { return word != 0; }))
+    return std::nullopt;
+  InsideBits from_low = samples.inside(low, infinity);
+  if (!any_beyond(measured, from_low)) return std::nullopt;
+  return WindowBits{std::move(measured), std::move(from_low), std::move(above)};
+}
+
+/// `part(first, second, first_inside)` of each edge.
+template <typename Samples, typename Part>
+Crossings crossings_of(const Samples& samples, const Part& part) {
+  return [&samples, part](std::span<const CrossedEdge> edges, double* parts) {
+    for (const CrossedEdge& edge : edges) {
+      const auto [first, second] = samples.two(edge.voxel, edge.axis);
+      *parts++ = part(first, second, edge.first_inside);
+    }
+  };
+}
+
 template <typename Samples>
 brep::Triangles surface_of(Samples samples, double low, double high, const voxel::Progress& progress) {
   progress.at(0.0);
-  InsideBits inside = samples.inside(low, high);
-  const Crossings at = [&](std::span<const CrossedEdge> edges, double* parts) {
-    for (const CrossedEdge& edge : edges) {
-      const auto [first, second] = samples.two(edge.voxel, edge.axis);
-      *parts++ = crossing(first, second, edge.first_inside, low, high);
-    }
-  };
-  return extract_surface(samples.lattice(), std::move(inside), at, progress);
+  Samples by_levels = samples;
+  if (const std::optional<WindowBits> bits = two_sided(by_levels, low, high)) {
+    const auto crossed_at = [&](bool is_upper) {
+      return crossings_of(by_levels, [=](double first, double second, bool first_inside) {
+        return crossing_of_two(first, second, first_inside, low, high, is_upper);
+      });
+    };
+    return window_surface(samples.lattice(), *bits, crossed_at(false), crossed_at(true), progress);
+  }
+  const InsideBits inside = samples.inside(low, high);
+  return extract_surface(samples.lattice(), inside,
+                         crossings_of(samples,
+                                      [=](double first, double second, bool first_inside) {
+                                        return crossing(first, second, first_inside, low, high);
+                                      }),
+                         progress);
 }
 
 }  // namespace

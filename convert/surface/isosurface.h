@@ -8,15 +8,22 @@
 
 namespace octotomy::convert {
 
-/// The surface on which the scan's own samples, interpolated linearly along the lattice's edges, enter the
-/// window low..high, both included. In LPS millimetres; the bounds may be infinite.
+/// The surface on which the scan's own samples, interpolated linearly along the lattice's edges, enter or leave
+/// the window low..high, both included. In LPS millimetres; the bounds may be infinite.
 ///
 /// Closed, manifold, oriented outward and free of self-intersection for any samples, noise included, and any
 /// handedness of the lattice: ambiguous faces of cells keep the inside corners apart. Vertices keep a
 /// thousandth of an edge's distance from samples, so no triangle is degenerate. An object that reaches the
 /// scan's border is closed half a voxel beyond the outermost samples, at the voxels' ends. Samples that are
-/// not numbers, and the scene's padding, are outside; the surface closes half way to them. Between
-/// neighbouring samples below and above the window there is no surface. Empty if nothing is inside.
+/// not numbers, and the scene's padding, are outside; the surface closes half way to them. Empty if nothing is
+/// inside.
+///
+/// With samples on either side of it, the window's surface is that of the lower bound and that of the upper one
+/// inside out. Between a sample below and one above, the object is the layer that passes through the window, at
+/// least a thousandth of the edge thick; at the scan's border and at padding the layer ends with the outermost
+/// samples. Between neighbours the volumes of adjoining windows add up. With samples on one side alone, and of a
+/// single value, the object is that of the samples in the window, with the bits of the other bound alone.
+///
 /// For partial-volume samples of a sphere with a radius of r voxels, the relative volume is too small by 0.82
 /// / r^2: 0.6 / r^2 because triangles are chords, the rest because a voxel's mean is not its centre's value.
 /// The area is too large by 0.4 % - 0.3 / r^2, because of ripple.
@@ -24,13 +31,14 @@ namespace octotomy::convert {
 /// Throws std::invalid_argument if the scene fails check() or a bound is not a number; voxel::Error
 /// (Resource) if 32 bits do not number the triangles; voxel::Stopped. Parallel; same bits on any thread
 /// count. Cost: two passes over a bit a sample, one over the samples; memory one bit a sample beside the
-/// surface. Source: Lorensen, Cline 1987; tables derived by following the loops of each of the 256 cases.
+/// surface. With samples on either side of the window four times that, and memory of both surfaces twice. Source: Lorensen, Cline 1987; tables derived by following the loops of each of the 256 cases.
 brep::Triangles isosurface(const voxel::Scene& scene, double low, double high,
                            const voxel::Progress& progress = {});
 
 /// The isosurface of a grey octree's samples: the same bits as of a scene with these samples. Skips blocks
 /// that lie wholly in or out of the window. Samples beyond the scan are outside every window. If the window
-/// contains their value, the surface closes half a voxel beyond the scan's outermost samples.
+/// contains their value, or there are samples on either side of it, the surface closes half a voxel beyond the
+/// scan's outermost samples.
 brep::Triangles isosurface(const voxel::GreyOctree& grey, double low, double high,
                            const voxel::Progress& progress = {});
 

@@ -23,11 +23,6 @@
 namespace octotomy::convert {
 namespace {
 
-struct Segment {
-  int from = 0;
-  int to = 0;
-};
-
 int edge_between(int a, int b) {
   for (int edge = 0; edge < 12; ++edge) {
     const std::array<int, 2> ends = corners_of_edge(edge);
@@ -35,31 +30,6 @@ int edge_between(int a, int b) {
   }
   assert(false);
   return -1;
-}
-
-/// The corners of a face, counter-clockwise seen from outside the cube.
-std::array<int, 4> corners_of_face(int face) {
-  const int axis = face / 2;
-  const int b = 1 << ((axis + 1) % 3);
-  const int c = 1 << ((axis + 2) % 3);
-  const int base = (face % 2) << axis;
-  if (face % 2 == 1) return {base, base | b, base | b | c, base | c};
-  return {base, base | c, base | b | c, base | b};
-}
-
-std::vector<Segment> segments_of_face(int face, int inside_corners) {
-  const std::array<int, 4> corners = corners_of_face(face);
-  const std::array<int, 4> edges = edges_of_face(face);
-  const auto inside = [&](int i) { return ((inside_corners >> corners[i % 4]) & 1) != 0; };
-  std::vector<Segment> segments;
-  for (int first = 0; first < 4; ++first) {
-    if (!inside(first) || inside(first + 3)) continue;
-    int last = first;
-    while (inside(last + 1)) ++last;
-    // Edge i of a face joins its corners i and i + 1.
-    segments.push_back({edges[(first + 3) % 4], edges[last % 4]});
-  }
-  return segments;
 }
 
 bool share_a_face(int edge_a, int edge_b) {
@@ -144,7 +114,7 @@ MarchingCubesCase derive(int inside_corners) {
   std::array<int, 12> next{};
   next.fill(-1);
   for (int face = 0; face < 6; ++face)
-    for (const Segment& segment : segments_of_face(face, inside_corners)) {
+    for (const FaceSegment& segment : segments_of_face(face, inside_corners)) {
       assert(next[segment.from] == -1);
       next[segment.from] = segment.to;
     }
@@ -180,6 +150,30 @@ std::array<int, 4> edges_of_face(int face) {
   std::array<int, 4> edges{};
   for (int i = 0; i < 4; ++i) edges[i] = edge_between(corners[i], corners[(i + 1) % 4]);
   return edges;
+}
+
+std::array<int, 4> corners_of_face(int face) {
+  const int axis = face / 2;
+  const int b = 1 << ((axis + 1) % 3);
+  const int c = 1 << ((axis + 2) % 3);
+  const int base = (face % 2) << axis;
+  if (face % 2 == 1) return {base, base | b, base | b | c, base | c};
+  return {base, base | c, base | b | c, base | b};
+}
+
+std::vector<FaceSegment> segments_of_face(int face, int inside_corners) {
+  const std::array<int, 4> corners = corners_of_face(face);
+  const std::array<int, 4> edges = edges_of_face(face);
+  const auto inside = [&](int i) { return ((inside_corners >> corners[i % 4]) & 1) != 0; };
+  std::vector<FaceSegment> segments;
+  for (int first = 0; first < 4; ++first) {
+    if (!inside(first) || inside(first + 3)) continue;
+    int last = first;
+    while (inside(last + 1)) ++last;
+    // Edge i of a face joins its corners i and i + 1.
+    segments.push_back({edges[(first + 3) % 4], edges[last % 4]});
+  }
+  return segments;
 }
 
 const MarchingCubesCase& marching_cubes_case(int inside_corners) {

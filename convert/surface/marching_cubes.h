@@ -17,6 +17,18 @@ std::array<int, 2> corners_of_edge(int edge);
 /// The edges of a face, counter-clockwise seen from outside the cube.
 std::array<int, 4> edges_of_face(int face);
 
+/// The corners of a face, counter-clockwise seen from outside the cube. Edge i of edges_of_face() joins corners
+/// i and i + 1.
+std::array<int, 4> corners_of_face(int face);
+
+/// A line on a face from one crossed edge to another, which cuts off a run of inside corners. The run lies on
+/// its right seen from outside the cube.
+struct FaceSegment {
+  int from = 0;
+  int to = 0;
+};
+std::vector<FaceSegment> segments_of_face(int face, int inside_corners);
+
 /// Triangles for one pattern of inside corners.
 struct MarchingCubesCase {
   std::uint16_t crossed = 0;  ///< bit e: edge e joins an inside corner to an outside one

@@ -351,7 +351,7 @@ void compare_with_lines(Certificate& certificate, const Evidence& evidence, cons
          evidence.voxels.volume_mm3);
   else
     told(evidence.mesh.volume_mm3 < third.volume_mm3
-             ? "the mesh, whose triangles pass over what lies between two samples, loses "
+             ? "the mesh, whose triangles are flat between samples, loses "
              : "the mesh has ",
          evidence.mesh.volume_mm3);
 }
@@ -393,6 +393,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   progress.at(0.45);
   compare_topology(certificate, octree, digitised);
   judge_extent(certificate, evidence);
+  judge_evidence(certificate);
   if (!octree.is_empty() && evidence.mesh.area_mm2 > 0.0) {
     progress.at(0.5);
     compare_surfaces(certificate, evidence, octree, solid);
@@ -400,7 +401,6 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
     compare_inertia(certificate, evidence, solid);
     if (inputs.voxels_are_samples) compare_same_topology(certificate, octree, solid);
   }
-  judge_evidence(certificate);
   // The search for parts that both kernels lack samples one voxel in each block of two voxels a side, so it
   // may miss a part of up to eight voxels.
   if (!inputs.is_surely_empty)

@@ -28,7 +28,8 @@ struct BoundInputs {
   /// of its own (offset_allowance_mm()). Above 0 totals fail beyond twice their tolerance, with a witness,
   /// too: such an object's witness is coarser than they are.
   double measured_apart_mm = 0.0;
-  /// Every voxel's centre is a sample and the object is one window of them: topology must agree too.
+  /// Every voxel's centre is a sample and the object is one window of them, with samples on one side of it
+  /// alone: topology must agree too.
   bool voxels_are_samples = false;
   /// The right answer is the empty set, as for a - a. Two empty answers then pass.
   bool is_surely_empty = false;

@@ -157,21 +157,35 @@ WorstPlace SurfaceDistances::worst() const {
 double SurfaceDistances::leave_out_thin() {
   assert(from_solid_.distances_mm.size() == samples_.points_mm.size());
   const glm::dmat3 axes_mm(octree_.universe().lps_from_voxel);
-  std::vector<glm::dvec3> within_mm, beyond_mm;
-  for (std::size_t i = 0; i < samples_.points_mm.size(); ++i) {
-    // The width of a voxel along the normal. A slab of this width holds a voxel's centre near each of its
-    // points.
-    const glm::dvec3 normal = samples_.normals[i], widths_mm = glm::abs(normal * axes_mm);
-    const double width_mm = widths_mm.x + widths_mm.y + widths_mm.z;
-    within_mm.push_back(samples_.points_mm[i] - width_mm * normal);
-    beyond_mm.push_back(samples_.points_mm[i] + width_mm * normal);
+  const std::size_t count = samples_.points_mm.size();
+  // The width of a voxel along the normal. A slab of this width holds a voxel's centre near each of its points.
+  std::vector<double> widths_mm(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::dvec3 along = glm::abs(samples_.normals[i] * axes_mm);
+    widths_mm[i] = along.x + along.y + along.z;
   }
-  const std::vector<std::uint8_t> thick = solid_.tree().inside(within_mm),
-                                  closing = solid_.tree().inside(beyond_mm);
+  // Sheets lie in stacks, and the far end of a voxel may lie in the next sheet or gap: reads the way to it, too.
+  std::vector<std::uint8_t> thin(count, 0);
+  std::vector<std::size_t> left;
+  std::vector<glm::dvec3> within_mm, beyond_mm;
+  for (const double share : {1.0, 0.5, 0.25, 0.75}) {
+    left.clear(), within_mm.clear(), beyond_mm.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (thin[i] != 0) continue;
+      const glm::dvec3 by_mm = share * widths_mm[i] * samples_.normals[i];
+      left.push_back(i);
+      within_mm.push_back(samples_.points_mm[i] - by_mm);
+      beyond_mm.push_back(samples_.points_mm[i] + by_mm);
+    }
+    const std::vector<std::uint8_t> thick = solid_.tree().inside(within_mm),
+                                    closing = solid_.tree().inside(beyond_mm);
+    for (std::size_t k = 0; k < left.size(); ++k)
+      if (thick[k] == 0 || closing[k] != 0) thin[left[k]] = 1;
+  }
   double thin_mm2 = 0.0;
   Directed kept;
-  for (std::size_t i = 0; i < thick.size(); ++i) {
-    if (!thick[i] || closing[i]) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (thin[i] != 0) {
       thin_mm2 += samples_.areas_mm2[i];
       continue;
     }

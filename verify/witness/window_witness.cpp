@@ -9,7 +9,12 @@
 // The mean of xy over points of mean x and y lies between max(0, x + y - 1) and min(x, y), that of xyz
 // between max(0, x + y + z - 2) and min(x, y, z) (Frechet's bounds). The same bound holds with the opposite
 // sign for the part inside the mesh. It holds for every triangulation of the cell between its crossings,
-// however ambiguous faces are resolved. At samples and on edges the difference is zero.
+// however ambiguous faces are resolved. At samples and on edges the difference is zero. A window with two
+// bounds has two such surfaces, and the bound holds for each.
+//
+// Cells with a sample that was not measured, and what lies beyond the outermost samples, have the surface of
+// the samples in the window alone. What passes through the window between a sample below and one above ends
+// at such a cell's face (convert/surface/window_surface.h), so the face may be a surface.
 //
 // The voxel kernel's value is f, rounded at the centres of voxels. This file computes it again from the
 // samples.
@@ -35,6 +40,8 @@ constexpr double rounding = 1e-9;
 
 /// The vertices of an isosurface keep a thousandth of an edge from its ends (convert/surface/isosurface.h).
 constexpr double kept_from_samples = 1e-3;
+/// How near to a face of a cell a point lies on it, in samples.
+constexpr double on_face = 1e-6;
 
 /// How far f may lie above a bound where the mesh is outside, and below the bound where the mesh is inside.
 struct Stray {
@@ -43,6 +50,8 @@ struct Stray {
 
 template <typename Sample>
 class WindowWitness {
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+
  public:
   WindowWitness(std::shared_ptr<const voxel::Scene> scan, double low, double high,
                 const voxel::Universe& universe, double step)
@@ -114,7 +123,7 @@ class WindowWitness {
     return made;
   }
 
-  static Stray stray_of(const Cell& at) {
+  Stray stray_of(const Cell& at) const {
     const auto& v = at.v;
     const auto& t = at.t;
     Stray found;
@@ -131,12 +140,18 @@ class WindowWitness {
     stray_of_two(v[0] - v[2] - v[4] + v[6], t[1], t[2]);
     stray(-v[0] + v[1] + v[2] - v[3] + v[4] - v[5] - v[6] + v[7], t[0] * t[1] * t[2],
           std::min({t[0], t[1], t[2]}), std::max(0.0, t[0] + t[1] + t[2] - 2.0));
-    const double moved =
-        kept_from_samples * (at.high - at.low) + rounding * std::max(std::abs(at.low), std::abs(at.high));
+    // Two crossings on one edge keep the distance from each other, too.
+    const double kept = spans_window(at) ? 2.0 * kept_from_samples : kept_from_samples;
+    const double moved = kept * (at.high - at.low) + rounding * std::max(std::abs(at.low), std::abs(at.high));
     found.above += moved;
     found.below += moved;
     return found;
   }
+
+  /// Whether a cell has samples both below and above the window.
+  bool spans_window(const Cell& at) const { return at.low < low_ && at.high > high_; }
+  /// Whether the surfaces of two bounds may end in the plane of the outermost samples or in a face of padding.
+  bool may_end_in_face(double highest) const { return low_ > -infinite && highest > high_; }
 
   /// The word for the value f at a point. If f is more than `above` over the lower bound, the answer must be
   /// inside; if it is more than `below` under it, outside. The upper bound is treated in the same way with
@@ -158,9 +173,9 @@ class WindowWitness {
     return std::nullopt;
   }
 
-  /// How far a position lies beyond the outermost samples, in samples.
+  /// How far a position lies beyond the outermost samples, in samples. Negative: within them.
   double beyond(const glm::dvec3& u) const {
-    double most = 0.0;
+    double most = -infinite;
     for (int axis = 0; axis < 3; ++axis)
       most = std::max({most, -u[axis], u[axis] - static_cast<double>(dims_[axis] - 1)});
     return most;
@@ -178,8 +193,12 @@ class WindowWitness {
         rounding * (1.0 + static_cast<double>(std::max({dims_.x, dims_.y, dims_.z}))) + 3.0 * slack;
     if (past > 0.5 + near) return certainly_out;
     bool any_in = false, any_out = false;
-    for (const double v : own_corners(u, slack))
+    double highest = -infinite;
+    for (const double v : own_corners(u, slack)) {
       (v != padding_ && v >= low_ && v <= high_ ? any_in : any_out) = true;
+      highest = std::max(highest, v);
+    }
+    if (past <= near && may_end_in_face(highest)) return on_surface;
     if (!any_in) return certainly_out;
     return any_out || past > 0.5 - near ? on_surface : certainly_in;
   }
@@ -206,18 +225,21 @@ class WindowWitness {
   /// Padding is outside. The surface closes half way between an inside sample and padding, so both answers
   /// are allowed in a cell that has both, and within `slack` of such a cell. None: no padding is near.
   std::optional<Word> word_at_padding(const Cell& at, const glm::dvec3& u, double slack) const {
-    if (slack == 0.0 && at.low != padding_) return std::nullopt;
-    bool is_near = false, any_in = false;
+    const double by = std::max(slack, may_end_in_face(at.high) ? on_face : 0.0);
+    if (by == 0.0 && at.low != padding_) return std::nullopt;
+    bool is_near = false, any_in = false, any_measured = false;
+    double highest = -infinite;
     const auto add = [&](const Cell& near) {
-      is_near = is_near || near.low == padding_;
+      (near.low == padding_ ? is_near : any_measured) = true;
+      highest = std::max(highest, near.high);
       for (const double v : near.v) any_in = any_in || (v != padding_ && v >= low_ && v <= high_);
     };
     add(at);
-    if (slack > 0.0)
+    if (by > 0.0)
       for (int i = 0; i < 8; ++i)
-        add(cell(u + slack * glm::dvec3((i & 1) * 2 - 1, (i & 2) - 1, (i >> 2) * 2 - 1)));
+        add(cell(u + by * glm::dvec3((i & 1) * 2 - 1, (i & 2) - 1, (i >> 2) * 2 - 1)));
     if (!is_near) return std::nullopt;
-    return any_in ? on_surface : certainly_out;
+    return any_in || (any_measured && may_end_in_face(highest)) ? on_surface : certainly_out;
   }
 
   /// The mesh's word; word_beyond() computes it beyond the outermost samples.
@@ -226,17 +248,24 @@ class WindowWitness {
     if (past >= 1.0) return certainly_out;
     if (past > rounding) return word_beyond(u, slack);
     const Cell at = cell(u);
+    if (past > -on_face - 3.0 * slack && may_end_in_face(at.high)) return on_surface;
     if (scan_->padding)
       if (const std::optional<Word> word = word_at_padding(at, u, slack)) return *word;
     if (const std::optional<Word> clear = clear_word(at, slack)) return *clear;
     const Stray stray = stray_of(at);
     // Within a cell f changes by at most the samples' range per sample along each axis.
     const double moved = 3.0 * slack * (at.high - at.low);
-    Word answer = word(at.value(), stray.above + moved, stray.below + moved);
-    // In a cell with samples both below and above the window, the outside part may have corners of both
-    // kinds, and the bound does not hold.
-    if (answer == certainly_in && at.low < low_ && at.high > high_) answer = on_surface;
+    const Word answer = word(at.value(), stray.above + moved, stray.below + moved);
+    // Cells beside those with padding may have the surface of such cells.
+    if (answer == certainly_in && scan_->padding && spans_window(at) && is_beside_padding(u))
+      return on_surface;
     return answer;
+  }
+
+  bool is_beside_padding(const glm::dvec3& u) const {
+    for (int i = 0; i < 27; ++i)
+      if (cell(u + glm::dvec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)).low == padding_) return true;
+    return false;
   }
 
   /// Number of surfaces at a point near the surface: two on an edge between samples, where the surface may

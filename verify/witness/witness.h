@@ -19,7 +19,8 @@
 namespace octotomy::verify {
 
 /// The window low..high of a scan, both bounds included. The mesh kernel's surface lies in the scan's own
-/// cells, with vertices where samples interpolated along edges reach a bound; the voxel kernel interpolates
+/// cells, with vertices where samples interpolated along edges reach a bound, both bounds on an edge from below
+/// to above; the voxel kernel interpolates
 /// trilinearly between the scan's samples, and rounds to a multiple of `step` at the centres of the
 /// universe's voxels: its grey octree keeps the scan (GreyOctree::with_scan()). Shares the scan.
 Witness witness_of_window(std::shared_ptr<const voxel::Scene> scan, double low, double high,

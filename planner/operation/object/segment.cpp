@@ -423,8 +423,11 @@ void bound(const Segment& segment, const BoundBench& bench, Object& made) {
   const voxel::Lattice& lattice = scan.scene().lattice;
   made.bound.spacing_mm = lattice.spacing_mm();
   made.bound.scan_box_mm = voxel::bounds(lattice);
-  made.bound.voxels_are_samples = on_samples(lattice, bench.universe.lattice());
-  made.witness = witness_of_seeds(segment, scan, made.bound.voxels_are_samples);
+  const bool voxels_are_samples = on_samples(lattice, bench.universe.lattice());
+  made.bound.voxels_are_samples =
+      voxels_are_samples && !(segment.window && on_both_sides(scan.scene(), segment.window->low,
+                                                              segment.window->high_or_infinity()));
+  made.witness = witness_of_seeds(segment, scan, voxels_are_samples);
   // The depth is interpolated where samples cross the lower bound. An upper bound inside the object would
   // make it wrong.
   if (!segment.window || why_voxels_alone(segment) != nullptr) return;

@@ -98,6 +98,12 @@ bool on_samples(const voxel::Lattice& scan, const voxel::Lattice& universe) {
   return true;
 }
 
+bool on_both_sides(const voxel::Scene& scan, double low, double high) {
+  if (!(high < std::numeric_limits<double>::infinity())) return false;
+  const voxel::Range range = voxel::range(scan);
+  return range.low < low && range.high > high;
+}
+
 std::vector<CutPlane> planes_of(const voxel::RegionMask& mask) {
   constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
   std::vector<CutPlane> planes;

@@ -30,6 +30,9 @@ std::vector<CutPlane> ends_of(const voxel::Box& scan, const glm::dvec3& sample_m
 
 /// Whether every voxel's centre within the scan coincides with one of its samples, up to rounding.
 bool on_samples(const voxel::Lattice& scan, const voxel::Lattice& universe);
+/// Whether a scan has samples both below and above a window. The mesh kernel then has layers of it between
+/// neighbouring samples, which no voxel at a sample shows.
+bool on_both_sides(const voxel::Scene& scan, double low, double high);
 
 /// The planes through a mask's edges that are normal to an axis of the universe, up to the rounding of the
 /// view's unit vectors.

@@ -80,7 +80,9 @@ void bound(const Window& window, const BoundBench& bench, Object& made) {
   const voxel::Lattice& lattice = scan.scene().lattice;
   made.bound.spacing_mm = lattice.spacing_mm();
   made.bound.scan_box_mm = voxel::bounds(lattice);
-  made.bound.voxels_are_samples = on_samples(lattice, bench.universe.lattice());
+  made.bound.voxels_are_samples =
+      on_samples(lattice, bench.universe.lattice()) &&
+      !on_both_sides(scan.scene(), window.low, window.high.value_or(std::numeric_limits<double>::infinity()));
   // The depth is interpolated where samples cross the lower bound. An upper bound inside the object would
   // make it wrong.
   made.witness = verify::witness_of_window(scan.shared, window.low,
