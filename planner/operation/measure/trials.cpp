@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The effect of errors on the numbers of a plan. The numbers belong to the whole plan, so
 // planner/plan/trial.h runs the trials; this operation only holds their parameters.
+#include "planner/operation/measure/trials.h"
+
 #include "planner/operation/measure/measured_trials.h"
 #include "planner/operation/table/operation.h"
 
