@@ -301,15 +301,6 @@ std::optional<glm::dmat4> lps_from_pixel(const CutSheet& cut) {
   return matrix;
 }
 
-struct LettersRecord {
-  std::string left, right, top, bottom;
-};
-constexpr auto members_of(const LettersRecord&) {
-  using L = LettersRecord;
-  return std::tuple(member("left", &L::left), member("right", &L::right), member("top", &L::top),
-                    member("bottom", &L::bottom));
-}
-
 /// The facts of a slice's picture: SlicePicture::said.
 struct SliceRecord {
   std::string plane;
@@ -317,7 +308,7 @@ struct SliceRecord {
   double pixel_mm = 1.0;
   std::vector<int> size_px;
   Json lps_from_pixel;
-  LettersRecord letters;
+  Json letters;  ///< of the four edges
   std::vector<double> window;
   std::string unit, interpolation;
   std::int64_t inside_pixels = 0;
@@ -346,7 +337,8 @@ SliceRecord record_of_slice(const Slice& slice, const Subject& subject, const Cu
   const std::optional<glm::dmat4> matrix = lps_from_pixel(cut);
   made.lps_from_pixel = matrix ? to_json(*matrix) : Json(nullptr);
   const voxel::EdgeLetters letters = voxel::edge_letters(cut.sheet);
-  made.letters = {letters.left, letters.right, letters.top, letters.bottom};
+  made.letters = {
+      {"left", letters.left}, {"right", letters.right}, {"top", letters.top}, {"bottom", letters.bottom}};
   made.window = {shown.low, shown.high};
   made.unit = subject.unit;
   made.interpolation = slice.interpolate;
