@@ -13,11 +13,12 @@
 #include <set>
 
 #include "planner/operation/anatomy/head_directions.h"
+#include "planner/operation/anatomy/measured_movement.h"
 #include "planner/operation/anatomy/movement.h"
+#include "planner/operation/measure/measured_trials.h"
 #include "planner/operation/measure/near_surfaces.h"
 #include "planner/operation/motion/move.h"
 #include "planner/operation/object/combine.h"
-#include "planner/operation/table/json.h"
 #include "planner/plan/dependence.h"
 #include "verify/interval/size_interval.h"
 #include "verify/phantom/chance.h"
@@ -236,8 +237,8 @@ class Through {
   }
 
   void add_displacements() {
-    for (const Json& moved : movements_json(objects_, plan_.landmarks)) {
-      const Object& object = objects_.at(moved.at("object").get<std::string>());
+    for (const ObjectMovement& moved : movements_of(objects_, plan_.landmarks)) {
+      const Object& object = objects_.at(moved.object);
       const Object& still = objects_.at(object.moved->object);
       for (const auto& [word, part] :
            {std::pair("pitch", &Turns::pitch_deg), std::pair("yaw", &Turns::yaw_deg),
@@ -248,9 +249,9 @@ class Through {
                             }});
       if (const auto& centre = still.voxel.measures.centroid_mm)
         add_point(object, "", carried(glm::inverse(moved_since_made(objects_, still.id)), *centre), false);
-      for (const Json& on : moved.at("landmarks"))
+      for (const LandmarkMovement& on : moved.landmarks)
         for (const NamedPoint& landmark : plan_.landmarks)
-          if (landmark.name == on.at("name")) add_point(object, landmark.name, landmark.p_mm, true);
+          if (landmark.name == on.name) add_point(object, landmark.name, landmark.p_mm, true);
     }
   }
 
@@ -320,17 +321,15 @@ Json trials_json(const Plan& plan, const Evaluation& evaluation, const Trials& a
   for (const auto& [name, alone] : {std::pair("landmarks", landmark), std::pair("kerf", kerf),
                                     std::pair("segmentation", segmentation), std::pair("seating", seating)})
     sources.emplace_back(name, half_widths(through, alone, values));
-  Json doubts = Json::array();
+  std::vector<DoubtfulNumber> doubts;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const Number& number = through.numbers()[i];
-    Json doubt{{"what", number.what},     {"of", number.of},      {"value", values[i]},
-               {"unit", number.unit},     {"half_width", all[i]}, {"coverage", verify::claimed_coverage},
-               {"sources", Json::array()}};
+    DoubtfulNumber& doubt = doubts.emplace_back(
+        DoubtfulNumber{number.what, number.of, values[i], number.unit, all[i], verify::claimed_coverage, {}});
     for (const auto& [name, widths] : sources)
-      if (widths[i] > 1e-9) doubt["sources"].push_back({{"name", name}, {"half_width", widths[i]}});
-    doubts.push_back(std::move(doubt));
+      if (widths[i] > 1e-9) doubt.sources.push_back({name, widths[i]});
   }
-  return {{"doubts", doubts}, {"findings", through.findings()}};
+  return {{"doubts", print_value(doubts)}, {"findings", through.findings()}};
 }
 
 }  // namespace octotomy::planner

@@ -51,10 +51,15 @@ Json tones_of(const ScanRecord& scan) {
 
 Json scan_json(const ScanRecord& scan) {
   Json json = planner::to_json(scan);
-  for (Json& line : json["audit"]) line["sentence"] = line.value("detail", "");
-  json["bounds_mm"] = box_json(voxel::bounds(scan.lattice));
-  json["window_suggestion"] = tones_of(scan);
-  json["patient"] = patient_json(scan.identity);
+  Json audit = Json::array();
+  for (const voxel::Finding& finding : scan.audit) {
+    audit.push_back(planner::to_json(std::vector{finding}).front());
+    audit.back().update({{"sentence", finding.detail}});
+  }
+  json.update({{"audit", audit},
+               {"bounds_mm", box_json(voxel::bounds(scan.lattice))},
+               {"window_suggestion", tones_of(scan)},
+               {"patient", patient_json(scan.identity)}});
   return json;
 }
 
@@ -66,9 +71,45 @@ Json certificate_json(const verify::Certificate& certificate) {
     sentence += "; a part of " + three_figures(certificate.limit->volume_mm3) +
                 " mm\u00b3 that is lost or added would have been seen";
   for (const std::string& reason : certificate.reasons) sentence += ". " + reason;
-  json["sentence"] = sentence;
-  json["place"] = certificate.worst ? planner::to_json(certificate.worst->at_mm) : Json(nullptr);
+  json.update({{"sentence", sentence},
+               {"place", certificate.worst ? planner::to_json(certificate.worst->at_mm) : Json(nullptr)}});
   return json;
+}
+
+/// An object of the plan as the page shows it; without a value for what is not evaluated yet.
+struct ObjectState {
+  std::string id;
+  bool evaluated = false;
+  std::optional<std::string> error, definition;
+  std::optional<std::vector<std::string>> findings;
+  std::optional<Json> bounds_mm, volume, certificate, mirror;
+};
+constexpr auto members_of(const ObjectState&) {
+  using O = ObjectState;
+  return std::tuple(member("id", &O::id), member("evaluated", &O::evaluated),
+                    member_if_any("error", &O::error), member_if_any("definition", &O::definition),
+                    member_if_any("findings", &O::findings), member_if_any("bounds_mm", &O::bounds_mm),
+                    member_if_any("volume", &O::volume), member_if_any("certificate", &O::certificate),
+                    member_if_any("mirror", &O::mirror));
+}
+
+void add(const Object& object, ObjectState& state) {
+  state.evaluated = true;
+  state.definition = object.definition;
+  state.findings = object.findings;
+  const auto& extents = object.voxel.measures.extents;
+  state.bounds_mm = extents ? box_json(*extents) : Json(nullptr);
+  state.volume = {{"value", object.voxel.measures.volume_mm3}, {"unit", "mm3"}};
+  if (object.certificate) state.certificate = certificate_json(*object.certificate);
+  const Json& details = object.mesh.details;
+  if (const auto plane = details.find("plane"); plane != details.end()) {
+    Json mirror{{"plane", *plane}};
+    for (const char* key : {"rms_mm", "kept_share", "converged"}) {
+      const auto value = details.find(key);
+      mirror.emplace(key, value == details.end() ? Json(nullptr) : Json(*value));
+    }
+    state.mirror = std::move(mirror);
+  }
 }
 
 /// A measure step of an object, for its recommended sizes.
@@ -219,7 +260,7 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
     // Objects in the current snapshot stay in it.
     if (!steps.empty() && !certify && snapshot_.evaluation)
       for (const Step& step : made.plan->steps)
-        if (makes_object(step) && object_json(snapshot_, step.id)["evaluated"] == true)
+        if (makes_object(step) && record_of<ObjectState>(object_json(snapshot_, step.id)).evaluated)
           wanted.push_back(step.id);
   }
   if (steps.empty())
@@ -342,26 +383,14 @@ Desk::Preview Desk::preview(const std::string& object, const Json& move, const s
 }
 
 Json Desk::object_json(const Snapshot& snapshot, const std::string& id) const {
-  Json json{{"id", id}, {"evaluated", false}};
+  ObjectState state;
+  state.id = id;
   if (const auto failed = snapshot.errors.find(id); failed != snapshot.errors.end())
-    json["error"] = failed->second;
-  if (!snapshot.evaluation) return json;
-  for (const Object& object : snapshot.evaluation->objects) {
-    if (object.id != id) continue;
-    json["evaluated"] = true;
-    json["definition"] = object.definition;
-    json["findings"] = object.findings;
-    const auto& extents = object.voxel.measures.extents;
-    json["bounds_mm"] = extents ? box_json(*extents) : Json(nullptr);
-    json["volume"] = {{"value", object.voxel.measures.volume_mm3}, {"unit", "mm3"}};
-    if (object.certificate) json["certificate"] = certificate_json(*object.certificate);
-    if (const auto plane = object.mesh.details.find("plane"); plane != object.mesh.details.end()) {
-      json["mirror"] = {{"plane", *plane}};
-      for (const char* key : {"rms_mm", "kept_share", "converged"})
-        json["mirror"][key] = object.mesh.details.value(key, Json(nullptr));
-    }
-  }
-  return json;
+    state.error = failed->second;
+  if (snapshot.evaluation)
+    for (const Object& object : snapshot.evaluation->objects)
+      if (object.id == id) add(object, state);
+  return print_record(state);
 }
 
 Json Desk::objects_json(const Plan& plan) const {
@@ -373,8 +402,8 @@ Json Desk::objects_json(const Plan& plan) const {
     if (!makes_object(step)) continue;
     const Operation& operation = step.action.operation();
     Json json = object_json(snapshot_, step.id);
-    json["kind"] = operation.is_tool ? "mask" : operation.name;
-    json["colour"] = text_of_colour(colour_of(number++));
+    json.update({{"kind", operation.is_tool ? "mask" : operation.name},
+                 {"colour", text_of_colour(colour_of(number++))}});
     const auto known = certified_.find(step.id);
     if (known != certified_.end() && known->second.key == keys[step.id]) json.update(known->second.said);
     list.push_back(std::move(json));
@@ -388,26 +417,27 @@ Json Desk::state() const {
   const Plan& plan = *document_->plan();
   Json json{{"path", document_->path().string()}, {"name", plan.name}, {"dirty", false}};
   json.update(document_->history_json());
-  json["plan"] = Json::parse(plan.text);
-  json["scans"] = Json::array();
-  if (snapshot_.evaluation)
-    for (const ScanRecord& scan : snapshot_.evaluation->scans) json["scans"].push_back(scan_json(scan));
-  json["objects"] = objects_json(plan);
-  json["landmarks"] = Json::array();
-  for (const NamedPoint& landmark : plan.landmarks)
-    json["landmarks"].push_back({{"name", landmark.name}, {"point", planner::to_json(landmark.p_mm)}});
-  for (Json& scan : json["scans"]) {
-    const auto low = snapshot_.bone_lows.find(scan["name"]);
-    scan["bone_low"] = low != snapshot_.bone_lows.end() ? low->second : *voxel::tissue("bone")->low;
-  }
-  json["measurements"] = snapshot_.measurements;
-  json["universe"] = nullptr;
+  Json scans = Json::array(), landmarks = Json::array(), universe;
   if (snapshot_.evaluation) {
+    for (const ScanRecord& scan : snapshot_.evaluation->scans) {
+      const auto low = snapshot_.bone_lows.find(scan.name);
+      scans.push_back(scan_json(scan));
+      scans.back().update(
+          {{"bone_low", low != snapshot_.bone_lows.end() ? low->second : *voxel::tissue("bone")->low}});
+    }
     const voxel::Lattice lattice = snapshot_.evaluation->universe.lattice();
-    json["universe"] = {{"voxel_mm", lattice.spacing_mm().x},
-                        {"voxels", lattice.dims.x},
-                        {"bounds_mm", box_json(voxel::bounds(lattice))}};
+    universe = {{"voxel_mm", lattice.spacing_mm().x},
+                {"voxels", lattice.dims.x},
+                {"bounds_mm", box_json(voxel::bounds(lattice))}};
   }
+  for (const NamedPoint& landmark : plan.landmarks)
+    landmarks.push_back({{"name", landmark.name}, {"point", planner::to_json(landmark.p_mm)}});
+  json.update({{"plan", Json::parse(plan.text)},
+               {"scans", scans},
+               {"objects", objects_json(plan)},
+               {"landmarks", landmarks},
+               {"measurements", snapshot_.measurements},
+               {"universe", universe}});
   return json;
 }
 

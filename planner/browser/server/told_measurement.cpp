@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "planner/operation/measure/measurement.h"
 #include "planner/operation/table/number_format.h"
 
 namespace octotomy::planner::serve {
@@ -42,6 +43,23 @@ const SurfaceQuestion* surface_question(const Json& measured) {
   return asked;
 }
 
+/// The numbers of a measurement that are shown first.
+struct ToldNumbers {
+  std::string id, object, to;
+  std::optional<double> distance_mm, distance_half_width_mm, angle_deg, angle_half_width_deg, gap_mm,
+      gap_half_width_mm;
+  std::optional<MeasuredInterval> volume;
+};
+constexpr auto members_of(const ToldNumbers&) {
+  using T = ToldNumbers;
+  return std::tuple(member("id", &T::id), member("object", &T::object), member("to", &T::to),
+                    member("distance_mm", &T::distance_mm),
+                    member("distance_half_width_mm", &T::distance_half_width_mm),
+                    member("angle_deg", &T::angle_deg),
+                    member("angle_half_width_deg", &T::angle_half_width_deg), member("gap_mm", &T::gap_mm),
+                    member("gap_half_width_mm", &T::gap_half_width_mm), member("volume", &T::volume));
+}
+
 }  // namespace
 
 Json told(const Json& value, const std::string& unit, const Json& half_width, const std::string& what) {
@@ -52,38 +70,38 @@ Json told(const Json& value, const std::string& unit, const Json& half_width, co
   return {{"value", value}, {"unit", unit}, {"half_width", half_width}, {"sentence", sentence}};
 }
 
-Json told_measurement(const Json& measured) {
-  const auto half_width = [&](const char* key) { return measured.value(key, Json(nullptr)); };
+Json told_measurement(const Json& json) {
+  const auto measured = record_of<ToldNumbers>(json);
   Json number;
   std::string says;
-  if (measured.contains("distance_mm") && measured["distance_mm"].is_number()) {
+  if (measured.distance_mm) {
     says = "Distance";
-    number = told(measured["distance_mm"], "mm", half_width("distance_half_width_mm"), says);
-  } else if (measured.contains("angle_deg")) {
+    number = told(*measured.distance_mm, "mm", print_value(measured.distance_half_width_mm), says);
+  } else if (measured.angle_deg) {
     says = "Angle";
-    number = told(measured["angle_deg"], "deg", half_width("angle_half_width_deg"), says);
-  } else if (measured.contains("gap_mm")) {
-    if (!measured["gap_mm"].is_number()) return nullptr;
-    says = "Gap from " + measured.value("object", "") + " to " + measured.value("to", "");
-    number = told(measured["gap_mm"], "mm", half_width("gap_half_width_mm"), says);
-  } else if (const SurfaceQuestion* asked = surface_question(measured)) {
-    says = asked->words + measured.value("object", "");
-    number = measured.at(asked->key).is_object()
-                 ? told(measured[asked->key].at(asked->number), asked->unit, nullptr, says)
+    number = told(*measured.angle_deg, "deg", print_value(measured.angle_half_width_deg), says);
+  } else if (json.contains(MeasuredGap::key)) {
+    if (!measured.gap_mm) return nullptr;
+    says = "Gap from " + measured.object + " to " + measured.to;
+    number = told(*measured.gap_mm, "mm", print_value(measured.gap_half_width_mm), says);
+  } else if (const SurfaceQuestion* asked = surface_question(json)) {
+    says = asked->words + measured.object;
+    number = json.at(asked->key).is_object()
+                 ? told(json.at(asked->key).at(asked->number), asked->unit, nullptr, says)
                  : Json{{"value", nullptr},
                         {"unit", asked->unit},
                         {"half_width", nullptr},
                         {"sentence", says + ": no answer yet, the surface is made by Certify"}};
-  } else if (measured.contains("volume")) {
-    says = "Volume of " + measured.value("object", "");
-    number = told(measured["volume"].at("value"), "mm3", measured["volume"].at("half_width"), says);
+  } else if (measured.volume) {
+    says = "Volume of " + measured.object;
+    number = told(measured.volume->value, "mm3", print_value(measured.volume->half_width), says);
   } else {
     return nullptr;
   }
-  Json json{{"id", measured.value("id", "")}, {"says", says}};
-  json.update(number);
-  json["details"] = measured;
-  return json;
+  Json made{{"id", measured.id}, {"says", says}};
+  made.update(number);
+  made.update({{"details", json}});
+  return made;
 }
 
 }  // namespace octotomy::planner::serve

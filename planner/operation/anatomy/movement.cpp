@@ -2,7 +2,7 @@
 #include "planner/operation/anatomy/movement.h"
 
 #include "planner/operation/anatomy/head_directions.h"
-#include "planner/operation/table/json.h"
+#include "planner/operation/anatomy/measured_movement.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 
@@ -11,17 +11,10 @@ namespace {
 
 constexpr double reach_mm = 3.0;
 
-Json point_json(const glm::dvec3& p) {
-  return {p.x, p.y, p.z};
-}
-
 /// The displacement along the head's directions, and in words.
-Json displacement_json(const glm::dvec3& by_mm, const glm::dmat3& lps_from_head) {
+MeasuredDisplacement measured(const glm::dvec3& by_mm, const glm::dmat3& lps_from_head) {
   const Displacement along = displacement_of(by_mm, lps_from_head);
-  return {{"forward_mm", along.forward_mm},
-          {"left_mm", along.left_mm},
-          {"up_mm", along.up_mm},
-          {"words", in_words(along)}};
+  return {along.forward_mm, along.left_mm, along.up_mm, in_words(along)};
 }
 
 /// The bone of scans' windows without moved objects and the objects that they were made from; none where
@@ -58,40 +51,46 @@ bool nearer(const voxel::Octree& piece, const std::optional<voxel::Expression>& 
   return false;
 }
 
-Json movement_json(const Object& object, const Objects& objects, const std::vector<NamedPoint>& landmarks,
-                   const std::optional<voxel::Expression>& staying) {
+ObjectMovement movement_of(const Object& object, const Objects& objects,
+                           const std::vector<NamedPoint>& landmarks,
+                           const std::optional<voxel::Expression>& staying) {
   const glm::dmat3& head = objects.lps_from_head;
   const glm::dmat4& motion = object.moved->motion;
   const Object& still = objects.at(object.moved->object);
   const glm::dmat4 before = moved_since_made(objects, still.id);
   const Turns turns = turns_of(glm::dmat3(motion), head);
-  Json json{{"object", object.id},      {"from", still.id},           {"pitch_deg", turns.pitch_deg},
-            {"yaw_deg", turns.yaw_deg}, {"roll_deg", turns.roll_deg}, {"words", in_words(turns)},
-            {"centroid", nullptr},      {"landmarks", Json::array()}};
+  ObjectMovement made{
+      object.id, still.id, turns.pitch_deg, turns.yaw_deg, turns.roll_deg, in_words(turns), {}, {}, {}};
   if (const std::optional<glm::dvec3>& centre = still.voxel.measures.centroid_mm) {
-    json["centroid"] = displacement_json(carried(motion, *centre) - *centre, head);
-    json["words"] = json["centroid"]["words"].get<std::string>() + "; " + in_words(turns);
+    made.centroid = measured(carried(motion, *centre) - *centre, head);
+    made.words = made.centroid->words + "; " + in_words(turns);
   }
   for (const NamedPoint& landmark : landmarks) {
     const glm::dvec3 from_mm = carried(before, landmark.p_mm), to_mm = carried(motion, from_mm);
     if (!nearer(still.voxel.octree, staying, from_mm, landmark.p_mm)) continue;
-    Json row{{"name", landmark.name}};
-    row.update(displacement_json(to_mm - from_mm, head));
-    row["to_mm"] = point_json(to_mm);
-    if (still.moved) row["since_scan"] = displacement_json(to_mm - landmark.p_mm, head);
-    json["landmarks"].push_back(std::move(row));
+    const auto [forward_mm, left_mm, up_mm, words] = measured(to_mm - from_mm, head);
+    made.landmarks.push_back({landmark.name, forward_mm, left_mm, up_mm, words, to_mm, {}});
+    if (still.moved) made.landmarks.back().since_scan = measured(to_mm - landmark.p_mm, head);
   }
-  json.update(object.moved->details);
-  return json;
+  return made;
 }
 
 }  // namespace
 
-Json movements_json(const Objects& objects, const std::vector<NamedPoint>& landmarks) {
+std::vector<ObjectMovement> movements_of(const Objects& objects, const std::vector<NamedPoint>& landmarks) {
   const std::optional<voxel::Expression> staying = landmarks.empty() ? std::nullopt : staying_bone(objects);
-  Json all = Json::array();
+  std::vector<ObjectMovement> all;
   for (const Object& object : objects)
-    if (object.moved) all.push_back(movement_json(object, objects, landmarks, staying));
+    if (object.moved) all.push_back(movement_of(object, objects, landmarks, staying));
+  return all;
+}
+
+Json movements_json(const Objects& objects, const std::vector<NamedPoint>& landmarks) {
+  Json all = Json::array();
+  for (const ObjectMovement& movement : movements_of(objects, landmarks)) {
+    all.push_back(print_record(movement));
+    all.back().update(objects.at(movement.object).moved->details);
+  }
   return all;
 }
 

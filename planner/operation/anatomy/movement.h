@@ -10,6 +10,8 @@
 
 namespace octotomy::planner {
 
+struct ObjectMovement;
+
 /// The point after a motion.
 inline glm::dvec3 carried(const glm::dmat4& motion, const glm::dvec3& p_mm) {
   return glm::dvec3(motion * glm::dvec4(p_mm, 1.0));
@@ -19,6 +21,8 @@ inline glm::dvec3 carried(const glm::dmat4& motion, const glm::dvec3& p_mm) {
 /// displacement of the object's centroid and of the landmarks on it, in words and along the head's
 /// directions. Where earlier steps moved the object as well, also the displacements since the scan. Landmarks
 /// move with objects by the rules of moved_landmarks(). Cost: some small Booleans per landmark and object.
+std::vector<ObjectMovement> movements_of(const Objects& objects, const std::vector<NamedPoint>& landmarks);
+/// The same as JSON, with the details that the moving steps have reported.
 nlohmann::ordered_json movements_json(const Objects& objects, const std::vector<NamedPoint>& landmarks);
 
 /// A landmark and its motion by the plan; the identity where it does not move.

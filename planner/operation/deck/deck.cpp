@@ -14,6 +14,7 @@
 #include "planner/operation/deck/region_deck.h"
 #include "planner/operation/file/output_path.h"
 #include "planner/operation/table/fault.h"
+#include "planner/operation/table/json.h"
 #include "planner/operation/table/nearest_name.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
@@ -118,14 +119,15 @@ void tell_written(const convert::Tetrahedra& tetrahedra, const convert::TetQuali
   made.content = grouped(static_cast<double>(tetrahedra.tets.size()), 0) + " tetrahedra, dihedral angles " +
                  grouped(quality.min_dihedral_deg, 1) + "\u00b0 to " + grouped(quality.max_dihedral_deg, 1) +
                  "\u00b0";
-  made.details["nodes"] = tetrahedra.nodes_mm.size();
-  made.details["tets"] = tetrahedra.tets.size();
-  made.details["volume_mm3"] = quality.volume_mm3;
-  for (const convert::NodeSet& set : options.node_sets)
-    made.details["node_sets"][set.name] = set.nodes.size();
-  for (const convert::DeckSurface& surface : options.surfaces)
-    made.details["surfaces"][surface.name] = surface.faces.size();
-  made.details["quality"] = quality_json(quality);
+  Json node_sets, surfaces;
+  for (const convert::NodeSet& set : options.node_sets) node_sets[set.name] = set.nodes.size();
+  for (const convert::DeckSurface& surface : options.surfaces) surfaces[surface.name] = surface.faces.size();
+  made.details.update({{"nodes", tetrahedra.nodes_mm.size()},
+                       {"tets", tetrahedra.tets.size()},
+                       {"volume_mm3", quality.volume_mm3}});
+  if (!node_sets.empty()) made.details.update({{"node_sets", node_sets}});
+  if (!surfaces.empty()) made.details.update({{"surfaces", surfaces}});
+  made.details.update({{"quality", quality_json(quality)}});
 }
 
 void write_elements(const convert::Tetrahedra& tetrahedra, convert::DeckOptions options, const Deck& deck,
@@ -200,8 +202,7 @@ void write_filled(const Object& object, const Deck& deck, const AnswerBench& ben
   if (const auto* why = std::get_if<std::string>(&tried))
     return made.findings.push_back("not written: " + *why);
   const auto& [filling, surfaces] = std::get<Filled>(tried);
-  made.details["regions"] = filling.bodies;
-  made.details["fallback"] = filling.fallback;
+  made.details.update({{"regions", filling.bodies}, {"fallback", filling.fallback}});
   made.findings = filling.findings;
   convert::DeckOptions options;
   options.surfaces = surfaces;
@@ -227,9 +228,9 @@ void write_regions(const Object& object, const Deck& deck, const AnswerBench& be
     return made.findings.push_back(std::string("not written: ") + error.what());
   }
   made.findings = regions.findings;
-  made.details["regions"] = deck.regions.size() + 1;
-  made.details["contacts"] = regions.options.contacts.size();
-  made.details["fallback"] = regions.fallback;
+  made.details.update({{"regions", deck.regions.size() + 1},
+                       {"contacts", regions.options.contacts.size()},
+                       {"fallback", regions.fallback}});
   write_elements(regions.tetrahedra, std::move(regions.options), deck, bench, made);
 }
 

@@ -7,8 +7,7 @@
 #include <cmath>
 
 #include "planner/operation/flap/fields.h"
-#include "planner/operation/measure/result_json.h"
-#include "planner/operation/table/json.h"
+#include "planner/operation/flap/measured_flap.h"
 #include "planner/operation/table/operation.h"
 #include "verify/certificate/certificate.h"
 
@@ -31,25 +30,25 @@ void check(const Flap& flap, const Place& place) {
                 " objects, one an osteotomy; without the last where the new bone ends free");
 }
 
-Json cut_json(const FlapPlane& cut, double at_mm, double tilt_deg) {
-  return {{"at_mm", at_mm},
-          {"tilt_deg", tilt_deg},
-          {"donor_point_mm", to_json(cut.point_mm)},
-          {"donor_normal", to_json(cut.normal)}};
+std::optional<std::string> verdict_of(const Object& object) {
+  if (!object.certificate) return std::nullopt;
+  return verify::to_string(object.certificate->verdict);
 }
 
-Json segment_json(const FlapSegment& segment, const Object& object, std::size_t number) {
-  return {
-      {"number", number},
-      {"object", object.id},
-      {"length_mm", segment.length_mm},
-      {"shortest_mm", segment.shortest_mm},
-      {"longest_mm", segment.longest_mm},
-      {"angle_to_last_deg", number == 1 ? Json(nullptr) : Json(segment.turn_deg)},
-      {"volume_mm3", object.voxel.measures.volume_mm3},
-      {"verdict", object.certificate ? Json(verify::to_string(object.certificate->verdict)) : Json(nullptr)},
-      {"first_cut", cut_json(segment.donor_start, segment.donor_start_mm, segment.start_tilt_deg)},
-      {"second_cut", cut_json(segment.donor_end, segment.donor_end_mm, segment.end_tilt_deg)}};
+MeasuredSegment measured(const FlapSegment& segment, const Object& object, int number) {
+  const auto cut = [](const FlapPlane& plane, double at_mm, double tilt_deg) {
+    return DonorCut{at_mm, tilt_deg, plane.point_mm, plane.normal};
+  };
+  return {number,
+          object.id,
+          segment.length_mm,
+          segment.shortest_mm,
+          segment.longest_mm,
+          number == 1 ? std::nullopt : std::optional(segment.turn_deg),
+          object.voxel.measures.volume_mm3,
+          verdict_of(object),
+          cut(segment.donor_start, segment.donor_start_mm, segment.start_tilt_deg),
+          cut(segment.donor_end, segment.donor_end_mm, segment.end_tilt_deg)};
 }
 
 /// The largest error of a contact area that is due to the slab's thickness. Across the slab the bones diverge
@@ -60,45 +59,39 @@ double drift_mm2(const Flap& flap, double turn_deg) {
   return mean_shift_mm * 2.0 * flap.reach_mm;
 }
 
-Json contact_json(const Flap& flap, const Object& object, const std::vector<FlapSegment>& segments,
-                  std::size_t cut) {
+MeasuredOsteotomy measured(const Flap& flap, const Object& object, const std::vector<FlapSegment>& segments,
+                           std::size_t cut) {
   const auto side = [&](std::size_t number) {
-    return number == 0 || number > segments.size() ? Json("bone") : Json(flap.segments[number - 1].name);
+    return number == 0 || number > segments.size() ? "bone" : flap.segments[number - 1].name;
   };
-  Json json{{"number", cut + 1}, {"object", object.id}, {"between", {side(cut), side(cut + 1)}}};
-  const double voxels_mm2 = object.voxel.measures.volume_mm3 / flap.slab_mm;
-  json["contact_voxels_mm2"] = voxels_mm2;
-  json["contact_mesh_mm2"] = nullptr;
-  json["contact_mm2"] = voxels_mm2;
+  MeasuredOsteotomy made;
+  made.number = static_cast<int>(cut) + 1;
+  made.object = object.id;
+  made.between = {side(cut), side(cut + 1)};
+  made.contact_voxels_mm2 = made.contact_mm2 = object.voxel.measures.volume_mm3 / flap.slab_mm;
   if (object.mesh.within)
-    json["contact_mesh_mm2"] = json["contact_mm2"] = object.mesh.within->size().volume_mm3 / flap.slab_mm;
-  json["tolerance_mm2"] = nullptr;
-  json["verdict"] = nullptr;
-  if (object.certificate) {
-    json["tolerance_mm2"] = object.certificate->tolerance_mm3 / flap.slab_mm;
-    json["verdict"] = verify::to_string(object.certificate->verdict);
-  }
+    made.contact_mesh_mm2 = made.contact_mm2 = object.mesh.within->size().volume_mm3 / flap.slab_mm;
+  if (object.certificate) made.tolerance_mm2 = object.certificate->tolerance_mm3 / flap.slab_mm;
+  made.verdict = verdict_of(object);
   const bool is_inner = cut > 0 && cut < segments.size();
-  json["slab_lacks_at_most_mm2"] = is_inner ? Json(drift_mm2(flap, segments[cut].turn_deg)) : Json(nullptr);
+  if (is_inner) made.slab_lacks_at_most_mm2 = drift_mm2(flap, segments[cut].turn_deg);
   if (object.voxel.octree.is_empty())
-    json["finding"] = "no bone meets here: move the corner, or the donor's start";
-  return json;
+    made.finding = "no bone meets here: move the corner, or the donor's start";
+  return made;
 }
 
 Json measure(const Flap& flap, const AnswerBench& bench) {
   const std::vector<FlapSegment> segments = segments_of(flap);
-  Json json{{"flap_segments", Json::array()},
-            {"osteotomies", Json::array()},
-            {"donor_used_mm", segments.back().donor_end_mm - segments.front().donor_start_mm},
-            {"contact_estimator", "volume that both bones share within " + Json(flap.slab_mm).dump() +
-                                      " mm about the cut, over that thickness"}};
+  MeasuredFlap made;
   for (std::size_t i = 0; i < segments.size(); ++i)
-    json["flap_segments"].push_back(
-        segment_json(segments[i], bench.objects.at(flap.segments[i].name), i + 1));
+    made.flap_segments.push_back(
+        measured(segments[i], bench.objects.at(flap.segments[i].name), static_cast<int>(i) + 1));
   for (std::size_t cut = 0; cut < flap.contacts.size(); ++cut)
-    json["osteotomies"].push_back(
-        contact_json(flap, bench.objects.at(flap.contacts[cut].name), segments, cut));
-  return json;
+    made.osteotomies.push_back(measured(flap, bench.objects.at(flap.contacts[cut].name), segments, cut));
+  made.donor_used_mm = segments.back().donor_end_mm - segments.front().donor_start_mm;
+  made.contact_estimator = "volume that both bones share within " + Json(flap.slab_mm).dump() +
+                           " mm about the cut, over that thickness";
+  return print_record(made);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "planner/operation/file/mesh_file.h"
 #include "planner/operation/file/output_path.h"
 #include "planner/operation/landmark/first_guess.h"
-#include "planner/operation/measure/result_json.h"
+#include "planner/operation/landmark/landmark_guesses.h"
 #include "planner/operation/picture/drawn_files.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/json.h"
@@ -23,17 +23,26 @@ const std::vector<std::pair<std::string, std::string>>& landmarks_files();
 
 namespace {
 
+/// A landmark's entry in the definitions of this folder.
 struct Meaning {
-  std::string says;
+  std::string name, says;
   double least_mm = 0.0;  ///< least error of a rule, however sharp, against human observers
 };
+constexpr auto members_of(const Meaning&) {
+  return std::tuple(member("name", &Meaning::name), member("says", &Meaning::says),
+                    member("least_mm", &Meaning::least_mm));
+}
+struct Definitions {
+  std::vector<Meaning> landmarks;
+};
+constexpr auto members_of(const Definitions&) {
+  return std::tuple(member("landmarks", &Definitions::landmarks));
+}
+
 std::map<std::string, Meaning> meanings() {
   std::map<std::string, Meaning> all;
-  for (const auto& [file, text] : landmarks_files()) {
-    const Json definitions = Json::parse(text);
-    for (const Json& one : definitions["landmarks"])
-      all[one["name"]] = {one["says"].get<std::string>(), one["least_mm"].get<double>()};
-  }
+  for (const auto& [file, text] : landmarks_files())
+    for (const Meaning& one : record_of<Definitions>(Json::parse(text)).landmarks) all[one.name] = one;
   return all;
 }
 
@@ -44,45 +53,39 @@ struct FindLandmarks {
   std::filesystem::path out;
 };
 
-Json guess_json(const SkullGuess& guess) {
+LandmarkGuesses guesses_of(const SkullGuess& guess) {
   const std::map<std::string, Meaning> means = meanings();
-  Json json{{"mid_plane",
-             {{"point_mm", to_json(guess.mid_plane.plane.point_mm)},
-              {"normal", to_json(guess.mid_plane.plane.normal)},
-              {"rms_mm", guess.mid_plane.rms_mm},
-              {"uncertainty_deg", guess.mid_plane_within_deg}}},
-            {"landmarks", Json::array()},
-            {"missing", Json::array()},
-            {"findings", guess.findings}};
+  LandmarkGuesses made;
+  made.mid_plane = {guess.mid_plane.plane.point_mm, guess.mid_plane.plane.normal, guess.mid_plane.rms_mm,
+                    guess.mid_plane_within_deg};
   for (const LandmarkGuess& one : guess.found)
-    json["landmarks"].push_back({{"name", one.name},
-                                 {"says", means.at(one.name).says},
-                                 {"point_mm", to_json(one.p_mm)},
-                                 {"uncertainty_mm", one.within_mm + means.at(one.name).least_mm},
-                                 {"confirmed", false}});
-  for (const auto& [name, why] : guess.missing)
-    json["missing"].push_back({{"name", name}, {"says", means.at(name).says}, {"why", why}});
-  return json;
+    made.landmarks.push_back(
+        {one.name, means.at(one.name).says, one.p_mm, one.within_mm + means.at(one.name).least_mm, false});
+  for (const auto& [name, why] : guess.missing) made.missing.push_back({name, means.at(name).says, why});
+  made.findings = guess.findings;
+  return made;
+}
+
+/// The guesses, or the reason why there are none as their finding.
+LandmarkGuesses guessed(const Object& object, const AnswerBench& bench) {
+  const auto nothing = [](const std::string& why) { return LandmarkGuesses{{}, {}, {}, {why}}; };
+  if (object.voxel.octree.is_empty()) return nothing("'" + object.id + "' is empty: it has no landmarks");
+  if (!object.mesh.within || object.mesh.within->empty())
+    return nothing("it has no mesh, whose symmetry gives the mid-plane");
+  try {
+    return guesses_of(
+        guess_landmarks(drawn(object, glm::vec3(1.0f)), *object.mesh.within, bench.progress("landmarks")));
+  } catch (const std::runtime_error& error) {
+    if (bench.stop.stop_requested() || !is_no_answer(error)) throw;
+    return nothing(error.what());
+  }
 }
 
 Json measure(const FindLandmarks& asked, const AnswerBench& bench) {
   const Stopwatch watch(bench.timings, "landmarks");
   const Object& object = bench.objects.at(asked.object.name);
   Json json{{"object", object.id}};
-  const auto nothing = [&](const std::string& why) {
-    json.update({{"landmarks", Json::array()}, {"missing", Json::array()}, {"findings", {why}}});
-    return json;
-  };
-  if (object.voxel.octree.is_empty()) return nothing("'" + object.id + "' is empty: it has no landmarks");
-  if (!object.mesh.within || object.mesh.within->empty())
-    return nothing("it has no mesh, whose symmetry gives the mid-plane");
-  try {
-    json.update(guess_json(
-        guess_landmarks(drawn(object, glm::vec3(1.0f)), *object.mesh.within, bench.progress("landmarks"))));
-  } catch (const std::runtime_error& error) {
-    if (bench.stop.stop_requested() || !is_no_answer(error)) throw;
-    return nothing(error.what());
-  }
+  json.update(print_record(guessed(object, bench)));
   return json;
 }
 
@@ -117,19 +120,17 @@ FileAnswer on_files(const FindLandmarks& asked, const FileBench& bench) {
     const Stopwatch watch(bench.timings, "landmarks");
     return guess_landmarks(bone, surface, bench.progress("landmarks"));
   }();
-  FileAnswer answer{guess_json(guess)};
+  const LandmarkGuesses guesses = guesses_of(guess);
+  FileAnswer answer{print_record(guesses)};
   if (!asked.out.empty()) {
-    write_json({{"landmarks", answer.json["landmarks"]}}, asked.out);
+    write_json({{"landmarks", print_value(guesses.landmarks)}}, asked.out);
     answer.json["path"] = asked.out.string();
     answer.rows.emplace_back("written", asked.out.string());
   }
-  for (const Json& one : answer.json["landmarks"]) {
-    const Json& p = one["point_mm"];
-    answer.rows.emplace_back(one["name"].get<std::string>(),
-                             grouped(p[0].get<double>(), 1) + ", " + grouped(p[1].get<double>(), 1) + ", " +
-                                 grouped(p[2].get<double>(), 1) + " mm, within " +
-                                 grouped(one["uncertainty_mm"].get<double>(), 1) + " mm");
-  }
+  for (const GuessedLandmark& one : guesses.landmarks)
+    answer.rows.emplace_back(one.name, grouped(one.point_mm.x, 1) + ", " + grouped(one.point_mm.y, 1) + ", " +
+                                           grouped(one.point_mm.z, 1) + " mm, within " +
+                                           grouped(one.uncertainty_mm, 1) + " mm");
   for (const auto& [name, why] : guess.missing) answer.rows.emplace_back(name, "not found: " + why);
   answer.findings = guess.findings;
   return answer;

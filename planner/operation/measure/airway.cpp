@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "planner/operation/measure/digitised.h"
+#include "planner/operation/measure/measurement.h"
 #include "planner/operation/measure/passage.h"
-#include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/operation.h"
 
 namespace octotomy::planner {
@@ -16,17 +16,15 @@ struct Airway {
   double step_mm = 1.0;
 };
 
-Json section_json(const PassageSection& section, const Digitised& digitised) {
-  const HalfWidth width = section_half_width(section, digitised);
-  Json json{{"along_mm", section.along_mm},
-            {"at_mm", to_json(section.at_mm)},
-            {"direction", to_json(section.direction)},
-            {"area_mm2", section.area_mm2()},
-            {"half_width_mm2", width.value},
-            {"voxel_mm2", section.voxel_mm2},
-            {"mesh_mm2", nullptr}};
-  if (section.mesh_mm2) json["mesh_mm2"] = *section.mesh_mm2;
-  return json;
+MeasuredSection measured(const PassageSection& section, const Digitised& digitised) {
+  return {section.along_mm,
+          section.at_mm,
+          section.direction,
+          section.area_mm2(),
+          section_half_width(section, digitised).value,
+          section.voxel_mm2,
+          section.mesh_mm2,
+          {}};
 }
 
 Json measure(const Airway& asked, const AnswerBench& bench) {
@@ -37,24 +35,22 @@ Json measure(const Airway& asked, const AnswerBench& bench) {
   const Digitised digitised = digitised_of(bench, object);
   const HalfWidth of_volume = volume_half_width(object.voxel.measures, digitised, seen_size_of(object));
   const PassageSection& least = found.sections[found.narrowest];
-  Json airway{{"volume_mm3", object.voxel.measures.volume_mm3},
-              {"volume_half_width_mm3", of_volume.value},
-              {"volume_mesh_mm3", nullptr},
-              {"length_mm", found.length_mm},
-              {"narrowest", section_json(least, digitised)},
-              {"sections", Json::array()}};
-  if (object.mesh.within) airway["volume_mesh_mm3"] = object.mesh.within->measures().volume_mm3;
-  airway["narrowest"]["half_width_terms"] = to_json(section_half_width(least, digitised));
+  MeasuredAirway made{object.id, {}, {}};
+  AirwaySize& airway = made.airway;
+  airway.volume_mm3 = object.voxel.measures.volume_mm3;
+  airway.volume_half_width_mm3 = of_volume.value;
+  if (object.mesh.within) airway.volume_mesh_mm3 = object.mesh.within->measures().volume_mm3;
+  airway.length_mm = found.length_mm;
+  airway.narrowest = measured(least, digitised);
+  airway.narrowest.half_width_terms = section_half_width(least, digitised).terms;
   for (const PassageSection& section : found.sections)
-    airway["sections"].push_back(section_json(section, digitised));
-  Json json{{"object", object.id}, {"airway", std::move(airway)}, {"findings", Json::array()}};
-  if (!object.mesh.within) json["findings"].push_back("there is no mesh: voxels alone answer");
-  if (const auto finding = too_coarse_finding(object, of_volume)) json["findings"].push_back(*finding);
+    airway.sections.push_back(measured(section, digitised));
+  if (!object.mesh.within) made.findings.push_back("there is no mesh: voxels alone answer");
+  if (const auto finding = too_coarse_finding(object, of_volume)) made.findings.push_back(*finding);
   const double differ = least.mesh_mm2 ? std::abs(*least.mesh_mm2 - least.voxel_mm2) : 0.0;
-  if (differ > section_half_width(least, digitised).value)
-    json["findings"].push_back(
-        "the kernels' areas of the narrowest section differ by more than the half-width");
-  return json;
+  if (differ > airway.narrowest.half_width_mm2)
+    made.findings.push_back("the kernels' areas of the narrowest section differ by more than the half-width");
+  return print_record(made);
 }
 
 }  // namespace

@@ -135,14 +135,15 @@ Json measure(const Compare& asked, const AnswerBench& bench) {
   for (const ObjectName& name : {asked.a, asked.b}) {
     const std::optional<brep::Solid>& mesh = bench.objects.at(name.name).mesh.within;
     if (mesh && !mesh->empty()) continue;
-    json["mean_mm"] = nullptr;
-    json["findings"] = {"'" + name.name + (mesh ? "' is empty" : "' has no mesh, see its findings")};
+    json.update({{"mean_mm", nullptr},
+                 {"findings", Json::array({"'" + name.name +
+                                           (mesh ? "' is empty" : "' has no mesh, see its findings")})}});
     return json;
   }
   const Compared made = compared(asked, bench.objects.at(asked.a.name).mesh.within->linked(),
                                  bench.objects.at(asked.b.name).mesh.within->linked(), bench.timings);
   json.update(comparison_json(asked, made));
-  json["findings"] = made.findings;
+  json.update({{"findings", made.findings}});
   return json;
 }
 
@@ -196,11 +197,12 @@ FileAnswer on_files(const Compare& asked, const FileBench& bench) {
   const double range_mm = asked.range_mm.value_or(made.difference.hausdorff95_mm);
   write_pictures(asked, a.triangles, made.difference, range_mm, bench.timings);
   FileAnswer answer{comparison_json(asked, made)};
-  answer.json["path"] = asked.out.empty() ? Json(nullptr) : Json(asked.out.string());
-  answer.json["picture"] = asked.picture.empty() ? Json(nullptr) : Json(asked.picture.string());
-  answer.json["colour_range_mm"] =
-      asked.out.empty() && asked.picture.empty() ? Json(nullptr) : Json(range_mm);
-  answer.json["findings"] = answer.findings = made.findings;
+  answer.findings = made.findings;
+  answer.json.update(
+      {{"path", asked.out.empty() ? Json(nullptr) : Json(asked.out.string())},
+       {"picture", asked.picture.empty() ? Json(nullptr) : Json(asked.picture.string())},
+       {"colour_range_mm", asked.out.empty() && asked.picture.empty() ? Json(nullptr) : Json(range_mm)},
+       {"findings", made.findings}});
   answer.rows = {{"mean", grouped(made.difference.mean_mm, 3) + " mm"},
                  {"Hausdorff 95", grouped(made.difference.hausdorff95_mm, 3) + " mm"},
                  {"Hausdorff", grouped(made.difference.hausdorff_mm, 3) + " mm"},

@@ -9,8 +9,8 @@
 #include "brep/measure/difference.h"
 #include "convert/surface/label_surfaces.h"
 #include "planner/operation/file/label_table.h"
-#include "planner/operation/table/json.h"
 #include "planner/operation/table/number_format.h"
+#include "planner/operation/table/record.h"
 #include "planner/operation/table/same_patient.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/solid/combine.h"
@@ -107,8 +107,37 @@ voxel::Octree object_of(const voxel::Universe& universe, const Side& side, const
   return label ? voxel::octree_of_label(universe, side.scene, *label) : voxel::Octree::empty(universe);
 }
 
-Json label_json(const Pair& pair, const Side& a, const Side& b, const voxel::Universe& universe,
-                Totals& totals) {
+/// How well a label of both maps agrees; distances are none if only one map has it.
+struct LabelComparison {
+  int label = 0;
+  std::string name;
+  double volume_a_mm3 = 0.0, volume_b_mm3 = 0.0;
+  std::optional<double> dice, hausdorff_mm, hausdorff95_mm, mean_mm;
+};
+constexpr auto members_of(const LabelComparison&) {
+  using L = LabelComparison;
+  return std::tuple(member("label", &L::label), member("name", &L::name),
+                    member("volume_a_mm3", &L::volume_a_mm3), member("volume_b_mm3", &L::volume_b_mm3),
+                    member("dice", &L::dice), member("hausdorff_mm", &L::hausdorff_mm),
+                    member("hausdorff95_mm", &L::hausdorff95_mm), member("mean_mm", &L::mean_mm));
+}
+
+struct MapComparison {
+  std::vector<LabelComparison> labels;
+  std::optional<double> hausdorff_mm, hausdorff95_mm, mean_mm, dice;  ///< over all labels of both maps
+  Json definition;
+  std::vector<std::string> findings;
+};
+constexpr auto members_of(const MapComparison&) {
+  using M = MapComparison;
+  return std::tuple(member("labels", &M::labels), member("hausdorff_mm", &M::hausdorff_mm),
+                    member("hausdorff95_mm", &M::hausdorff95_mm), member("mean_mm", &M::mean_mm),
+                    member("dice", &M::dice), member("definition", &M::definition),
+                    member("findings", &M::findings));
+}
+
+LabelComparison compared(const Pair& pair, const Side& a, const Side& b, const voxel::Universe& universe,
+                         Totals& totals) {
   const voxel::Octree of_a = object_of(universe, a, pair.a), of_b = object_of(universe, b, pair.b);
   const auto count_a = static_cast<double>(of_a.voxel_count()),
              count_b = static_cast<double>(of_b.voxel_count());
@@ -117,24 +146,24 @@ Json label_json(const Pair& pair, const Side& a, const Side& b, const voxel::Uni
   const double voxel_mm3 = universe.lattice().voxel_mm3();
   totals.common_mm3 += common * voxel_mm3;
   totals.both_mm3 += (count_a + count_b) * voxel_mm3;
-  Json json{{"label", pair.number()},
-            {"name", pair.name},
-            {"volume_a_mm3", pair.a ? a.volume_mm3(*pair.a) : 0.0},
-            {"volume_b_mm3", pair.b ? b.volume_mm3(*pair.b) : 0.0},
-            {"dice", count_a + count_b > 0.0 ? Json(2.0 * common / (count_a + count_b)) : Json(nullptr)}};
-  for (const char* key : {"hausdorff_mm", "hausdorff95_mm", "mean_mm"}) json[key] = nullptr;
-  if (!pair.a || !pair.b) return json;
+  LabelComparison made;
+  made.label = pair.number();
+  made.name = pair.name;
+  if (pair.a) made.volume_a_mm3 = a.volume_mm3(*pair.a);
+  if (pair.b) made.volume_b_mm3 = b.volume_mm3(*pair.b);
+  if (count_a + count_b > 0.0) made.dice = 2.0 * common / (count_a + count_b);
+  if (!pair.a || !pair.b) return made;
   const brep::Difference difference =
       brep::difference(brep::linked(brep::surface_of_part(a.surfaces, *pair.a)),
                        brep::linked(brep::surface_of_part(b.surfaces, *pair.b)));
-  json["hausdorff_mm"] = difference.hausdorff_mm;
-  json["hausdorff95_mm"] = difference.hausdorff95_mm;
-  json["mean_mm"] = difference.mean_mm;
+  made.hausdorff_mm = difference.hausdorff_mm;
+  made.hausdorff95_mm = difference.hausdorff95_mm;
+  made.mean_mm = difference.mean_mm;
   totals.hausdorff_mm = std::max(totals.hausdorff_mm, difference.hausdorff_mm);
   totals.hausdorff95_mm = std::max(totals.hausdorff95_mm, difference.hausdorff95_mm);
   totals.mean_mm += difference.mean_mm;
   ++totals.compared;
-  return json;
+  return made;
 }
 
 Json definitions() {
@@ -232,31 +261,29 @@ FileAnswer compare_label_maps(const fs::path& path_a, const fs::path& path_b, bo
   const voxel::Universe universe = voxel::universe_on(lattice);
   const Stopwatch watch(bench.timings, "compare");
   Totals totals;
-  answer.json["labels"] = Json::array();
+  MapComparison made;
   for (const Pair& pair : pairs) {
     if (bench.stop.stop_requested()) throw voxel::Stopped("stopped while labels were compared");
-    const Json json = label_json(pair, a, b, universe, totals);
+    const LabelComparison& label = made.labels.emplace_back(compared(pair, a, b, universe, totals));
     answer.rows.emplace_back(
-        pair.name, "Dice " + grouped(json["dice"].is_null() ? 0.0 : json["dice"].get<double>(), 5) +
-                       (json["mean_mm"].is_null()
-                            ? std::string()
-                            : ", mean " + grouped(json["mean_mm"].get<double>(), 3) + " mm, Hausdorff 95 " +
-                                  grouped(json["hausdorff95_mm"].get<double>(), 3) + " mm"));
-    if (json["mean_mm"].is_null())
+        pair.name, "Dice " + grouped(label.dice.value_or(0.0), 5) +
+                       (label.mean_mm ? ", mean " + grouped(*label.mean_mm, 3) + " mm, Hausdorff 95 " +
+                                            grouped(*label.hausdorff95_mm, 3) + " mm"
+                                      : std::string()));
+    if (!label.mean_mm)
       answer.findings.push_back("'" + pair.name + "'" + " (" + std::to_string(pair.number()) +
                                 ") is only in " + (pair.a ? path_a : path_b).string() +
                                 ": it has no distances");
-    answer.json["labels"].push_back(json);
   }
-  const bool has_any = totals.compared > 0;
-  answer.json["hausdorff_mm"] = has_any ? Json(totals.hausdorff_mm) : Json(nullptr);
-  answer.json["hausdorff95_mm"] = has_any ? Json(totals.hausdorff95_mm) : Json(nullptr);
-  answer.json["mean_mm"] =
-      has_any ? Json(totals.mean_mm / static_cast<double>(totals.compared)) : Json(nullptr);
-  answer.json["dice"] =
-      totals.both_mm3 > 0.0 ? Json(2.0 * totals.common_mm3 / totals.both_mm3) : Json(nullptr);
-  answer.json["definition"] = definitions();
-  answer.json["findings"] = answer.findings;
+  if (totals.compared > 0) {
+    made.hausdorff_mm = totals.hausdorff_mm;
+    made.hausdorff95_mm = totals.hausdorff95_mm;
+    made.mean_mm = totals.mean_mm / static_cast<double>(totals.compared);
+  }
+  if (totals.both_mm3 > 0.0) made.dice = 2.0 * totals.common_mm3 / totals.both_mm3;
+  made.definition = definitions();
+  made.findings = answer.findings;
+  answer.json = print_record(made);
   return answer;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Contacts of two objects, like marks of articulating paper on teeth: positions, areas, depths and distances.
-#include <cmath>
+#include <algorithm>
 
 #include "planner/operation/measure/digitised.h"
+#include "planner/operation/measure/measurement.h"
 #include "planner/operation/measure/near_surfaces.h"
-#include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/solid/combine.h"
 
@@ -21,29 +21,17 @@ void check(const ContactMap& asked, const Place& place) {
     place.at("against").refuse("is the object itself: name what it is to touch");
 }
 
-Json contact_json(const Contact& contact, double half_width_mm) {
-  Json json{{"at_mm", to_json(contact.at_mm)},
-            {"normal", to_json(contact.normal)},
-            {"nearest_mm", contact.nearest_mm},
-            {"voxel_nearest_mm", nullptr},
-            {"depth_mm", std::max(0.0, -contact.nearest_mm)},
-            {"area_mm2", nullptr},
-            {"half_width_mm", half_width_mm}};
-  if (contact.voxel_nearest_mm) json["voxel_nearest_mm"] = *contact.voxel_nearest_mm;
-  if (contact.area_mm2) json["area_mm2"] = *contact.area_mm2;
-  return json;
-}
-
-Json measure(const ContactMap& asked, const AnswerBench& bench) {
+MeasuredContacts measured(const ContactMap& asked, const AnswerBench& bench) {
   const Object& object = bench.objects.at(asked.object.name);
   const Object& other = bench.objects.at(asked.against.name);
-  Json json{{"object", object.id},       {"against", other.id},      {"within_mm", asked.within_mm},
-            {"contacts", Json::array()}, {"certain_count", nullptr}, {"area_mm2", nullptr},
-            {"nearest_mm", nullptr},     {"findings", Json::array()}};
+  MeasuredContacts made;
+  made.object = object.id;
+  made.against = other.id;
+  made.within_mm = asked.within_mm;
   for (const Object* each : {&object, &other})
     if (each->voxel.octree.is_empty()) {
-      json["findings"].push_back(why_no_voxels(*each) + ": nothing touches");
-      return json;
+      made.findings.push_back(why_no_voxels(*each) + ": nothing touches");
+      return made;
     }
   const Stopwatch watch(bench.timings, "contacts");
   const Contacts found = contacts_between(object.voxel.octree, other.voxel.octree, object.mesh.within,
@@ -53,25 +41,29 @@ Json measure(const ContactMap& asked, const AnswerBench& bench) {
   double area_mm2 = 0.0;
   for (const Contact& contact : found.contacts) {
     const double half_width_mm = gap_half_width(contact.normal, digitised, digitised_other).value;
-    json["contacts"].push_back(contact_json(contact, half_width_mm));
+    made.contacts.push_back({contact.at_mm, contact.normal, contact.nearest_mm, contact.voxel_nearest_mm,
+                             std::max(0.0, -contact.nearest_mm), contact.area_mm2, half_width_mm});
     certain += contact.nearest_mm + half_width_mm <= asked.within_mm ? 1 : 0;
     area_mm2 += contact.area_mm2.value_or(0.0);
   }
-  json["certain_count"] = certain;
-  if (found.by_mesh) json["area_mm2"] = area_mm2;
-  json["nearest_mm"] = found.nearest_mm;
-  json["nearest_at_mm"] = to_json(found.nearest_at_mm);
-  json["voxel_nearest_mm"] = found.voxel_nearest_mm;
-  const double overlap_mm3 =
+  made.certain_count = certain;
+  if (found.by_mesh) made.area_mm2 = area_mm2;
+  made.nearest_mm = found.nearest_mm;
+  made.nearest_at_mm = found.nearest_at_mm;
+  made.voxel_nearest_mm = found.voxel_nearest_mm;
+  made.overlap_mm3 =
       static_cast<double>(
           voxel::combine(bench.universe, voxel::Expression(object.voxel.octree) & other.voxel.octree)
               .voxel_count()) *
       bench.universe.lattice().voxel_mm3();
-  json["overlap_mm3"] = overlap_mm3;
-  json["estimator"] = found.by_mesh ? "vertices of the first mesh to the second's nearest triangle"
-                                    : "voxels of the first's boundary to the second's nearest voxel";
-  if (!found.by_mesh) json["findings"].push_back("there is no mesh of both: areas are not told");
-  return json;
+  made.estimator = found.by_mesh ? "vertices of the first mesh to the second's nearest triangle"
+                                 : "voxels of the first's boundary to the second's nearest voxel";
+  if (!found.by_mesh) made.findings.push_back("there is no mesh of both: areas are not told");
+  return made;
+}
+
+Json measure(const ContactMap& asked, const AnswerBench& bench) {
+  return print_record(measured(asked, bench));
 }
 
 }  // namespace

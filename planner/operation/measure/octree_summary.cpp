@@ -12,11 +12,68 @@
 namespace octotomy::planner {
 namespace {
 
-Json levels_of(const std::vector<voxel::LevelCount>& counts) {
-  Json levels = Json::array();
+struct LevelRecord {
+  int level = 0;
+  std::uint64_t partial = 0, full = 0, empty = 0;
+};
+constexpr auto members_of(const LevelRecord&) {
+  using L = LevelRecord;
+  return std::tuple(member("level", &L::level), member("partial", &L::partial), member("full", &L::full),
+                    member("empty", &L::empty));
+}
+
+/// An octree's answer behind the program's version and the times.
+struct OctreeRecord {
+  std::string kind = "octree", name;
+  int depth = 0;
+  std::string fields;
+  std::vector<LevelRecord> levels;
+  std::uint64_t voxels = 0;
+  std::optional<std::uint64_t> voxels_inside;  ///< of a partial octree
+  std::optional<double> volume_partial_mm3;    ///< of a partial octree
+  std::optional<double> volume_mm3;            ///< of a binary octree
+  std::optional<std::vector<Json>> range;      ///< of a grey octree
+  std::optional<Json> background;              ///< of a grey octree
+  std::uint64_t bytes_memory = 0;
+  std::optional<std::uint64_t> bytes_file;
+  glm::dvec3 spacing_mm{1.0};
+  Json lps_from_voxel;
+  Json metadata;  ///< of any form, because the file may be from another program
+  std::vector<std::string> findings;
+};
+constexpr auto members_of(const OctreeRecord&) {
+  using O = OctreeRecord;
+  return std::tuple(member("kind", &O::kind), member("name", &O::name), member("depth", &O::depth),
+                    member("fields", &O::fields), member("levels", &O::levels), member("voxels", &O::voxels),
+                    member_if_any("voxels_inside", &O::voxels_inside),
+                    member_if_any("volume_partial_mm3", &O::volume_partial_mm3),
+                    member_if_any("volume_mm3", &O::volume_mm3), member_if_any("range", &O::range),
+                    member_if_any("background", &O::background), member("bytes_memory", &O::bytes_memory),
+                    member("bytes_file", &O::bytes_file), member("spacing_mm", &O::spacing_mm),
+                    member("lps_from_voxel", &O::lps_from_voxel), member("metadata", &O::metadata),
+                    member("findings", &O::findings));
+}
+
+/// A line of a scan's audit in an octree's metadata.
+struct DoubtLine {
+  std::string check, verdict, detail;
+};
+constexpr auto members_of(const DoubtLine&) {
+  using D = DoubtLine;
+  return std::tuple(member("check", &D::check), member("verdict", &D::verdict), member("detail", &D::detail));
+}
+struct ScanMetadata {
+  std::string scan;
+  std::vector<DoubtLine> scan_audit;
+};
+constexpr auto members_of(const ScanMetadata&) {
+  return std::tuple(member("scan", &ScanMetadata::scan), member("scan_audit", &ScanMetadata::scan_audit));
+}
+
+std::vector<LevelRecord> levels_of(const std::vector<voxel::LevelCount>& counts) {
+  std::vector<LevelRecord> levels;
   for (const voxel::LevelCount& count : counts)
-    levels.push_back(
-        {{"level", count.level}, {"partial", count.partial}, {"full", count.full}, {"empty", count.empty}});
+    levels.push_back({count.level, count.partial, count.full, count.empty});
   return levels;
 }
 
@@ -28,61 +85,63 @@ std::uint64_t voxels_of(const std::vector<voxel::LevelCount>& counts, int depth)
   return voxels;
 }
 
-void add(const voxel::Octree& octree, Json& json) {
-  json["fields"] = "binary";
-  json["levels"] = levels_of(voxel::level_counts(octree));
-  json["voxels"] = octree.voxel_count();
-  json["volume_mm3"] = static_cast<double>(octree.voxel_count()) * octree.universe().lattice().voxel_mm3();
-  json["bytes_memory"] = voxel::bytes_memory(octree);
+void add(const voxel::Octree& octree, OctreeRecord& made) {
+  made.fields = "binary";
+  made.levels = levels_of(voxel::level_counts(octree));
+  made.voxels = octree.voxel_count();
+  made.volume_mm3 = static_cast<double>(octree.voxel_count()) * octree.universe().lattice().voxel_mm3();
+  made.bytes_memory = voxel::bytes_memory(octree);
 }
 
-void add(const voxel::GreyOctree& grey, Json& json) {
+void add(const voxel::GreyOctree& grey, OctreeRecord& made) {
   const int depth = grey.universe().depth;
   const std::vector<voxel::LevelCount> counts = voxel::level_counts(grey);
   const voxel::MinMax& range = grey.range(voxel::root_height(depth), glm::ivec3(0));
   const bool one_value = range.low == range.high && range.low != grey.background();
-  json["fields"] = "grey";
-  json["levels"] = levels_of(counts);
-  json["voxels"] = one_value ? std::uint64_t{1} << (3 * depth) : voxels_of(counts, depth);
+  made.fields = "grey";
+  made.levels = levels_of(counts);
+  made.voxels = one_value ? std::uint64_t{1} << (3 * depth) : voxels_of(counts, depth);
   const auto value = [&](std::int16_t sample) {
     return grey.step() == 1.0 ? Json(sample) : Json(sample * grey.step());
   };
-  json["range"] = {value(range.low), value(range.high)};
-  json["background"] = value(grey.background());
-  json["bytes_memory"] = grey.bytes_memory();
+  made.range = {value(range.low), value(range.high)};
+  made.background = value(grey.background());
+  made.bytes_memory = grey.bytes_memory();
 }
 
-void add(const voxel::PartialOctree& partial, Json& json) {
-  json["fields"] = "partial";
-  json["levels"] = levels_of(voxel::level_counts(partial));
-  json["voxels"] = partial.touching.voxel_count();
-  json["voxels_inside"] = partial.inside.voxel_count();
-  json["volume_partial_mm3"] = voxel::volume_mm3(partial);
-  json["bytes_memory"] = voxel::bytes_memory(partial);
+void add(const voxel::PartialOctree& partial, OctreeRecord& made) {
+  made.fields = "partial";
+  made.levels = levels_of(voxel::level_counts(partial));
+  made.voxels = partial.touching.voxel_count();
+  made.voxels_inside = partial.inside.voxel_count();
+  made.volume_partial_mm3 = voxel::volume_mm3(partial);
+  made.bytes_memory = voxel::bytes_memory(partial);
+}
+
+Json metadata_of(const voxel::OctreeFile& file) {
+  if (file.metadata.empty()) return nullptr;
+  if (json_levels(file.metadata) > most_json_levels) return file.metadata;
+  Json metadata = Json::parse(file.metadata, nullptr, false);
+  return metadata.is_discarded() ? Json(file.metadata) : metadata;
 }
 
 }  // namespace
 
 Json octree_answer(const voxel::OctreeFile& file, std::optional<std::uint64_t> bytes_file,
                    const Timings& timings) {
-  Json json = answer(timings);
   const voxel::Universe& universe = voxel::universe(file);
-  json["kind"] = "octree";
-  json["name"] = file.name;
-  json["depth"] = universe.depth;
-  std::visit([&](const auto& tree) { add(tree, json); }, file.tree);
-  json["bytes_file"] = bytes_file ? Json(*bytes_file) : Json(nullptr);
-  json["spacing_mm"] = to_json(universe.lattice().spacing_mm());
-  json["lps_from_voxel"] = to_json(universe.lps_from_voxel);
-  const bool is_shallow = json_levels(file.metadata) <= most_json_levels;
-  const Json metadata =
-      is_shallow ? Json::parse(file.metadata, nullptr, false) : Json(Json::value_t::discarded);
-  json["metadata"] = file.metadata.empty()     ? Json(nullptr)
-                     : metadata.is_discarded() ? Json(file.metadata)
-                                               : metadata;
-  json["findings"] = Json::array();
-  if (!bytes_file) json["findings"].push_back("bytes_file: no octree file was read or written");
-  if (file.metadata.empty()) json["findings"].push_back("metadata: the file holds none");
+  OctreeRecord made;
+  made.name = file.name;
+  made.depth = universe.depth;
+  std::visit([&](const auto& tree) { add(tree, made); }, file.tree);
+  made.bytes_file = bytes_file;
+  made.spacing_mm = universe.lattice().spacing_mm();
+  made.lps_from_voxel = to_json(universe.lps_from_voxel);
+  made.metadata = metadata_of(file);
+  if (!bytes_file) made.findings.emplace_back("bytes_file: no octree file was read or written");
+  if (file.metadata.empty()) made.findings.emplace_back("metadata: the file holds none");
+  Json json = answer(timings);
+  json.update(print_record(made));
   return json;
 }
 
@@ -100,40 +159,29 @@ Json doubts_of(const std::vector<voxel::Finding>& audit) {
 std::vector<std::string> told_doubts(const Json& answer) {
   constexpr std::size_t most = 32;
   std::vector<std::string> lines;
-  // The file may be from another program, so its metadata may have any form.
-  const auto text_at = [](const Json& object, const char* key) {
-    const bool has = object.is_object() && object.contains(key) && object[key].is_string();
-    return has ? object[key].get<std::string>() : std::string();
-  };
-  const Json metadata = answer.value("metadata", Json());
-  if (!metadata.is_object() || !metadata.contains("scan_audit") || !metadata["scan_audit"].is_array())
-    return lines;
-  for (const Json& line : metadata["scan_audit"]) {
-    const std::string verdict = text_at(line, "verdict");
+  const auto metadata = record_of<ScanMetadata>(record_of<OctreeRecord>(answer).metadata);
+  for (const auto& [check, verdict, detail] : metadata.scan_audit)
     if ((verdict == "WARN" || verdict == "FAIL") && lines.size() < most)
-      lines.push_back(verdict + ", the octree's scan " + text_at(metadata, "scan") + ": " +
-                      text_at(line, "check") + ": " + text_at(line, "detail"));
-  }
+      lines.push_back(verdict + ", the octree's scan " + metadata.scan + ": " + check + ": " + detail);
   return lines;
 }
 
 std::string octree_text(const std::string& title, const Json& answer) {
-  const auto number = [&](const char* key) { return grouped(answer[key].get<double>(), 0); };
-  const Json& spacing = answer["spacing_mm"];
-  const double side = static_cast<double>(std::uint64_t{1} << answer["depth"].get<int>());
-  std::string text = "octree   " + title + ", " + answer["fields"].get<std::string>() + "\n" + "depth    " +
-                     std::to_string(answer["depth"].get<int>()) + ", " + grouped(side, 0) +
-                     " voxels a side\n" + "spacing  " + grouped(spacing[0].get<double>(), 4) + " x " +
-                     grouped(spacing[1].get<double>(), 4) + " x " + grouped(spacing[2].get<double>(), 4) +
-                     " mm\n" + "voxels   " + number("voxels") + "\n" + "memory   " + number("bytes_memory") +
-                     " bytes\n";
-  if (!answer["bytes_file"].is_null()) text += "file     " + number("bytes_file") + " bytes\n";
+  const auto octree = record_of<OctreeRecord>(answer);
+  const auto number = [](std::uint64_t value) { return grouped(static_cast<double>(value), 0); };
+  const glm::dvec3& spacing = octree.spacing_mm;
+  std::string text = "octree   " + title + ", " + octree.fields + "\n" + "depth    " +
+                     std::to_string(octree.depth) + ", " + number(std::uint64_t{1} << octree.depth) +
+                     " voxels a side\n" + "spacing  " + grouped(spacing.x, 4) + " x " +
+                     grouped(spacing.y, 4) + " x " + grouped(spacing.z, 4) + " mm\n" + "voxels   " +
+                     number(octree.voxels) + "\n" + "memory   " + number(octree.bytes_memory) + " bytes\n";
+  if (octree.bytes_file) text += "file     " + number(*octree.bytes_file) + " bytes\n";
   text += "level    partial         full        empty\n";
-  for (const Json& level : answer["levels"]) {
+  for (const LevelRecord& level : octree.levels) {
     std::array<char, 80> row;
-    std::snprintf(row.data(), row.size(), "%5d %10llu %12llu %12llu\n", level["level"].get<int>(),
-                  level["partial"].get<unsigned long long>(), level["full"].get<unsigned long long>(),
-                  level["empty"].get<unsigned long long>());
+    std::snprintf(row.data(), row.size(), "%5d %10llu %12llu %12llu\n", level.level,
+                  static_cast<unsigned long long>(level.partial), static_cast<unsigned long long>(level.full),
+                  static_cast<unsigned long long>(level.empty));
     text += row.data();
   }
   return text;

@@ -117,16 +117,11 @@ verify::Interval interval(double value, const HalfWidth& width) {
 
 }  // namespace
 
-Json to_json(const verify::Interval& interval, const std::string& unit) {
-  Json sources = Json::array();
+MeasuredInterval measured(const verify::Interval& interval, const std::string& unit) {
+  MeasuredInterval made{interval.value, unit, interval.half_width, verify::claimed_coverage, {}};
   for (const verify::DoubtSource& source : interval.sources)
-    sources.push_back(
-        {{"name", source.name}, {"formula", source.formula}, {"half_width", source.half_width}});
-  return {{"value", interval.value},
-          {"unit", unit},
-          {"half_width", interval.half_width},
-          {"coverage", verify::claimed_coverage},
-          {"sources", sources}};
+    made.sources.push_back({source.name, source.formula, source.half_width});
+  return made;
 }
 
 verify::SizeIntervals intervals_of_surface(const brep::Solid& solid,

@@ -11,6 +11,7 @@
 
 #include "planner/operation/measure/counted_window.h"
 #include "planner/operation/measure/half_width.h"
+#include "planner/operation/measure/measured_size.h"
 #include "planner/operation/measure/result_json.h"
 #include "verify/interval/size_interval.h"
 #include "verify/interval/two_phase.h"
@@ -20,8 +21,8 @@
 // The recommended volume and area of an object, each one number with one interval.
 namespace octotomy::planner {
 
-/// {"value", "unit", "half_width", "coverage", "sources"}.
-Json to_json(const verify::Interval& interval, const std::string& unit);
+/// The interval as it stands in results.
+MeasuredInterval measured(const verify::Interval& interval, const std::string& unit);
 
 /// The samples from which an object's surface was made.
 struct SurfaceSamples {

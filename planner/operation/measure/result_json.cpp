@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "planner/operation/measure/certificate_record.h"
+
 namespace octotomy::planner {
 namespace {
 
@@ -11,16 +13,8 @@ Json finite(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-Json finite(const std::optional<double>& value) {
-  return value ? finite(*value) : Json(nullptr);
-}
-
-Json answer_of(const verify::Answer& side) {
-  return {{"lineage", side.lineage},
-          {"volume_mm3", finite(side.volume_mm3)},
-          {"area_mm2", finite(side.area_mm2)},
-          {"centroid_mm", to_json(side.centroid_mm)},
-          {"makers", side.makers}};
+KernelAnswer answer_of(const verify::Answer& side) {
+  return {side.lineage, side.volume_mm3, side.area_mm2, side.centroid_mm, side.makers};
 }
 
 Json third_json(const std::optional<verify::LineCount>& third) {
@@ -34,15 +28,11 @@ Json third_json(const std::optional<verify::LineCount>& third) {
       {"estimator", "Cauchy-Crofton: lines in twelve directions through the plan's expression on the scan"}};
 }
 
-Json comparison_json(const verify::Comparison& comparison) {
-  return {{"quantity", comparison.quantity},
-          {"unit", comparison.unit},
-          {"voxel", finite(comparison.voxel)},
-          {"mesh", finite(comparison.mesh)},
-          {"difference", finite(comparison.difference)},
-          {"tolerance", finite(comparison.tolerance)},
-          {"formula", comparison.formula},
-          {"verdict", comparison.tolerance ? Json(verify::to_string(comparison.verdict)) : Json(nullptr)}};
+ComparedQuantity compared(const verify::Comparison& comparison) {
+  ComparedQuantity made{comparison.quantity,   comparison.unit,      comparison.voxel,   comparison.mesh,
+                        comparison.difference, comparison.tolerance, comparison.formula, {}};
+  if (comparison.tolerance) made.verdict = verify::to_string(comparison.verdict);
+  return made;
 }
 
 }  // namespace
@@ -98,31 +88,47 @@ Json to_json(const std::vector<voxel::Hole>& holes, const voxel::Lattice& lattic
   return list;
 }
 
+namespace {
+
+std::vector<glm::dvec3> rows_of(const glm::dmat3& matrix) {
+  const glm::dmat3 rows = glm::transpose(matrix);
+  return {rows[0], rows[1], rows[2]};
+}
+
+}  // namespace
+
+VoxelSize size_of(const voxel::Measures& measures) {
+  VoxelSize size;
+  size.volume_mm3 = measures.volume_mm3;
+  size.volume_estimator = "voxels counted";
+  size.voxels = measures.voxel_count;
+  size.area_mm2 = measures.area_crofton13_mm2;
+  size.area_estimator = voxel_area_estimator;
+  size.area_lindblad_mm2 = measures.area_lindblad_mm2;
+  size.centroid_mm = measures.centroid_mm;
+  if (measures.inertia_mm5) size.inertia_mm5 = rows_of(*measures.inertia_mm5);
+  if (measures.extents) size.extents_mm = {measures.extents->low_mm, measures.extents->high_mm};
+  return size;
+}
+
+MeshSize size_of(const brep::Measures& measures) {
+  MeshSize size;
+  size.volume_mm3 = measures.volume_mm3;
+  size.volume_estimator = "divergence theorem over the mesh";
+  size.area_mm2 = measures.area_mm2;
+  size.area_estimator = mesh_area_estimator;
+  size.centroid_mm = measures.centroid_mm;
+  if (measures.inertia_mm5) size.inertia_mm5 = rows_of(*measures.inertia_mm5);
+  size.extents_mm = {measures.low_mm, measures.high_mm};
+  return size;
+}
+
 Json to_json(const voxel::Measures& measures) {
-  Json json{{"volume_mm3", measures.volume_mm3},
-            {"volume_estimator", "voxels counted"},
-            {"voxels", measures.voxel_count},
-            {"area_mm2", measures.area_crofton13_mm2},
-            {"area_estimator", voxel_area_estimator},
-            {"area_lindblad_mm2", nullptr},
-            {"centroid_mm", to_json(measures.centroid_mm)},
-            {"inertia_mm5", nullptr},
-            {"extents_mm", nullptr}};
-  if (measures.area_lindblad_mm2) json["area_lindblad_mm2"] = *measures.area_lindblad_mm2;
-  if (measures.inertia_mm5) json["inertia_mm5"] = to_json(*measures.inertia_mm5);
-  if (measures.extents)
-    json["extents_mm"] = Json::array({to_json(measures.extents->low_mm), to_json(measures.extents->high_mm)});
-  return json;
+  return print_record(size_of(measures));
 }
 
 Json to_json(const brep::Measures& measures) {
-  return {{"volume_mm3", measures.volume_mm3},
-          {"volume_estimator", "divergence theorem over the mesh"},
-          {"area_mm2", measures.area_mm2},
-          {"area_estimator", mesh_area_estimator},
-          {"centroid_mm", to_json(measures.centroid_mm)},
-          {"inertia_mm5", measures.inertia_mm5 ? to_json(*measures.inertia_mm5) : Json(nullptr)},
-          {"extents_mm", Json::array({to_json(measures.low_mm), to_json(measures.high_mm)})}};
+  return print_record(size_of(measures));
 }
 
 Json to_json(const brep::Health& health) {
@@ -141,7 +147,7 @@ Json to_json(const brep::Health& health) {
           {"findings", health.findings}};
 }
 
-Json to_json(const verify::Certificate& certificate) {
+CertificateRecord record_of_certificate(const verify::Certificate& certificate) {
   Json terms = Json::array();
   for (const verify::ToleranceTerm& term : certificate.terms)
     terms.push_back({{"name", term.name},
@@ -162,47 +168,47 @@ Json to_json(const verify::Certificate& certificate) {
   for (const verify::WorstPlace& bridge : certificate.bridges)
     bridges.push_back(
         {{"at_mm", to_json(bridge.at_mm)}, {"volume_mm3", finite(bridge.volume_mm3)}, {"what", bridge.what}});
-  Json comparisons = Json::array();
+  CertificateRecord made;
+  made.operation = certificate.operation;
+  made.tier = verify::to_string(certificate.tier);
+  made.verdict = verify::to_string(certificate.verdict);
+  made.resolved = certificate.resolved();
+  if (certificate.unresolved) {
+    made.smallest_extent_voxels = certificate.unresolved->extent_voxels;
+    made.not_resolved_because = certificate.unresolved->reason;
+  }
+  made.reasons = certificate.reasons;
+  made.lineage = {certificate.voxel.lineage, certificate.mesh.lineage};
+  made.independent = certificate.independent();
+  made.shared_makers = verify::shared_makers(certificate.voxel, certificate.mesh);
+  made.shared_values = certificate.shared_values;
+  made.voxel = answer_of(certificate.voxel);
+  made.mesh = answer_of(certificate.mesh);
+  made.difference_mm3 = certificate.difference_mm3;
+  made.tolerance_mm3 = certificate.tolerance_mm3;
+  made.terms = std::move(terms);
+  made.symmetric_difference_mm3 = certificate.symmetric_difference_mm3;
+  made.symmetric_difference_tolerance_mm3 = certificate.symmetric_difference_tolerance_mm3;
+  made.centroid_distance_mm = certificate.centroid_distance_mm;
+  made.centroid_tolerance_mm = certificate.centroid_tolerance_mm;
+  made.hausdorff_mm = certificate.hausdorff_mm;
+  made.hausdorff95_mm = certificate.hausdorff95_mm;
+  made.worst = std::move(worst);
+  made.detection_limit = std::move(limit);
+  made.bridges = std::move(bridges);
+  made.third_reading = third_json(certificate.third);
   for (const verify::Comparison& comparison : certificate.comparisons)
-    comparisons.push_back(comparison_json(comparison));
-  return {
-      {"operation", certificate.operation},
-      {"tier", verify::to_string(certificate.tier)},
-      {"verdict", verify::to_string(certificate.verdict)},
-      {"resolved", certificate.resolved()},
-      {"smallest_extent_voxels",
-       certificate.unresolved ? finite(certificate.unresolved->extent_voxels) : Json(nullptr)},
-      {"not_resolved_because", certificate.unresolved ? Json(certificate.unresolved->reason) : Json(nullptr)},
-      {"reasons", certificate.reasons},
-      {"lineage", {{"voxel", certificate.voxel.lineage}, {"mesh", certificate.mesh.lineage}}},
-      {"independent", certificate.independent()},
-      {"shared_makers", verify::shared_makers(certificate.voxel, certificate.mesh)},
-      {"shared_values", certificate.shared_values},
-      {"voxel", answer_of(certificate.voxel)},
-      {"mesh", answer_of(certificate.mesh)},
-      {"difference_mm3", finite(certificate.difference_mm3)},
-      {"tolerance_mm3", finite(certificate.tolerance_mm3)},
-      {"terms", terms},
-      {"symmetric_difference_mm3", finite(certificate.symmetric_difference_mm3)},
-      {"symmetric_difference_tolerance_mm3", finite(certificate.symmetric_difference_tolerance_mm3)},
-      {"centroid_distance_mm", finite(certificate.centroid_distance_mm)},
-      {"centroid_tolerance_mm", finite(certificate.centroid_tolerance_mm)},
-      {"hausdorff_mm", finite(certificate.hausdorff_mm)},
-      {"hausdorff95_mm", finite(certificate.hausdorff95_mm)},
-      {"worst", worst},
-      {"detection_limit", limit},
-      {"bridges", bridges},
-      {"third_reading", third_json(certificate.third)},
-      {"comparisons", comparisons},
-      {"timings_ms", {{"certify", certificate.milliseconds}}}};
+    made.comparisons.push_back(compared(comparison));
+  made.timings_ms.certify = certificate.milliseconds;
+  return made;
+}
+
+Json to_json(const verify::Certificate& certificate) {
+  return print_record(record_of_certificate(certificate));
 }
 
 Json to_json(const HalfWidth& width) {
-  Json terms = Json::array();
-  for (const Doubt& doubt : width.terms)
-    terms.push_back(
-        {{"name", doubt.name}, {"formula", doubt.formula}, {"half_width", finite(doubt.half_width)}});
-  return terms;
+  return print_value(width.terms);
 }
 
 Json to_json(const ScanRecord& scan) {
@@ -253,17 +259,17 @@ Json identity_json(const voxel::Identity& identity) {
 Json scan_answer(const voxel::Scene& scene, const Timings& timings) {
   Json json = answer(timings);
   const voxel::Range range = voxel::range(scene);
-  json["kind"] = "scan";
-  json["source"] = scene.source;
-  json["dims"] = {scene.lattice.dims.x, scene.lattice.dims.y, scene.lattice.dims.z};
-  json["spacing_mm"] = to_json(scene.lattice.spacing_mm());
-  json["lps_from_voxel"] = to_json(scene.lattice.lps_from_voxel);
-  json["range"] = {finite(range.low), finite(range.high)};
-  json["padding"] = scene.padding ? Json(*scene.padding) : Json(nullptr);
-  json["modality"] = scene.modality;
-  json["unit"] = voxel::unit(scene);
-  json["identity"] = identity_json(scene.identity);
-  json["audit"] = to_json(scene.audit);
+  json.update({{"kind", "scan"},
+               {"source", scene.source},
+               {"dims", {scene.lattice.dims.x, scene.lattice.dims.y, scene.lattice.dims.z}},
+               {"spacing_mm", to_json(scene.lattice.spacing_mm())},
+               {"lps_from_voxel", to_json(scene.lattice.lps_from_voxel)},
+               {"range", {finite(range.low), finite(range.high)}},
+               {"padding", print_value(scene.padding)},
+               {"modality", scene.modality},
+               {"unit", voxel::unit(scene)},
+               {"identity", identity_json(scene.identity)},
+               {"audit", to_json(scene.audit)}});
   if (!scene.holes.empty()) json["interpolated"] = to_json(scene.holes, scene.lattice);
   return json;
 }

@@ -5,7 +5,7 @@
 
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
-#include "planner/operation/measure/half_width.h"
+#include "planner/operation/measure/measured_size.h"
 #include "planner/operation/table/bench.h"
 #include "planner/operation/table/json.h"
 #include "voxel/measure/measure.h"
@@ -25,6 +25,8 @@ Json to_json(const glm::dmat4& matrix);
 Json to_json(const std::vector<voxel::Finding>& audit);
 /// The parts of a scan that are interpolated between images, with the slices of the lattice inside each.
 Json to_json(const std::vector<voxel::Hole>& holes, const voxel::Lattice& lattice);
+VoxelSize size_of(const voxel::Measures& measures);
+MeshSize size_of(const brep::Measures& measures);
 Json to_json(const voxel::Measures& measures);
 Json to_json(const brep::Measures& measures);
 Json to_json(const brep::Health& health);

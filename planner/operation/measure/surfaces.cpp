@@ -15,6 +15,7 @@
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
+#include "planner/operation/table/record.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/space/disk_need.h"
 
@@ -118,42 +119,70 @@ Sizes sizes_of(const brep::PartedSurface& parted) {
   return sizes;
 }
 
-Json parted_json(const brep::PartedSurface& made, const Sizes& sizes, const voxel::Scene& scene) {
-  Json json{{"faces", made.triangles.faces.size()},
-            {"vertices", made.triangles.points_mm.size()},
-            {"parts", Json::array()},
-            {"contacts", Json::array()}};
+struct PartSize {
+  int label = 0;
+  std::string name;
+  std::uint64_t faces = 0;
+  double volume_mm3 = 0.0, volume_samples_mm3 = 0.0, area_mm2 = 0.0;
+};
+constexpr auto members_of(const PartSize&) {
+  using P = PartSize;
+  return std::tuple(member("label", &P::label), member("name", &P::name), member("faces", &P::faces),
+                    member("volume_mm3", &P::volume_mm3),
+                    member("volume_samples_mm3", &P::volume_samples_mm3), member("area_mm2", &P::area_mm2));
+}
+
+/// The common surface of two parts.
+struct PartContact {
+  std::vector<int> between;  ///< two labels
+  double area_mm2 = 0.0;
+};
+constexpr auto members_of(const PartContact&) {
+  return std::tuple(member("between", &PartContact::between), member("area_mm2", &PartContact::area_mm2));
+}
+
+struct PartedSize {
+  std::uint64_t faces = 0, vertices = 0;
+  std::vector<PartSize> parts;
+  std::vector<PartContact> contacts;
+};
+constexpr auto members_of(const PartedSize&) {
+  using P = PartedSize;
+  return std::tuple(member("faces", &P::faces), member("vertices", &P::vertices), member("parts", &P::parts),
+                    member("contacts", &P::contacts));
+}
+
+PartedSize parted_size(const brep::PartedSurface& surface, const voxel::Scene& scene) {
+  const Sizes sizes = sizes_of(surface);
+  PartedSize made{surface.triangles.faces.size(), surface.triangles.points_mm.size(), {}, {}};
   for (const voxel::Label& label : voxel::labels(scene))
     if (const auto size = sizes.parts.find(label.number); size != sizes.parts.end())
-      json["parts"].push_back(
-          {{"label", label.number},
-           {"name", made.names.at(label.number)},
-           {"faces", size->second.faces},
-           {"volume_mm3", size->second.volume_mm3},
-           {"volume_samples_mm3", static_cast<double>(label.samples) * scene.lattice.voxel_mm3()},
-           {"area_mm2", size->second.area_mm2}});
+      made.parts.push_back({label.number, surface.names.at(label.number),
+                            static_cast<std::uint64_t>(size->second.faces), size->second.volume_mm3,
+                            static_cast<double>(label.samples) * scene.lattice.voxel_mm3(),
+                            size->second.area_mm2});
   for (const auto& [between, area_mm2] : sizes.contacts_mm2)
-    json["contacts"].push_back({{"between", {between.first, between.second}}, {"area_mm2", area_mm2}});
-  return json;
+    made.contacts.push_back({{between.first, between.second}, area_mm2});
+  return made;
 }
 
 /// Findings on files that are not a table of names, on labels stored with a fraction, and on parts whose
 /// surface encloses another volume than their samples, which are thin layers between others.
-std::vector<std::string> findings_of(const Json& json, const LabelTable& table, const voxel::Scene& scene) {
+std::vector<std::string> findings_of(const PartedSize& parted, const LabelTable& table,
+                                     const voxel::Scene& scene) {
   constexpr double told_share = 0.1;
   constexpr std::size_t most_told = 8;
   std::vector<std::string> findings = table.passed_over;
   for (std::string& finding : findings_of_labels(voxel::labels(scene)))
     findings.push_back(std::move(finding));
   std::size_t more = 0;
-  for (const Json& part : json["parts"]) {
-    const double surface = part["volume_mm3"].get<double>(),
-                 samples = part["volume_samples_mm3"].get<double>();
+  for (const PartSize& part : parted.parts) {
+    const double surface = part.volume_mm3, samples = part.volume_samples_mm3;
     if (!(std::abs(surface - samples) > told_share * samples)) continue;
     if (findings.size() == most_told)
       ++more;
     else
-      findings.push_back(part["name"].get<std::string>() + ": the surface holds " + grouped(surface, 0) +
+      findings.push_back(part.name + ": the surface holds " + grouped(surface, 0) +
                          " mm\u00b3, its samples " + grouped(samples, 0) +
                          " mm\u00b3: it is thin, and smoothing changed it; --smooth 0 changes less");
   }
@@ -237,8 +266,9 @@ void write(const Surfaces& asked, const AnswerBench& bench, Exported& made) {
   made.written = true;
   made.content = grouped(static_cast<double>(parted.names.size()), 0) + " labels, " +
                  grouped(static_cast<double>(parted.triangles.faces.size()), 0) + " triangles";
-  made.details = parted_json(parted, sizes_of(parted), scene);
-  made.findings = findings_of(made.details, table, scene);
+  const PartedSize size = parted_size(parted, scene);
+  made.details = print_record(size);
+  made.findings = findings_of(size, table, scene);
 }
 
 FileAnswer on_files(const Surfaces& asked, const FileBench& bench) {
@@ -262,18 +292,18 @@ FileAnswer on_files(const Surfaces& asked, const FileBench& bench) {
     throw std::runtime_error(file.string() + ": every sample is 0, so there are no labels");
   is_of_parts(asked.out) ? write_each(made, asked.out, bench.timings)
                          : write_one(made, asked.out, bench.timings);
-  FileAnswer answer{{{"kind", "surfaces of labels"}, {"path", asked.out.string()}}};
-  answer.json["files"] = Json::array();
-  for (const fs::path& each : files) answer.json["files"].push_back(each.string());
-  answer.json.update(parted_json(made, sizes_of(made), scene));
-  answer.findings = findings_of(answer.json, table, scene);
-  for (const std::string& finding : answer.findings) answer.json["findings"].push_back(finding);
+  std::vector<std::string> paths;
+  for (const fs::path& each : files) paths.push_back(each.string());
+  FileAnswer answer{{{"kind", "surfaces of labels"}, {"path", asked.out.string()}, {"files", paths}}};
+  const PartedSize size = parted_size(made, scene);
+  answer.json.update(print_record(size));
+  answer.findings = findings_of(size, table, scene);
+  if (!answer.findings.empty()) answer.json.update({{"findings", answer.findings}});
   answer.rows.emplace_back("written",
                            files.size() == 1 ? files[0].string() : std::to_string(files.size()) + " files");
-  for (const Json& part : answer.json["parts"])
-    answer.rows.emplace_back(part["name"].get<std::string>(),
-                             grouped(part["volume_mm3"].get<double>(), 1) + " mm\u00b3, " +
-                                 grouped(part["faces"].get<double>(), 0) + " triangles");
+  for (const PartSize& part : size.parts)
+    answer.rows.emplace_back(part.name, grouped(part.volume_mm3, 1) + " mm\u00b3, " +
+                                            grouped(static_cast<double>(part.faces), 0) + " triangles");
   return answer;
 }
 

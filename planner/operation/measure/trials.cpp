@@ -3,22 +3,14 @@
 // planner/plan/trial.h runs the trials; this operation only holds their parameters.
 #include "planner/operation/measure/trials.h"
 
-#include <nlohmann/json.hpp>
-
+#include "planner/operation/measure/measured_trials.h"
 #include "planner/operation/table/operation.h"
 
 namespace octotomy::planner {
 namespace {
 
 nlohmann::ordered_json measure(const Trials& asked, const AnswerBench&) {
-  return {{"trials", asked.trials},
-          {"seed", asked.seed},
-          {"errors",
-           {{"landmark_mm", asked.landmark_mm},
-            {"kerf_mm", asked.kerf_mm},
-            {"segmentation_mm", asked.segmentation_mm},
-            {"seating_mm", asked.seating_mm},
-            {"seating_deg", asked.seating_deg}}}};
+  return {{"trials", asked.trials}, {"seed", asked.seed}, {"errors", print_record(asked)}};
 }
 
 }  // namespace

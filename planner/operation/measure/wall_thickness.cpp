@@ -39,10 +39,11 @@ Json wall_json(WeightedValues walls, double whole, const std::optional<glm::dvec
   double share = 0.0;
   for (const auto& [value, weight] : walls) share += weight;
   Json json = weighted_summary(std::move(walls), "mm");
-  json["share"] = whole > 0.0 ? Json(share / whole) : Json(nullptr);
-  json["thinnest_mm"] = to_json(thinnest_mm);
-  json["rule"] = wall_rule;
-  if (!thinnest_mm) json["finding"] = "no two sides of the object are near enough to parallel for a wall";
+  json.update({{"share", whole > 0.0 ? Json(share / whole) : Json(nullptr)},
+               {"thinnest_mm", to_json(thinnest_mm)},
+               {"rule", wall_rule}});
+  if (!thinnest_mm)
+    json.update({{"finding", "no two sides of the object are near enough to parallel for a wall"}});
   return json;
 }
 

@@ -32,11 +32,57 @@ struct Register {
   glm::dmat4 onto_from_object{1.0};  ///< determined before the kernels run
 };
 
+struct LandmarkResidual {
+  std::string name;
+  double residual_mm = 0.0;
+};
+constexpr auto members_of(const LandmarkResidual&) {
+  using R = LandmarkResidual;
+  return std::tuple(member("name", &R::name), member("residual_mm", &R::residual_mm));
+}
+
+struct FitOfLandmarks {
+  std::string motion;
+  double rms_mm = 0.0, scale = 1.0;
+  std::vector<LandmarkResidual> pairs;
+  std::vector<std::string> left_out;  ///< landmarks of one file only
+};
+constexpr auto members_of(const FitOfLandmarks&) {
+  using F = FitOfLandmarks;
+  return std::tuple(member("motion", &F::motion), member("rms_mm", &F::rms_mm), member("scale", &F::scale),
+                    member("pairs", &F::pairs), member("left_out", &F::left_out));
+}
+
+struct FitOfSurfaces {
+  double rms_mm = 0.0, kept_share = 0.0;
+  int rounds = 0;
+  bool converged = false;
+  double stiffness = 0.0;
+  std::string start;  ///< "landmarks" or "search"
+  double last_step_mm = 0.0, rest_mm = 0.0;
+};
+constexpr auto members_of(const FitOfSurfaces&) {
+  using F = FitOfSurfaces;
+  return std::tuple(member("rms_mm", &F::rms_mm), member("kept_share", &F::kept_share),
+                    member("rounds", &F::rounds), member("converged", &F::converged),
+                    member("stiffness", &F::stiffness), member("start", &F::start),
+                    member("last_step_mm", &F::last_step_mm), member("rest_mm", &F::rest_mm));
+}
+
+struct FitDetails {
+  std::optional<FitOfLandmarks> landmarks;
+  std::optional<FitOfSurfaces> surfaces;
+};
+constexpr auto members_of(const FitDetails&) {
+  return std::tuple(member_if_any("landmarks", &FitDetails::landmarks),
+                    member_if_any("surfaces", &FitDetails::surfaces));
+}
+
 /// The resulting motion, with its results for the report.
 struct Laid {
   glm::dmat4 onto_from_object{1.0};
   double rms_mm = 0.0;
-  Json details = Json::object();
+  FitDetails details = {};
   std::vector<std::string> findings = {};
 };
 
@@ -83,15 +129,14 @@ Laid by_landmarks(const std::filesystem::path& moving, const std::filesystem::pa
                                                          motion == "similarity" ? brep::Motion::similarity
                                                          : motion == "rigid"    ? brep::Motion::rigid
                                                                                 : brep::Motion::three_points);
-  Json pairs = Json::array();
-  for (std::size_t k = 0; k < fit.paired.size(); ++k)
-    pairs.push_back({{"name", fit.paired[k]}, {"residual_mm", fit.residuals_mm[k]}});
   Laid laid{fit.fixed_from_moving, fit.rms_mm};
-  laid.details["landmarks"] = {{"motion", motion},
-                               {"rms_mm", fit.rms_mm},
-                               {"scale", fit.scale},
-                               {"pairs", pairs},
-                               {"left_out", fit.left_out}};
+  FitOfLandmarks& details = laid.details.landmarks.emplace();
+  details.motion = motion;
+  details.rms_mm = fit.rms_mm;
+  details.scale = fit.scale;
+  for (std::size_t k = 0; k < fit.paired.size(); ++k)
+    details.pairs.push_back({fit.paired[k], fit.residuals_mm[k]});
+  details.left_out = fit.left_out;
   for (const std::string& name : fit.left_out)
     laid.findings.push_back("landmark '" + name + "' is in one file only");
   if (auto sides = mirrored(from, to, fit)) laid.findings.push_back(std::move(*sides));
@@ -113,14 +158,9 @@ void by_surfaces(const brep::Mesh& moving, const brep::Mesh& fixed, const Regist
   options.stop = progress.stop;
   options.progress = progress.report;
   const brep::SurfaceFit fit = brep::register_surfaces(moving, fixed, options);
-  laid.details["surfaces"] = {{"rms_mm", fit.rms_mm},
-                              {"kept_share", fit.kept_share},
-                              {"rounds", fit.rounds},
-                              {"converged", fit.converged},
-                              {"stiffness", fit.stiffness},
-                              {"start", is_laid ? "landmarks" : "search"},
-                              {"last_step_mm", fit.last_step_mm},
-                              {"rest_mm", fit.rest_mm}};
+  laid.details.surfaces = {fit.rms_mm,       fit.kept_share, fit.rounds,
+                           fit.converged,    fit.stiffness,  is_laid ? "landmarks" : "search",
+                           fit.last_step_mm, fit.rest_mm};
   laid.onto_from_object = fit.fixed_from_moving;
   laid.rms_mm = fit.rms_mm;
   laid.findings.insert(laid.findings.end(), fit.findings.begin(), fit.findings.end());
@@ -142,7 +182,7 @@ Register settle(const Register& asked, const SettleBench& bench) {
     by_surfaces(bench.object(asked.object.name), bench.object(asked.onto.name), asked,
                 !asked.landmarks.empty(), bench.progress, bench.timings, laid);
   bench.details = {{"transform", to_json(laid.onto_from_object)}, {"rms_mm", laid.rms_mm}};
-  bench.details.update(laid.details);
+  bench.details.update(print_record(laid.details));
   bench.findings.insert(bench.findings.end(), laid.findings.begin(), laid.findings.end());
   Register settled = asked;
   settled.onto_from_object = laid.onto_from_object;
@@ -203,24 +243,22 @@ FileAnswer on_files(const Register& asked, const FileBench& bench) {
   answer.json = {{"transform", to_json(laid.onto_from_object)},
                  {"rms_mm", laid.rms_mm},
                  {"definition", "transform takes A's points, LPS mm, to B's place; row by row"}};
-  answer.json.update(laid.details);
-  answer.json["path"] = asked.out.empty() ? Json(nullptr) : Json(asked.out.string());
-  answer.json["findings"] = laid.findings;
+  answer.json.update(print_record(laid.details));
   answer.findings = laid.findings;
   const glm::dvec3 shift(laid.onto_from_object[3]);
   const Turn turn = turn_of(laid.onto_from_object);
-  answer.json["rotation"] = {{"degrees", turn.degrees}, {"axis", to_json(turn.axis)}};
+  answer.json.update({{"path", asked.out.empty() ? Json(nullptr) : Json(asked.out.string())},
+                      {"findings", laid.findings},
+                      {"rotation", {{"degrees", turn.degrees}, {"axis", to_json(turn.axis)}}}});
   answer.rows = {
       {"rms", grouped(laid.rms_mm, 3) + " mm"},
       {"rotation", grouped(turn.degrees, 3) + "\u00b0 about (" + grouped(turn.axis.x, 4) + ", " +
                        grouped(turn.axis.y, 4) + ", " + grouped(turn.axis.z, 4) + ")"},
       {"translation", grouped(shift.x, 2) + ", " + grouped(shift.y, 2) + ", " + grouped(shift.z, 2) + " mm"},
       {"written", asked.out.empty() ? "nothing, see -o" : asked.out.string()}};
-  if (laid.details.contains("surfaces")) {
-    const Json& fit = laid.details["surfaces"];
-    answer.rows.insert(answer.rows.begin() + 1, {"rounds", rounds_text(fit["rounds"], fit["converged"],
-                                                                       fit["last_step_mm"], fit["rest_mm"])});
-  }
+  if (const std::optional<FitOfSurfaces>& fit = laid.details.surfaces)
+    answer.rows.insert(answer.rows.begin() + 1,
+                       {"rounds", rounds_text(fit->rounds, fit->converged, fit->last_step_mm, fit->rest_mm)});
   return answer;
 }
 

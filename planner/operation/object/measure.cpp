@@ -9,6 +9,7 @@
 #include "planner/operation/measure/counted_window.h"
 #include "planner/operation/measure/digitised.h"
 #include "planner/operation/measure/gap.h"
+#include "planner/operation/measure/measurement.h"
 #include "planner/operation/measure/recommended.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/measure/surface_questions.h"
@@ -261,103 +262,89 @@ Json points_json(const Measure& asked, const AnswerBench& bench) {
   const Digitised digitised = digitised_of(bench);
   std::vector<glm::dvec3> p;
   for (const Mark& mark : asked.points_mm) p.push_back(mark_mm(mark, bench.objects));
-  Json json{{"points_mm", Json::array()}};
-  for (const glm::dvec3& point : p) json["points_mm"].push_back(to_json(point));
   if (p.size() == 2) {
     const HalfWidth width = distance_half_width({p[0], p[1]}, digitised);
-    json["distance_mm"] = glm::distance(p[0], p[1]);
-    json["distance_half_width_mm"] = width.value;
-    json["distance_half_width_terms"] = to_json(width);
-  } else {
-    const HalfWidth width = angle_half_width({p[0], p[1], p[2]}, digitised);
-    const glm::dvec3 first = p[0] - p[1], last = p[2] - p[1];
-    json["angle_deg"] = glm::degrees(std::atan2(glm::length(glm::cross(first, last)), glm::dot(first, last)));
-    json["angle_half_width_deg"] = width.value;
-    json["angle_half_width_terms"] = to_json(width);
+    return print_record(MeasuredDistance{p, glm::distance(p[0], p[1]), width.value, width.terms});
   }
-  return json;
+  const HalfWidth width = angle_half_width({p[0], p[1], p[2]}, digitised);
+  const glm::dvec3 first = p[0] - p[1], last = p[2] - p[1];
+  const double angle_deg =
+      glm::degrees(std::atan2(glm::length(glm::cross(first, last)), glm::dot(first, last)));
+  return print_record(MeasuredAngle{p, angle_deg, width.value, width.terms});
 }
 
-Json gap_json(const Measure& asked, const AnswerBench& bench) {
+MeasuredGap measured_gap(const Measure& asked, const AnswerBench& bench) {
   const Object &object = bench.objects.at(asked.object->name), &other = bench.objects.at(asked.to->name);
-  Json json{
-      {"object", object.id},          {"to", other.id},        {"gap_mm", nullptr}, {"gap_mesh_mm", nullptr},
-      {"gap_half_width_mm", nullptr}, {"overlap_mm3", nullptr}};
+  MeasuredGap made;
+  made.object = object.id;
+  made.to = other.id;
   if (object.voxel.octree.is_empty() || other.voxel.octree.is_empty()) {
-    json["finding"] = "there is no gap: " + why_no_voxels(object.voxel.octree.is_empty() ? object : other);
-    return json;
+    made.finding = "there is no gap: " + why_no_voxels(object.voxel.octree.is_empty() ? object : other);
+    return made;
   }
   const Gap gap = gap_between(object.voxel.octree, other.voxel.octree, object.mesh.within, other.mesh.within);
   const HalfWidth width =
       gap_half_width(gap.to_mm - gap.from_mm, digitised_of(bench, object), digitised_of(bench, other));
-  json["gap_mm"] = gap.voxel_mm;
-  json["gap_estimator"] = "faces of the two voxels whose centres are nearest";
-  if (gap.mesh_mm) json["gap_mesh_mm"] = *gap.mesh_mm;
-  json["gap_half_width_mm"] = width.value;
-  json["gap_half_width_terms"] = to_json(width);
-  json["overlap_mm3"] = gap.overlap_mm3;
-  json["from_mm"] = to_json(gap.from_mm);
-  json["to_mm"] = to_json(gap.to_mm);
-  return json;
+  made.gap_mm = gap.voxel_mm;
+  made.gap_mesh_mm = gap.mesh_mm;
+  made.gap_half_width_mm = width.value;
+  made.overlap_mm3 = gap.overlap_mm3;
+  made.gap_estimator = "faces of the two voxels whose centres are nearest";
+  made.gap_half_width_terms = width.terms;
+  made.from_mm = gap.from_mm;
+  made.to_mm = gap.to_mm;
+  return made;
 }
 
-Json size_json(const Measure& asked, const AnswerBench& bench) {
+MeasuredSize measured_size(const Measure& asked, const AnswerBench& bench) {
   const Object& object = bench.objects.at(asked.object->name);
-  const double voxels_mm3 = object.voxel.measures.volume_mm3;
-  Json json{{"object", object.id},
-            {"volume_mm3", voxels_mm3},
-            {"volume_estimator", "voxels counted"},
-            {"area_mm2", nullptr},
-            {"area_estimator", mesh_area_estimator},
-            {"centroid_mm", to_json(object.voxel.measures.centroid_mm)},
-            {"voxel", to_json(object.voxel.measures)},
-            {"mesh", nullptr},
-            {"difference_mm3", nullptr},
-            {"difference_percent", nullptr}};
+  MeasuredSize made;
+  made.object = object.id;
+  made.voxel = size_of(object.voxel.measures);
+  made.volume_mm3 = made.voxel.volume_mm3;
+  made.volume_estimator = made.voxel.volume_estimator;
+  made.centroid_mm = made.voxel.centroid_mm;
   const Digitised digitised = digitised_of(bench, object);
   const Recommended with_reason = intervals_of(bench, object, digitised);
   const verify::SizeIntervals& recommended = with_reason.intervals;
-  json["volume"] = to_json(recommended.volume_mm3, "mm3");
-  json["area"] = to_json(recommended.area_mm2, "mm2");
+  made.volume = measured(recommended.volume_mm3, "mm3");
+  made.area = measured(recommended.area_mm2, "mm2");
   const HalfWidth width = volume_half_width(object.voxel.measures, digitised, seen_size_of(object));
-  json["volume_half_width_mm3"] = width.value;
-  json["volume_half_width_terms"] = to_json(width);
-  std::vector<std::string> findings = findings_of(
-      recommended, with_reason.is_of_phases, with_reason.has_core,
-      {voxels_mm3, object.mesh.within ? std::optional(object.mesh.within->size().volume_mm3) : std::nullopt},
-      {object.voxel.measures.area_crofton13_mm2,
-       object.mesh.within ? std::optional(object.mesh.within->size().area_mm2) : std::nullopt});
+  made.volume_half_width_mm3 = width.value;
+  made.volume_half_width_terms = width.terms;
+  std::vector<std::string> findings =
+      findings_of(recommended, with_reason.is_of_phases, with_reason.has_core,
+                  {made.volume_mm3,
+                   object.mesh.within ? std::optional(object.mesh.within->size().volume_mm3) : std::nullopt},
+                  {object.voxel.measures.area_crofton13_mm2,
+                   object.mesh.within ? std::optional(object.mesh.within->size().area_mm2) : std::nullopt});
   if (object.border_finding) findings.push_back(*object.border_finding);
   if (const auto finding = too_coarse_finding(object, width)) findings.insert(findings.begin(), *finding);
-  if (!findings.empty()) {
-    std::string all;
-    for (const std::string& finding : findings) all += (all.empty() ? "" : "; ") + finding;
-    json["finding"] = all;
+  for (const std::string& finding : findings)
+    made.finding = made.finding ? *made.finding + "; " + finding : finding;
+  if (!object.mesh.within) {
+    made.area_mm2 = made.voxel.area_mm2;
+    made.area_estimator = made.voxel.area_estimator;
+    return made;
   }
-  json["area_half_width_mm2"] = nullptr;
-  if (object.mesh.within) {
-    const brep::Measures& measures = object.mesh.within->measures();
-    const double mesh_mm3 = measures.volume_mm3;
-    json["area_mm2"] = measures.area_mm2;
-    // The half-width of the triangles' area is the recommended area's half-width plus the difference of the
-    // two areas. Where voxels are too coarse, the recommended half-width already is that difference.
-    const double off_mm2 = std::abs(recommended.area_mm2.value - measures.area_mm2);
-    const double doubt_mm2 = recommended.area_mm2.half_width;
-    json["area_half_width_mm2"] = doubt_mm2 == off_mm2 ? off_mm2 : doubt_mm2 + off_mm2;
-    json["mesh"] = to_json(measures);
-    json["difference_mm3"] = voxels_mm3 - mesh_mm3;
-    if (mesh_mm3 > 0.0) json["difference_percent"] = 100.0 * (voxels_mm3 - mesh_mm3) / mesh_mm3;
-  } else {
-    json["area_mm2"] = object.voxel.measures.area_crofton13_mm2;
-    json["area_estimator"] = voxel_area_estimator;
-  }
-  return json;
+  made.mesh = size_of(object.mesh.within->measures());
+  made.area_mm2 = made.mesh->area_mm2;
+  made.area_estimator = made.mesh->area_estimator;
+  // The half-width of the triangles' area is the recommended area's half-width plus the difference of the
+  // two areas. Where voxels are too coarse, the recommended half-width already is that difference.
+  const double off_mm2 = std::abs(recommended.area_mm2.value - made.mesh->area_mm2);
+  const double doubt_mm2 = recommended.area_mm2.half_width;
+  made.area_half_width_mm2 = doubt_mm2 == off_mm2 ? off_mm2 : doubt_mm2 + off_mm2;
+  const double mesh_mm3 = made.mesh->volume_mm3;
+  made.difference_mm3 = made.volume_mm3 - mesh_mm3;
+  if (mesh_mm3 > 0.0) made.difference_percent = 100.0 * (made.volume_mm3 - mesh_mm3) / mesh_mm3;
+  return made;
 }
 
 /// The requested measures of the object's mesh beyond its size; null with a finding where it has no mesh.
 Json surface_json(const Measure& asked, const AnswerBench& bench) {
   const Object& object = bench.objects.at(asked.object->name);
-  Json json = size_json(asked, bench);
+  Json json = print_record(measured_size(asked, bench));
   if (asked.thickness) {
     const Stopwatch watch(bench.timings, "thickness_voxel");
     json["thickness_voxel"] = thickness_json(object.voxel.octree, bench.progress("walls of " + object.id));
@@ -383,8 +370,8 @@ Json surface_json(const Measure& asked, const AnswerBench& bench) {
 Json measure(const Measure& asked, const AnswerBench& bench) {
   if (asked.asks_surface()) return surface_json(asked, bench);
   return !asked.points_mm.empty() ? points_json(asked, bench)
-         : asked.to               ? gap_json(asked, bench)
-                                  : size_json(asked, bench);
+         : asked.to               ? print_record(measured_gap(asked, bench))
+                                  : print_record(measured_size(asked, bench));
 }
 
 }  // namespace

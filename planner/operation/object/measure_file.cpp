@@ -16,6 +16,7 @@
 #include "planner/operation/file/mesh_file.h"
 #include "planner/operation/file/mesh_in.h"
 #include "planner/operation/file/octree_in.h"
+#include "planner/operation/measure/measured_size.h"
 #include "planner/operation/measure/recommended.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/measure/surface_questions.h"
@@ -36,39 +37,57 @@
 namespace octotomy::planner {
 namespace {
 
+/// The numbers of a file's size that people read.
+struct FileSize {
+  std::optional<double> volume_mm3, volume_half_width_mm3, volume_partial_mm3, area_mm2, area_half_width_mm2;
+  std::string volume_estimator, area_estimator;
+  std::optional<double> components, euler;
+  std::optional<MeasuredInterval> volume, area;  ///< the recommended ones
+  std::vector<std::string> findings;
+};
+constexpr auto members_of(const FileSize&) {
+  using S = FileSize;
+  return std::tuple(
+      member("volume_mm3", &S::volume_mm3), member("volume_half_width_mm3", &S::volume_half_width_mm3),
+      member("volume_partial_mm3", &S::volume_partial_mm3), member("area_mm2", &S::area_mm2),
+      member("area_half_width_mm2", &S::area_half_width_mm2),
+      member("volume_estimator", &S::volume_estimator), member("area_estimator", &S::area_estimator),
+      member("components", &S::components), member("euler", &S::euler), member("volume", &S::volume),
+      member("area", &S::area), member("findings", &S::findings));
+}
+
 FileAnswer said(Json json) {
-  const auto value = [&](const char* key, int decimals) {
-    return json[key].is_null() ? "none" : grouped(json[key].get<double>(), decimals);
+  const auto size = record_of<FileSize>(json);
+  const auto number = [](const std::optional<double>& value, int decimals) {
+    return value ? grouped(*value, decimals) : "none";
   };
   std::vector<std::pair<std::string, std::string>> rows;
-  for (const char* key : {"volume", "area"}) {
-    if (!json.contains(key)) continue;
-    const Json& found = json[key];
-    rows.emplace_back(std::string("recommended ") + key,
-                      grouped(found["value"].get<double>(), 1) + " \u00b1 " +
-                          three_figures(found["half_width"].get<double>()) +
-                          (found["unit"] == "mm3" ? " mm\u00b3" : " mm\u00b2") + " in 99 of 100 cases");
-  }
-  // The doubt of a single estimator is not an interval that contains the true value; its entry states so.
-  const auto doubtful = [&](const char* key, const char* half_width, const char* unit,
-                            const char* estimator) {
-    return value(key, 1) + unit + json[estimator].get<std::string>() +
-           (json.contains(half_width)
-                ? ", by digitising alone \u00b1 " + three_figures(json[half_width].get<double>())
-                : std::string());
+  const auto add_recommended = [&](const char* name, const std::optional<MeasuredInterval>& found) {
+    if (found)
+      rows.emplace_back(name, grouped(found->value, 1) + " \u00b1 " +
+                                  three_figures(found->half_width.value_or(0.0)) +
+                                  (found->unit == "mm3" ? " mm\u00b3" : " mm\u00b2") + " in 99 of 100 cases");
   };
-  rows.insert(rows.end(),
-              {{"volume", doubtful("volume_mm3", "volume_half_width_mm3", " mm\u00b3, ", "volume_estimator")},
-               {"partial", value("volume_partial_mm3", 1) + " mm\u00b3"},
-               {"area", doubtful("area_mm2", "area_half_width_mm2", " mm\u00b2, ", "area_estimator")},
-               {"components", value("components", 0)},
-               {"euler", value("euler", 0)}});
+  add_recommended("recommended volume", size.volume);
+  add_recommended("recommended area", size.area);
+  // The doubt of a single estimator is not an interval that contains the true value; its entry states so.
+  const auto doubtful = [&](const std::optional<double>& value, const std::optional<double>& half_width,
+                            const std::string& unit_and_estimator) {
+    return number(value, 1) + unit_and_estimator +
+           (half_width ? ", by digitising alone \u00b1 " + three_figures(*half_width) : "");
+  };
+  rows.insert(
+      rows.end(),
+      {{"volume",
+        doubtful(size.volume_mm3, size.volume_half_width_mm3, " mm\u00b3, " + size.volume_estimator)},
+       {"partial", number(size.volume_partial_mm3, 1) + " mm\u00b3"},
+       {"area", doubtful(size.area_mm2, size.area_half_width_mm2, " mm\u00b2, " + size.area_estimator)},
+       {"components", number(size.components, 0)},
+       {"euler", number(size.euler, 0)}});
   const std::vector<std::pair<std::string, std::string>> asked = surface_rows(json);
   rows.insert(rows.end(), asked.begin(), asked.end());
-  for (const Json& finding : json["findings"])
-    if (const auto text = finding.get<std::string>();
-        text.starts_with("volume_mm3: ") || text.starts_with("WARN "))
-      rows.emplace_back("finding", text);
+  for (const std::string& text : size.findings)
+    if (text.starts_with("volume_mm3: ") || text.starts_with("WARN ")) rows.emplace_back("finding", text);
   return {std::move(json), std::move(rows)};
 }
 
@@ -98,12 +117,12 @@ Json asked_of_surface(const Measure& asked, const brep::Solid& solid, const File
   return json;
 }
 
-/// The volume along lines through an open surface, where few of them pass holes; else null.
-Json volume_by_lines_mm3(const brep::Triangles& triangles) {
+/// The volume along lines through an open surface, where few of them pass holes.
+std::optional<double> volume_by_lines_mm3(const brep::Triangles& triangles) {
   constexpr double most_open_share = 0.1;
   const brep::LineVolumes volumes = brep::line_volumes(triangles, {});
   const auto lines = static_cast<double>(volumes.lines), open = static_cast<double>(volumes.open_lines);
-  if (!(open <= most_open_share * lines) || !(volumes.all.a_mm3 > 0.0)) return nullptr;
+  if (!(open <= most_open_share * lines) || !(volumes.all.a_mm3 > 0.0)) return std::nullopt;
   return volumes.all.a_mm3 * lines / (lines - open);
 }
 
@@ -111,29 +130,31 @@ Json volume_by_lines_mm3(const brep::Triangles& triangles) {
 FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& health) {
   if (health.faces == 0) throw std::runtime_error("there are no triangles to measure");
   const brep::Size size = brep::size_of(triangles);
-  Json json{{"kind", "mesh"}};
-  for (const char* key : {"volume_mm3", "volume_partial_mm3", "centroid_mm", "inertia_mm5"})
-    json[key] = nullptr;
   const bool is_inside_out = health.first_defect == brep::Defect::InsideOut;
-  json["volume_estimator"] =
-      is_inside_out ? "none: the surface faces inward" : "none: the surface is not closed";
-  json["volume_lines_mm3"] = is_inside_out ? Json(nullptr) : volume_by_lines_mm3(triangles);
-  json["area_mm2"] = size.area_mm2;
-  json["area_estimator"] = "triangles";
-  json["extents_mm"] = Json::array({to_json(size.low_mm), to_json(size.high_mm)});
-  json["components"] = health.components;
-  json["euler"] = health.euler;
-  json["findings"] = {is_inside_out
-                          ? "volume_mm3: none: " + health.findings.front() +
-                                "; octotomy repair --solid turns it outward"
-                          : "volume_mm3: none, as the surface is not closed, oriented and manifold: " +
-                                health.findings.front() + "; octotomy repair --solid closes it"};
-  if (const Json& by_lines = json["volume_lines_mm3"]; !by_lines.is_null())
-    json["findings"].push_back(
-        "volume_lines_mm3: an estimate: " + grouped(by_lines.get<double>(), 1) +
-        " mm\u00b3 along lines through the surface; those through its holes count as the "
-        "others");
-  return said(std::move(json));
+  const std::optional<double> by_lines_mm3 = is_inside_out ? std::nullopt : volume_by_lines_mm3(triangles);
+  std::vector<std::string> findings{
+      is_inside_out
+          ? "volume_mm3: none: " + health.findings.front() + "; octotomy repair --solid turns it outward"
+          : "volume_mm3: none, as the surface is not closed, oriented and manifold: " +
+                health.findings.front() + "; octotomy repair --solid closes it"};
+  if (by_lines_mm3)
+    findings.push_back("volume_lines_mm3: an estimate: " + grouped(*by_lines_mm3, 1) +
+                       " mm\u00b3 along lines through the surface; those through its holes count as the "
+                       "others");
+  return said({{"kind", "mesh"},
+               {"volume_mm3", nullptr},
+               {"volume_partial_mm3", nullptr},
+               {"centroid_mm", nullptr},
+               {"inertia_mm5", nullptr},
+               {"volume_estimator",
+                is_inside_out ? "none: the surface faces inward" : "none: the surface is not closed"},
+               {"volume_lines_mm3", print_value(by_lines_mm3)},
+               {"area_mm2", size.area_mm2},
+               {"area_estimator", "triangles"},
+               {"extents_mm", {to_json(size.low_mm), to_json(size.high_mm)}},
+               {"components", health.components},
+               {"euler", health.euler},
+               {"findings", findings}});
 }
 
 /// Beyond this number of shells their union by Booleans would take minutes.
@@ -197,28 +218,28 @@ FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked,
     return measure_open(triangles, health);
   }
   const brep::Solid solid = brep::trusted_solid(std::move(one->triangles), brep::Proof::Connection);
-  const brep::Measures& measures = solid.measures();
+  MeshSize size = size_of(solid.measures());
+  size.volume_estimator += one->how;
+  size.area_estimator = "triangles" + one->how;
   watch.reset();
-  const Json more = asked_of_surface(asked, solid, bench);
-  Json json{{"kind", "mesh"}};
-  json.update(to_json(measures));
-  json.update(more);
-  json["volume_estimator"] = json["volume_estimator"].get<std::string>() + one->how;
-  json["area_estimator"] = "triangles" + one->how;
-  json["volume_partial_mm3"] = nullptr;
-  json["components"] = health.components;
-  json["euler"] = health.euler;
-  json["findings"] = {"volume_partial_mm3: a mesh has no voxels to fill partly"};
+  std::vector<std::string> findings{"volume_partial_mm3: a mesh has no voxels to fill partly"};
   if (!is_sum && !one->how.empty())
-    json["findings"].push_back("volume_mm3: the file is no solid (" + health.findings.front() +
-                               "): measured is the union of its closed shells, joined and turned alike; its "
-                               "triangles as they stand enclose " +
-                               grouped(brep::size_of(triangles).volume_mm3, 1) +
-                               " mm\u00b3; octotomy repair --solid writes it");
+    findings.push_back("volume_mm3: the file is no solid (" + health.findings.front() +
+                       "): measured is the union of its closed shells, joined and turned alike; its "
+                       "triangles as they stand enclose " +
+                       grouped(brep::size_of(triangles).volume_mm3, 1) +
+                       " mm\u00b3; octotomy repair --solid writes it");
   if (is_sum)
-    json["findings"].push_back("WARN volume_mm3: " + std::to_string(health.self_intersections) +
-                               " pairs of triangles cross each other, so that parts which overlap count "
-                               "twice: octotomy repair --solid makes one surface of them");
+    findings.push_back("WARN volume_mm3: " + std::to_string(health.self_intersections) +
+                       " pairs of triangles cross each other, so that parts which overlap count "
+                       "twice: octotomy repair --solid makes one surface of them");
+  Json json{{"kind", "mesh"}};
+  json.update(print_record(size));
+  json.update(asked_of_surface(asked, solid, bench));
+  json.update({{"volume_partial_mm3", nullptr},
+               {"components", health.components},
+               {"euler", health.euler},
+               {"findings", findings}});
   return said(std::move(json));
 }
 
@@ -227,10 +248,10 @@ Json of_voxels(const voxel::Octree& octree, Timings& timings, voxel::Measures& m
   const Stopwatch watch(timings, "measure");
   measures = voxel::measure(octree);
   Json json = to_json(measures);
-  json["components"] = voxel::component_count(octree);
-  json["euler"] = voxel::euler_numbers(octree).by_faces;
-  json["euler_of"] = "voxels that touch by faces";
-  json["findings"] = Json::array();
+  json.update({{"components", voxel::component_count(octree)},
+               {"euler", voxel::euler_numbers(octree).by_faces},
+               {"euler_of", "voxels that touch by faces"},
+               {"findings", Json::array()}});
   return json;
 }
 
@@ -245,14 +266,14 @@ void add_half_width(const voxel::Measures& measures, const Digitised& digitised,
                     const voxel::Lattice& lattice, const std::optional<Seen>& seen, Json& json) {
   const std::optional<SeenSize> size = seen ? std::optional(seen->size) : std::nullopt;
   const HalfWidth width = volume_half_width(measures, digitised, size);
-  json["volume_half_width_mm3"] = width.value;
-  json["volume_half_width_terms"] = to_json(width);
   if (width.is_too_coarse)
     json["findings"].push_back(
         too_coarse_finding(digitised.voxel_mm, seen->says, size->volume_mm3, seen->advice));
   const verify::SizeIntervals recommended = intervals_of_count(measures, digitised, lattice, size);
-  json["volume"] = to_json(recommended.volume_mm3, "mm3");
-  json["area"] = to_json(recommended.area_mm2, "mm2");
+  json.update({{"volume_half_width_mm3", width.value},
+               {"volume_half_width_terms", to_json(width)},
+               {"volume", print_record(measured(recommended.volume_mm3, "mm3"))},
+               {"area", print_record(measured(recommended.area_mm2, "mm2"))}});
 }
 
 /// Adds the half-width of voxels whose flat parts are not known, with further knowledge of them as arguments.
@@ -459,16 +480,16 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
     json["findings"].push_back(*cut);
   const HalfWidth width =
       area_half_width({recommended.triangles.area_mm2, recommended.triangles.curvature_mm}, digitised);
-  json["area_half_width_mm2"] = width.value;
-  json["area_half_width_terms"] = to_json(width);
-  json["volume"] = to_json(recommended.volume_mm3, "mm3");
-  json["area"] = to_json(recommended.area_mm2, "mm2");
-  json["area_crofton13_mm2"] = json["area_mm2"];
-  json["area_mm2"] = surface.area_mm2;
-  json["area_estimator"] = mesh_area_estimator;
-  json["volume_isosurface_mm3"] = surface.volume_mm3;
-  json["euler"] = brep::euler_number(isosurface.triangles());
-  json["euler_of"] = "the isosurface: V - E + F";
+  json.update({{"area_half_width_mm2", width.value},
+               {"area_half_width_terms", to_json(width)},
+               {"volume", print_record(measured(recommended.volume_mm3, "mm3"))},
+               {"area", print_record(measured(recommended.area_mm2, "mm2"))},
+               {"area_crofton13_mm2", print_value(size_of(measures).area_mm2)},
+               {"area_mm2", surface.area_mm2},
+               {"area_estimator", mesh_area_estimator},
+               {"volume_isosurface_mm3", surface.volume_mm3},
+               {"euler", brep::euler_number(isosurface.triangles())},
+               {"euler_of", "the isosurface: V - E + F"}});
   Json whole{{"kind", "scan"}};
   whole["window"] = {low, asked.window->high ? Json(high) : Json(nullptr)};
   whole.update(json);

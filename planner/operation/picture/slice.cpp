@@ -301,30 +301,59 @@ std::optional<glm::dmat4> lps_from_pixel(const CutSheet& cut) {
   return matrix;
 }
 
-Json said_of(const Slice& slice, const Subject& subject, const CutSheet& cut,
-             const voxel::SheetSamples& samples, const voxel::Range& shown) {
-  Json json{{"plane", cut.plane}};
-  json["position_mm"] = cut.position_mm ? Json(*cut.position_mm) : Json(nullptr);
-  json["pixel_mm"] = cut.sheet.pixel_mm;
-  json["size_px"] = {samples.image.size_px.x, samples.image.size_px.y};
+/// The facts of a slice's picture: SlicePicture::said.
+struct SliceRecord {
+  std::string plane;
+  std::optional<double> position_mm;  ///< none for a curve
+  double pixel_mm = 1.0;
+  std::vector<int> size_px;
+  Json lps_from_pixel;
+  Json letters;  ///< of the four edges
+  std::vector<double> window;
+  std::string unit, interpolation;
+  std::int64_t inside_pixels = 0;
+  std::optional<std::vector<double>> values;  ///< the least and the greatest; none if nothing is inside
+  std::vector<std::string> findings;
+  Json outlines;
+  std::optional<double> scale_bar_mm;
+};
+constexpr auto members_of(const SliceRecord&) {
+  using S = SliceRecord;
+  return std::tuple(member("plane", &S::plane), member("position_mm", &S::position_mm),
+                    member("pixel_mm", &S::pixel_mm), member("size_px", &S::size_px),
+                    member("lps_from_pixel", &S::lps_from_pixel), member("letters", &S::letters),
+                    member("window", &S::window), member("unit", &S::unit),
+                    member("interpolation", &S::interpolation), member("inside_pixels", &S::inside_pixels),
+                    member("values", &S::values), member_if_any("findings", &S::findings),
+                    member("outlines", &S::outlines), member("scale_bar_mm", &S::scale_bar_mm));
+}
+
+SliceRecord record_of_slice(const Slice& slice, const Subject& subject, const CutSheet& cut,
+                            const voxel::SheetSamples& samples, const voxel::Range& shown) {
+  SliceRecord made;
+  made.plane = cut.plane;
+  made.position_mm = cut.position_mm;
+  made.pixel_mm = cut.sheet.pixel_mm;
   const std::optional<glm::dmat4> matrix = lps_from_pixel(cut);
-  json["lps_from_pixel"] = matrix ? to_json(*matrix) : Json(nullptr);
+  made.lps_from_pixel = matrix ? to_json(*matrix) : Json(nullptr);
   const voxel::EdgeLetters letters = voxel::edge_letters(cut.sheet);
-  json["letters"] = {
+  made.letters = {
       {"left", letters.left}, {"right", letters.right}, {"top", letters.top}, {"bottom", letters.bottom}};
-  json["window"] = {shown.low, shown.high};
-  json["unit"] = subject.unit;
-  json["interpolation"] = slice.interpolate;
-  json["inside_pixels"] = std::count(samples.inside.begin(), samples.inside.end(), 1);
+  made.window = {shown.low, shown.high};
+  made.unit = subject.unit;
+  made.interpolation = slice.interpolate;
+  made.inside_pixels = std::count(samples.inside.begin(), samples.inside.end(), 1);
   std::optional<voxel::Range> values;
   for (std::size_t i = 0; i < samples.inside.size(); ++i)
     if (const double value = samples.image.values[i]; samples.inside[i] != 0) {
       if (!values) values = voxel::Range{value, value};
       values = voxel::Range{std::min(values->low, value), std::max(values->high, value)};
     }
-  json["values"] = values ? Json::array({values->low, values->high}) : Json(nullptr);
-  if (!values) json["findings"] = {"no pixel lies in the scan: the curve passes beside it"};
-  return json;
+  if (values)
+    made.values = {values->low, values->high};
+  else
+    made.findings.emplace_back("no pixel lies in the scan: the curve passes beside it");
+  return made;
 }
 
 /// The grid of a plane, in the millimetres of the view in which it is looked at.
@@ -337,7 +366,7 @@ voxel::Grid grid_of(const CutSheet& cut, double spacing_mm) {
 }
 
 /// Letters, a scale and a legend.
-void annotate(SlicePicture& picture, const Slice& slice, const CutSheet& cut,
+void annotate(SlicePicture& picture, SliceRecord& record, const Slice& slice, const CutSheet& cut,
               const std::vector<Outlined>& objects) {
   voxel::ImagePlane plane;
   plane.size_px = picture.sheet.size_px();
@@ -348,7 +377,7 @@ void annotate(SlicePicture& picture, const Slice& slice, const CutSheet& cut,
     annotation.legend.push_back(
         {fs::path(objects[i].name).stem().string(), outline_colour(slice, objects, i)});
   voxel::annotate(picture.rgb, plane, annotation);
-  picture.said["scale_bar_mm"] = voxel::round_length(0.25 * plane.size_px.x * cut.sheet.pixel_mm);
+  record.scale_bar_mm = voxel::round_length(0.25 * plane.size_px.x * cut.sheet.pixel_mm);
 }
 
 SlicePicture drawn(const Slice& slice, const Subject& subject, const std::vector<Outlined>& objects,
@@ -362,18 +391,18 @@ SlicePicture drawn(const Slice& slice, const Subject& subject, const std::vector
   }
   const voxel::Range shown = shown_range(slice, subject, samples);
   picture.rgb = voxel::grey_tones(samples.image, shown.low, shown.high);
-  picture.said = said_of(slice, subject, cut, samples, shown);
+  SliceRecord record = record_of_slice(slice, subject, cut, samples, shown);
   // Pixels outside of the scan are black, not the border's grey.
   for (std::size_t i = 0; i < samples.inside.size(); ++i)
     if (samples.inside[i] == 0) std::fill_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, 0);
-  picture.said["outlines"] = draw_outlines(slice, objects, cut.sheet, picture.rgb, timings);
-  picture.said["scale_bar_mm"] = nullptr;
+  record.outlines = draw_outlines(slice, objects, cut.sheet, picture.rgb, timings);
   std::optional<voxel::Grid> grid;
   if (slice.grid_mm) grid = grid_of(cut, *slice.grid_mm);
   if (grid) voxel::draw_grid({picture.size_px, &picture.rgb}, *grid);
-  if (!slice.plain) annotate(picture, slice, cut, objects);
+  if (!slice.plain) annotate(picture, record, slice, cut, objects);
   if (grid) picture.size_px = voxel::add_grid_margin(picture.rgb, picture.size_px, *grid);
-  picture.said["size_px"] = {picture.size_px.x, picture.size_px.y};
+  record.size_px = {picture.size_px.x, picture.size_px.y};
+  picture.said = print_record(record);
   if (const auto matrix = lps_from_pixel(cut); matrix && cut.sheet.columns_mm.size() > 1)
     picture.frame = PictureFrame{picture.size_px, *matrix};
   return picture;
@@ -418,7 +447,7 @@ void write(const Slice& slice, const AnswerBench& bench, Exported& made) {
       drawn(slice, subject_of(bench.samples(slice.scan.name), slice), objects, bench.timings, bench.stop);
   write(output_file(bench.folder, made.path), picture);
   made.written = true;
-  made.content = "a " + picture.said["plane"].get<std::string>() + " picture, " +
+  made.content = "a " + record_of<SliceRecord>(picture.said).plane + " picture, " +
                  std::to_string(picture.size_px.x) + " x " + std::to_string(picture.size_px.y) + " pixels";
   made.details = std::move(picture.said);
 }
@@ -458,14 +487,12 @@ FileAnswer on_files(const Slice& asked, const FileBench& bench) {
   }
   FileAnswer answer{{{"path", asked.out.string()}, {"source", file.string()}}};
   answer.json.update(picture.said);
-  const Json& position = picture.said["position_mm"];
+  const auto record = record_of<SliceRecord>(picture.said);
   answer.rows = {
       {"written", asked.out.string()},
-      {"plane", picture.said["plane"].get<std::string>() +
-                    (position.is_null() ? "" : " at " + grouped(position.get<double>(), 2) + " mm")},
-      {"pixel", grouped(picture.said["pixel_mm"].get<double>(), 4) + " mm"},
-      {"window", grouped(picture.said["window"][0].get<double>(), 0) + " to " +
-                     grouped(picture.said["window"][1].get<double>(), 0)}};
+      {"plane", record.plane + (record.position_mm ? " at " + grouped(*record.position_mm, 2) + " mm" : "")},
+      {"pixel", grouped(record.pixel_mm, 4) + " mm"},
+      {"window", grouped(record.window.at(0), 0) + " to " + grouped(record.window.at(1), 0)}};
   return answer;
 }
 

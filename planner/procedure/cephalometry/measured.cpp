@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "planner/operation/table/json.h"
+#include "planner/procedure/cephalometry/cephalometry_table.h"
 #include "verify/interval/size_interval.h"
 #include "verify/phantom/chance.h"
 
@@ -259,10 +259,6 @@ Values changes(const Values& before, const Values& after) {
   return made;
 }
 
-Json value_json(const CephalometricValue& value) {
-  return {{"value", value.value}, {"half_width", value.half_width}};
-}
-
 }  // namespace
 
 CephalometricResults measured(const Cephalometry& definitions, const std::vector<MovedLandmark>& landmarks,
@@ -304,26 +300,12 @@ CephalometricResults measured(const Cephalometry& definitions, const std::vector
 }
 
 Json to_json(const CephalometricResults& results, const LandmarkDoubt& doubt) {
-  Json json{{"measures", Json::array()},
-            {"lacking", Json::array()},
-            {"landmark_deviation_mm", doubt.deviation_mm},
-            {"coverage", verify::claimed_coverage}};
-  for (const CephalometricResult& result : results.measured) {
-    const CephalometricMeasure& measure = result.measure;
-    Json row{{"name", measure.name},
-             {"says", measure.says},
-             {"unit", measure.unit()},
-             {"before", value_json(result.before)},
-             {"after", result.after ? value_json(*result.after) : Json()},
-             {"change", result.change ? value_json(*result.change) : Json()},
-             {"norm", measure.norm ? Json(*measure.norm) : Json()},
-             {"deviation", measure.deviation ? Json(*measure.deviation) : Json()},
-             {"source", measure.source}};
-    json["measures"].push_back(std::move(row));
-  }
-  for (const auto& [name, landmarks] : results.lacking)
-    json["lacking"].push_back({{"name", name}, {"landmarks", landmarks}});
-  return json;
+  CephalometryTable table{{}, {}, doubt.deviation_mm, verify::claimed_coverage};
+  for (const auto& [measure, before, after, change] : results.measured)
+    table.measures.push_back({measure.name, measure.says, measure.unit(), before, after, change, measure.norm,
+                              measure.deviation, measure.source});
+  for (const auto& [name, landmarks] : results.lacking) table.lacking.push_back({name, landmarks});
+  return print_record(table);
 }
 
 }  // namespace octotomy::planner

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "planner/operation/table/json.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/result/report/html.h"
 #include "voxel/solid/combine.h"
@@ -15,10 +14,6 @@ namespace {
 constexpr int contact_picture_px = 480;
 /// How much bone around the contacts is shown, and how far it may rise above them.
 constexpr double about_mm = 20.0, above_mm = 3.0;
-
-glm::dvec3 point_of(const Json& json) {
-  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
-}
 
 /// The axis-aligned view whose direction is most opposite to `normal`.
 std::string view_onto(const glm::dvec3& normal, const glm::dmat3& lps_from_head) {
@@ -48,24 +43,24 @@ voxel::Octree part_about(const voxel::Octree& octree, const std::vector<glm::dve
 
 void add_contact_pictures(Result& result) {
   const Objects& objects = result.evaluation.objects;
-  for (const Json& map : result.measurements) {
-    if (!map.contains("contacts") || map.at("nearest_mm").is_null()) continue;
-    const std::string name = "contacts_" + map.at("id").get<std::string>();
+  for (const Measurement& measurement : measurements_of(result.measurements)) {
+    if (!measurement.contacts || !measurement.contacts->nearest_mm) continue;
+    const MeasuredContacts& map = *measurement.contacts;
+    const std::string name = "contacts_" + measurement.id;
     if (std::any_of(result.pictures.begin(), result.pictures.end(),
                     [&](const PictureGroup& group) { return group.name == name; }))
       continue;
-    const Object& object = objects.at(map.at("object").get<std::string>());
-    const Object& against = objects.at(map.at("against").get<std::string>());
-    PictureGroup group{name, object.id + " where it touches " + against.id,         {}, {},
-                       {},   std::max(2.0, 4.0 * map.at("within_mm").get<double>())};
+    const Object& object = objects.at(map.object);
+    const Object& against = objects.at(map.against);
+    PictureGroup group{
+        name, object.id + " where it touches " + against.id, {}, {}, {}, std::max(2.0, 4.0 * map.within_mm)};
     glm::dvec3 normal(0.0);
-    for (const Json& contact : map.at("contacts")) {
-      group.marks_mm.push_back(point_of(contact.at("at_mm")));
-      const Json& area = contact.at("area_mm2");
-      normal += (area.is_number() ? area.get<double>() : 1.0) * point_of(contact.at("normal"));
+    for (const MeasuredContact& contact : map.contacts) {
+      group.marks_mm.push_back(contact.at_mm);
+      normal += contact.area_mm2.value_or(1.0) * contact.normal;
     }
     const std::vector<glm::dvec3> places_mm =
-        group.marks_mm.empty() ? std::vector{point_of(map.at("nearest_at_mm"))} : group.marks_mm;
+        group.marks_mm.empty() ? std::vector{map.nearest_at_mm.value_or(glm::dvec3(0.0))} : group.marks_mm;
     if (group.marks_mm.empty()) {
       const auto middle = [](const Object& of) {
         return of.voxel.measures.centroid_mm.value_or(glm::dvec3(0.0));
@@ -85,41 +80,36 @@ void add_contact_pictures(Result& result) {
   }
 }
 
-std::string contact_tables(const Json& measurements) {
+std::string contact_tables(const std::vector<Measurement>& measurements) {
   std::string made;
-  const auto number = [](const Json& json, int decimals) {
-    return json.is_number() ? grouped(json.get<double>(), decimals) : std::string("\u2013");
+  const auto number = [](const std::optional<double>& value, int decimals) {
+    return value ? grouped(*value, decimals) : std::string("\u2013");
   };
-  for (const Json& map : measurements) {
-    if (!map.contains("contacts")) continue;
-    const std::string object = escaped(map.at("object").get<std::string>()),
-                      against = escaped(map.at("against").get<std::string>());
+  for (const Measurement& measurement : measurements) {
+    if (!measurement.contacts) continue;
+    const MeasuredContacts& map = *measurement.contacts;
+    const std::string object = escaped(map.object), against = escaped(map.against);
     std::string rows =
         "<tr><th>Contact</th><th class=\"n\">x, y, z, mm</th><th class=\"n\">nearest, mesh kernel, "
         "mm</th><th "
         "class=\"n\">nearest, voxel kernel, mm</th><th class=\"n\">depth, mm</th><th class=\"n\">area, "
         "mm\u00b2</th></tr>";
     int count = 0;
-    for (const Json& contact : map.at("contacts")) {
-      const Json& at = contact.at("at_mm");
+    for (const MeasuredContact& contact : map.contacts) {
+      const glm::dvec3& at = contact.at_mm;
       rows += "<tr>" + cell(std::to_string(++count)) +
-              figure_cell(number(at.at(0), 1) + ", " + number(at.at(1), 1) + ", " + number(at.at(2), 1)) +
-              figure_cell(number(contact.at("nearest_mm"), 2) + " \u00b1 " +
-                          three_figures(contact.at("half_width_mm").get<double>())) +
-              figure_cell(number(contact.at("voxel_nearest_mm"), 2)) +
-              figure_cell(number(contact.at("depth_mm"), 2)) +
-              figure_cell(number(contact.at("area_mm2"), 1)) + "</tr>";
+              figure_cell(number(at.x, 1) + ", " + number(at.y, 1) + ", " + number(at.z, 1)) +
+              figure_cell(number(contact.nearest_mm, 2) + " \u00b1 " + three_figures(contact.half_width_mm)) +
+              figure_cell(number(contact.voxel_nearest_mm, 2)) + figure_cell(number(contact.depth_mm, 2)) +
+              figure_cell(number(contact.area_mm2, 1)) + "</tr>";
     }
-    std::string says = plural(count, "place") + " of " + object + " within " +
-                       number(map.at("within_mm"), 2) + " mm of " + against;
-    if (map.at("certain_count").is_number())
-      says += ", " + map.at("certain_count").dump() + " of them beyond doubt";
-    if (count == 0 && map.at("nearest_mm").is_number())
-      says += "; the nearest is " + number(map.at("nearest_mm"), 2) + " mm away";
-    made += element("h3", "Contacts " + escaped(map.at("id").get<std::string>())) +
+    std::string says = plural(count, "place") + " of " + object + " within " + number(map.within_mm, 2) +
+                       " mm of " + against;
+    if (map.certain_count) says += ", " + std::to_string(*map.certain_count) + " of them beyond doubt";
+    if (count == 0 && map.nearest_mm) says += "; the nearest is " + number(map.nearest_mm, 2) + " mm away";
+    made += element("h3", "Contacts " + escaped(measurement.id)) +
             element("p", says + ". Distances are signed, negative where they overlap.") +
-            (count > 0 ? element("table", rows) : "") +
-            list(map.at("findings").get<std::vector<std::string>>());
+            (count > 0 ? element("table", rows) : "") + list(map.findings);
   }
   return made;
 }

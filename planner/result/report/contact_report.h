@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "planner/result/report/measurement.h"
 #include "planner/result/report/report.h"
 
 // Pictures and tables of contacts between objects.
@@ -14,6 +14,6 @@ namespace octotomy::planner {
 void add_contact_pictures(Result& result);
 
 /// One table per contact map; empty if there are none.
-std::string contact_tables(const nlohmann::ordered_json& measurements);
+std::string contact_tables(const std::vector<Measurement>& measurements);
 
 }  // namespace octotomy::planner

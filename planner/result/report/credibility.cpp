@@ -7,270 +7,345 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 #include <vector>
 
-#include "planner/operation/table/json.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/result/report/html.h"
+#include "planner/result/report/result_record.h"
 
 namespace octotomy::planner {
 namespace {
 
 constexpr const char* to_state = "to be stated by the user of the numbers: the run has no such information";
 
-/// The certificates by their objects.
-std::map<std::string, Json> certificates_of(const Json& result) {
-  std::map<std::string, Json> found;
-  for (const Json& one : result.at("certificates")) found.emplace(one.at("object").get<std::string>(), one);
-  return found;
-}
+using CertificatesByObject = std::map<std::string, CertificateRecord>;
 
-Json evidence_of(const Json& certificate) {
-  Json evidence{{"check", "certificate"},
-                {"object", certificate.at("object")},
-                {"tier", certificate.at("tier")},
-                {"verdict", certificate.at("verdict")},
-                {"resolved", certificate.at("resolved")},
-                {"factor", "calculation verification: discretization error"}};
-  evidence["detection_limit"] = certificate.value("detection_limit", Json());
-  return evidence;
-}
+/// A number of the result, with the run's evidence for it. Evidence is an object whose keys depend on its
+/// `check`.
+struct SupportedNumber {
+  std::string step, quantity;
+  Json value;
+  std::string unit;
+  std::vector<Json> supported_by, contradicted_by;
+  std::vector<std::string> gaps;
 
-/// A number of the result, with the run's evidence for it.
-class Number {
- public:
-  Number(std::string step, std::string quantity, Json value, std::string unit)
-      : json_{{"step", std::move(step)},       {"quantity", std::move(quantity)},
-              {"value", std::move(value)},     {"unit", std::move(unit)},
-              {"supported_by", Json::array()}, {"contradicted_by", Json::array()},
-              {"gaps", Json::array()}} {}
-
-  void by_certificate(const std::map<std::string, Json>& certificates, const std::string& object) {
+  void by_certificate(const CertificatesByObject& certificates, const std::string& object) {
     const auto found = certificates.find(object);
     if (found == certificates.end())
       return gap("'" + object +
                  "' has no certificate in this run: only one kernel has an answer, or none was requested");
-    const bool agrees = found->second.at("verdict") != "FAIL";
-    json_[agrees ? "supported_by" : "contradicted_by"].push_back(evidence_of(found->second));
-    if (!found->second.at("resolved").get<bool>())
+    const CertificateRecord& certificate = found->second;
+    add(certificate.verdict != "FAIL", {{"check", "certificate"},
+                                        {"object", certificate.object},
+                                        {"tier", certificate.tier},
+                                        {"verdict", certificate.verdict},
+                                        {"resolved", certificate.resolved},
+                                        {"factor", "calculation verification: discretization error"},
+                                        {"detection_limit", certificate.detection_limit}});
+    if (!certificate.resolved)
       gap("'" + object + "' is not resolved by its voxels: its certificate proves little");
   }
   /// Adds the interval, if the run reports one.
-  void by_half_width(const Json& half_width, const Json& sources, const Json& coverage = {}) {
-    if (!half_width.is_number()) return gap("no half-width was told");
-    Json names = Json::array();
-    if (sources.is_array())
-      for (const Json& source : sources) names.push_back(source.value("name", Json("unnamed")));
-    json_["supported_by"].push_back({{"check", "interval"},
-                                     {"half_width", half_width},
-                                     {"coverage", coverage},
-                                     {"sources", names},
-                                     {"factor", "calculation verification: discretization error"}});
+  void by_half_width(const std::optional<double>& half_width,
+                     const std::optional<std::vector<Doubt>>& sources = {},
+                     const std::optional<double>& coverage = {}) {
+    if (!half_width) return gap("no half-width was told");
+    std::vector<std::string> names;
+    for (const Doubt& source : sources.value_or(std::vector<Doubt>{}))
+      names.push_back(source.name.empty() ? "unnamed" : source.name);
+    add(true, {{"check", "interval"},
+               {"half_width", *half_width},
+               {"coverage", print_value(coverage)},
+               {"sources", names},
+               {"factor", "calculation verification: discretization error"}});
   }
   /// Adds the other kernel's answer, which either agrees within the half-width or contradicts.
-  void by_other_kernel(const Json& answer, const Json& half_width) {
-    const Json& value = json_.at("value");
-    if (!answer.is_number() || !value.is_number() || !half_width.is_number())
-      return gap("one kernel alone answered");
-    const double difference = std::abs(value.get<double>() - answer.get<double>());
-    const bool agrees = difference <= half_width.get<double>();
-    json_[agrees ? "supported_by" : "contradicted_by"].push_back(
-        {{"check", "the other kernel's answer"},
-         {"value", answer},
-         {"difference", difference},
-         {"factor", "calculation verification: discretization error"}});
+  void by_other_kernel(const std::optional<double>& answer, const std::optional<double>& half_width) {
+    if (!answer || !half_width) return gap("one kernel alone answered");
+    const double difference = std::abs(value.get<double>() - *answer);
+    add(difference <= *half_width, {{"check", "the other kernel's answer"},
+                                    {"value", *answer},
+                                    {"difference", difference},
+                                    {"factor", "calculation verification: discretization error"}});
   }
   /// Adds the effect of the stated errors on the number, from trials.
-  void by_trials(const Json& trials, const Json& doubt) {
-    Json names = Json::array();
-    for (const Json& source : doubt.at("sources")) names.push_back(source.at("name"));
-    json_["supported_by"].push_back({{"check", "trials"},
-                                     {"trials", trials.at("trials")},
-                                     {"seed", trials.at("seed")},
-                                     {"half_width", doubt.at("half_width")},
-                                     {"coverage", doubt.at("coverage")},
-                                     {"sources", names},
-                                     {"factor", "validation: model inputs"}});
+  void by_trials(const MeasuredTrials& trials, const DoubtfulNumber& doubt) {
+    std::vector<std::string> names;
+    for (const TrialSource& source : doubt.sources) names.push_back(source.name);
+    add(true, {{"check", "trials"},
+               {"trials", trials.trials},
+               {"seed", trials.seed},
+               {"half_width", doubt.half_width},
+               {"coverage", doubt.coverage},
+               {"sources", names},
+               {"factor", "validation: model inputs"}});
   }
-  void gap(const std::string& text) { json_["gaps"].push_back(text); }
-  Json json() && { return std::move(json_); }
+  void gap(const std::string& text) { gaps.push_back(text); }
 
  private:
-  Json json_;
+  void add(bool agrees, Json evidence) {
+    (agrees ? supported_by : contradicted_by).push_back(std::move(evidence));
+  }
+};
+constexpr auto members_of(const SupportedNumber&) {
+  using N = SupportedNumber;
+  return std::tuple(member("step", &N::step), member("quantity", &N::quantity), member("value", &N::value),
+                    member("unit", &N::unit), member("supported_by", &N::supported_by),
+                    member("contradicted_by", &N::contradicted_by), member("gaps", &N::gaps));
+}
+
+struct CredibilityFactor {
+  std::string group, factor;
+  std::vector<Json> evidence;
+  std::optional<std::string> gap;
+};
+constexpr auto members_of(const CredibilityFactor&) {
+  using F = CredibilityFactor;
+  return std::tuple(member("group", &F::group), member("factor", &F::factor),
+                    member("evidence", &F::evidence), member("gap", &F::gap));
+}
+
+struct ScanInContext {
+  std::string name;
+  std::optional<std::string> modality;
+  std::optional<glm::dvec3> spacing_mm;
+};
+constexpr auto members_of(const ScanInContext&) {
+  using S = ScanInContext;
+  return std::tuple(member("name", &S::name), member("modality", &S::modality),
+                    member("spacing_mm", &S::spacing_mm));
+}
+
+struct ContextOfUse {
+  std::optional<std::string> statement;
+  std::string statement_is = to_state;
+  std::optional<std::string> plan;
+  std::vector<ScanInContext> scans;
+  glm::dvec3 voxel_mm{0.0};
+};
+constexpr auto members_of(const ContextOfUse&) {
+  using C = ContextOfUse;
+  return std::tuple(member("statement", &C::statement), member("statement_is", &C::statement_is),
+                    member("plan", &C::plan), member("scans", &C::scans), member("voxel_mm", &C::voxel_mm));
+}
+
+struct QuestionOfInterest {
+  std::optional<std::string> statement;
+  std::string statement_is = to_state;
+};
+constexpr auto members_of(const QuestionOfInterest&) {
+  using Q = QuestionOfInterest;
+  return std::tuple(member("statement", &Q::statement), member("statement_is", &Q::statement_is));
+}
+
+struct ModelRisk {
+  std::optional<std::string> model_influence, decision_consequence;
+  std::string statement_is = to_state;
+};
+constexpr auto members_of(const ModelRisk&) {
+  using M = ModelRisk;
+  return std::tuple(member("model_influence", &M::model_influence),
+                    member("decision_consequence", &M::decision_consequence),
+                    member("statement_is", &M::statement_is));
+}
+
+struct Credibility {
+  std::string octotomy, terms, claim;
+  ContextOfUse context_of_use;
+  QuestionOfInterest question_of_interest;
+  ModelRisk model_risk;
+  std::vector<CredibilityFactor> credibility_factors;
+  std::vector<SupportedNumber> numbers;
+  std::size_t unsupported = 0;
+};
+constexpr auto members_of(const Credibility&) {
+  using C = Credibility;
+  return std::tuple(
+      member("octotomy", &C::octotomy), member("terms", &C::terms), member("claim", &C::claim),
+      member("context_of_use", &C::context_of_use), member("question_of_interest", &C::question_of_interest),
+      member("model_risk", &C::model_risk), member("credibility_factors", &C::credibility_factors),
+      member("numbers", &C::numbers), member("unsupported", &C::unsupported));
+}
+
+/// Collects the numbers of one result.
+class Numbers {
+ public:
+  explicit Numbers(const ResultRecord& result) : result_(result) {
+    for (const CertificateRecord& one : result.certificates) certificates_.emplace(one.object, one);
+    for (const Measurement& one : result.measurements) add(one);
+    add_movements();
+    if (result.cephalometry) add(*result.cephalometry);
+  }
+  std::vector<SupportedNumber> numbers() && { return std::move(numbers_); }
+
+ private:
+  /// A reference that is valid until the next number.
+  SupportedNumber& number(const std::string& step, const std::string& quantity, Json value,
+                          const std::string& unit) {
+    SupportedNumber& made = numbers_.emplace_back();
+    made.step = step;
+    made.quantity = quantity;
+    made.value = std::move(value);
+    made.unit = unit;
+    return made;
+  }
+
+  void add(const Measurement& one) {
+    if (one.size) {
+      add_interval(one.id, one.size->object, "volume", one.size->volume);
+      add_interval(one.id, one.size->object, "area", one.size->area);
+    }
+    if (one.gap && one.gap->gap_mm) {
+      SupportedNumber& gap = number(one.id, "gap", *one.gap->gap_mm, "mm");
+      gap.by_half_width(one.gap->gap_half_width_mm, one.gap->gap_half_width_terms);
+      gap.by_certificate(certificates_, one.gap->object);
+      gap.by_certificate(certificates_, one.gap->to);
+    }
+    const auto of_points = [&](const char* quantity, double value, const char* unit,
+                               const std::optional<double>& half_width,
+                               const std::optional<std::vector<Doubt>>& terms) {
+      SupportedNumber& made = number(one.id, quantity, value, unit);
+      made.by_half_width(half_width, terms);
+      made.gap("the points were placed by people; their accuracy was not stated for this run");
+    };
+    if (one.distance)
+      of_points("distance", one.distance->distance_mm, "mm", one.distance->distance_half_width_mm,
+                one.distance->distance_half_width_terms);
+    if (one.angle)
+      of_points("angle", one.angle->angle_deg, "deg", one.angle->angle_half_width_deg,
+                one.angle->angle_half_width_terms);
+    if (one.flap) add(one.id, *one.flap);
+    if (one.contacts) add(one.id, *one.contacts);
+    if (one.airway) add(one.id, *one.airway);
+    if (one.trials) add(one.id, *one.trials);
+  }
+
+  void add_interval(const std::string& id, const std::string& object, const char* quantity,
+                    const std::optional<MeasuredInterval>& interval) {
+    if (!interval) return;
+    SupportedNumber& made =
+        number(id, std::string(quantity) + " of " + object, interval->value, interval->unit);
+    made.by_half_width(interval->half_width, interval->sources, interval->coverage);
+    made.by_certificate(certificates_, object);
+  }
+
+  void add(const std::string& id, const MeasuredFlap& flap) {
+    for (const MeasuredOsteotomy& contact : flap.osteotomies) {
+      SupportedNumber& made = number(id, "contact area of " + contact.object, contact.contact_mm2, "mm2");
+      made.by_certificate(certificates_, contact.object);
+      if (!contact.slab_lacks_at_most_mm2)
+        made.gap(
+            "the mean over the slab may differ from the area in the cut, by an amount that was not computed");
+    }
+  }
+
+  /// Both kernels compute the distance of a contact, only one the area.
+  void add(const std::string& id, const MeasuredContacts& map) {
+    const std::string pair = map.object + " and " + map.against;
+    const auto by_certificates = [&](SupportedNumber& made) {
+      made.by_certificate(certificates_, map.object);
+      made.by_certificate(certificates_, map.against);
+    };
+    std::size_t place = 0;
+    for (const MeasuredContact& contact : map.contacts) {
+      SupportedNumber& made = number(id, "nearest at contact " + std::to_string(++place) + " of " + pair,
+                                     contact.nearest_mm, "mm");
+      made.by_half_width(contact.half_width_mm);
+      // Areas come from meshes only. Without a mesh the voxel kernel's distance is the number itself and no
+      // evidence for it.
+      made.by_other_kernel(map.area_mm2 ? contact.voxel_nearest_mm : std::nullopt, contact.half_width_mm);
+      by_certificates(made);
+    }
+    const auto unchecked = [&](const std::string& what, const auto& value, const char* unit,
+                               const char* gap) {
+      if (!value) return;
+      SupportedNumber& made = number(id, what, *value, unit);
+      made.gap(gap);
+      by_certificates(made);
+    };
+    const char* one_kernel = "only one kernel computes it, without a half-width";
+    unchecked("contacts of " + pair + " that are certain", map.certain_count, "",
+              "a count of contacts whose distance plus half-width is within the limit; no other number "
+              "checks it");
+    unchecked("area in contact of " + pair, map.area_mm2, "mm2", one_kernel);
+    unchecked("overlap of " + pair, map.overlap_mm3, "mm3", one_kernel);
+  }
+
+  void add(const std::string& id, const MeasuredAirway& one) {
+    const AirwaySize& airway = one.airway;
+    const MeasuredSection& least = airway.narrowest;
+    SupportedNumber& volume = number(id, "airway volume of " + one.object, airway.volume_mm3, "mm3");
+    volume.by_half_width(airway.volume_half_width_mm3);
+    volume.by_other_kernel(airway.volume_mesh_mm3, airway.volume_half_width_mm3);
+    volume.by_certificate(certificates_, one.object);
+    SupportedNumber& narrowest = number(id, "narrowest section of " + one.object, least.area_mm2, "mm2");
+    narrowest.by_half_width(least.half_width_mm2, least.half_width_terms);
+    // The reported area is that of the mesh if there is one; it must not count as evidence for itself.
+    narrowest.by_other_kernel(least.mesh_mm2 ? std::optional(least.voxel_mm2) : std::nullopt,
+                              least.half_width_mm2);
+    narrowest.by_certificate(certificates_, one.object);
+    SupportedNumber& length = number(id, "centre line's length of " + one.object, airway.length_mm, "mm");
+    length.by_half_width({});
+    length.by_other_kernel({}, {});
+    length.by_certificate(certificates_, one.object);
+  }
+
+  void add(const std::string& id, const MeasuredTrials& trials) {
+    for (const DoubtfulNumber& doubt : trials.doubts) {
+      SupportedNumber& made = number(id, doubt.what + " of " + doubt.of, doubt.value, doubt.unit);
+      made.by_trials(trials, doubt);
+      made.gap("the sizes of the errors were typed, and trials do not compute objects");
+    }
+  }
+
+  /// Movements are the plan's own motions, which both kernels applied in the pieces' certificates.
+  void add_movements() {
+    for (const ObjectMovement& moved : result_.movements) {
+      const auto add = [&](const char* what, double value, const char* unit) {
+        SupportedNumber& made = number(moved.object, what, value, unit);
+        made.by_certificate(certificates_, moved.object);
+        made.gap("it is the plan's own value: octotomy outcome measures what the operation achieved");
+      };
+      if (moved.centroid) {
+        add("forward", moved.centroid->forward_mm, "mm");
+        add("left", moved.centroid->left_mm, "mm");
+        add("up", moved.centroid->up_mm, "mm");
+      }
+      add("pitch", moved.pitch_deg, "deg");
+      add("yaw", moved.yaw_deg, "deg");
+      add("roll", moved.roll_deg, "deg");
+    }
+  }
+
+  /// The only evidence for values computed from landmarks is the placement of the landmarks.
+  void add(const CephalometryTable& table) {
+    for (const CephalometryRow& row : table.measures)
+      for (const auto& [when, value] : {std::pair("before", &row.before), std::pair("after", &row.after)}) {
+        if (!*value) continue;
+        SupportedNumber& made = number("cephalometry", row.name + " " + when, (*value)->value, row.unit);
+        made.by_half_width((*value)->half_width, std::vector<Doubt>{{"landmarks", "", 0.0}}, table.coverage);
+        made.gap("the landmarks were placed by people; their accuracy is an assumption of this run");
+      }
+  }
+
+  const ResultRecord& result_;
+  CertificatesByObject certificates_;
+  std::vector<SupportedNumber> numbers_;
 };
 
-void add_interval(const Json& one, const char* key, const std::map<std::string, Json>& certificates,
-                  Json& numbers) {
-  const Json& interval = one.at(key);
-  const std::string object = one.at("object").get<std::string>();
-  Number number(one.at("id").get<std::string>(), std::string(key) + " of " + object, interval.at("value"),
-                interval.at("unit").get<std::string>());
-  number.by_half_width(interval.at("half_width"), interval.at("sources"), interval.at("coverage"));
-  number.by_certificate(certificates, object);
-  numbers.push_back(std::move(number).json());
-}
-
-void add_contacts(const Json& flap, const std::map<std::string, Json>& certificates, Json& numbers) {
-  for (const Json& contact : flap.at("osteotomies")) {
-    const std::string object = contact.at("object").get<std::string>();
-    Number number(flap.at("id").get<std::string>(), "contact area of " + object, contact.at("contact_mm2"),
-                  "mm2");
-    number.by_certificate(certificates, object);
-    if (!contact.at("slab_lacks_at_most_mm2").is_number())
-      number.gap(
-          "the mean over the slab may differ from the area in the cut, by an amount that was not computed");
-    numbers.push_back(std::move(number).json());
-  }
-}
-
-/// Adds the numbers of a contact: both kernels compute the distance, only one the area.
-void add_contact_map(const Json& map, const std::map<std::string, Json>& certificates, Json& numbers) {
-  const std::string id = map.at("id").get<std::string>();
-  const std::string pair =
-      map.at("object").get<std::string>() + " and " + map.at("against").get<std::string>();
-  const auto add = [&](Number number) {
-    for (const char* key : {"object", "against"})
-      number.by_certificate(certificates, map.at(key).get<std::string>());
-    numbers.push_back(std::move(number).json());
-  };
-  std::size_t place = 0;
-  for (const Json& contact : map.at("contacts")) {
-    Number number(id, "nearest at contact " + std::to_string(++place) + " of " + pair,
-                  contact.at("nearest_mm"), "mm");
-    number.by_half_width(contact.at("half_width_mm"), Json());
-    // Areas come from meshes only. Without a mesh the voxel kernel's distance is the number itself and no
-    // evidence for it.
-    number.by_other_kernel(map.at("area_mm2").is_number() ? contact.at("voxel_nearest_mm") : Json(),
-                           contact.at("half_width_mm"));
-    add(std::move(number));
-  }
-  if (map.at("certain_count").is_number()) {
-    Number number(id, "contacts of " + pair + " that are certain", map.at("certain_count"), "");
-    number.gap(
-        "a count of contacts whose distance plus half-width is within the limit; no other number checks it");
-    add(std::move(number));
-  }
-  for (const auto& [key, what, unit] : {std::tuple("area_mm2", "area in contact of ", "mm2"),
-                                        std::tuple("overlap_mm3", "overlap of ", "mm3")})
-    if (map.contains(key) && map.at(key).is_number()) {
-      Number number(id, what + pair, map.at(key), unit);
-      number.gap("only one kernel computes it, without a half-width");
-      add(std::move(number));
-    }
-}
-
-void add_airway(const Json& one, const std::map<std::string, Json>& certificates, Json& numbers) {
-  const Json &airway = one.at("airway"), &least = airway.at("narrowest");
-  const std::string object = one.at("object").get<std::string>();
-  const auto add = [&](const std::string& what, const Json& value, const char* unit, const Json& half_width,
-                       const Json& terms, const Json& other) {
-    Number number(one.at("id").get<std::string>(), what + " of " + object, value, unit);
-    number.by_half_width(half_width, terms);
-    number.by_other_kernel(other, half_width);
-    number.by_certificate(certificates, object);
-    numbers.push_back(std::move(number).json());
-  };
-  add("airway volume", airway.at("volume_mm3"), "mm3", airway.at("volume_half_width_mm3"), Json(),
-      airway.at("volume_mesh_mm3"));
-  // The reported area is that of the mesh if there is one; it must not count as evidence for itself.
-  add("narrowest section", least.at("area_mm2"), "mm2", least.at("half_width_mm2"),
-      least.value("half_width_terms", Json()),
-      least.at("mesh_mm2").is_number() ? least.at("voxel_mm2") : Json());
-  add("centre line's length", airway.at("length_mm"), "mm", Json(), Json(), Json());
-}
-
-void add_trials(const Json& trials, Json& numbers) {
-  for (const Json& doubt : trials.at("doubts")) {
-    Number number(trials.at("id").get<std::string>(),
-                  doubt.at("what").get<std::string>() + " of " + doubt.at("of").get<std::string>(),
-                  doubt.at("value"), doubt.at("unit").get<std::string>());
-    number.by_trials(trials, doubt);
-    number.gap("the sizes of the errors were typed, and trials do not compute objects");
-    numbers.push_back(std::move(number).json());
-  }
-}
-
-/// Adds the pieces' movements. They are the plan's own motions, which both kernels applied in the pieces'
-/// certificates.
-void add_movements(const Json& result, const std::map<std::string, Json>& certificates, Json& numbers) {
-  for (const Json& moved : result.value("movements", Json::array())) {
-    const std::string object = moved.at("object").get<std::string>();
-    const auto add = [&](const std::string& what, const Json& value, const char* unit) {
-      Number number(object, what, value, unit);
-      number.by_certificate(certificates, object);
-      number.gap("it is the plan's own value: octotomy outcome measures what the operation achieved");
-      numbers.push_back(std::move(number).json());
-    };
-    const auto add_all = [&](const Json& from, const char* unit, const std::vector<std::string>& names) {
-      for (const std::string& name : names) add(name, from.at(name + "_" + unit), unit);
-    };
-    if (!moved.at("centroid").is_null()) add_all(moved.at("centroid"), "mm", {"forward", "left", "up"});
-    add_all(moved, "deg", {"pitch", "yaw", "roll"});
-  }
-}
-
-/// Adds values computed from landmarks; the only evidence for them is the placement of the landmarks.
-void add_cephalometry(const Json& result, Json& numbers) {
-  if (!result.contains("cephalometry") || !result.at("cephalometry").is_object()) return;
-  for (const Json& measure : result.at("cephalometry").at("measures"))
-    for (const char* when : {"before", "after"}) {
-      const Json& told = measure.at(when);
-      if (told.is_null()) continue;
-      Number number("cephalometry", measure.at("name").get<std::string>() + " " + when, told.at("value"),
-                    measure.at("unit").get<std::string>());
-      number.by_half_width(told.value("half_width", Json()), Json::array({{{"name", "landmarks"}}}),
-                           result.at("cephalometry").at("coverage"));
-      number.gap("the landmarks were placed by people; their accuracy is an assumption of this run");
-      numbers.push_back(std::move(number).json());
-    }
-}
-
-Json numbers_of(const Json& result) {
-  const std::map<std::string, Json> certificates = certificates_of(result);
-  Json numbers = Json::array();
-  for (const Json& one : result.at("measurements")) {
-    for (const char* key : {"volume", "area"})
-      if (one.contains(key) && one.at(key).is_object()) add_interval(one, key, certificates, numbers);
-    const std::string id = one.at("id").get<std::string>();
-    if (one.contains("gap_mm") && one.at("gap_mm").is_number()) {
-      Number number(id, "gap", one.at("gap_mm"), "mm");
-      number.by_half_width(one.at("gap_half_width_mm"), one.value("gap_half_width_terms", Json()));
-      for (const char* key : {"object", "to"})
-        number.by_certificate(certificates, one.at(key).get<std::string>());
-      numbers.push_back(std::move(number).json());
-    }
-    for (const auto& [key, unit] : {std::pair<std::string, std::string>{"distance", "mm"}, {"angle", "deg"}})
-      if (one.contains(key + "_" + unit)) {
-        Number number(id, key, one.at(key + "_" + unit), unit);
-        number.by_half_width(one.value(key + "_half_width_" + unit, Json()),
-                             one.value(key + "_half_width_terms", Json()));
-        number.gap("the points were placed by people; their accuracy was not stated for this run");
-        numbers.push_back(std::move(number).json());
-      }
-    if (one.contains("osteotomies")) add_contacts(one, certificates, numbers);
-    if (one.contains("contacts")) add_contact_map(one, certificates, numbers);
-    if (one.contains("airway")) add_airway(one, certificates, numbers);
-    if (one.contains("doubts")) add_trials(one, numbers);
-  }
-  add_movements(result, certificates, numbers);
-  add_cephalometry(result, numbers);
-  return numbers;
-}
-
-Json factor(const char* group, const char* name, Json evidence, const std::string& gap) {
-  Json made{{"group", group}, {"factor", name}, {"evidence", std::move(evidence)}, {"gap", nullptr}};
-  if (made["evidence"].empty() || gap.starts_with("also: ")) made["gap"] = gap;
+CredibilityFactor factor(const char* group, const char* name, std::vector<Json> evidence,
+                         const std::string& gap) {
+  CredibilityFactor made{group, name, std::move(evidence), {}};
+  if (made.evidence.empty() || gap.starts_with("also: ")) made.gap = gap;
   return made;
 }
 
-Json certificate_evidence(const Json& result) {
-  Json evidence = Json::array();
-  if (result.at("certificates").empty()) return evidence;
-  std::size_t limits = 0;
-  for (const Json& one : result.at("certificates"))
-    limits += one.contains("detection_limit") && !one.at("detection_limit").is_null();
-  evidence.push_back({{"check", "certificates"}, {"counts", result.at("counts")}});
+std::vector<Json> certificate_evidence(const ResultRecord& result) {
+  if (result.certificates.empty()) return {};
+  std::vector<Json> evidence{{{"check", "certificates"}, {"counts", result.counts}}};
+  const auto limits =
+      std::count_if(result.certificates.begin(), result.certificates.end(),
+                    [](const CertificateRecord& one) { return !one.detection_limit.is_null(); });
   if (limits > 0)
     evidence.push_back(
         {{"check", "errors made in the objects themselves, to find the smallest that is detected"},
@@ -278,62 +353,53 @@ Json certificate_evidence(const Json& result) {
   return evidence;
 }
 
-Json scan_evidence(const Json& result) {
-  Json evidence = Json::array();
-  for (const Json& scan : result.at("scans"))
-    for (const Json& check : scan.at("audit"))
-      evidence.push_back({{"check", "scan audit"},
-                          {"scan", scan.at("name")},
-                          {"of", check.at("check")},
-                          {"verdict", check.at("verdict")}});
-  return evidence;
-}
-
 /// The audit of the scans, and the errors of other inputs as stated for trials.
-Json input_evidence(const Json& result) {
-  Json evidence = scan_evidence(result);
-  for (const Json& one : result.at("measurements"))
-    if (one.contains("doubts"))
+std::vector<Json> input_evidence(const ResultRecord& result) {
+  std::vector<Json> evidence;
+  for (const ScanOfResult& scan : result.scans)
+    for (const AuditLine& line : scan.audit)
+      evidence.push_back(
+          {{"check", "scan audit"}, {"scan", scan.name}, {"of", line.check}, {"verdict", line.verdict}});
+  for (const Measurement& one : result.measurements)
+    if (one.trials)
       evidence.push_back({{"check", "trials"},
-                          {"step", one.at("id")},
-                          {"trials", one.at("trials")},
-                          {"seed", one.at("seed")},
-                          {"errors", one.at("errors")}});
+                          {"step", one.id},
+                          {"trials", one.trials->trials},
+                          {"seed", one.trials->seed},
+                          {"errors", print_record(one.trials->errors)}});
   return evidence;
 }
 
-bool has_trials(const Json& result) {
-  for (const Json& one : result.at("measurements"))
-    if (one.contains("doubts")) return true;
-  return false;
+bool has_trials(const ResultRecord& result) {
+  return std::any_of(result.measurements.begin(), result.measurements.end(),
+                     [](const Measurement& one) { return one.trials.has_value(); });
 }
 
-Json reader_evidence(const Json& result) {
-  Json evidence = Json::array();
-  for (const Json& signature : result.at("signatures"))
-    if (signature.value("changed_since", Json::array()).empty())
-      evidence.push_back({{"check", "signature"}, {"by", signature.value("by", Json())}});
+std::vector<Json> reader_evidence(const ResultRecord& result) {
+  std::vector<Json> evidence;
+  for (const SignatureOfResult& signature : result.signatures)
+    if (signature.changed_since.empty())
+      evidence.push_back({{"check", "signature"}, {"by", print_value(signature.by)}});
   return evidence;
 }
 
-Json identity_evidence(const Json& result) {
-  Json evidence = Json::array();
-  for (const Json& scan : result.at("scans"))
-    if (const Json sum = scan.value("sha256", Json()); sum.is_string() && !sum.get<std::string>().empty())
-      evidence.push_back({{"check", "scan's SHA-256"}, {"scan", scan.at("name")}, {"sha256", sum}});
-  if (!evidence.empty())
-    evidence.push_back({{"check", "program's version"}, {"version", result.at("octotomy")}});
+std::vector<Json> identity_evidence(const ResultRecord& result) {
+  std::vector<Json> evidence;
+  for (const ScanOfResult& scan : result.scans)
+    if (const std::string sum = scan.sha256.value_or(""); !sum.empty())
+      evidence.push_back({{"check", "scan's SHA-256"}, {"scan", scan.name}, {"sha256", sum}});
+  if (!evidence.empty()) evidence.push_back({{"check", "program's version"}, {"version", result.octotomy}});
   return evidence;
 }
 
-Json factors_of(const Json& result) {
+std::vector<CredibilityFactor> factors_of(const ResultRecord& result) {
   const char *code = "code verification", *calculation = "calculation verification",
              *model = "validation: computational model", *comparator = "validation: comparator",
              *assessment = "validation: assessment", *applicability = "applicability";
   const char* no_comparison =
       "this run compared nothing with the patient after the operation: octotomy outcome does, where a later "
       "scan exists";
-  const Json none = Json::array();
+  const std::vector<Json> none;
   return {
       factor(code, "software quality assurance", identity_evidence(result),
              "also: a plan does not run the program's tests; this states which version ran on which system"),
@@ -360,38 +426,30 @@ Json factors_of(const Json& result) {
       factor(applicability, "relevance of the validation activities to the context of use", none, to_state)};
 }
 
-Json context_of(const Json& result) {
-  Json scans = Json::array();
-  for (const Json& scan : result.at("scans"))
-    scans.push_back({{"name", scan.at("name")},
-                     {"modality", scan.value("modality", Json())},
-                     {"spacing_mm", scan.value("spacing_mm", Json())}});
-  return {{"statement", nullptr},
-          {"statement_is", to_state},
-          {"plan", result.at("plan").value("name", Json())},
-          {"scans", scans},
-          {"voxel_mm", result.at("universe").at("voxel_mm")}};
+ContextOfUse context_of(const ResultRecord& result) {
+  ContextOfUse context;
+  context.plan = result.plan.name;
+  for (const ScanOfResult& scan : result.scans)
+    context.scans.push_back({scan.name, scan.modality, scan.spacing_mm});
+  context.voxel_mm = result.universe.voxel_mm;
+  return context;
 }
 
 }  // namespace
 
-Json credibility_json(const Json& result) {
-  Json json{
-      {"octotomy", result.at("octotomy")},
-      {"terms", "ASME V&V 40-2018"},
-      {"claim",
-       "What this run checked, arranged in the standard's terms. It claims no conformity and no adequacy."},
-      {"context_of_use", context_of(result)},
-      {"question_of_interest", {{"statement", nullptr}, {"statement_is", to_state}}},
-      {"model_risk",
-       {{"model_influence", nullptr}, {"decision_consequence", nullptr}, {"statement_is", to_state}}},
-      {"credibility_factors", factors_of(result)},
-      {"numbers", numbers_of(result)}};
-  std::size_t unsupported = 0;
-  for (const Json& number : json["numbers"])
-    unsupported += number["supported_by"].empty() || !number["contradicted_by"].empty();
-  json["unsupported"] = unsupported;
-  return json;
+Json credibility_json(const Json& json) {
+  const auto result = record_of<ResultRecord>(json);
+  Credibility made;
+  made.octotomy = result.octotomy;
+  made.terms = "ASME V&V 40-2018";
+  made.claim =
+      "What this run checked, arranged in the standard's terms. It claims no conformity and no adequacy.";
+  made.context_of_use = context_of(result);
+  made.credibility_factors = factors_of(result);
+  made.numbers = Numbers(result).numbers();
+  for (const SupportedNumber& number : made.numbers)
+    made.unsupported += number.supported_by.empty() || !number.contradicted_by.empty() ? 1 : 0;
+  return print_record(made);
 }
 
 namespace {
@@ -419,7 +477,7 @@ std::string in_line(const Json& value) {
 }
 
 /// "certificate, object skull, verdict PASS" in a list.
-std::string lines_of(const Json& evidence) {
+std::string lines_of(const std::vector<Json>& evidence) {
   std::vector<std::string> lines;
   for (const Json& one : evidence) {
     std::string line;
@@ -432,48 +490,47 @@ std::string lines_of(const Json& evidence) {
   return list(lines);
 }
 
-std::string factor_rows(const Json& factors) {
+std::string factor_rows(const std::vector<CredibilityFactor>& factors) {
   std::string rows = "<tr><th>Credibility factor</th><th>This run</th><th>Not in this run</th></tr>";
-  for (const Json& one : factors)
-    rows += "<tr>" + cell(words(one.at("group")) + ": " + element("b", words(one.at("factor")))) +
-            cell(one.at("evidence").empty() ? "nothing" : lines_of(one.at("evidence"))) +
-            cell(words(one.at("gap"))) + "</tr>";
+  for (const CredibilityFactor& one : factors)
+    rows += "<tr>" + cell(escaped(one.group) + ": " + element("b", escaped(one.factor))) +
+            cell(one.evidence.empty() ? "nothing" : lines_of(one.evidence)) +
+            cell(one.gap ? escaped(*one.gap) : "\u2013") + "</tr>";
   return element("table", rows);
 }
 
-std::string number_rows(const Json& numbers) {
+std::string number_rows(const std::vector<SupportedNumber>& numbers) {
   std::string rows =
       "<tr><th>Number</th><th class=\"n\">value</th><th>supported by</th><th>contradicted "
       "by</th><th>gaps</th></tr>";
-  for (const Json& one : numbers) {
-    std::vector<std::string> gaps;
-    for (const Json& gap : one.at("gaps")) gaps.push_back(gap.get<std::string>());
-    rows += "<tr>" + cell(element("b", words(one.at("step"))) + ", " + words(one.at("quantity"))) +
-            figure_cell(words(one.at("value")) + " " + words(one.at("unit"))) +
-            cell(one.at("supported_by").empty() ? "nothing" : lines_of(one.at("supported_by"))) +
-            cell(lines_of(one.at("contradicted_by"))) + cell(list(gaps)) + "</tr>";
-  }
+  for (const SupportedNumber& one : numbers)
+    rows += "<tr>" + cell(element("b", escaped(one.step)) + ", " + escaped(one.quantity)) +
+            figure_cell(words(one.value) + " " + escaped(one.unit)) +
+            cell(one.supported_by.empty() ? "nothing" : lines_of(one.supported_by)) +
+            cell(lines_of(one.contradicted_by)) + cell(list(one.gaps)) + "</tr>";
   return element("table", rows);
 }
 
 }  // namespace
 
 std::string credibility_html(const Json& json) {
-  const Json& context = json.at("context_of_use");
+  const auto credibility = record_of<Credibility>(json);
   const auto asked = [](const char* name) {
     return element("p", element("b", name) + ": " + to_state + ".");
   };
+  const std::optional<std::string>& plan = credibility.context_of_use.plan;
   return html_page(
       "Credibility",
-      element("header", element("div", element("h1", "Credibility: " + words(context.at("plan"))) +
-                                           element("p class=\"soft\"", words(json.at("claim")) + " Terms: " +
-                                                                           words(json.at("terms")) + "."))) +
+      element("header",
+              element("div", element("h1", "Credibility: " + (plan ? escaped(*plan) : "\u2013")) +
+                                 element("p class=\"soft\"", escaped(credibility.claim) + " Terms: " +
+                                                                 escaped(credibility.terms) + "."))) +
           asked("Context of use") + asked("Question of interest") +
           asked("Model risk, of model influence and decision consequence") +
-          element("h2", "Numbers and what supports them") + number_rows(json.at("numbers")) +
-          element("h2", "Credibility factors") + factor_rows(json.at("credibility_factors")) +
+          element("h2", "Numbers and what supports them") + number_rows(credibility.numbers) +
+          element("h2", "Credibility factors") + factor_rows(credibility.credibility_factors) +
           element("footer",
-                  "Octotomy " + words(json.at("octotomy")) + ". The same as data: credibility.json."));
+                  "Octotomy " + escaped(credibility.octotomy) + ". The same as data: credibility.json."));
 }
 
 }  // namespace octotomy::planner

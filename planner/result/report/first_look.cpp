@@ -100,11 +100,11 @@ Result first_look(const std::filesystem::path& scan, const LookOptions& options)
   Json plan{{"octotomy_plan", 1},
             {"name", "First look at " + (name.empty() ? scan.string() : name)},
             {"scans", {{"scan", scan_entry(scan, options.read)}}},
-            {"steps", Json::array()}};
-  plan["steps"].push_back({{"id", "bone"}, {"do", "window"}, {"scan", "scan"}, {"low", bone_low}});
-  plan["steps"].push_back({{"id", "skin"}, {"do", "window"}, {"scan", "scan"}, {"low", skin_low}});
-  plan["steps"].push_back({{"id", "bone_size"}, {"do", "measure"}, {"object", "bone"}});
-  plan["steps"].push_back({{"id", "skin_size"}, {"do", "measure"}, {"object", "skin"}});
+            {"steps",
+             {{{"id", "bone"}, {"do", "window"}, {"scan", "scan"}, {"low", bone_low}},
+              {{"id", "skin"}, {"do", "window"}, {"scan", "scan"}, {"low", skin_low}},
+              {{"id", "bone_size"}, {"do", "measure"}, {"object", "bone"}},
+              {{"id", "skin_size"}, {"do", "measure"}, {"object", "skin"}}}}};
   result.plan = parse_plan(json_text(plan, 2), std::filesystem::current_path());
   // Sets the path directly, because a file name need not be UTF-8, which JSON requires.
   result.plan.scans.at("scan").path = scan;

@@ -34,7 +34,7 @@ Json certificates_json(const Evaluation& evaluation) {
     if (!object.certificate) continue;
     Json json{{"object", object.id}};
     json.update(to_json(*object.certificate));
-    json["findings"] = object.findings;
+    json.update({{"findings", object.findings}});
     certificates.push_back(std::move(json));
   }
   return certificates;
@@ -46,7 +46,7 @@ Json exported_json(const Exported& exported) {
             {"path", exported.path},
             {"written", exported.written}};
   json.update(exported.details);
-  json["findings"] = exported.findings;
+  json.update({{"findings", exported.findings}});
   return json;
 }
 
@@ -170,35 +170,48 @@ std::vector<PictureGroup> plan_pictures(const Plan& plan, Evaluation& evaluation
 
 Json result_json(const Result& result) {
   const Evaluation& evaluation = result.evaluation;
+  const auto list_of = [](const auto& values, const auto& print) {
+    Json list = Json::array();
+    for (const auto& value : values) list.push_back(print(value));
+    return list;
+  };
+  const auto as_json = [](const auto& value) { return to_json(value); };
   Json json = answer(evaluation.timings);
-  json["plan"] = {{"name", result.plan.name}, {"steps", result.plan.steps.size()}};
-  if (!result.plan.text.empty()) json["plan"] = Json::parse(result.plan.text);
-  json["universe"] = {{"side", evaluation.universe.side()},
-                      {"voxel_mm", to_json(evaluation.universe.lattice().spacing_mm())},
-                      {"lps_from_voxel", to_json(evaluation.universe.lps_from_voxel)}};
-  for (const char* key : {"scans", "objects", "components", "exports"}) json[key] = Json::array();
-  for (const ScanRecord& scan : evaluation.scans) json["scans"].push_back(to_json(scan));
-  for (const Object& object : evaluation.objects) json["objects"].push_back(to_json(object));
-  json["landmarks"] = Json::array();
-  for (const NamedPoint& landmark : result.plan.landmarks)
-    json["landmarks"].push_back({{"name", landmark.name}, {"point_mm", to_json(landmark.p_mm)}});
-  json["lps_from_head"] = to_json(evaluation.objects.lps_from_head);
-  json["movements"] = result.movements;
-  json["movement_words"] = movement_words;
-  json["signatures"] = Json::array();
-  for (const SignatureCheck& check : result.signatures) {
-    json["signatures"].push_back(to_json(check.signature));
-    json["signatures"].back()["changed_since"] = check.changed;
-  }
-  json["cephalometry"] = result.cephalometry;
-  json["measurements"] = result.measurements;
-  json["certificates"] = certificates_json(evaluation);
-  json["counts"] = to_json(verdict_counts(evaluation));
-  for (const Parts& parts : result.parts)
-    json["components"].push_back(
-        {{"object", parts.object}, {"count", parts.volumes_mm3.size()}, {"volumes_mm3", parts.volumes_mm3}});
-  for (const Exported& exported : result.exported) json["exports"].push_back(exported_json(exported));
-  json["findings"] = to_json(result.findings);
+  json.update(
+      {{"plan", result.plan.text.empty()
+                    ? Json{{"name", result.plan.name}, {"steps", result.plan.steps.size()}}
+                    : Json::parse(result.plan.text)},
+       {"universe",
+        {{"side", evaluation.universe.side()},
+         {"voxel_mm", to_json(evaluation.universe.lattice().spacing_mm())},
+         {"lps_from_voxel", to_json(evaluation.universe.lps_from_voxel)}}},
+       {"scans", list_of(evaluation.scans, as_json)},
+       {"objects", list_of(evaluation.objects, as_json)},
+       {"components", list_of(result.parts,
+                              [](const Parts& parts) {
+                                return Json{{"object", parts.object},
+                                            {"count", parts.volumes_mm3.size()},
+                                            {"volumes_mm3", parts.volumes_mm3}};
+                              })},
+       {"exports", list_of(result.exported, exported_json)},
+       {"landmarks", list_of(result.plan.landmarks,
+                             [](const NamedPoint& landmark) {
+                               return Json{{"name", landmark.name}, {"point_mm", to_json(landmark.p_mm)}};
+                             })},
+       {"lps_from_head", to_json(evaluation.objects.lps_from_head)},
+       {"movements", result.movements},
+       {"movement_words", movement_words},
+       {"signatures", list_of(result.signatures,
+                              [](const SignatureCheck& check) {
+                                Json signature = to_json(check.signature);
+                                signature.update({{"changed_since", check.changed}});
+                                return signature;
+                              })},
+       {"cephalometry", result.cephalometry},
+       {"measurements", result.measurements},
+       {"certificates", certificates_json(evaluation)},
+       {"counts", to_json(verdict_counts(evaluation))},
+       {"findings", to_json(result.findings)}});
   return json;
 }
 

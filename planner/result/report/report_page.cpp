@@ -10,10 +10,12 @@
 #include <string_view>
 
 #include "planner/operation/anatomy/head_directions.h"
+#include "planner/operation/anatomy/measured_movement.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/object/mask.h"
 #include "planner/operation/picture/colour.h"
 #include "planner/operation/table/number_format.h"
+#include "planner/procedure/cephalometry/cephalometry_table.h"
 #include "planner/result/report/airway_tables.h"
 #include "planner/result/report/contact_report.h"
 #include "planner/result/report/flap_tables.h"
@@ -64,14 +66,12 @@ std::string heading(const Result& result) {
   return element("header", left + overall_verdict(verdict_counts(result.evaluation)));
 }
 
-std::string tiles(const Result& result) {
+std::string tiles(const std::vector<Measurement>& measurements) {
   std::string text;
-  for (const Json& size : result.measurements) {
-    if (!size.contains("volume_mm3")) continue;
-    text += element("div", element("b", grouped(size["volume_mm3"].get<double>() / 1000.0, 2) + " cm\u00b3") +
-                               element("span", escaped(size["id"].get<std::string>()) + " (" +
-                                                   escaped(size["object"].get<std::string>()) + ")"));
-  }
+  for (const Measurement& one : measurements)
+    if (one.size)
+      text += element("div", element("b", grouped(one.size->volume_mm3 / 1000.0, 2) + " cm\u00b3") +
+                                 element("span", escaped(one.id) + " (" + escaped(one.size->object) + ")"));
   return text.empty() ? "" : element("div class=\"tiles\"", text);
 }
 
@@ -222,38 +222,34 @@ std::string pictures(const Result& result) {
 
 // ---- tables ----
 
-std::string number_of(const Json& json, const char* key, int decimals) {
-  return json.at(key).is_number() ? grouped(json.at(key).get<double>(), decimals) : "\u2013";
+std::string number_of(const std::optional<double>& value, int decimals) {
+  return value ? grouped(*value, decimals) : "\u2013";
 }
 /// A number with its half-width.
-std::string doubtful(const Json& json, const char* key, const char* half_width, int decimals) {
-  const bool known = json.contains(half_width) && json.at(half_width).is_number();
-  return number_of(json, key, decimals) +
-         (known ? " \u00b1 " + three_figures(json.at(half_width).get<double>()) : std::string());
+std::string doubtful(const std::optional<double>& value, const std::optional<double>& half_width,
+                     int decimals) {
+  return number_of(value, decimals) + (half_width ? " \u00b1 " + three_figures(*half_width) : "");
 }
 
 /// A recommended number with its interval; a dash if the result has none.
-std::string recommended(const Json& size, const char* quantity, int decimals) {
-  return size.contains(quantity) ? doubtful(size.at(quantity), "value", "half_width", decimals) : "\u2013";
+std::string recommended(const std::optional<MeasuredInterval>& interval, int decimals) {
+  return interval ? doubtful(interval->value, interval->half_width, decimals) : "\u2013";
 }
 
-std::string sizes(const Json& measurements) {
+std::string sizes(const std::vector<Measurement>& measurements) {
   std::string rows;
-  for (const Json& size : measurements) {
-    if (!size.contains("volume_mm3")) continue;
-    const Json& mesh = size.at("mesh");
-    rows += "<tr>" + cell(escaped(size.at("id").get<std::string>())) +
-            cell(escaped(size.at("object").get<std::string>())) +
-            figure_cell(element("b", recommended(size, "volume", 1))) +
-            figure_cell(number_of(size, "volume_mm3", 1)) +
-            figure_cell(mesh.is_null() ? "\u2013" : number_of(mesh, "volume_mm3", 1)) +
-            figure_cell(number_of(size, "difference_mm3", 1)) +
-            figure_cell(number_of(size, "difference_percent", 2)) +
-            figure_cell(element("b", recommended(size, "area", 0))) +
-            figure_cell(number_of(size.at("voxel"), "area_mm2", 0)) +
-            figure_cell(mesh.is_null() ? "\u2013" : number_of(size, "area_mm2", 0)) + "</tr>";
-    if (size.contains("finding"))
-      rows += "<tr><td colspan=\"10\">" + escaped(size.at("finding").get<std::string>()) + "</td></tr>";
+  for (const Measurement& one : measurements) {
+    if (!one.size) continue;
+    const MeasuredSize& size = *one.size;
+    rows +=
+        "<tr>" + cell(escaped(one.id)) + cell(escaped(size.object)) +
+        figure_cell(element("b", recommended(size.volume, 1))) + figure_cell(number_of(size.volume_mm3, 1)) +
+        figure_cell(size.mesh ? grouped(size.mesh->volume_mm3, 1) : "\u2013") +
+        figure_cell(number_of(size.difference_mm3, 1)) + figure_cell(number_of(size.difference_percent, 2)) +
+        figure_cell(element("b", recommended(size.area, 0))) +
+        figure_cell(number_of(size.voxel.area_mm2, 0)) +
+        figure_cell(size.mesh ? number_of(size.area_mm2, 0) : "\u2013") + "</tr>";
+    if (size.finding) rows += "<tr><td colspan=\"10\">" + escaped(*size.finding) + "</td></tr>";
   }
   if (rows.empty()) return "";
   return element(
@@ -276,25 +272,24 @@ std::string sizes(const Json& measurements) {
                  "the isosurface.");
 }
 
-std::string lengths(const Json& measurements) {
+std::string lengths(const std::vector<Measurement>& measurements) {
   std::string rows;
-  for (const Json& one : measurements) {
-    const std::string id = escaped(one.at("id").get<std::string>());
-    if (one.contains("gap_mm"))
-      rows += "<tr>" + cell(id) +
-              cell("gap, " + escaped(one.at("object").get<std::string>()) + " to " +
-                   escaped(one.at("to").get<std::string>())) +
-              figure_cell(doubtful(one, "gap_mm", "gap_half_width_mm", 2) + " mm") +
-              figure_cell(number_of(one, "gap_mesh_mm", 2) + " mm") +
-              figure_cell(number_of(one, "overlap_mm3", 1) + " mm\u00b3") + "</tr>";
-    if (one.contains("distance_mm"))
-      rows += "<tr>" + cell(id) + cell("distance of two points") +
-              figure_cell(doubtful(one, "distance_mm", "distance_half_width_mm", 2) + " mm") + cell("") +
-              cell("") + "</tr>";
-    if (one.contains("angle_deg"))
+  for (const Measurement& one : measurements) {
+    const std::string id = escaped(one.id);
+    if (one.gap)
+      rows += "<tr>" + cell(id) + cell("gap, " + escaped(one.gap->object) + " to " + escaped(one.gap->to)) +
+              figure_cell(doubtful(one.gap->gap_mm, one.gap->gap_half_width_mm, 2) + " mm") +
+              figure_cell(number_of(one.gap->gap_mesh_mm, 2) + " mm") +
+              figure_cell(number_of(one.gap->overlap_mm3, 1) + " mm\u00b3") + "</tr>";
+    if (one.distance)
+      rows +=
+          "<tr>" + cell(id) + cell("distance of two points") +
+          figure_cell(doubtful(one.distance->distance_mm, one.distance->distance_half_width_mm, 2) + " mm") +
+          cell("") + cell("") + "</tr>";
+    if (one.angle)
       rows += "<tr>" + cell(id) + cell("angle at the second of three points") +
-              figure_cell(doubtful(one, "angle_deg", "angle_half_width_deg", 2) + "\u00b0") + cell("") +
-              cell("") + "</tr>";
+              figure_cell(doubtful(one.angle->angle_deg, one.angle->angle_half_width_deg, 2) + "\u00b0") +
+              cell("") + cell("") + "</tr>";
   }
   if (rows.empty()) return "";
   return element("table",
@@ -303,21 +298,19 @@ std::string lengths(const Json& measurements) {
                      rows);
 }
 
-std::string measurements(const Result& result) {
-  if (result.measurements.empty()) return "";
-  return element("h2", "Measurements") + sizes(result.measurements) + lengths(result.measurements) +
-         flap_tables(result.measurements) + contact_tables(result.measurements) +
-         airway_tables(result.measurements) + landmark_tables(result.measurements) +
-         trial_tables(result.measurements);
+std::string measurements(const std::vector<Measurement>& all) {
+  if (all.empty()) return "";
+  return element("h2", "Measurements") + sizes(all) + lengths(all) + flap_tables(all) + contact_tables(all) +
+         airway_tables(all) + landmark_tables(all) + trial_tables(all);
 }
 
-/// A point's displacement as cells, signed along the head's directions.
-std::string displacement_cells(const Json& row) {
-  const auto signed_mm = [&](const char* key) {
-    const double mm = row.at(key).get<double>();
+/// A displacement as cells, signed along the head's directions.
+template <typename Displaced>
+std::string displacement_cells(const Displaced& by) {
+  const auto signed_mm = [](double mm) {
     return figure_cell((mm > 0.005 ? "+" : "") + grouped(std::abs(mm) < 0.005 ? 0.0 : mm, 2));
   };
-  return signed_mm("forward_mm") + signed_mm("up_mm") + signed_mm("left_mm");
+  return signed_mm(by.forward_mm) + signed_mm(by.up_mm) + signed_mm(by.left_mm);
 }
 
 /// A row for each moved piece, for each landmark on it and for each point with a prescribed target.
@@ -326,26 +319,21 @@ std::string movements(const Result& result) {
   std::string rows =
       "<tr><th>Piece or point</th><th class=\"n\">forward, mm</th><th class=\"n\">up, mm</th><th "
       "class=\"n\">left, mm</th><th>In words</th></tr>";
-  for (const Json& moved : result.movements) {
-    const Json& centroid = moved.at("centroid");
-    rows += "<tr class=\"lead\">" + cell(element("b", escaped(moved.at("object").get<std::string>()))) +
-            (centroid.is_null() ? cell("") + cell("") + cell("") : displacement_cells(centroid)) +
-            cell(escaped(moved.at("words").get<std::string>())) + "</tr>";
-    for (const Json& landmark : moved.at("landmarks"))
+  for (const Json& json : result.movements) {
+    const auto moved = record_of<ObjectMovement>(json);
+    rows += "<tr class=\"lead\">" + cell(element("b", escaped(moved.object))) +
+            (moved.centroid ? displacement_cells(*moved.centroid) : cell("") + cell("") + cell("")) +
+            cell(escaped(moved.words)) + "</tr>";
+    for (const LandmarkMovement& landmark : moved.landmarks)
+      rows += "<tr>" + cell(escaped(landmark.name)) + displacement_cells(landmark) +
+              cell(escaped(landmark.words) +
+                   (landmark.since_scan ? ", since the scan " + escaped(landmark.since_scan->words) : "")) +
+              "</tr>";
+    for (const PointMovement& point : moved.points)
       rows +=
-          "<tr>" + cell(escaped(landmark.at("name").get<std::string>())) + displacement_cells(landmark) +
-          cell(escaped(landmark.at("words").get<std::string>()) +
-               (landmark.contains("since_scan")
-                    ? ", since the scan " + escaped(landmark.at("since_scan").at("words").get<std::string>())
-                    : "")) +
+          "<tr>" + cell(escaped(point.name) + ", wanted") + displacement_cells(point) +
+          cell("wanted " + escaped(point.wanted) + ", came within " + grouped(point.residual_mm, 2) + " mm") +
           "</tr>";
-    if (moved.contains("points"))
-      for (const Json& point : moved.at("points"))
-        rows += "<tr>" + cell(escaped(point.at("name").get<std::string>()) + ", wanted") +
-                displacement_cells(point) +
-                cell("wanted " + escaped(point.at("wanted").get<std::string>()) + ", came within " +
-                     grouped(point.at("residual_mm").get<double>(), 2) + " mm") +
-                "</tr>";
   }
   return element("h2", "Movements") + element("table", rows) +
          element("p class=\"soft small\"", std::string(movement_words) +
@@ -354,29 +342,25 @@ std::string movements(const Result& result) {
 }
 
 /// A value with its interval, or a dash.
-std::string interval_cell(const Json& value, bool is_change) {
-  if (value.is_null()) return figure_cell("\u2013");
-  const double number = value.at("value").get<double>();
-  return figure_cell((is_change && number > 0.05 ? "+" : "") + grouped(number, 1) + " \u00b1 " +
-                     grouped(value.at("half_width").get<double>(), 1));
+std::string interval_cell(const std::optional<CephalometricValue>& of, bool is_change) {
+  if (!of) return figure_cell("\u2013");
+  return figure_cell((is_change && of->value > 0.05 ? "+" : "") + grouped(of->value, 1) + " \u00b1 " +
+                     grouped(of->half_width, 1));
 }
 
 std::string cephalometry(const Result& result) {
   if (result.cephalometry.is_null()) return "";
+  const auto table = record_of<CephalometryTable>(result.cephalometry);
   std::string rows =
       "<tr><th>Measure</th><th></th><th class=\"n\">before</th><th class=\"n\">planned</th><th "
       "class=\"n\">change</th><th class=\"n\">norm</th></tr>";
-  for (const Json& row : result.cephalometry.at("measures")) {
-    const std::string unit = row.at("unit") == "deg" ? "\u00b0" : row.at("unit").get<std::string>();
-    rows += "<tr>" + cell(escaped(row.at("name").get<std::string>()) + ", " + unit) +
-            cell("<span class=\"soft\">" + escaped(row.at("says").get<std::string>()) + "</span>") +
-            interval_cell(row.at("before"), false) + interval_cell(row.at("after"), false) +
-            interval_cell(row.at("change"), true) +
-            figure_cell(row.at("norm").is_null()
-                            ? "\u2013"
-                            : number_of(row, "norm", 1) + " \u00b1 " + number_of(row, "deviation", 1)) +
-            "</tr>";
-  }
+  for (const CephalometryRow& row : table.measures)
+    rows +=
+        "<tr>" + cell(escaped(row.name) + ", " + (row.unit == "deg" ? "\u00b0" : row.unit)) +
+        cell("<span class=\"soft\">" + escaped(row.says) + "</span>") + interval_cell(row.before, false) +
+        interval_cell(row.after, false) + interval_cell(row.change, true) +
+        figure_cell(row.norm ? grouped(*row.norm, 1) + " \u00b1 " + number_of(row.deviation, 1) : "\u2013") +
+        "</tr>";
   const std::string picture =
       result.cephalogram.empty()
           ? ""
@@ -389,8 +373,7 @@ std::string cephalometry(const Result& result) {
   return element("h2", "Cephalometry") + element("div class=\"pictures two\"", picture) +
          element("table", rows) +
          element("p class=\"soft small\"",
-                 "After each \u00b1, what landmarks placed to " +
-                     number_of(result.cephalometry, "landmark_deviation_mm", 1) +
+                 "After each \u00b1, what landmarks placed to " + grouped(table.landmark_deviation_mm, 1) +
                      " mm (standard deviation along each axis) leave open in 99 of 100 cases; after each "
                      "norm, its standard deviation among people.");
 }
@@ -574,8 +557,9 @@ std::string footer(const Result& result) {
 }  // namespace
 
 std::string report_html(const Result& result) {
-  return html_page(result.plan.name, heading(result) + tiles(result) + findings(result) + pictures(result) +
-                                         movements(result) + cephalometry(result) + measurements(result) +
+  const std::vector<Measurement> measured = measurements_of(result.measurements);
+  return html_page(result.plan.name, heading(result) + tiles(measured) + findings(result) + pictures(result) +
+                                         movements(result) + cephalometry(result) + measurements(measured) +
                                          certificates(result) + parts_table(result) + scans(result) +
                                          exports(result) + plan_text(result) + footer(result));
 }

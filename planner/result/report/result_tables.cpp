@@ -7,6 +7,7 @@
 #include "planner/operation/table/csv.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/json_file.h"
+#include "planner/result/report/result_record.h"
 
 namespace octotomy::planner {
 namespace {
@@ -61,18 +62,18 @@ class Table {
 };
 
 /// A row for each piece's centroid and each landmark on it.
-Json movement_rows(const Json& movements) {
+Json movement_rows(const std::vector<ObjectMovement>& movements) {
   Json rows = Json::array();
-  for (const Json& moved : movements) {
-    Json piece{{"object", moved.at("object")}, {"point", "centroid"}};
-    if (moved.at("centroid").is_object()) piece.update(moved.at("centroid"));
-    for (const char* turn : {"pitch_deg", "yaw_deg", "roll_deg"}) piece[turn] = moved.at(turn);
-    rows.push_back(piece);
-    for (const Json& landmark : moved.at("landmarks")) {
-      Json row{{"object", moved.at("object")}, {"point", landmark.at("name")}};
-      row.update(landmark);
+  for (const ObjectMovement& moved : movements) {
+    Json piece{{"object", moved.object}, {"point", "centroid"}};
+    if (moved.centroid) piece.update(print_record(*moved.centroid));
+    piece.update({{"pitch_deg", moved.pitch_deg}, {"yaw_deg", moved.yaw_deg}, {"roll_deg", moved.roll_deg}});
+    rows.push_back(std::move(piece));
+    for (const LandmarkMovement& landmark : moved.landmarks) {
+      Json row{{"object", moved.object}, {"point", landmark.name}};
+      row.update(print_record(landmark));
       row.erase("name");
-      rows.push_back(row);
+      rows.push_back(std::move(row));
     }
   }
   return rows;
@@ -88,19 +89,13 @@ std::string csv_of(const Json& rows) {
 
 std::string gravest_scan_audit(const Json& result) {
   static const std::vector<std::string> verdicts{"", "PASS", "WARN", "FAIL"};
-  const auto scans = result.find("scans");
-  if (scans == result.end() || !scans->is_array()) return {};
-  std::size_t gravest = 0;
-  for (const Json& scan : *scans) {
-    if (!scan.is_object() || !scan.contains("audit")) continue;
-    for (const Json& line : scan["audit"]) {
-      const auto found =
-          std::find(verdicts.begin(), verdicts.end(), line.is_object() ? line.value("verdict", "") : "");
-      if (found != verdicts.end())
-        gravest = std::max(gravest, static_cast<std::size_t>(found - verdicts.begin()));
-    }
-  }
-  return verdicts[gravest];
+  auto gravest = verdicts.begin();
+  for (const ScanOfResult& scan : record_of<ResultRecord>(result).scans)
+    for (const AuditLine& line : scan.audit)
+      if (const auto found = std::find(verdicts.begin(), verdicts.end(), line.verdict);
+          found != verdicts.end())
+        gravest = std::max(gravest, found);
+  return *gravest;
 }
 
 std::vector<std::pair<std::filesystem::path, std::string>> result_tables(const Json& result) {
@@ -110,10 +105,11 @@ std::vector<std::pair<std::filesystem::path, std::string>> result_tables(const J
   };
   Json measurements = result.at("measurements");
   if (const std::string audit = gravest_scan_audit(result); !audit.empty())
-    for (Json& row : measurements) row["scan_audit"] = audit;
+    for (Json& row : measurements) row.update({{"scan_audit", audit}});
   add("measurements", measurements);
-  add("movements", movement_rows(result.at("movements")));
-  if (result.at("cephalometry").is_object()) add("cephalometry", result.at("cephalometry").at("measures"));
+  const auto record = record_of<ResultRecord>(result);
+  add("movements", movement_rows(record.movements));
+  if (record.cephalometry) add("cephalometry", print_value(record.cephalometry->measures));
   add("certificates", result.at("certificates"));
   return tables;
 }

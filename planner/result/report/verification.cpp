@@ -11,6 +11,7 @@
 #include <map>
 #include <tuple>
 
+#include "planner/operation/measure/certificate_record.h"
 #include "planner/operation/picture/colour.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
@@ -23,10 +24,27 @@
 namespace octotomy::planner {
 namespace {
 
-verify::Verdict verdict_of(const Json& judged) {
+verify::Verdict verdict_named(const std::string& name) {
   for (const auto verdict : {verify::Verdict::Pass, verify::Verdict::Warn})
-    if (judged.at("verdict") == verify::to_string(verdict)) return verdict;
+    if (name == verify::to_string(verdict)) return verdict;
   return verify::Verdict::Fail;
+}
+
+/// An entry of a suite that was not computed again.
+struct NotRecomputed {
+  std::string where, why;
+};
+constexpr auto members_of(const NotRecomputed&) {
+  return std::tuple(member("where", &NotRecomputed::where), member("why", &NotRecomputed::why));
+}
+/// The parts of an answer that the page reads by name.
+struct VerificationAnswer {
+  std::vector<CertificateRecord> certificates;
+  std::vector<NotRecomputed> not_recomputed;
+};
+constexpr auto members_of(const VerificationAnswer&) {
+  return std::tuple(member("certificates", &VerificationAnswer::certificates),
+                    member("not_recomputed", &VerificationAnswer::not_recomputed));
 }
 
 /// A quantity's difference as a share of its tolerance; infinite if there is a difference but the tolerance
@@ -36,42 +54,42 @@ struct Share {
   verify::Verdict verdict = verify::Verdict::Pass;
 };
 
-std::optional<Share> share_of(const Json& comparison) {
-  if (!comparison.at("tolerance").is_number() || !comparison.at("difference").is_number())
-    return std::nullopt;
-  const double difference = comparison.at("difference"), tolerance = comparison.at("tolerance");
+std::optional<Share> share_of(const ComparedQuantity& comparison) {
+  if (!comparison.tolerance || !comparison.difference) return std::nullopt;
+  const double difference = *comparison.difference, tolerance = *comparison.tolerance;
   const double share = difference == 0.0 ? 0.0
                        : tolerance > 0.0 ? difference / tolerance
                                          : std::numeric_limits<double>::infinity();
-  return Share{share, verdict_of(comparison)};
+  return Share{share, verdict_named(comparison.verdict.value_or(""))};
 }
+
+using CertificateList = std::vector<CertificateRecord>;
 
 /// Shares by quantity, over all certificates of objects that voxels resolve; the exact tier is a quantity of
 /// its own.
 using Shares = std::map<std::string, std::vector<Share>>;
 
-Shares shares_of(const Json& certificates) {
+Shares shares_of(const CertificateList& certificates) {
   Shares shares;
-  for (const Json& certificate : certificates) {
-    if (!certificate.at("resolved")) continue;
-    if (certificate.at("tier") == verify::to_string(verify::Tier::Exact)) {
-      const verify::Verdict verdict = verdict_of(certificate);
+  for (const CertificateRecord& certificate : certificates) {
+    if (!certificate.resolved) continue;
+    if (certificate.tier == verify::to_string(verify::Tier::Exact)) {
+      const verify::Verdict verdict = verdict_named(certificate.verdict);
       shares["exact tier"].push_back(
           {verdict == verify::Verdict::Pass ? 0.0 : std::numeric_limits<double>::infinity(), verdict});
       continue;
     }
-    for (const Json& comparison : certificate.at("comparisons"))
-      if (const auto share = share_of(comparison))
-        shares[comparison.at("quantity").get<std::string>()].push_back(*share);
+    for (const ComparedQuantity& comparison : certificate.comparisons)
+      if (const auto share = share_of(comparison)) shares[comparison.quantity].push_back(*share);
   }
   for (auto& [quantity, all] : shares)
     std::sort(all.begin(), all.end(), [](const Share& a, const Share& b) { return a.value < b.value; });
   return shares;
 }
 
-double worst_of(const Json& certificate) {
+double worst_of(const CertificateRecord& certificate) {
   double worst = 0.0;
-  for (const Json& comparison : certificate.at("comparisons"))
+  for (const ComparedQuantity& comparison : certificate.comparisons)
     if (const auto share = share_of(comparison)) worst = std::max(worst, share->value);
   return worst;
 }
@@ -154,41 +172,35 @@ std::string worst_pictures(const Verification& verification) {
          element("div class=\"pictures four\"", figures);
 }
 
-std::string certificate_row(const Json& certificate) {
-  const verify::Verdict verdict = verdict_of(certificate);
-  const auto volume = [&](const char* kernel) {
-    const Json& value = certificate.at(kernel).at("volume_mm3");
-    return figure_cell(value.is_number() ? grouped(value.get<double>(), 1) : "\u2013");
+std::string certificate_row(const CertificateRecord& certificate) {
+  const verify::Verdict verdict = verdict_named(certificate.verdict);
+  const auto volume = [](const KernelAnswer& answer) {
+    return figure_cell(answer.volume_mm3 ? grouped(*answer.volume_mm3, 1) : "\u2013");
   };
-  const Json& difference = certificate.at("difference_mm3");
-  const Json& tolerance = certificate.at("tolerance_mm3");
-  std::vector<std::string> reasons = certificate.at("reasons");
-  if (!certificate.at("resolved"))
-    reasons.push_back("not resolved: " + certificate.at("not_resolved_because").get<std::string>());
-  for (const Json& finding : certificate.value("findings", Json::array()))
-    reasons.push_back(finding.get<std::string>());
-  return "<tr>" +
-         cell(element("code", escaped(certificate.at("operation").get<std::string>())) + list(reasons)) +
-         cell(escaped(certificate.at("tier").get<std::string>())) +
-         cell(pill(verdict, certificate.at("resolved"))) + volume("voxel") + volume("mesh") +
-         (difference.is_number() && tolerance.is_number()
-              ? figure_cell(grouped(difference.get<double>(), 1) + " / " +
-                            grouped(tolerance.get<double>(), 1) +
-                            gauge(difference.get<double>(), tolerance.get<double>(), verdict))
-              : figure_cell("\u2013")) +
+  const auto &difference = certificate.difference_mm3, &tolerance = certificate.tolerance_mm3;
+  std::vector<std::string> reasons = certificate.reasons;
+  if (!certificate.resolved)
+    reasons.push_back("not resolved: " + certificate.not_resolved_because.value_or(""));
+  reasons.insert(reasons.end(), certificate.findings.begin(), certificate.findings.end());
+  return "<tr>" + cell(element("code", escaped(certificate.operation)) + list(reasons)) +
+         cell(escaped(certificate.tier)) + cell(pill(verdict, certificate.resolved)) +
+         volume(certificate.voxel) + volume(certificate.mesh) +
+         (difference && tolerance ? figure_cell(grouped(*difference, 1) + " / " + grouped(*tolerance, 1) +
+                                                gauge(*difference, *tolerance, verdict))
+                                  : figure_cell("\u2013")) +
          figure_cell(share_text(worst_of(certificate))) + "</tr>";
 }
 
 /// All certificates if there are few, else those with the largest shares of their tolerances.
-std::string certificates(const Json& all) {
+std::string certificates(const CertificateList& all) {
   constexpr std::size_t most_shown = 30;
-  std::vector<const Json*> shown;
-  for (const Json& certificate : all) shown.push_back(&certificate);
+  std::vector<const CertificateRecord*> shown;
+  for (const CertificateRecord& certificate : all) shown.push_back(&certificate);
   const bool few = shown.size() <= most_shown;
   if (!few) {
-    std::stable_sort(shown.begin(), shown.end(), [](const Json* a, const Json* b) {
-      const auto rank = [](const Json& c) {
-        return std::tuple(verdict_of(c), c.at("resolved").get<bool>(), worst_of(c));
+    std::stable_sort(shown.begin(), shown.end(), [](const CertificateRecord* a, const CertificateRecord* b) {
+      const auto rank = [](const CertificateRecord& c) {
+        return std::tuple(verdict_named(c.verdict), c.resolved, worst_of(c));
       };
       return rank(*a) > rank(*b);
     });
@@ -199,7 +211,7 @@ std::string certificates(const Json& all) {
       "<tr><th>Question</th><th>Tier</th><th></th><th class=\"n\">voxel, mm\u00b3</th><th class=\"n\">mesh, "
       "mm\u00b3</th><th class=\"n\">difference / allowed, mm\u00b3</th><th class=\"n\">largest "
       "share</th></tr>";
-  for (const Json* certificate : shown) rows += certificate_row(*certificate);
+  for (const CertificateRecord* certificate : shown) rows += certificate_row(*certificate);
   return element("h2", few ? "Certificates"
                            : "The " + std::to_string(most_shown) + " worst of " + std::to_string(all.size()) +
                                  " certificates") +
@@ -253,21 +265,18 @@ std::string suite_tables(const Json& answer) {
   return html;
 }
 
-std::string not_covered(const Verification& verification) {
+std::string not_covered(const Verification& verification, const VerificationAnswer& answer) {
   std::vector<std::string> lines = verification.not_covered;
   if (verification.counts.not_resolved > 0)
     lines.push_back(plural(verification.counts.not_resolved, "object") +
                     " not resolved: a PASS on fewer than six voxels, or on a sheet thinner than one, proves "
                     "little");
-  if (verification.answer.contains("not_recomputed"))
-    for (const Json& gap : verification.answer.at("not_recomputed"))
-      lines.push_back(gap.at("where").get<std::string>() + ": " + gap.at("why").get<std::string>());
+  for (const NotRecomputed& gap : answer.not_recomputed) lines.push_back(gap.where + ": " + gap.why);
   // The code that made both answers and their shared inputs, from the certificates.
   std::map<std::string, int> shared;
-  if (verification.answer.contains("certificates"))
-    for (const Json& certificate : verification.answer.at("certificates"))
-      for (const char* list : {"shared_makers", "shared_values"})
-        for (const Json& entry : certificate.value(list, Json::array())) ++shared[entry.get<std::string>()];
+  for (const CertificateRecord& certificate : answer.certificates)
+    for (const auto* list : {&certificate.shared_makers, &certificate.shared_values})
+      for (const std::string& entry : *list) ++shared[entry];
   for (const auto& [entry, count] : shared)
     lines.push_back("both answers of " + plural(count, "certificate") + " share " + entry);
   lines.emplace_back(
@@ -300,11 +309,11 @@ std::string times(const Json& answer) {
 }  // namespace
 
 std::string verification_html(const Verification& verification) {
-  const Json& all =
-      verification.answer.contains("certificates") ? verification.answer.at("certificates") : Json::array();
+  const auto answer = record_of<VerificationAnswer>(verification.answer);
   return html_page("Verification: " + verification.subject,
-                   heading(verification) + quantities(shares_of(all)) + worst_pictures(verification) +
-                       certificates(all) + suite_tables(verification.answer) + not_covered(verification) +
+                   heading(verification) + quantities(shares_of(answer.certificates)) +
+                       worst_pictures(verification) + certificates(answer.certificates) +
+                       suite_tables(verification.answer) + not_covered(verification, answer) +
                        times(verification.answer));
 }
 

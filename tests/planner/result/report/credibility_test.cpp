@@ -17,7 +17,7 @@ Json run() {
     "counts": {"PASS": 1, "WARN": 0, "FAIL": 0},
     "certificates": [{"object": "skull", "tier": "bounded", "verdict": "PASS", "resolved": true,
                       "detection_limit": {"volume_mm3": 4, "shift_mm": 0.1}}],
-    "measurements": [{"id": "size", "object": "skull",
+    "measurements": [{"id": "size", "object": "skull", "volume_mm3": 10,
         "volume": {"value": 10, "unit": "mm3", "half_width": 1, "coverage": 0.99, "sources": [{"name": "blur"}]}}]})");
 }
 

@@ -25,11 +25,12 @@ TEST(FlapTables, TellOrderLengthAngleAndContactAndEscapeNames) {
                   {"osteotomies", {contact}},
                   {"donor_used_mm", 130.57},
                   {"contact_estimator", "a volume over a thickness"}};
-  const std::string html = flap_tables(Json::array({Json{{"id", "size"}, {"volume_mm3", 3.0}}, flap}));
+  const std::string html =
+      flap_tables(measurements_of(Json::array({Json{{"id", "size"}, {"volume_mm3", 3.0}}, flap})));
   for (const char* part : {"1. a&lt;b", "25.9 mm", "20.0 mm, 28.7\u00b0", "177 mm\u00b2", "130.6 mm"})
     EXPECT_NE(html.find(part), std::string::npos) << part << " in " << html;
   EXPECT_EQ(html.find("a<b"), std::string::npos);
-  EXPECT_EQ(flap_tables(Json::array({Json{{"id", "size"}, {"volume_mm3", 3.0}}})), "");
+  EXPECT_EQ(flap_tables(measurements_of(Json::array({Json{{"id", "size"}, {"volume_mm3", 3.0}}}))), "");
 }
 
 }  // namespace
