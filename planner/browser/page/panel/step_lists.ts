@@ -259,14 +259,8 @@ async function show_diff(from: number): Promise<void> {
   if (diff_rows?.from === from)
     diff_rows = null;
   else {
-    const answer =
-        await try_to<{rows: (string | {[key: string]: Json})[]}>("diff", {a: from, b: state.plan?.edit});
-    if (answer)
-      diff_rows = {
-        from,
-        rows: answer.rows.map(
-            (row) => (typeof row === "string" ? row : Object.values(row).map(String).join(" ")))
-      };
+    const answer = await try_to<{rows: string[]}>("diff", {a: from, b: state.plan?.edit});
+    if (answer) diff_rows = {from, rows: answer.rows};
   }
   set({left_tab: "history"});
 }
