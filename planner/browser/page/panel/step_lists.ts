@@ -18,7 +18,7 @@ const object_of = (id: string): ObjectState|undefined =>
 export function make_lists(host: HTMLElement): void {
   const tabs = el("div", {class: "tabs", role: "tablist"});
   const body = el("div", {class: "list", role: "tabpanel"});
-  host.append(tabs, body);
+  host.append(el("h2", {class: "unseen"}, "The plan"), tabs, body);
   const again = (): void => {
     if (!state.plan) return fill(body);
     fill_tabs(
