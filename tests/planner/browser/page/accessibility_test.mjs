@@ -12,9 +12,8 @@ import { PlannerWindow, lay_phantom, start_server } from './planner_window.mjs';
 const axe = fs.readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'octotomy-accessibility-'));
 const jaw = [{ view: 'anterior', polygons_mm: [[[-40, -60], [40, -60], [40, -25], [-40, -25]]] }, { view: 'left', polygons_mm: [[[-90, -60], [-20, -60], [-20, -25], [-90, -25]]] }];
-let server;
 
-before(async () => {
+before(() => {
   lay_phantom(folder, 2);
   fs.writeFileSync(path.join(folder, 'jaw.plan.json'), JSON.stringify({
     octotomy_plan: 1, name: 'jaw', scans: { ct: { path: 'head_phantom.nrrd' } },
@@ -29,12 +28,8 @@ before(async () => {
       { id: 'height', do: 'measure', points_mm: ['nasion', 'menton'] },
     ],
   }));
-  server = await start_server(folder);
 });
-after(() => {
-  server?.stop();
-  fs.rmSync(folder, { recursive: true, force: true });
-});
+after(() => fs.rmSync(folder, { recursive: true, force: true }));
 
 /// Names of screens, and what brings each from the planner at rest.
 const screens = {
@@ -65,6 +60,8 @@ async function violations(one, screen) {
 
 for (const theme of ['light', 'dark'])
   test(`no screen has a violation, ${theme}`, async () => {
+    // A new server begins with the start page.
+    const server = await start_server(folder);
     const one = await PlannerWindow.open(server.url, { theme });
     try {
       await one.page.evaluate(axe); // the page's policy allows no other script
@@ -99,5 +96,6 @@ for (const theme of ['light', 'dark'])
       assert.deepEqual(one.problems, []);
     } finally {
       await one.close();
+      server.stop();
     }
   });
