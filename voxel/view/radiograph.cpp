@@ -2,9 +2,12 @@
 #include "voxel/view/radiograph.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <tbb/parallel_for.h>
 
+#include "voxel/tree/highest_samples.h"
 #include "voxel/view/layer.h"
 #include "voxel/view/pixel_index.h"
 
@@ -13,98 +16,352 @@ namespace {
 
 constexpr double water_per_mm = 0.0206;
 constexpr double steps_per_voxel = 2.0;
+constexpr int leaf_edge = 4;
 
-double trilinear(const GreyOctree& grey, const glm::dvec3& p) {
-  const glm::dvec3 cell = glm::floor(p);
-  const glm::dvec3 t = p - cell;
-  const glm::ivec3 low(cell);
-  const auto along_x = [&](int y, int z) {
-    const double at = grey.sample(low + glm::ivec3(0, y, z));
-    return at + (grey.sample(low + glm::ivec3(1, y, z)) - at) * t.x;
-  };
-  const double below = along_x(0, 0) + (along_x(1, 0) - along_x(0, 0)) * t.y;
-  const double above = along_x(0, 1) + (along_x(1, 1) - along_x(0, 1)) * t.y;
-  return below + (above - below) * t.z;
-}
+/// Trilinear samples. Reads the bricks that a cell's corners lie in; keeps those of the last brick and the
+/// corners of the last cell, as a ray takes several steps in either.
+class CellSamples {
+ public:
+  explicit CellSamples(const GreyOctree& grey)
+      : grey_(grey), last_cell_(grey.universe().side() - 2), last_block_((grey.universe().side() - 1) >> 4) {}
 
-/// The range of the samples in the bricks that a trilinear sample at p depends on.
-MinMax range_about(const GreyOctree& grey, const glm::dvec3& p) {
-  const int last = grey.universe().side() - 1;
-  const glm::ivec3 low = glm::clamp(glm::ivec3(glm::floor(p)), 0, last);
-  const glm::ivec3 high = glm::min(low + 1, last);
-  MinMax range = grey.range(2, low >> 4);
-  if ((low >> 4) != (high >> 4))
-    for (int corner = 1; corner < 8; ++corner) {
-      const glm::ivec3 at = glm::mix(low, high, glm::bvec3(corner & 1, corner & 2, corner & 4));
-      const MinMax& part = grey.range(2, at >> 4);
-      range.widen(part);
+  /// Four lines along x at once, two along y, one along z: the compiler makes vectors of the first two.
+  double at(const glm::dvec3& p, const glm::ivec3& cell) {
+    if (cell.x != cell_.x || cell.y != cell_.y || cell.z != cell_.z) enter(cell);
+    const double tx = p.x - cell.x, ty = p.y - cell.y, tz = p.z - cell.z;
+    std::array<double, 4> along_x;
+    for (std::size_t i = 0; i < 4; ++i) along_x[i] = lower_[i] + (upper_[i] - lower_[i]) * tx;
+    std::array<double, 2> along_y;
+    for (std::size_t i = 0; i < 2; ++i) along_y[i] = along_x[i] + (along_x[i + 2] - along_x[i]) * ty;
+    return along_y[0] + (along_y[1] - along_y[0]) * tz;
+  }
+
+ private:
+  static constexpr std::size_t offset(int x, int y, int z) {
+    const auto part = [](int along, int shift) {
+      return static_cast<std::size_t>(((along & 3) << shift) + ((along & 12) << (shift + 4)));
+    };
+    return part(x, 0) + part(y, 2) + part(z, 4);
+  }
+
+  void enter(const glm::ivec3& cell) {
+    cell_ = cell;
+    // Beyond the universe, where rounding may lead, all is background.
+    if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThan(cell, last_cell_))) {
+      for (int line = 0; line < 4; ++line) {
+        const glm::ivec3 at = cell + glm::ivec3(0, line >> 1, line & 1);
+        lower_[static_cast<std::size_t>(line)] = grey_.sample(at);
+        upper_[static_cast<std::size_t>(line)] = grey_.sample(at + glm::ivec3(1, 0, 0));
+      }
+      return;
     }
-  return range;
+    if ((cell >> 4) != block_) enter_block(cell >> 4);
+    const glm::ivec3 in = cell & 15;
+    const std::size_t x[2] = {offset(in.x, 0, 0), offset((in.x + 1) & 15, 0, 0)};
+    const std::size_t y[2] = {offset(0, in.y, 0), offset(0, (in.y + 1) & 15, 0)};
+    const std::size_t z[2] = {offset(0, 0, in.z), offset(0, 0, (in.z + 1) & 15)};
+    // Bit 0, 1 and 2: the upper corner along x, y and z lies in the next brick.
+    const std::size_t beyond = static_cast<std::size_t>((in.x + 1) >> 4) |
+                               static_cast<std::size_t>(((in.y + 1) >> 4) << 1) |
+                               static_cast<std::size_t>(((in.z + 1) >> 4) << 2);
+    for (std::size_t line = 0; line < 4; ++line) {
+      const std::size_t at = y[line >> 1] + z[line & 1];
+      const std::size_t brick = (((line >> 1) << 1) | ((line & 1) << 2)) & beyond;
+      lower_[line] = bricks_[brick][at + x[0]];
+      upper_[line] = bricks_[brick | (beyond & 1)][at + x[1]];
+    }
+  }
+
+  void enter_block(const glm::ivec3& block) {
+    block_ = block;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::ivec3 next = block + glm::ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
+      bricks_[static_cast<std::size_t>(corner)] =
+          grey_.brick(glm::min(next, last_block_)).samples.front().data();
+    }
+  }
+
+  const GreyOctree& grey_;
+  glm::ivec3 last_cell_, last_block_;
+  glm::ivec3 cell_{-1000}, block_{-1000};
+  std::array<double, 4> lower_{},
+      upper_{};  ///< ends of the cell's edges along x; number = upper z + 2 upper y
+  std::array<const std::int16_t*, 8> bricks_{};  ///< of a block and the next ones along each axis
+};
+
+/// The positions of a ray's samples: equal steps of at most half a voxel from end to end of its span.
+struct Steps {
+  glm::dvec3 start, per_mm;
+  double near_mm;
+  int count = 1;
+  double length_mm = 0.0;
+
+  Steps(const glm::dvec3& from, const glm::dvec3& along, const DepthSpan& span)
+      : start(from), per_mm(along), near_mm(span.near_mm) {
+    const double all_mm = span.far_mm - span.near_mm;
+    count = std::max(1, static_cast<int>(std::ceil(all_mm * glm::length(per_mm) * steps_per_voxel)));
+    length_mm = all_mm / count;
+  }
+
+  glm::dvec3 at(int i) const { return start + (near_mm + i * length_mm) * per_mm; }
+
+  /// The first step after i that may lie outside of the aligned cube of cells about step i's cell; never one
+  /// after that.
+  int leaving(int i, const glm::ivec3& cell, int edge) const {
+    double exit_mm = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (per_mm[axis] == 0.0) continue;
+      const int low = cell[axis] & -edge;
+      exit_mm = std::min(exit_mm, ((per_mm[axis] > 0.0 ? low + edge : low) - start[axis]) / per_mm[axis]);
+    }
+    const double exit = (exit_mm - near_mm) / length_mm;
+    return exit >= count ? count + 1 : std::max(i + 1, static_cast<int>(exit));
+  }
+};
+
+/// The cell in which a position lies: its coordinates rounded down.
+inline glm::ivec3 cell_of(const glm::dvec3& p) {
+  return {static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)),
+          static_cast<int>(std::floor(p.z))};
 }
 
-/// An image of value(start, per_mm, span) for every ray that meets the universe, and `missing` for the
-/// others.
-template <typename Value>
-RayImage along_rays(const GreyOctree& grey, const ImagePlane& plane, float missing, const Progress& progress,
-                    const Value& value) {
-  RayImage image{plane.size_px, {}};
-  image.values.assign(pixel_count(plane.size_px), missing);
-  const VoxelRays rays = voxel_rays(grey.universe(), plane);
+/// Calls take(i, sample) for a ray's steps in their order, without those in cubes that have no sample above
+/// limit().
+template <typename Limit, typename Take>
+void march(const GreyOctree& grey, const HighestSamples& highest, const Steps& steps, CellSamples& samples,
+           const Limit& limit, const Take& take) {
+  const int last = grey.universe().side() - 1;
+  for (int i = 0; i <= steps.count;) {
+    glm::dvec3 p = steps.at(i);
+    glm::ivec3 cell = cell_of(p);
+    const glm::ivec3 inside = glm::clamp(cell, 0, last);
+    if (const int edge = highest.edge_without(inside, limit()); edge > 0) {
+      i = steps.leaving(i, inside, edge);
+      continue;
+    }
+    const int next = steps.leaving(i, inside, leaf_edge);
+    const double high = highest.of_leaf(inside);
+    while (true) {
+      take(i, samples.at(p, cell));
+      if (++i >= next || high <= limit()) break;
+      p = steps.at(i);
+      cell = cell_of(p);
+    }
+    i = std::max(i, std::min(next, steps.count + 1));
+  }
+}
+
+/// Calls draw_row(y) for every row, in parallel, until a stop is requested. Throws Stopped.
+template <typename DrawRow>
+void for_rows(const ImagePlane& plane, const Progress& progress, const DrawRow& draw_row) {
   tbb::parallel_for(0, plane.size_px.y, [&](int y) {
-    if (progress.stop.stop_requested()) return;
+    if (!progress.stop.stop_requested()) draw_row(y);
+  });
+  progress.at(1.0);
+}
+
+/// Integrates along rays of one direction the attenuation relative to water, which is 0 for air. The nodes of
+/// the integral are the places where a ray crosses planes of voxels' centres along the axis that it runs
+/// closest to, and the ends of its span.
+template <int axis>
+class AttenuationOfRay {
+ public:
+  AttenuationOfRay(const GreyOctree& grey, const HighestSamples& highest, const glm::dvec3& per_mm)
+      : grey_(grey),
+        highest_(highest),
+        per_mm_(per_mm),
+        last_(grey.universe().side() - 1),
+        plane_mm_(1.0 / std::abs(per_mm[axis])),
+        du_(per_mm[u_axis] / per_mm[axis]),
+        dv_(per_mm[v_axis] / per_mm[axis]),
+        air_(-1000.0 / grey.step()),
+        per_step_(grey.step() * 0.001),
+        ends_(grey) {}
+
+  /// In mm of water.
+  double operator()(const glm::dvec3& start, const DepthSpan& span) {
+    const double near = at_depth(start, span.near_mm), far = at_depth(start, span.far_mm);
+    const bool rises = per_mm_[axis] > 0.0;
+    const double low_mm = rises ? span.near_mm : span.far_mm, high_mm = rises ? span.far_mm : span.near_mm;
+    const int first = static_cast<int>(std::ceil(start[axis] + low_mm * per_mm_[axis]));
+    const int last = static_cast<int>(std::floor(start[axis] + high_mm * per_mm_[axis]));
+    if (last < first) return 0.5 * (near + far) * (span.far_mm - span.near_mm);
+    const Sum planes = of_planes(start, std::max(first, 0), std::min(last, last_));
+    // Trapezia between planes, and those from either end of the span to its nearest plane.
+    const auto depth_mm = [&](int plane) { return (plane - start[axis]) / per_mm_[axis]; };
+    return plane_mm_ * (planes.all - 0.5 * (planes.first + planes.last)) +
+           0.5 * std::abs(depth_mm(first) - low_mm) * ((rises ? near : far) + planes.first) +
+           0.5 * std::abs(high_mm - depth_mm(last)) * ((rises ? far : near) + planes.last);
+  }
+
+ private:
+  static constexpr int u_axis = (axis + 1) % 3, v_axis = (axis + 2) % 3;
+  struct Sum {
+    double all = 0.0, first = 0.0, last = 0.0;
+  };
+
+  double relative(double sample) const { return std::max(0.0, 1.0 + sample * per_step_); }
+  double at_depth(const glm::dvec3& start, double depth_mm) {
+    const glm::dvec3 p = start + depth_mm * per_mm_;
+    return relative(ends_.at(p, cell_of(p)));
+  }
+
+  Sum of_planes(const glm::dvec3& start, int first, int last) {
+    Sum sum;
+    const double u_at_0 = start[u_axis] - start[axis] * du_, v_at_0 = start[v_axis] - start[axis] * dv_;
+    const int last_cell = std::max(0, last_ - 1);
+    for (int plane = first; plane <= last;) {
+      glm::ivec3 cell;
+      cell[axis] = plane;
+      cell[u_axis] = std::clamp(static_cast<int>(u_at_0 + plane * du_), 0, last_cell);
+      cell[v_axis] = std::clamp(static_cast<int>(v_at_0 + plane * dv_), 0, last_cell);
+      const int edge = highest_.edge_without(cell, air_);
+      const int end = std::min(last + 1, leaving(plane, cell, edge > 0 ? edge : leaf_edge, u_at_0, v_at_0));
+      if (edge == 0) {
+        if ((cell >> 4) != block_) enter_block(cell >> 4);
+        for (int at = plane; at < end; ++at) {
+          const double u = u_at_0 + at * du_, v = v_at_0 + at * dv_;
+          const double value = relative(bilinear(at, u, v, cell));
+          sum.all += value;
+          if (at == first) sum.first = value;
+          if (at == last) sum.last = value;
+        }
+      }
+      plane = end;
+    }
+    return sum;
+  }
+
+  /// The sample in a plane; `in` is a cell of the same leaf. A place that rounding has put outside of the leaf
+  /// is taken to its border cells.
+  double bilinear(int plane, double u, double v, const glm::ivec3& in) const {
+    const int low_u = in[u_axis] & ~(leaf_edge - 1), low_v = in[v_axis] & ~(leaf_edge - 1);
+    const int cell_u = std::min(std::clamp(static_cast<int>(u), low_u, low_u + leaf_edge - 1), last_ - 1);
+    const int cell_v = std::min(std::clamp(static_cast<int>(v), low_v, low_v + leaf_edge - 1), last_ - 1);
+    const int in_u = cell_u & 15, in_v = cell_v & 15;
+    const std::size_t row = part(plane & 15, axis);
+    const std::size_t u0 = part(in_u, u_axis), u1 = part((in_u + 1) & 15, u_axis);
+    const std::size_t v0 = row + part(in_v, v_axis), v1 = row + part((in_v + 1) & 15, v_axis);
+    const auto next_u = static_cast<std::size_t>((in_u + 1) >> 4);
+    const auto next_v = static_cast<std::size_t>((in_v + 1) >> 4 << 1);
+    const double a = bricks_[0][u0 + v0], b = bricks_[next_u][u1 + v0];
+    const double c = bricks_[next_v][u0 + v1], d = bricks_[next_u | next_v][u1 + v1];
+    const double tu = u - cell_u, tv = v - cell_v;
+    const double low = a + (b - a) * tu, high = c + (d - c) * tu;
+    return low + (high - low) * tv;
+  }
+
+  /// What a coordinate within a brick adds to the number of a sample (grey_octree.h).
+  static constexpr std::size_t part(int along, int of_axis) {
+    return static_cast<std::size_t>(((along & 3) << (2 * of_axis)) + ((along & 12) << (2 * of_axis + 4)));
+  }
+
+  void enter_block(const glm::ivec3& block) {
+    block_ = block;
+    for (int corner = 0; corner < 4; ++corner) {
+      glm::ivec3 next = block;
+      next[u_axis] += corner & 1;
+      next[v_axis] += corner >> 1;
+      bricks_[static_cast<std::size_t>(corner)] =
+          grey_.brick(glm::min(next, glm::ivec3(last_ >> 4))).samples.front().data();
+    }
+  }
+
+  /// The first plane after one that may lie outside of the aligned cube of cells about a cell; never one after
+  /// that.
+  int leaving(int plane, const glm::ivec3& cell, int edge, double u_at_0, double v_at_0) const {
+    double exit = (cell[axis] & -edge) + edge;
+    const auto leave_along = [&](int along, double slope, double at_0) {
+      if (slope == 0.0) return;
+      const int low = cell[along] & -edge;
+      exit = std::min(exit, ((slope > 0.0 ? low + edge : low) - at_0) / slope);
+    };
+    leave_along(u_axis, du_, u_at_0);
+    leave_along(v_axis, dv_, v_at_0);
+    return std::max(plane + 1, static_cast<int>(std::min(exit, last_ + 1.0)));
+  }
+
+  const GreyOctree& grey_;
+  const HighestSamples& highest_;
+  glm::dvec3 per_mm_;
+  int last_;
+  double plane_mm_;  ///< from plane to plane along the ray
+  double du_, dv_;   ///< from plane to plane across the axis
+  double air_;       ///< in steps of the samples; exact, because a step is a power of two
+  double per_step_;
+  CellSamples ends_;
+  glm::ivec3 block_{-1000};
+  std::array<const std::int16_t*, 4> bricks_{};  ///< of a block and the next ones along u and v
+};
+
+/// The axis along which a direction goes furthest.
+int major_of(const glm::dvec3& per_mm) {
+  const glm::dvec3 size = glm::abs(per_mm);
+  return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
+template <int axis>
+RayImage radiograph_along(const GreyOctree& grey, const ImagePlane& plane, const VoxelRays& rays,
+                          const Progress& progress) {
+  RayImage image{plane.size_px, {}};
+  image.values.assign(pixel_count(plane.size_px), 0.0f);
+  const HighestSamples highest(grey);
+  for_rows(plane, progress, [&](int y) {
+    AttenuationOfRay<axis> water_mm(grey, highest, rays.per_mm);
     for (int x = 0; x < plane.size_px.x; ++x) {
       const glm::dvec3 start = rays.start({x + 0.5, y + 0.5});
       if (const auto span = span_among_centres(start, rays.per_mm, grey.universe().side()))
-        image.values[pixel_index(plane.size_px, x, y)] = static_cast<float>(value(start, rays.per_mm, *span));
+        image.values[pixel_index(plane.size_px, x, y)] =
+            static_cast<float>(water_per_mm * water_mm(start, *span));
     }
   });
-  progress.at(1.0);
   return image;
-}
-
-/// The division of a span into equal steps of at most half a voxel.
-struct Steps {
-  int count = 1;
-  double length_mm = 0.0;
-};
-Steps steps_of(const DepthSpan& span, const glm::dvec3& per_mm) {
-  const double length_mm = span.far_mm - span.near_mm;
-  const int count =
-      std::max(1, static_cast<int>(std::ceil(length_mm * glm::length(per_mm) * steps_per_voxel)));
-  return {count, length_mm / count};
 }
 
 }  // namespace
 
 RayImage maximum_intensity(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress) {
-  const auto missing = static_cast<float>(grey.background() * grey.step());
-  return along_rays(grey, plane, missing, progress,
-                    [&](const glm::dvec3& start, const glm::dvec3& per_mm, const DepthSpan& span) {
-                      const Steps steps = steps_of(span, per_mm);
-                      double most = grey.background();
-                      for (int i = 0; i <= steps.count; ++i) {
-                        const glm::dvec3 p = start + (span.near_mm + i * steps.length_mm) * per_mm;
-                        if (range_about(grey, p).high > most) most = std::max(most, trilinear(grey, p));
-                      }
-                      return most * grey.step();
-                    });
+  RayImage image{plane.size_px, {}};
+  image.values.assign(pixel_count(plane.size_px), static_cast<float>(grey.background() * grey.step()));
+  const VoxelRays rays = voxel_rays(grey.universe(), plane);
+  const HighestSamples highest(grey);
+  for_rows(plane, progress, [&](int y) {
+    CellSamples samples(grey);
+    double most_at_mm = 0.0;
+    for (int x = 0; x < plane.size_px.x; ++x) {
+      const glm::dvec3 start = rays.start({x + 0.5, y + 0.5});
+      const auto span = span_among_centres(start, rays.per_mm, grey.universe().side());
+      if (!span) continue;
+      const Steps steps(start, rays.per_mm, *span);
+      double most = grey.background();
+      const auto take = [&](int i, double sample) {
+        if (sample <= most) return;
+        most = sample;
+        most_at_mm = steps.near_mm + i * steps.length_mm;
+      };
+      // The maximum is often as deep as the last ray's: with it first, most cubes cannot matter.
+      const int likely =
+          std::clamp(static_cast<int>((most_at_mm - steps.near_mm) / steps.length_mm + 0.5), 0, steps.count);
+      const glm::dvec3 p = steps.at(likely);
+      take(likely, samples.at(p, cell_of(p)));
+      march(
+          grey, highest, steps, samples, [&] { return most; }, take);
+      image.values[pixel_index(plane.size_px, x, y)] = static_cast<float>(most * grey.step());
+    }
+  });
+  return image;
 }
 
 RayImage radiograph(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress) {
-  return along_rays(grey, plane, 0.0f, progress,
-                    [&](const glm::dvec3& start, const glm::dvec3& per_mm, const DepthSpan& span) {
-                      const Steps steps = steps_of(span, per_mm);
-                      double sum = 0.0;
-                      for (int i = 0; i <= steps.count; ++i) {
-                        const glm::dvec3 p = start + (span.near_mm + i * steps.length_mm) * per_mm;
-                        const MinMax range = range_about(grey, p);
-                        if (range.high * grey.step() <= -1000.0) continue;
-                        const double per_water =
-                            std::max(0.0, 1.0 + trilinear(grey, p) * grey.step() / 1000.0);
-                        sum += (i == 0 || i == steps.count ? 0.5 : 1.0) * per_water;
-                      }
-                      return water_per_mm * steps.length_mm * sum;
-                    });
+  const VoxelRays rays = voxel_rays(grey.universe(), plane);
+  switch (major_of(rays.per_mm)) {
+    case 0:
+      return radiograph_along<0>(grey, plane, rays, progress);
+    case 1:
+      return radiograph_along<1>(grey, plane, rays, progress);
+    default:
+      return radiograph_along<2>(grey, plane, rays, progress);
+  }
 }
 
 std::vector<std::uint8_t> grey_tones(const RayImage& image, double black, double white) {

@@ -17,14 +17,15 @@ struct RayImage {
 };
 
 /// The largest trilinear sample along every pixel's ray, at steps of half a voxel; the value of the
-/// background if a ray misses the universe. Skips blocks whose range cannot raise the maximum. Precondition:
+/// background if a ray misses the universe. Skips cubes whose range cannot raise the maximum. Precondition:
 /// an orthographic plane of the grey octree's universe. Throws Stopped. Parallel over rows; same bits on any
 /// thread count.
 RayImage maximum_intensity(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress = {});
 
 /// The attenuation of X-rays along the view: the line integral, without unit, of the linear attenuation
-/// coefficient of samples in Hounsfield units, by the trapezoidal rule at steps of half a voxel. Rays are
-/// parallel, so that the picture is in true scale: from the side, a cephalogram without its enlargement.
+/// coefficient of samples in Hounsfield units, by the trapezoidal rule between the planes of voxels' centres
+/// that a ray crosses, with bilinear samples in them (P. M. Joseph, IEEE Trans. Med. Imaging 1(3), 1982). Rays
+/// are parallel, so that the picture is in true scale: from the side, a cephalogram without its enlargement.
 /// Water attenuates by 0.0206 / mm, as at 60 keV (NIST XCOM). Samples of at most -1000 attenuate nothing.
 /// Preconditions, exceptions and threads are those of maximum_intensity().
 RayImage radiograph(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress = {});

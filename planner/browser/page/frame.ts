@@ -21,7 +21,7 @@ export function make_bar(host: HTMLElement): void {
         button(
             [el("span", {class: "logo"}), el("b", {}, "Octotomy")], "Start page", () => set({page: "start"}),
             {class: "brand ghost"}),
-        plan ? el("span", {class: "plan-name", title: plan.path}, plan.name) : null,
+        plan ? el(state.page === "plan" ? "h1" : "span", {class: "plan-name", title: plan.path}, plan.name) : null,
         plan ? patient_button() : null,
         plan ? button(
                    [icon("branch", 14), plan.branch], "New branch. The plan as it is stays on this one",

@@ -84,21 +84,21 @@ function take_progress(message: {[key: string]: Json}): void {
 
 function make_page(): void {
   const part =
-      (name: string, tag: "header"|"nav"|"aside"|"section"|"footer"|"div", label: string): HTMLElement => {
-        const element = el(tag, {class: name, "aria-label": label});
+      (name: string, tag: "header"|"nav"|"aside"|"main"|"section"|"footer"|"div", label?: string): HTMLElement => {
+        const element = el(tag, {class: name, ...(label ? {"aria-label": label} : {})});
         document.body.append(element);
         return element;
       };
   make_bar(part("bar", "header", "Plan"));
   make_lists(part("lists", "aside", "Objects, steps and history"));
   make_rail(part("rail", "nav", "Tools"));
-  make_panes(part("panes", "section", "Panes"), (pane, frame) => wire.say("shown", {pane, frame}));
+  make_panes(part("panes", "main", "Panes"), (pane, frame) => wire.say("shown", {pane, frame}));
   make_inspector(part("inspector", "aside", "Inspector"));
   make_status(part("status", "footer", "Status"));
-  make_start(part("start-host", "div", "Start"));
-  make_tour(part("tour", "div", "Guided tour"));
-  make_notices(part("notices", "div", "Notices"));
-  make_lost(part("lost", "div", "Connection"));
+  make_start(part("start-host", "div"));
+  make_tour(part("tour", "section", "Guided tour"));
+  make_notices(part("notices", "section", "Notices"));
+  make_lost(part("lost", "section", "Connection"));
   attach_tips();
   take_drops();
 }

@@ -158,6 +158,7 @@ export interface Hello {
   procedures: ProcedureSays[];
   tissues: Tissue[];
   folders: string[];
+  most_upload_bytes?: number;
 }
 
 /// A point of a piece and where it is wanted.

@@ -2,6 +2,7 @@
 #include "planner/browser/server/document.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include "planner/operation/table/control_character.h"
 #include "planner/operation/table/json_file.h"
@@ -194,7 +195,12 @@ void Document::name_version(const std::string& name) {
 
 Json Document::difference_of(std::int64_t a, std::int64_t b) const {
   const auto plan_of = [&](std::int64_t edit) { return readable(history_->text_of(edit)); };
-  return planner::to_json(difference(plan_of(a), plan_of(b)));
+  const PlanDifference found = difference(plan_of(a), plan_of(b));
+  Json json = planner::to_json(found);
+  json["rows"] = Json::array();
+  std::istringstream text(text_of(found));
+  for (std::string line; std::getline(text, line);) json["rows"].push_back(line);
+  return json;
 }
 
 Json Document::history_json() const {

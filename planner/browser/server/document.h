@@ -47,7 +47,8 @@ class Document {
   void go_to(const std::string& where);
   void begin_branch(const std::string& name);
   void name_version(const std::string& name);
-  /// The lines in which two states, given by number, differ.
+  /// What differs between two states, given by number: as to_json() of a PlanDifference, and "rows": its text
+  /// line by line.
   Json difference_of(std::int64_t a, std::int64_t b) const;
 
   /// "branch", "edit", "can_undo", "can_redo", "history", "branches".

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "voxel/space/staged_files.h"
 
 namespace octotomy::planner::serve {
+
+/// The largest file that a page may send; a page sends no more than this in a folder, either.
+inline constexpr std::uint64_t most_upload_bytes = std::uint64_t{4} << 30;
 
 /// Files for a folder that is created only when all are complete; if the work ends earlier, neither exists.
 /// Until then they are in a hidden folder beside the outermost missing folder.

@@ -2,8 +2,11 @@
 #include "planner/browser/server/requests.h"
 
 #include <algorithm>
+#include <chrono>
+#include <tuple>
 
 #include "planner/browser/server/answers.h"
+#include "planner/browser/server/new_files.h"
 #include "planner/browser/server/new_plan.h"
 #include "planner/browser/server/pane_fields.h"
 #include "planner/operation/file/file_kind.h"
@@ -62,7 +65,8 @@ Json hello(Desk& desk, const Json&, const Watched&) {
           {"schema", plan_schema()},
           {"procedures", procedures_json()},
           {"tissues", tissues},
-          {"folders", folders}};
+          {"folders", folders},
+          {"most_upload_bytes", most_upload_bytes}};
 }
 
 Json open(Desk& desk, const Json& said, const Watched& watched) {
@@ -104,6 +108,40 @@ Json list(Desk& desk, const Json& said, const Watched&) {
     return std::pair(a["kind"] != "folder", a["name"]) < std::pair(b["kind"] != "folder", b["name"]);
   });
   return {{"folder", folder.string()}, {"entries", entries}};
+}
+
+/// The plans of the opened folders, the one that was changed last first.
+Json recent(Desk& desk, const Json&, const Watched&) {
+  constexpr std::size_t most_plans = 8;
+  struct Found {
+    fs::file_time_type changed;
+    fs::path path;
+  };
+  std::vector<Found> found;
+  for (const fs::path& folder : desk.folders.opened()) {
+    std::error_code failed;
+    for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end;
+         entry.increment(failed)) {
+      const std::string name = entry->path().filename();
+      std::error_code unread;
+      const fs::file_time_type changed = entry->last_write_time(unread);
+      if (!unread && name.ends_with(".plan.json") && !name.starts_with(".") && entry->is_regular_file(unread))
+        found.push_back({changed, entry->path()});
+    }
+  }
+  std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+    return std::tie(b.changed, a.path) < std::tie(a.changed, b.path);
+  });
+  if (found.size() > most_plans) found.resize(most_plans);
+  Json plans = Json::array();
+  for (const Found& plan : found) {
+    const auto since = std::chrono::file_clock::to_sys(plan.changed).time_since_epoch();
+    plans.push_back(
+        {{"path", plan.path.string()},
+         {"name", plain_stem(plan.path)},
+         {"changed_at_ms", std::chrono::duration_cast<std::chrono::milliseconds>(since).count()}});
+  }
+  return {{"plans", plans}};
 }
 
 /// A request that changes the document.
@@ -268,6 +306,7 @@ const std::vector<Word>& words() {
       {"hello", Lane::Desk, false, hello},
       {"open", Lane::Long, true, open},
       {"list", Lane::Desk, false, list},
+      {"recent", Lane::Desk, false, recent},
       {"save", Lane::Desk, false, save},
       {"edit", Lane::Desk, true, change([](Document& document, const Json& said) { document.edit(said); })},
       {"undo", Lane::Desk, true, change([](Document& document, const Json&) { document.undo(); })},

@@ -32,7 +32,6 @@ using Tcp = net::ip::tcp;
 
 /// The longest message of a page is a step with a mask of many polygons.
 constexpr std::uint64_t most_message_bytes = std::uint64_t{4} << 20;
-constexpr std::uint64_t most_upload_bytes = std::uint64_t{4} << 30;
 constexpr std::uint32_t most_header_bytes = 16384;
 /// If more bytes than this wait for a slow page, its messages are no longer read.
 constexpr std::size_t most_unsent_bytes = std::size_t{64} << 20;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "planner/browser/server/slice_pane.h"
+#include "planner/operation/picture/ray_pictures.h"
 #include "planner/operation/table/fault.h"
 #include "voxel/space/error.h"
 
@@ -21,6 +22,13 @@ constexpr double most_frame_ms = 14.0;
 
 /// The least time between reports of progress.
 constexpr std::chrono::milliseconds tell_every{100};
+
+/// Whether a view shows what lies along rays, see ray_pictures.h.
+bool is_ray_shading(const Json& said) {
+  const std::vector<std::string> names = ray_picture_names();
+  const Json shading = said.value("shading", Json());
+  return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return shading == name; });
+}
 
 /// Runs work and passes every exception to `refuse`.
 template <typename Work, typename Refuse>
@@ -43,7 +51,8 @@ void guarded(const Work& work, const Refuse& refuse) noexcept {
 Service::Service(Desk& desk, LineOf line_of) : desk_(desk), line_of_(std::move(line_of)) {
   for (const Lane lane : {Lane::Desk, Lane::Evaluate, Lane::Certify, Lane::Overlap, Lane::Long})
     lanes_[lane] = std::make_unique<LaneQueue>(lane != Lane::Desk && lane != Lane::Long);
-  drawing_ = std::jthread([this](const std::stop_token& stop) { draw(stop); });
+  for (Drawing& drawing : drawings_)
+    drawing.thread = std::jthread([&](const std::stop_token& stop) { draw(drawing, stop); });
 }
 
 Service::~Service() {
@@ -63,7 +72,7 @@ void Service::close_window(std::uint64_t window) {
     const std::lock_guard lock(mutex_);
     windows_.erase(window);
   }
-  panes_.close_window(window);
+  for (Drawing& drawing : drawings_) drawing.panes.close_window(window);
   for (const auto& [lane, queue] : lanes_) queue->close_window(window);
 }
 
@@ -104,28 +113,40 @@ void Service::receive(std::uint64_t window, const std::string& text) {
 void Service::take(std::uint64_t window, Request request) {
   const Json& said = request.said;
   const auto pane = [&] { return PaneName{window, said.value("pane", 0)}; };
-  if (request.what == "shown") return panes_.shown(pane(), said.value("frame", std::int64_t{0}));
+  if (request.what == "shown") {
+    for (Drawing& drawing : drawings_) drawing.panes.shown(pane(), said.value("frame", std::int64_t{0}));
+    return;
+  }
   // Allows a page to distinguish an idle connection from a broken one.
   if (request.what == "alive") return send(window, answer_to(request.id, Json::object()));
   if (request.what == "cancel") {
     const std::int64_t target = said.value("target", std::int64_t{0});
-    const auto waited = panes_.withdraw(window, target);
-    if (waited) drop(*waited, "the picture was cancelled");
-    bool is_here = waited || panes_.stop(window, target);
+    bool is_here = false;
+    for (Drawing& drawing : drawings_) {
+      const auto waited = drawing.panes.withdraw(window, target);
+      if (waited) drop(*waited, "the picture was cancelled");
+      is_here = waited || drawing.panes.stop(window, target) || is_here;
+    }
     for (const auto& [lane, queue] : lanes_) is_here = queue->cancel(window, target) || is_here;
     return send(window, answer_to(request.id, {{"cancelled", is_here}}));
   }
   if (request.what == "close_pane") {
-    if (const auto waited = panes_.close(pane())) drop(*waited, "the pane was closed");
+    for (Drawing& drawing : drawings_)
+      if (const auto waited = drawing.panes.close(pane())) drop(*waited, "the pane was closed");
     return send(window, answer_to(request.id, Json::object()));
   }
   if (request.what == "pane") {
     const int number = said.value("pane", 0);
     if (number < 0 || number > 15) throw voxel::Error(voxel::ErrorCode::Input, "pane: must be 0 to 15");
     const bool is_moving = said.value("dragging", false);
-    // Refuses the older request before the newer one can be drawn, so that a pane's answers are in order.
-    if (const auto older = panes_.withdraw(pane())) drop(*older, "a newer picture of the pane was asked for");
-    return panes_.ask({pane(), std::move(request), is_moving});
+    const bool is_along_rays = said.value("kind", "view") != "slice" && is_ray_shading(said);
+    // Refuses the older request before the newer one can be drawn, so that a pane's answers are in order. A
+    // pane that shows the other kind from now on wants nothing more of this one.
+    Drawing& other = drawings_[is_along_rays ? 0 : 1];
+    if (const auto older = other.panes.close(pane())) drop(*older, "the pane shows another kind of picture");
+    PaneQueue& panes = drawings_[is_along_rays ? 1 : 0].panes;
+    if (const auto older = panes.withdraw(pane())) drop(*older, "a newer picture of the pane was asked for");
+    return panes.ask({pane(), std::move(request), is_moving});
   }
   const Word& word = find_word(request.what);
   const bool certifies = word.lane == Lane::Evaluate && said.value("certify", false);
@@ -188,31 +209,33 @@ void Service::drop(const PaneQueue::Asked& asked, const char* why) {
   refuse(asked.name.window, asked.request.id, Stopped(why));
 }
 
-void Service::draw(const std::stop_token& over) {
-  while (const auto asked = panes_.next(over)) {
+void Service::draw(Drawing& drawing, const std::stop_token& over) {
+  PaneQueue& panes = drawing.panes;
+  auto& views = drawing.views;
+  while (const auto asked = panes.next(over)) {
     const std::stop_token stop = asked->stop.get_token();
     const std::stop_callback end(over, [source = asked->stop]() mutable { source.request_stop(); });
     guarded(
         [&] {
           if (find(asked->name.window) == nullptr) {
-            std::erase_if(views_, [&](const auto& view) { return view.first.window == asked->name.window; });
+            std::erase_if(views, [&](const auto& view) { return view.first.window == asked->name.window; });
             return;
           }
           if (asked->request.said.value("kind", "view") == "slice")
             return send(asked->name.window, draw_slice(desk_, asked->request, stop));
-          auto& view = views_[asked->name];
+          auto& view = views[asked->name];
           if (view == nullptr) view = std::make_unique<ViewPane>();
           send(asked->name.window,
                view->draw(desk_, asked->request,
-                          std::min(most_frame_ms, most_round_ms / panes_.moving_panes()), stop));
+                          std::min(most_frame_ms, most_round_ms / panes.moving_panes()), stop));
         },
         [&](const std::exception& error) {
-          panes_.shown(asked->name, asked->request.id);
+          panes.shown(asked->name, asked->request.id);
           refuse(asked->name.window, asked->request.id, error);
         });
     // Removes the views of closed windows.
     guarded(
-        [&] { std::erase_if(views_, [&](const auto& view) { return find(view.first.window) == nullptr; }); },
+        [&] { std::erase_if(views, [&](const auto& view) { return find(view.first.window) == nullptr; }); },
         [](const auto&) {});
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -19,8 +20,8 @@
 
 namespace octotomy::planner::serve {
 
-/// The windows on one desk and the threads that handle their requests: one each for drawing, edits,
-/// evaluation, certificates, overlaps and long tasks. Every request is answered exactly once, even if it
+/// The windows on one desk and the threads that handle their requests: one each for views and slices, for
+/// pictures along rays, which take longer, for edits, evaluation, certificates, overlaps and long tasks. Every request is answered exactly once, even if it
 /// fails. All members may be called from any thread.
 class Service {
  public:
@@ -55,17 +56,21 @@ class Service {
   void refuse(std::uint64_t window, std::int64_t id, const std::exception& error);
   /// Answers a waiting request for a picture that is not drawn.
   void drop(const PaneQueue::Asked& asked, const char* why);
-  void draw(const std::stop_token& over);
+  /// Draws pictures of one kind, one after the other.
+  struct Drawing {
+    PaneQueue panes;
+    std::map<PaneName, std::unique_ptr<ViewPane>> views{};  ///< used by the thread only
+    std::jthread thread{};
+  };
+  void draw(Drawing& drawing, const std::stop_token& over);
 
   Desk& desk_;
   LineOf line_of_;
   std::mutex mutex_;
   std::map<std::uint64_t, std::shared_ptr<Window>> windows_;
   std::uint64_t last_window_ = 0;
-  PaneQueue panes_;
-  std::map<PaneName, std::unique_ptr<ViewPane>> views_;  ///< used by the drawing thread only
   std::map<Lane, std::unique_ptr<LaneQueue>> lanes_;
-  std::jthread drawing_;
+  std::array<Drawing, 2> drawings_;  ///< of views and slices; along rays
 };
 
 }  // namespace octotomy::planner::serve

@@ -165,13 +165,18 @@ struct ViewPane::Drawing {
     return packed(header, {flat_part(is_moving, size_px, rgb)});
   }
 
-  /// A picture of values along rays through the first object's samples.
-  Message along_rays(const std::stop_token& stop) {
+  /// A picture of values along rays through the first object's samples, of a share of the pixels along each
+  /// side.
+  Message along_rays(double scale, const std::stop_token& stop) {
     Timings timings;
     const auto first = std::find_if(objects.begin(), objects.end(),
                                     [](const auto& object) { return object.grey.has_value(); });
     if (first == objects.end()) throw std::runtime_error("shading: no object that is shown has samples");
-    const RenderedPicture picture = render_rays(render, {*first}, timings, stop);
+    Render drawn = render;
+    const glm::ivec2 size_px =
+        glm::max(glm::ivec2(1), glm::ivec2(glm::round(scale * glm::dvec2(size_of(render)))));
+    drawn.size = std::to_string(size_px.x) + "x" + std::to_string(size_px.y);
+    const RenderedPicture picture = render_rays(drawn, {*first}, timings, stop);
     const voxel::View view = voxel::parse_view(render.view);
     set_frame(header, is_moving, picture.size_px, view, on_plane(view, picture.centre_mm), picture.pixel_mm);
     return packed(header, {flat_part(is_moving, picture.size_px, picture.rgb, picture.frame)});
@@ -322,7 +327,7 @@ Message ViewPane::draw(Desk& desk, const Request& request, double most_ms, const
   }
   add_objects(desk, said, drawing, stop);
   if (drawing.objects.empty()) return drawing.blank();
-  if (is_ray_picture(drawing.render)) return drawing.along_rays(stop);
+  if (is_ray_picture(drawing.render)) return along_rays(drawing, most_ms, stop);
   if (const Json colour_by = said.value("colour_by", Json()); colour_by.is_object())
     colour(colour_by, drawing);
   if (stop.stop_requested()) throw Stopped("stopped before the picture was drawn");
@@ -331,20 +336,37 @@ Message ViewPane::draw(Desk& desk, const Request& request, double most_ms, const
   return moving(drawing, std::max(0.3 * most_ms, most_ms - ms_since(start)));
 }
 
+/// Scales in steps of an eighth, so that the size of frames does not change constantly.
+double ViewPane::scale_within(double most_ms) const {
+  return full_frame_ms_ > most_ms
+             ? std::max(least_scale, std::floor(8.0 * std::sqrt(most_ms / full_frame_ms_)) / 8.0)
+             : 1.0;
+}
+
+void ViewPane::learn_frame_time(const Clock::time_point& start, double scale) {
+  const double spent_ms = ms_since(start) / (scale * scale);
+  full_frame_ms_ = full_frame_ms_ == 0.0 ? spent_ms : 0.8 * full_frame_ms_ + 0.2 * spent_ms;
+}
+
+Message ViewPane::along_rays(Drawing& drawing, double most_ms, const std::stop_token& stop) {
+  if (!drawing.is_moving) return drawing.along_rays(1.0, stop);
+  // Of the first frame no time is known, and all pixels take too long.
+  const double scale = full_frame_ms_ == 0.0 ? least_scale : scale_within(most_ms);
+  const Clock::time_point start = Clock::now();
+  Message message = drawing.along_rays(scale, stop);
+  learn_frame_time(start, scale);
+  return message;
+}
+
 Message ViewPane::moving(Drawing& drawing, double most_ms) {
   voxel::RenderOptions options = drawing.options();
   options.antialias = false;
-  // Scales in steps of an eighth, so that the size of frames does not change constantly.
-  const double scale =
-      full_frame_ms_ > most_ms
-          ? std::max(least_scale, std::floor(8.0 * std::sqrt(most_ms / full_frame_ms_)) / 8.0)
-          : 1.0;
+  const double scale = scale_within(most_ms);
   options.size_px = glm::max(glm::ivec2(1), glm::ivec2(glm::round(scale * glm::dvec2(options.size_px))));
   const Clock::time_point start = Clock::now();
   const voxel::Picture picture = renderer_.frame(drawing.objects, options);
   const Part jpeg = flat_part(true, picture.size_px, picture.rgb);
-  const double spent_ms = ms_since(start) / (scale * scale);
-  full_frame_ms_ = full_frame_ms_ == 0.0 ? spent_ms : 0.8 * full_frame_ms_ + 0.2 * spent_ms;
+  learn_frame_time(start, scale);
   set_frame(drawing.header, true, picture.size_px, picture.view, on_plane(picture.view, picture.centre_mm),
             picture.pixel_mm);
   return packed(drawing.header, {jpeg});

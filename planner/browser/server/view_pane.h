@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <memory>
 #include <string>
@@ -28,6 +29,11 @@ class ViewPane {
   /// A window of a scan that is not a step yet; with "alone", in a universe around the scan.
   voxel::DrawnObject threshold(Desk& desk, const Snapshot& snapshot, const Json& window);
   Message moving(Drawing& drawing, double most_ms);
+  /// A picture of what lies along rays; during a motion with fewer pixels if all would take too long.
+  Message along_rays(Drawing& drawing, double most_ms, const std::stop_token& stop);
+  /// The share of pixels along each side that can be drawn in this time.
+  double scale_within(double most_ms) const;
+  void learn_frame_time(const std::chrono::steady_clock::time_point& start, double scale);
 
   voxel::Renderer renderer_;
   double full_frame_ms_ = 0.0;  ///< time of a frame with all pixels, from the last frames

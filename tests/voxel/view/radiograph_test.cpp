@@ -3,8 +3,11 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <random>
+#include <tbb/global_control.h>
 
 #include "voxel/space/scene.h"
+#include "voxel/view/layer.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -69,6 +72,111 @@ TEST(MaximumIntensity, FindsTheOneBrightVoxelBehindWhatIsDarkerAndTheWaterElsewh
   const std::vector<std::uint8_t> tones = grey_tones(image, -1000.0, 2500.0);
   EXPECT_EQ(tones[3 * (56 * 64 + 5)], 255);
   EXPECT_EQ(tones[0], 0);
+}
+
+/// Air, tissue and bone in lumps of several voxels, so that leaves, blocks and their borders all differ.
+GreyOctree lumps(std::uint64_t seed) {
+  const Universe universe{
+      6, axis_aligned_lattice(glm::ivec3(64), glm::dvec3(0.5), glm::dvec3(10.0, -4.0, 3.0)).lps_from_voxel};
+  Scene scene;
+  scene.lattice = universe.lattice();
+  Int16Samples samples(scene.lattice.sample_count(), -1000);
+  std::mt19937_64 random(seed);
+  for (int lump = 0; lump < 40; ++lump) {
+    const glm::ivec3 low(random() % 60, random() % 60, random() % 60);
+    const glm::ivec3 size(1 + random() % 12, 1 + random() % 12, 1 + random() % 12);
+    const auto value = static_cast<std::int16_t>(static_cast<int>(random() % 3500) - 1000);
+    for (int z = low.z; z < std::min(64, low.z + size.z); ++z)
+      for (int y = low.y; y < std::min(64, low.y + size.y); ++y)
+        for (int x = low.x; x < std::min(64, low.x + size.x); ++x)
+          samples[static_cast<std::size_t>(x + 64 * (y + 64 * z))] = value;
+  }
+  scene.samples = std::move(samples);
+  return grey_octree_of(universe, scene);
+}
+
+double sample_at(const GreyOctree& grey, const glm::dvec3& p) {
+  const glm::ivec3 cell(glm::floor(p));
+  const glm::dvec3 t = p - glm::dvec3(cell);
+  const auto along_x = [&](int y, int z) {
+    const double at = grey.sample(cell + glm::ivec3(0, y, z));
+    return at + (grey.sample(cell + glm::ivec3(1, y, z)) - at) * t.x;
+  };
+  const double below = along_x(0, 0) + (along_x(1, 0) - along_x(0, 0)) * t.y;
+  const double above = along_x(0, 1) + (along_x(1, 1) - along_x(0, 1)) * t.y;
+  return below + (above - below) * t.z;
+}
+
+/// Calls take(sample, mm) for equal steps of a ray, without skipping any; mm is what its trapezium covers.
+template <typename Take>
+bool step_along(const GreyOctree& grey, const ImagePlane& plane, int pixel, double steps_per_voxel,
+                const Take& take) {
+  const VoxelRays rays = voxel_rays(grey.universe(), plane);
+  const glm::dvec3 start = rays.start({pixel % 64 + 0.5, pixel / 64 + 0.5});
+  const auto span = span_among_centres(start, rays.per_mm, grey.universe().side());
+  if (!span) return false;
+  const double length_mm = span->far_mm - span->near_mm;
+  const int count =
+      std::max(1, static_cast<int>(std::ceil(length_mm * glm::length(rays.per_mm) * steps_per_voxel)));
+  const double step_mm = length_mm / count;
+  for (int i = 0; i <= count; ++i)
+    take(sample_at(grey, start + (span->near_mm + i * step_mm) * rays.per_mm),
+         (i == 0 || i == count ? 0.5 : 1.0) * step_mm);
+  return true;
+}
+
+const char* const views[] = {"anterior", "posterior", "left",   "right", "superior",
+                             "inferior", "35,15",     "-50,40", "80,-65"};
+
+TEST(MaximumIntensity, IsThatOfAllStepsBitForBitThoughMostAreSkipped) {
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    const GreyOctree grey = lumps(seed);
+    for (const char* view : views) {
+      const ImagePlane plane = plane_of(grey, view);
+      const RayImage image = maximum_intensity(grey, plane);
+      for (int pixel = 0; pixel < 64 * 64; pixel += 7) {
+        double most = grey.background();
+        step_along(grey, plane, pixel, 2.0, [&](double sample, double) { most = std::max(most, sample); });
+        ASSERT_EQ(image.values[static_cast<std::size_t>(pixel)], static_cast<float>(most))
+            << view << ", pixel " << pixel << ", seed " << seed;
+      }
+    }
+  }
+}
+
+TEST(Radiograph, IsTheIntegralOfFineStepsThoughAirIsSkipped) {
+  for (std::uint64_t seed = 0; seed < 2; ++seed) {
+    const GreyOctree grey = lumps(seed);
+    for (const char* view : views) {
+      const ImagePlane plane = plane_of(grey, view);
+      const RayImage image = radiograph(grey, plane);
+      double worst = 0.0, sum = 0.0, brightest = 0.0;
+      for (int pixel = 0; pixel < 64 * 64; pixel += 7) {
+        double water_mm = 0.0;
+        step_along(grey, plane, pixel, 16.0,
+                   [&](double sample, double mm) { water_mm += mm * std::max(0.0, 1.0 + sample / 1000.0); });
+        const double away = image.values[static_cast<std::size_t>(pixel)] - 0.0206 * water_mm;
+        worst = std::max(worst, std::abs(away));
+        sum += away;
+        brightest = std::max(brightest, 0.0206 * water_mm);
+      }
+      // Edges of lumps are jumps of up to 3.5 times water within a voxel of 0.5 mm; along an axis a sum of
+      // trapezia is exact.
+      const bool is_along_axis = view[0] >= 'a';
+      EXPECT_LT(worst, is_along_axis ? 1e-4 * brightest : 0.0206 * 3.5 * 0.5 * 0.5)
+          << view << ", seed " << seed;
+      EXPECT_LT(std::abs(sum) / 585.0, 2e-4 * brightest) << view << ", seed " << seed;
+    }
+  }
+}
+
+TEST(Radiograph, AndMaximumIntensityAreTheSameBitsOnAnyThreadCount) {
+  const GreyOctree grey = lumps(7);
+  const ImagePlane plane = plane_of(grey, "35,15");
+  const RayImage many[] = {radiograph(grey, plane), maximum_intensity(grey, plane)};
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  EXPECT_EQ(radiograph(grey, plane).values, many[0].values);
+  EXPECT_EQ(maximum_intensity(grey, plane).values, many[1].values);
 }
 
 TEST(Radiograph, StoppedItThrowsInsteadOfGivingHalfAPicture) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Scans and plans from the opened folders, and files that are dropped on the page.
-import {first_greeting, open_plan, token, try_to} from "../actions";
+import {busy, done, first_greeting, open_plan, token, try_to} from "../actions";
 import {open_dialog} from "../base/dialog";
 import {button, Child, el} from "../base/html";
 import {icon} from "../base/icons";
-import {notify, state} from "../state";
+import {notify, set, state} from "../state";
 
 interface Entry {
   name: string;
@@ -65,10 +65,17 @@ function row(kind: string, name: string, size: string, open: () => void, as_scan
           button("Open as scan", "Reads the folder as a DICOM series", as_scan, {class: "ghost small"}) :
           null);
 }
-const size_words = (bytes: number): string =>
+const size_words = (bytes: number): string => bytes >= 2 ** 30 ?
+    `${+(bytes / 2 ** 30).toFixed(1)} GB` :
     (bytes > 1e6 ? `${(bytes / 1e6).toFixed(1)} MB` : `${Math.ceil(bytes / 1e3)} KB`);
 
-/// Takes files that are dropped anywhere on the page.
+/// A file that a person gives to the page, with the folders in which it lies below what was dropped.
+interface Given {
+  file: File;
+  path: string;  // "series/IM0001"
+}
+
+/// Takes files and folders that are dropped anywhere on the page.
 export function take_drops(): void {
   addEventListener("dragover", (event) => {
     event.preventDefault();
@@ -80,17 +87,116 @@ export function take_drops(): void {
   addEventListener("drop", (event) => {
     event.preventDefault();
     document.body.classList.remove("dropping");
-    const file = event.dataTransfer?.files[0];
-    if (file) void upload(file);
+    // Both are gone once the event is over.
+    const items = [...event.dataTransfer?.items ?? []].filter((item) => item.kind === "file").map((item) => {
+      return {entry: item.webkitGetAsEntry(), file: item.getAsFile()};
+    });
+    void Promise
+        .all(items.map(
+            ({entry, file}) => entry ? given_below(entry) :
+                file                 ? [{file, path: file.name}] :
+                                       []))
+        .then((all) => send(all.flat()))
+        .catch((error: unknown) => notify(`The dropped files cannot be read: ${String(error)}`, "error"));
   });
 }
 
-export async function upload(file: File): Promise<void> {
-  notify(`Reading ${file.name} …`);
+async function given_below(entry: FileSystemEntry): Promise<Given[]> {
+  if (entry.isFile) {
+    const file = await new Promise<File>((take, fail) => (entry as FileSystemFileEntry).file(take, fail));
+    return [{file, path: entry.fullPath.replace(/^\//, "")}];
+  }
+  const reader = (entry as FileSystemDirectoryEntry).createReader();
+  const found: Given[] = [];
+  // A reader gives a part of its entries at a time, and none at the end.
+  for (;;) {
+    const part = await new Promise<FileSystemEntry[]>((take, fail) => reader.readEntries(take, fail));
+    if (!part.length) return found;
+    for (const inner of part) found.push(...await given_below(inner));
+  }
+}
+
+/// A button that lets the person choose files, or a folder with all that lies below it.
+export function file_chooser(label: string, tip: string, is_folder: boolean): Child {
+  const picker: HTMLInputElement = el("input", {
+    type: "file",
+    hidden: true,
+    multiple: true,
+    "aria-label": label,
+    ...(is_folder ? {webkitdirectory: ""} : {}),
+    onchange: () =>
+        void send([...picker.files ?? []].map((file) => ({file, path: file.webkitRelativePath || file.name})))
+  });
+  return [button(label, tip, () => picker.click()), picker];
+}
+
+/// What a page may send, in words.
+export const most_upload_words = (): string => size_words(most_upload_bytes());
+const most_upload_bytes = (): number => state.hello?.most_upload_bytes ?? 4 * 2 ** 30;
+const most_files = 20000;
+const sent_at_once = 4;
+
+/// Sends files to the planner's program, which keeps them in its folder "uploads", and opens what they are: a plan or a
+/// scan of one file, else the folder of a series.
+export async function send(given: Given[]): Promise<void> {
+  const files = given.filter(({path}) => !/(^|\/)(\.|DICOMDIR$|Thumbs\.db$)/i.test(path));
+  const bytes = files.reduce((sum, {file}) => sum + file.size, 0);
+  if (!files.length) return notify("There is no file in what was dropped.", "warning");
+  if (files.length > most_files)
+    return notify(
+        `These are ${files.length} files; at most ${
+            most_files} can be sent. Start the program with the folder instead: octotomy serve FOLDER`,
+        "error");
+  if (bytes > most_upload_bytes())
+    return notify(
+        `These files have ${size_words(bytes)}; at most ${
+            most_upload_words()} can be sent. Start the program with the folder instead: octotomy serve FOLDER`,
+        "error");
+  const folder = files.length === 1 ? "" : `${folder_name(files)}/`;
+  const names = sent_names(files);
+  const key = busy(`Sending ${files.length === 1 ? names[0] : `${files.length} files`}`);
+  try {
+    const paths: string[] = [];
+    let sent_bytes = 0;
+    const waiting = files.map(({file}, index) => ({file, index}));
+    const send_next = async(): Promise<void> => {
+      for (let one = waiting.shift(); one; one = waiting.shift()) {
+        paths[one.index] = await send_file(one.file, folder + names[one.index]!);
+        sent_bytes += one.file.size;
+        set({
+          jobs: state.jobs.map((job) => (job.id === key ? {...job, share: sent_bytes / (bytes || 1)} : job))
+        });
+      }
+    };
+    await Promise.all(Array.from({length: sent_at_once}, send_next));
+    const header = paths.find((path) => /\.(nhdr|mhd|hdr)$/i.test(path));
+    await open_plan({path: header ?? (folder ? paths[0]!.replace(/\/[^/]*$/, "") : paths[0]!)});
+  } catch (error) {
+    notify(error instanceof Error ? error.message : String(error), "error");
+  } finally {
+    done(key);
+  }
+}
+
+/// The folder in which files are kept together; the time makes it a new one.
+function folder_name(files: Given[]): string {
+  const top = files[0]!.path.includes("/") ? files[0]!.path.split("/")[0]! : "series";
+  const time = new Date().toISOString().slice(0, 19).replace(/[-:]/g, "").replace("T", "-");
+  return `${top.replace(/[^\w-]+/g, "_").slice(0, 60)}-${time}`;
+}
+
+/// Names in one folder: a file's own, or with a number before it where two folders have files of the same name.
+function sent_names(files: Given[]): string[] {
+  const own = files.map(({file}) => file.name);
+  return new Set(own).size === own.length ?
+      own :
+      own.map((name, index) => `${String(index + 1).padStart(5, "0")}-${name}`);
+}
+
+async function send_file(file: File, name: string): Promise<string> {
   const answer = await fetch(
-      `/upload?token=${encodeURIComponent(token())}&name=${encodeURIComponent(file.name)}`,
+      `/upload?token=${encodeURIComponent(token())}&name=${encodeURIComponent(name)}`,
       {method: "POST", body: file});
-  if (!answer.ok) return notify(`${file.name} was refused: ${(await answer.text()).slice(0, 200)}`, "error");
-  const {path} = (await answer.json()) as {path: string};
-  await open_plan({path});
+  if (!answer.ok) throw new Error(`${file.name} was refused: ${(await answer.text()).slice(0, 200)}`);
+  return ((await answer.json()) as {path: string}).path;
 }

@@ -9,7 +9,7 @@ export function open_palette(): void {
   const commands = all_commands();
   let chosen = 0;
   let found: Command[] = commands;
-  const list = el("div", {class: "palette-list", role: "listbox", id: "palette-list"});
+  const list = el("div", {class: "palette-list", role: "listbox", id: "palette-list", "aria-label": "Commands", tabindex: 0});
   const run = (command: Command|undefined): void => {
     dialog.close();
     command?.run();
@@ -101,4 +101,6 @@ export function open_help(): void {
          el("p", {},
             "Two kernels compute every object: one counts voxels, one measures triangles. A green badge says that they agree within what the scan can tell, amber that there is a doubt, red that they disagree. Click a badge to see the place."),
          el("p", {}, "Not a medical device. Nothing leaves this machine."))));
+  // It scrolls, so keys must reach it.
+  document.querySelector<HTMLElement>("dialog.help .dialog-body")!.tabIndex = 0;
 }

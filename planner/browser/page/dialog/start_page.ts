@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The start page, and the audit of a scan that is shown before anything else.
-import {open_plan} from "../actions";
+import {open_plan, try_to} from "../actions";
 import {audit_rows} from "../panel/audit";
 import {grouped} from "../panel/certificate_badge";
 import {dialogs} from "../commands";
 import {patient_button, patient_facts} from "../panel/patient";
-import {upload} from "./files";
+import {file_chooser, most_upload_words} from "./files";
 import {button, Child, el, fill} from "../base/html";
 import {icon, IconName} from "../base/icons";
 import {ScanState} from "../protocol";
@@ -21,18 +21,17 @@ export function make_start(host: HTMLElement): void {
     if (state.page === "audit") fill(host, audit_page());
   };
   watch(["page", "hello", "plan", "jobs", "hides_patient"], again);
+  let looked_at = "";
+  watch(["page", "hello"], () => {
+    // Setting the page anew to show them must not ask again.
+    const now = `${state.page} ${state.hello !== null}`;
+    if (now !== looked_at) void look_for_recent();
+    looked_at = now;
+  });
   again();
 }
 
 function start(): Child {
-  const picker = el("input", {
-    type: "file",
-    hidden: true,
-    onchange: () => {
-      const file = picker.files?.[0];
-      if (file) void upload(file);
-    }
-  });
   const is_opening = state.jobs.some((job) => job.what === "Opening");
   return el(
       "main", {class: "start"},
@@ -49,13 +48,50 @@ function start(): Child {
              "folder", "Scan or plan",
              "A DICOM folder, .nii.gz, .nrrd, .mha, or a .plan.json of the opened folders.",
              () => dialogs.open())),
-      el("button", {type: "button", class: "drop", onclick: () => picker.click()}, icon("file", 20),
-         "Drop a scan or plan here, or choose a file", picker),
+      el("section", {class: "drop", "aria-label": "Files of this computer"}, icon("file", 20),
+         el("span", {},
+            `Drop a DICOM folder, a scan or a plan here: up to ${
+                most_upload_words()}, kept in the folder “uploads”.`),
+         el("div", {class: "row"},
+            file_chooser(
+                "Choose files", "Choose files. One file of a scan or a plan, or all images of a series", false),
+            file_chooser(
+                "Choose a folder", "Choose a folder. A DICOM series with all that lies below it", true))),
+      recent_plans(),
       is_opening ? el("p", {class: "opening", role: "status"}, el("span", {class: "spinner"}),
                       "Reading and checking the scan …") :
                    null,
       el("footer", {},
          `Octotomy ${state.hello?.version ?? ""} · Nothing leaves this machine · Not a medical device`));
+}
+
+interface RecentPlan {
+  path: string;
+  name: string;
+  changed_at_ms: number;
+}
+let recent: RecentPlan[]|null = null;
+
+/// The plans of the opened folders that were changed last.
+function recent_plans(): Child {
+  if (!recent?.length) return null;
+  return el(
+      "section", {class: "recent", "aria-label": "Recent plans"}, el("h2", {}, "Recent plans"),
+      recent.map(
+          (plan) => el(
+              "button",
+              {type: "button", class: "file", title: plan.path, onclick: () => void open_plan({path: plan.path})},
+              icon("report", 16), el("span", {}, plan.name),
+              el("small", {}, new Date(plan.changed_at_ms).toLocaleString()))));
+}
+
+/// Asks for the plans of the opened folders, and shows them where they differ from those known before.
+async function look_for_recent(): Promise<void> {
+  if (state.page !== "start" || !state.hello) return;
+  const answer = await try_to<{plans: RecentPlan[]}>("recent");
+  const before = JSON.stringify(recent);
+  recent = answer?.plans ?? [];
+  if (JSON.stringify(recent) !== before) set({page: state.page});
 }
 
 function offer(name: IconName, title: string, says: string, run: () => void, more = ""): Child {

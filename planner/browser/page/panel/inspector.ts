@@ -21,7 +21,7 @@ import {compare_card, cut_plane_card} from "../pane/view_cards";
 export function make_inspector(host: HTMLElement): void {
   const tabs = el("div", {class: "tabs", role: "tablist"});
   const body = el("div", {class: "panel-body", role: "tabpanel"});
-  host.append(tabs, body);
+  host.append(el("h2", {class: "unseen"}, "Details"), tabs, body);
   const again = (): void => {
     if (!state.plan) return fill(body);
     fill_tabs(

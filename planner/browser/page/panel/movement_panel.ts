@@ -3,25 +3,28 @@
 import {try_to} from "../actions";
 import {Child, el} from "../base/html";
 import {moves_object} from "../operations";
-import {Json} from "../protocol";
 import {on_leaving_plan, set, state, steps} from "../state";
 
+/// How a piece moves, and the landmarks that lie on it.
 interface MovementRow {
-  name?: string;
-  says?: string;
-  [field: string]: Json|undefined;
+  object: string;
+  from: string;
+  words: string;
+  landmarks?: {name: string; words: string; since_scan?: {words: string}}[];
 }
 const movements = new Map<string, MovementRow[]>();
-let fetched_edit = -1;
+let fetched = "";  // of which edit and evaluation
 on_leaving_plan(() => {
   movements.clear();
-  fetched_edit = -1;
+  fetched = "";
 });
 
 export async function fetch_movement(): Promise<void> {
   const plan = state.plan;
-  if (!plan || state.right_tab !== "movement" || fetched_edit === plan.edit) return;
-  fetched_edit = plan.edit;
+  // After an edit the pieces move as before until they are evaluated.
+  const present = `${plan?.edit} ${state.evaluations}`;
+  if (!plan || state.right_tab !== "movement" || fetched === present) return;
+  fetched = present;
   movements.clear();
   for (const step of steps().filter((one) => moves_object(one))) {
     const answer = await try_to<{rows: MovementRow[]}>("movement", {object: step.id});
@@ -36,19 +39,14 @@ export function movement(): Child {
   return [...movements].map(
       ([id, rows]) =>
           el("table", {class: "numbers"}, el("caption", {}, id.replace(/_/g, " ")),
-             el("tbody", {},
-                rows.map(
-                    (row) =>
-                        el("tr", {}, el("th", {scope: "row"}, row_name(row)),
-                           el("td", {class: "words-cell"}, row_words(row)))))));
+             el("tbody", {}, rows.map((row) => [
+                  row_of(row.from, row.words),
+                  (row.landmarks ?? [])
+                      .map((mark) => row_of(
+                               mark.name,
+                               mark.since_scan ? `${mark.words}; since the scan ${mark.since_scan.words}` :
+                                                 mark.words))
+                ]))));
 }
-const row_name = (row: MovementRow): string =>
-    String(row.name ?? row.what ?? row.landmark ?? "").replace(/_/g, " ");
-const row_words = (row: MovementRow): string => String(
-    row.says ?? row.words ?? row.sentence ??
-    Object.entries(row)
-        .filter(([key]) => key !== "name")
-        .map(
-            ([key, value]) => `${key.replace(/_(mm|deg)$/, "")} ${
-                typeof value === "number" ? value.toFixed(1) : String(value)}`)
-        .join(", "));
+const row_of = (name: string, words: string): Child =>
+    el("tr", {}, el("th", {scope: "row"}, name.replace(/_/g, " ")), el("td", {class: "words-cell"}, words));

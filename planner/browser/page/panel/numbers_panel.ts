@@ -51,7 +51,8 @@ export function numbers(): Child {
                           void show_largest(object.id);
                         },
                         {class: "small", "data-key": `show-${object.id}`}) :
-                    null),
+                    null,
+                object.error ? el("p", {class: "error"}, object.error) : null),
              el("td", {}, el("div", {}, measured_text(object.volume)),
                 object.area ? el("small", {}, measured_text(object.area)) : null),
              el("td", {class: "badge-cell"}, badge(object.id, object.certificate, object.volume)));
@@ -88,7 +89,8 @@ function measurement_row(found: Measurement): Child {
         "data-tip": found.sentence ?? found.says ?? (step ? step_words(step) : "")
       },
       el("th", {scope: "row"}, found.id.replace(/_/g, " "),
-         el("small", {}, ` ${found.says ?? (step ? step_words(step) : "")}`)),
+         el("small", {}, ` ${found.says ?? (step ? step_words(step) : "")}`),
+         found.value === null && found.sentence ? el("p", {class: "error"}, found.sentence) : null),
       el("td", {}, measured_text(found)),
       el("td", {class: "badge-cell"}, badge(found.id, object?.certificate, found)));
 }

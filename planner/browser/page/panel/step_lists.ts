@@ -18,7 +18,7 @@ const object_of = (id: string): ObjectState|undefined =>
 export function make_lists(host: HTMLElement): void {
   const tabs = el("div", {class: "tabs", role: "tablist"});
   const body = el("div", {class: "list", role: "tabpanel"});
-  host.append(tabs, body);
+  host.append(el("h2", {class: "unseen"}, "The plan"), tabs, body);
   const again = (): void => {
     if (!state.plan) return fill(body);
     fill_tabs(
@@ -259,14 +259,8 @@ async function show_diff(from: number): Promise<void> {
   if (diff_rows?.from === from)
     diff_rows = null;
   else {
-    const answer =
-        await try_to<{rows: (string | {[key: string]: Json})[]}>("diff", {a: from, b: state.plan?.edit});
-    if (answer)
-      diff_rows = {
-        from,
-        rows: answer.rows.map(
-            (row) => (typeof row === "string" ? row : Object.values(row).map(String).join(" ")))
-      };
+    const answer = await try_to<{rows: string[]}>("diff", {a: from, b: state.plan?.edit});
+    if (answer) diff_rows = {from, rows: answer.rows};
   }
   set({left_tab: "history"});
 }

@@ -5,6 +5,7 @@ import { execFileSync, spawn } from 'node:child_process';
 import fs from 'node:fs';
 import http from 'node:http';
 import net from 'node:net';
+import os from 'node:os';
 import path from 'node:path';
 import { chromium } from 'playwright-core';
 
@@ -88,6 +89,8 @@ const axial_pane = 2; // of the layout "Views and slices"
 const patience_ms = 120000;
 /// What the page asks to change its plan.
 const changes = new Set(['edit', 'open', 'undo', 'redo', 'branch', 'go_to', 'name_version', 'landmark', 'procedure']);
+/// A request is answered, or its progress told, within this time on a machine without other work.
+const silence_ms = 5000;
 /// A hand turns the wheel by so many notches at once.
 const notches_of_a_turn = 20;
 
@@ -96,6 +99,8 @@ export class PlannerWindow {
   answers = 0; // that came over the wire
   problems = [];
   asked = new Set(); // ids of changes of the plan that have no answer yet
+  waiting = new Map(); // all requests without an answer by their ids: what was asked, and when the server last spoke of it
+  late = []; // requests of which the server did not speak for longer than silence_ms
   frames = []; // headers and pictures that came over the wire, the newest last
 
   /// Opens the page. `size` is the window's; `theme` light or dark; `proxy` the URL of one between.
@@ -108,12 +113,16 @@ export class PlannerWindow {
     one.page = await one.context.newPage();
     one.page.setDefaultTimeout(patience_ms);
     one.page.on('console', (message) => { if (message.type() === 'error') one.problems.push(message.text()); });
-    one.page.on('pageerror', (error) => one.problems.push(String(error)));
+    one.page.on('pageerror', (error) => one.problems.push(`${error}\n${error.stack ?? ''}`));
     one.page.on('websocket', (socket) => {
       one.asked.clear();
+      one.waiting.clear();
       socket.on('framesent', ({ payload }) => one.take_request(JSON.parse(payload)));
       socket.on('framereceived', ({ payload }) => (typeof payload === 'string' ? one.take_answer(JSON.parse(payload)) : one.take_picture(payload)));
-      socket.on('close', () => one.asked.clear());
+      socket.on('close', () => {
+        one.asked.clear();
+        one.waiting.clear();
+      });
     });
     // Before any script of the page: every context that a canvas is asked for is counted by its kind.
     await one.page.addInitScript(() => {
@@ -132,14 +141,26 @@ export class PlannerWindow {
 
   take_request(message) {
     if (changes.has(message.do)) this.asked.add(message.id);
+    if (message.id) this.waiting.set(message.id, { what: message.do, at: Date.now() });
   }
   take_answer(message) {
     this.answers++;
     this.asked.delete(message.id);
+    this.hear(message.id ?? message.job, message.id !== undefined);
+  }
+  /// The server spoke of a request: it is told as late where it was silent for too long.
+  hear(id, is_answer) {
+    const request = this.waiting.get(id);
+    if (!request) return;
+    const silent_ms = Date.now() - request.at;
+    if (silent_ms > silence_ms * Math.max(1, os.loadavg()[0] / os.cpus().length)) this.late.push(`${request.what}: ${silent_ms} ms`);
+    request.at = Date.now();
+    if (is_answer) this.waiting.delete(id);
   }
   take_picture(payload) {
     const length = payload.readUInt32LE(0);
     const header = JSON.parse(payload.subarray(4, 4 + length).toString());
+    this.hear(header.id, true);
     if (header.quality !== 'rest') return;
     this.frames.push({ header, picture: payload.subarray(4 + length, 4 + length + header.parts[0].bytes) });
     if (this.frames.length > 40) this.frames.shift();

@@ -137,6 +137,8 @@ TEST_F(DocumentTest, UndoRedoAndBranchesAreTold) {
   document_->begin_branch("other");
   EXPECT_EQ(document_->history_json()["branch"], "other");
   EXPECT_EQ(document_->difference_of(1, 2)["added"], Json::array({"skin"}));
+  EXPECT_EQ(document_->difference_of(1, 2)["rows"], Json::array({"+ step 'skin'"}));
+  EXPECT_EQ(document_->difference_of(2, 2)["rows"], Json::array({"the plans are the same"}));
   document_->go_to("1");
   EXPECT_EQ(ids(), "bone ");
 }
