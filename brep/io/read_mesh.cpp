@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "brep/io/dicom_model.h"
 #include "brep/io/mesh_bytes.h"
 #include "brep/io/mesh_scanner.h"
 #include "brep/io/weld_seams.h"
@@ -28,6 +29,7 @@ struct Format {
   bool is_text;         ///< or may be text
   bool repeats_points;  ///< repeats a point if its attributes differ between triangles
 };
+constexpr Format dicom_format{".dcm", read_dicom_model, false, true};
 constexpr std::array<Format, 10> formats{{{".stl", read_stl, true, false},
                                           {".ply", read_ply, true, true},
                                           {".obj", read_obj, true, true},
@@ -43,7 +45,9 @@ const Format* format_of(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
   const auto found = std::find_if(formats.begin(), formats.end(),
                                   [&](const Format& format) { return format.extension == extension; });
-  return found == formats.end() ? nullptr : &*found;
+  if (found != formats.end()) return &*found;
+  return (extension.empty() || extension == dicom_format.extension) && is_dicom_model(path) ? &dicom_format
+                                                                                            : nullptr;
 }
 
 std::string bytes_of(const std::filesystem::path& path) {
@@ -125,7 +129,8 @@ MeshFile read_bytes(std::string bytes, const Format& format, const MeshReadOptio
 
 }  // namespace
 
-const char* const mesh_formats_read = ".stl, .ply, .obj, .off, .vtk, .vtp, .vtu, .glb or .3mf";
+const char* const mesh_formats_read =
+    ".stl, .ply, .obj, .off, .vtk, .vtp, .vtu, .glb, .3mf or a .dcm that holds a surface";
 
 bool is_mesh_file(const std::filesystem::path& path) {
   return format_of(path) != nullptr;

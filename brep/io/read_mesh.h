@@ -27,9 +27,10 @@ struct MeshFile {
   Extent extent() const;
 };
 
-/// Extensions of files that read_mesh() reads, for messages: ".stl, .ply, ... or .3mf".
+/// Extensions of files that read_mesh() reads, for messages: ".stl, .ply, ... or .dcm".
 extern const char* const mesh_formats_read;
-/// Whether read_mesh() reads files with the path's extension.
+/// Whether read_mesh() reads files with the path's extension; of .dcm and files without one, whether the file
+/// holds a surface.
 bool is_mesh_file(const std::filesystem::path& path);
 
 /// Reads a surface:
@@ -38,7 +39,9 @@ bool is_mesh_file(const std::filesystem::path& path);
 /// - .vtk, legacy polydata and unstructured grids, ASCII and binary, versions to 5.1;
 /// - .vtp and .vtu, XML: text, base64 or appended, plain or compressed by zlib or LZ4;
 /// - .glb, binary glTF 2.0: the triangles of the scene's nodes, transformed; equal points welded;
-/// - .3mf: the objects of the build, transformed. PLY, OBJ and VTK files repeat points at which normals,
+/// - .3mf: the objects of the build, transformed;
+/// - .dcm: STL or OBJ that is encapsulated in DICOM, with the unit of its header.
+/// PLY, OBJ and VTK files repeat points at which normals,
 ///   colours or textures differ. Such points are merged if that closes open sides and leaves every edge with
 ///   two triangles (weld_seams.h); points of OFF and 3MF are not merged. Triangles that repeat a corner are
 ///   left out. The audit reports both. For an unstructured grid with volume cells, the result is the surface

@@ -72,7 +72,9 @@ std::string DicomDigest::uid(const std::string& text) const {
 
 void DicomAttributes::put(DicomTag tag, const char* vr, std::string value) {
   const std::string_view kind = vr;
-  assert(value.size() <= (kind == "OB" || kind == "OW" || kind == "SQ" ? 0xfffffffeu : 0xfffeu));
+  assert(value.size() <= (coding_ == Coding::ImplicitVr || kind == "OB" || kind == "OW" || kind == "SQ"
+                              ? 0xfffffffeu
+                              : 0xfffeu));
   if (value.size() % 2 == 1) value.push_back(kind == "UI" || kind == "OB" ? '\0' : ' ');
   values_[tag] = {vr, std::move(value)};
 }
@@ -95,6 +97,7 @@ void DicomAttributes::put_sequence(DicomTag tag, const std::vector<DicomAttribut
   constexpr std::string_view item_tag("\xfe\xff\x00\xe0", 4);
   std::string bytes;
   for (const DicomAttributes& item : items) {
+    assert(item.coding_ == coding_);
     std::ostringstream inside;
     item.write(inside);
     const std::string value = inside.str();
@@ -105,6 +108,10 @@ void DicomAttributes::put_sequence(DicomTag tag, const std::vector<DicomAttribut
 
 void DicomAttributes::write(std::ostream& out) const {
   for (const auto& [tag, value] : values_) {
+    if (coding_ == Coding::ImplicitVr) {
+      out << bytes_of(tag >> 16, 2) << bytes_of(tag, 2) << bytes_of(value.bytes.size(), 4) << value.bytes;
+      continue;
+    }
     const bool is_wide = value.vr == "OB" || value.vr == "OW" || value.vr == "SQ";
     out << bytes_of(tag >> 16, 2) << bytes_of(tag, 2) << value.vr;
     if (is_wide) out << bytes_of(0, 2);
@@ -126,7 +133,8 @@ void write_dicom_file(const std::filesystem::path& path, const std::filesystem::
   meta.put(0x00020001, "OB", std::string("\0\1", 2));
   meta.put(0x00020002, "UI", attributes.value(0x00080016));
   meta.put(0x00020003, "UI", attributes.value(0x00080018));
-  meta.put(0x00020010, "UI", "1.2.840.10008.1.2.1");  // explicit VR, little-endian
+  const bool is_implicit = attributes.coding() == DicomAttributes::Coding::ImplicitVr;
+  meta.put(0x00020010, "UI", is_implicit ? "1.2.840.10008.1.2" : "1.2.840.10008.1.2.1");
   meta.put(0x00020012, "UI", DicomDigest().uid("octotomy"));
   meta.put(0x00020013, "SH", "OCTOTOMY");
   std::ostringstream head;

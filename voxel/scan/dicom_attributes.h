@@ -40,16 +40,21 @@ class DicomDigest {
   std::uint64_t low_ = 0x84222325cbf29ce4;
 };
 
-/// Attributes in ascending order, written with explicit VR, little-endian, sequences and items with their
-/// lengths (DICOM PS3.5, 7.1 and 7.5).
+/// Attributes in ascending order, written little-endian, sequences and items with their lengths (DICOM PS3.5,
+/// 7.1 and 7.5): with explicit VR, or with implicit VR, which alone has room for texts of more than 64 KB.
 class DicomAttributes {
  public:
+  enum class Coding { ExplicitVr, ImplicitVr };
+  explicit DicomAttributes(Coding coding = Coding::ExplicitVr) : coding_(coding) {}
+  Coding coding() const { return coding_; }
+
   /// Replaces an attribute's value. Pads an odd length with a space, or with zero for UI and OB.
-  /// Precondition: at most 2^32 - 2 bytes, at most 65534 for VRs other than OB, OW and SQ.
+  /// Precondition: at most 2^32 - 2 bytes; with explicit VR at most 65534 for VRs other than OB, OW and SQ.
   void put(DicomTag tag, const char* vr, std::string value);
   void put_short(DicomTag tag, std::uint16_t number);                ///< US
   void put_longs(DicomTag tag, std::vector<std::uint32_t> numbers);  ///< UL
   void put_tag(DicomTag tag, DicomTag named);                        ///< AT
+  /// Precondition: the items have the coding of these attributes.
   void put_sequence(DicomTag tag, const std::vector<DicomAttributes>& items);
   void remove(DicomTag tag) { values_.erase(tag); }
 
@@ -63,13 +68,15 @@ class DicomAttributes {
     std::string bytes;
   };
   std::map<DicomTag, Value> values_;
+  Coding coding_;
 };
 
 /// One item of a code sequence, such as SNOMED's 85756007 "Tissue" (PS3.3, 8.8).
 DicomAttributes dicom_code(const char* value, const char* scheme, const char* meaning);
 
 /// Writes a file of one instance (PS3.10, 7.1); its class and identifier are the attributes (0008,0016) and
-/// (0008,0018). Error messages refer to the file as `name`. Throws Error, Resource.
+/// (0008,0018), its transfer syntax follows from their coding. Error messages refer to the file as `name`.
+/// Throws Error, Resource.
 void write_dicom_file(const std::filesystem::path& path, const std::filesystem::path& name,
                       const DicomAttributes& attributes);
 

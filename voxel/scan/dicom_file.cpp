@@ -337,6 +337,44 @@ std::optional<double> DicomFile::decimal(DicomTag tag) const {
   return numbers ? std::optional<double>(numbers->front()) : std::nullopt;
 }
 
+bool DicomFile::begins_image(std::string_view fragment) {
+  return fragment.size() >= 4 && fragment[0] == '\xff' &&
+         ((fragment[1] == '\xd8' && fragment[2] == '\xff') ||
+          (fragment[1] == '\x4f' && fragment[2] == '\xff'));
+}
+
+std::optional<std::vector<std::vector<DicomExtent>>> DicomFile::frame_fragments(std::size_t frames) const {
+  const std::vector<DicomExtent>& fragments = *fragments_;
+  std::vector<std::vector<DicomExtent>> parts(frames);
+  if (frames == 1) {
+    parts[0] = fragments;
+    return parts;
+  }
+  if (fragments.size() == frames) {
+    for (std::size_t i = 0; i < frames; ++i) parts[i] = {fragments[i]};
+    return parts;
+  }
+  if (fragments.empty()) return std::nullopt;
+  const std::vector<std::uint64_t>& offsets = frame_offsets_;
+  if (offsets.size() == frames) {
+    // Offsets count from the first fragment's item, eight bytes before its value.
+    std::size_t frame = 0;
+    for (const DicomExtent& fragment : fragments) {
+      const std::size_t offset = fragment.at - fragments.front().at;
+      while (frame + 1 < frames && offset >= offsets[frame + 1]) ++frame;
+      parts[frame].push_back(fragment);
+    }
+    return parts;
+  }
+  std::size_t begun = 0;
+  for (const DicomExtent& fragment : fragments) {
+    if (begins_image(at(fragment))) ++begun;
+    if (begun == 0 || begun > frames) return std::nullopt;
+    parts[begun - 1].push_back(fragment);
+  }
+  return begun == frames ? std::optional(parts) : std::nullopt;
+}
+
 std::string whole_dicom(std::string bytes) {
   try {
     const DicomFile file(bytes, bytes.size());

@@ -82,6 +82,12 @@ class DicomFile {
   /// The offset table, basic or extended: where each frame begins, counted from the first fragment's item;
   /// empty if absent.
   const std::vector<std::uint64_t>& frame_offsets() const { return frame_offsets_; }
+  /// The fragments of each of a number of frames: one per frame, or as the offset table says, or as the
+  /// start-of-image markers say. None if none of these fits. Precondition: fragments() has a value.
+  std::optional<std::vector<std::vector<DicomExtent>>> frame_fragments(std::size_t frames) const;
+  /// Whether a fragment begins a frame of JPEG, JPEG-LS or JPEG 2000, which start with a start-of-image
+  /// marker.
+  static bool begins_image(std::string_view fragment);
   /// The bytes of a fragment.
   std::string_view at(const DicomExtent& extent) const { return bytes_.substr(extent.at, extent.length); }
 

@@ -252,57 +252,15 @@ std::optional<NoSlice> take_geometry(const Attributes& attributes, std::size_t f
   return std::nullopt;
 }
 
-/// Whether a fragment begins a frame of JPEG, JPEG-LS or JPEG 2000, which start with a start-of-image marker.
-bool begins_image(std::string_view fragment) {
-  return fragment.size() >= 4 && fragment[0] == '\xff' &&
-         ((fragment[1] == '\xd8' && fragment[2] == '\xff') ||
-          (fragment[1] == '\x4f' && fragment[2] == '\xff'));
-}
-
 /// The number of images that begin among the fragments, by the offset table and by their markers. An RLE
 /// frame is one fragment.
 std::size_t images_begun(const DicomFile& file) {
   const std::vector<DicomExtent>& fragments = *file.fragments();
   if (file.transfer_syntax() == "1.2.840.10008.1.2.5") return fragments.size();
   const auto begun = std::count_if(fragments.begin(), fragments.end(), [&](const DicomExtent& fragment) {
-    return begins_image(file.at(fragment));
+    return DicomFile::begins_image(file.at(fragment));
   });
   return std::max(file.frame_offsets().size(), static_cast<std::size_t>(begun));
-}
-
-/// The fragments of each frame: one per frame, or as the offset table says, or as the start-of-image markers
-/// say. None if none of these fits.
-std::optional<std::vector<std::vector<DicomExtent>>> fragments_by_frame(const DicomFile& file,
-                                                                        std::size_t frames) {
-  const std::vector<DicomExtent>& fragments = *file.fragments();
-  std::vector<std::vector<DicomExtent>> parts(frames);
-  if (frames == 1) {
-    parts[0] = fragments;
-    return parts;
-  }
-  if (fragments.size() == frames) {
-    for (std::size_t i = 0; i < frames; ++i) parts[i] = {fragments[i]};
-    return parts;
-  }
-  if (fragments.empty()) return std::nullopt;
-  const std::vector<std::uint64_t>& offsets = file.frame_offsets();
-  if (offsets.size() == frames) {
-    // Offsets count from the first fragment's item, eight bytes before its value.
-    std::size_t frame = 0;
-    for (const DicomExtent& fragment : fragments) {
-      const std::size_t offset = fragment.at - fragments.front().at;
-      while (frame + 1 < frames && offset >= offsets[frame + 1]) ++frame;
-      parts[frame].push_back(fragment);
-    }
-    return parts;
-  }
-  std::size_t begun = 0;
-  for (const DicomExtent& fragment : fragments) {
-    if (begins_image(file.at(fragment))) ++begun;
-    if (begun == 0 || begun > frames) return std::nullopt;
-    parts[begun - 1].push_back(fragment);
-  }
-  return begun == frames ? std::optional(parts) : std::nullopt;
 }
 
 /// The extents of `length` bytes of raw pixels, starting at byte `from` of the joined pieces.
@@ -383,7 +341,7 @@ std::optional<NoSlice> take_pixels(const DicomFile& file, std::vector<DicomSlice
     return std::nullopt;
   }
   const std::size_t images = std::max(images_begun(file), frames);
-  auto parts = fragments_by_frame(file, images);
+  auto parts = file.frame_fragments(images);
   if (parts && images > frames)
     slices.front().excess_pixels =
         print("pixels of %zu images, of which the header counts %zu", images, frames);

@@ -13,6 +13,7 @@
 #include <map>
 
 #include "voxel/scan/audit.h"
+#include "voxel/scan/dicom_codec.h"
 #include "voxel/scan/dicom_file.h"
 #include "voxel/scan/identity.h"
 #include "voxel/scan/label_overlaps.h"
@@ -47,19 +48,35 @@ class SegReader {
       : path_(path), file_(file), bytes_(bytes) {}
 
   Scene run() {
+    place();
+    fill();
+    scene_.meaning = Meaning::Label;
+    return finished();
+  }
+
+  /// The fractions of one segment, from 0 to 1.
+  Scene run_fractions(const std::string& segment) {
+    place();
+    fill_fractions(chosen(segment));
+    scene_.meaning = Meaning::Raw;
+    return finished();
+  }
+
+ private:
+  void place() {
     read_image();
     read_segments();
     read_frames();
     lay();
-    fill();
-    scene_.meaning = Meaning::Label;
+  }
+
+  Scene finished() {
     scene_.modality = "SEG";
     scene_.source = path_.string();
     scene_.identity = identity_of(file_);
     return std::move(scene_);
   }
 
- private:
   [[noreturn]] void refused(const std::string& reason) const { refuse(path_, "a segmentation " + reason); }
 
   void read_image() {
@@ -71,7 +88,7 @@ class SegReader {
     const bool fits = is_label_map_ ? bits_ == 8 || bits_ == 16 : bits_ == 1 || bits_ == 8;
     if (rows_ == 0 || columns_ == 0 || !fits)
       refused(is_label_map_ ? "without pixels of 8 or 16 bits" : "without pixels of 1 or 8 bits");
-    if (!file_.raw_pixels()) refused("whose pixels are compressed or absent: decompress it first");
+    if (!file_.raw_pixels() && !file_.fragments()) refused("without pixels");
     if (bits_ != 8 || is_label_map_) return;
     if (type == "BINARY") {
       least_ = 1;
@@ -110,7 +127,11 @@ class SegReader {
     const std::vector<DicomFile> shared = file_.items(0x52009229);
     const DicomFile* const common = shared.empty() ? nullptr : &shared.front();
     const std::size_t area = static_cast<std::size_t>(rows_) * columns_;
-    if (own.empty() || (file_.raw_pixels()->length * 8) / bits_ / area < own.size())
+    if (!own.empty() && file_.fragments()) decompress_frames(own.size());
+    if (own.empty()) refused("without frames");
+    if (file_.raw_pixels())
+      pixels_ = std::string_view(bytes_).substr(file_.raw_pixels()->at, file_.raw_pixels()->length);
+    if (pixels_.size() * 8 / bits_ / area < own.size())
       refused("that is cut short: its frames hold fewer pixels than they claim");
     const auto measures = [&](DicomTag tag) { return group_decimals(&own[0], common, 0x00289110, tag); };
     const auto spacing = measures(0x00280030);
@@ -124,6 +145,37 @@ class SegReader {
     stated_step_mm_ = positive(0x00180088);
     thickness_mm_ = positive(0x00180050);
     for (std::size_t i = 0; i < own.size(); ++i) take_frame(own[i], common, i);
+  }
+
+  /// Decodes the frames one after the other. Refuses claims of more pixels than any codec packs into the
+  /// file's bytes.
+  void decompress_frames(std::size_t count) {
+    const std::string& syntax = file_.transfer_syntax();
+    if (bits_ == 1)
+      refused("whose pixels of 1 bit are compressed (transfer syntax " + syntax +
+              "): decompress it with another tool, such as gdcmconv --raw");
+    const std::uint64_t each =
+        std::uint64_t{bits_ / 8} * static_cast<std::uint64_t>(rows_) * static_cast<std::uint64_t>(columns_);
+    constexpr std::uint64_t most_packed = 4096;
+    if (each > most_packed * bytes_.size() / count)
+      refused("that claims " + std::to_string(count) + " frames of " + std::to_string(columns_) + " x " +
+              std::to_string(rows_) + " pixels, more than its bytes can hold: it is damaged");
+    const auto parts = file_.frame_fragments(count);
+    if (!parts)
+      refused("whose compressed fragments belong to no certain frames: decompress it with another tool");
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto bits = static_cast<unsigned>(bits_);
+      CompressedFrame frame{
+          syntax, static_cast<unsigned>(columns_), static_cast<unsigned>(rows_), bits, bits, bits - 1, false,
+          {}};
+      for (const DicomExtent& part : (*parts)[i]) frame.fragments.push_back(file_.at(part));
+      const std::optional<std::string> decoded = decompress(frame);
+      if (!decoded)
+        refused("whose frame " + std::to_string(i + 1) + " in transfer syntax " + syntax +
+                " cannot be decompressed: the file is damaged, or decompress it with another tool");
+      decompressed_ += *decoded;
+    }
+    pixels_ = decompressed_;
   }
 
   void take_frame(const DicomFile& own, const DicomFile* shared, std::size_t number) {
@@ -303,23 +355,67 @@ class SegReader {
   /// The segment of a pixel; 0: none.
   int segment_at(const Frame& frame, std::size_t pixel) const {
     if (!is_label_map_) return is_inside(pixel) ? frame.segment : 0;
-    const std::size_t at = file_.raw_pixels()->at + pixel * bits_ / 8;
-    const auto byte = [&](std::size_t i) { return int{static_cast<unsigned char>(bytes_[at + i])}; };
+    const std::size_t at = pixel * bits_ / 8;
+    const auto byte = [&](std::size_t i) { return int{static_cast<unsigned char>(pixels_[at + i])}; };
     if (bits_ == 8) return byte(0);
-    return file_.big_endian() ? byte(0) * 256 + byte(1) : byte(1) * 256 + byte(0);
+    return file_.big_endian() && decompressed_.empty() ? byte(0) * 256 + byte(1) : byte(1) * 256 + byte(0);
   }
 
   bool is_inside(std::size_t pixel) const {
-    const std::size_t at = file_.raw_pixels()->at;
-    if (bits_ == 8) return static_cast<unsigned char>(bytes_[at + pixel]) >= least_;
-    return ((bytes_[at + pixel / 8] >> (pixel % 8)) & 1) != 0;
+    if (bits_ == 8) return static_cast<unsigned char>(pixels_[pixel]) >= least_;
+    return ((pixels_[pixel / 8] >> (pixel % 8)) & 1) != 0;
+  }
+
+  /// The number of the segment of this label; else of this number.
+  int chosen(const std::string& wanted) const {
+    std::vector<int> named;
+    std::string all;
+    for (const auto& [number, name] : names_) {
+      if (name == wanted) named.push_back(number);
+      all += (all.empty() ? "" : ", ") + std::to_string(number) + " '" + name + "'";
+    }
+    if (named.size() == 1) return named.front();
+    for (const auto& [number, name] : names_)
+      if (std::to_string(number) == wanted) return number;
+    refused("that has " + std::string(named.empty() ? "no segment" : "several segments") + " '" + wanted +
+            "': choose its label or number, one of " + all);
+  }
+
+  /// A pixel's share of its segment, from 0 to 1.
+  float fraction_at(const Frame& frame, std::size_t pixel, int wanted) const {
+    if (most_fraction_ == 0) return segment_at(frame, pixel) == wanted ? 1.0F : 0.0F;
+    const int stored = static_cast<unsigned char>(pixels_[pixel]);
+    return static_cast<float>(std::min(stored, most_fraction_)) / static_cast<float>(most_fraction_);
+  }
+
+  void fill_fractions(int wanted) {
+    const std::size_t area = static_cast<std::size_t>(rows_) * columns_;
+    FloatSamples samples(scene_.lattice.sample_count(), 0.0F);
+    std::size_t partial = 0;
+    for (const Frame& frame : frames_) {
+      if (!is_label_map_ && frame.segment != wanted) continue;
+      float* const plane = samples.data() + static_cast<std::size_t>(plane_of(frame, fit_)) * area;
+      for (std::size_t i = 0; i < area; ++i) {
+        plane[i] = std::max(plane[i], fraction_at(frame, frame.number * area + i, wanted));
+        partial += plane[i] > 0.0F && plane[i] < 1.0F;
+      }
+    }
+    scene_.samples = std::move(samples);
+    const std::string what = "samples are the shares of the segment " + std::to_string(wanted) + " '" +
+                             names_[wanted] + "', 0 to 1, " + std::to_string(partial) + " of them partial";
+    const std::string kind = trimmed(file_.text(0x00620010));
+    if (most_fraction_ > 0 && kind != "OCCUPANCY")
+      scene_.audit.push_back({"fractions", Verdict::Warn,
+                              what + ": the file states " + (kind.empty() ? "no type of fraction" : kind) +
+                                  ", so they may be no shares of volume"});
+    else
+      scene_.audit.push_back({"fractions", Verdict::Pass, what});
   }
 
   /// Counts the fractions of a frame that are neither zero nor the maximum.
   void count_fractions(const Frame& frame, std::size_t area) {
     int& largest = largest_fractions_[frame.segment];
-    for (const char pixel :
-         std::string_view(bytes_).substr(file_.raw_pixels()->at + frame.number * area, area)) {
+    for (const char pixel : pixels_.substr(frame.number * area, area)) {
       const int fraction = static_cast<unsigned char>(pixel);
       largest = std::max(largest, fraction);
       if (fraction > 0 && fraction < most_fraction_) ++(fraction < least_ ? rounded_down_ : rounded_up_);
@@ -362,7 +458,8 @@ class SegReader {
              "a FRACTIONAL segmentation is cut at one half, %d of %d: %zu samples of less are left out, and "
              "%zu of more are whole",
              least_, most_fraction_, rounded_down_, rounded_up_) +
-             (below.empty() ? "" : "; no sample reaches one half of segment " + listed(below))});
+             (below.empty() ? "" : "; no sample reaches one half of segment " + listed(below)) +
+             "; --series with a segment's label or number reads its fractions as samples from 0 to 1"});
   }
 
   template <typename Sample>
@@ -406,6 +503,8 @@ class SegReader {
   int rows_ = 0, columns_ = 0;
   std::size_t bits_ = 1;
   bool is_label_map_ = false;
+  std::string_view pixels_;        ///< of all frames, one after the other
+  std::string decompressed_ = {};  ///< the same of compressed frames
   int least_ = 128;
   int most_fraction_ = 0;  ///< maximum of a fractional segmentation; 0 for others
   std::size_t rounded_down_ = 0, rounded_up_ = 0;
@@ -430,17 +529,32 @@ bool is_dicom_seg(const fs::path& path) {
                                       bytes.find(label_map_storage) != std::string::npos);
 }
 
-Scene read_dicom_seg(const fs::path& path) {
+namespace {
+
+/// Reads a segmentation's file and has `read` make a scene of it.
+template <typename Read>
+Scene read_seg(const fs::path& path, const Read& read) {
   std::string stored = file_bytes(path);
   try {
     const std::string bytes = whole_dicom(std::move(stored));
-    return SegReader(path, DicomFile(bytes, bytes.size(), true), bytes).run();
+    const DicomFile file(bytes, bytes.size(), true);
+    return read(SegReader(path, file, bytes));
   } catch (const DicomFile::NeedsMore&) {
     refuse(path, "changed while it was read");
   } catch (const Error& error) {
     if (std::string(error.what()).find(path.string()) != std::string::npos) throw;
     refuse(path, error.what());
   }
+}
+
+}  // namespace
+
+Scene read_dicom_seg(const fs::path& path) {
+  return read_seg(path, [](SegReader&& reader) { return reader.run(); });
+}
+
+Scene read_dicom_fractions(const fs::path& path, const std::string& segment) {
+  return read_seg(path, [&](SegReader&& reader) { return reader.run_fractions(segment); });
 }
 
 }  // namespace octotomy::voxel

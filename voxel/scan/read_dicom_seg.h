@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "voxel/space/scene.h"
 
@@ -18,8 +19,13 @@ bool is_dicom_seg(const std::filesystem::path& path);
 /// pixels of at least half of its maximum. In the audit, "segments" lists numbers and labels, "overlaps" the
 /// segments that overlap. "slice_spacing", "fractions" and "undescribed" report uneven positions, fractions
 /// that were cut, and segments without a description. Deflated files are inflated. Throws Error, Input, with
-/// path and reason, also if frames are compressed, turned against each other or off one lattice. Memory: the
-/// file, and two bytes per sample of at most four planes per frame.
+/// path and reason, also if frames are turned against each other or off one lattice, or cannot be
+/// decompressed. Memory: the file, its decompressed frames, and two bytes per sample of at most four planes per frame.
 Scene read_dicom_seg(const std::filesystem::path& path);
+
+/// Reads the fractions of one segment, by its label or number, as samples from 0 to 1 on the same lattice; of
+/// a BINARY segment or a label map zeros and ones. The audit's "fractions" counts the partial ones, a WARN if
+/// the file does not state OCCUPANCY. Throws as read_dicom_seg(), also if there is no such segment.
+Scene read_dicom_fractions(const std::filesystem::path& path, const std::string& segment);
 
 }  // namespace octotomy::voxel

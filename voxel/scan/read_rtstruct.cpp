@@ -74,6 +74,7 @@ void add_contours(const DicomFile& of_region, Structure& structure) {
     for (std::size_t i = 0; i < numbers->size(); i += 3)
       points.push_back(glm::dvec3((*numbers)[i], (*numbers)[i + 1], (*numbers)[i + 2]) + *offset_mm);
     structure.contours_mm.push_back(std::move(points));
+    structure.slabs_mm.push_back(std::max(slab_mm, 0.0));
   }
 }
 

@@ -28,6 +28,7 @@ struct Structure {
   bool is_interpolated = false;
   double slab_mm = 0.0;                      ///< least ContourSlabThickness; 0 if any contour states none
   std::vector<std::string> frame_uids = {};  ///< the region's own frame of reference, or none
+  std::vector<double> slabs_mm = {};         ///< ContourSlabThickness of each of contours_mm; 0: not stated
 };
 
 /// Regions, and the patient, studies and frames of reference that they refer to. Includes both those of the

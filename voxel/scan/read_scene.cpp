@@ -68,6 +68,8 @@ Scene read_any(const fs::path& path, const ReadOptions& options) {
       return read_volume_file(path, *format, options);
     need_no_override(path, options);
     if (!is_dicom_seg(path)) return read_dicom(path, options);
+    if (!options.series.empty() && !options.join && options.slices.empty())
+      return read_dicom_fractions(path, options.series);
     need_no_series(path, options);
     return read_dicom_seg(path);
   }

@@ -30,7 +30,8 @@ using SlicesFinal = std::function<void(const Scene& scene, int count)>;
 struct ReadOptions {
   /// The DICOM series: its choice in list_series() ("2", or "2.1" of a series that holds several stacks), its
   /// UID, or a part of its description or of the attributes in which its stacks differ. Empty: the series
-  /// with most slices.
+  /// with most slices. Of a DICOM segmentation: the label or number of the segment whose fractions, 0 to 1,
+  /// are the samples; empty: all segments as labels.
   std::string series;
   /// Joins the images of all DICOM series of a folder, and those of several studies and frames of reference
   /// in one series, as if they were one: for exports in which each image has identifiers of its own. They

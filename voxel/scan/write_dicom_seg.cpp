@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // 1 find each segment's planes that hold a voxel and the rectangle around all; 2 pack their pixels, one bit
-// each, and describe each plane as a frame; 3 describe the segments, the dimensions (segment and position)
-// and the origin.
+// each (of fractions a byte), and describe each plane as a frame; 3 describe the segments, the dimensions
+// (segment and position) and the origin.
 #include "voxel/scan/write_dicom_seg.h"
 
 #include <algorithm>
@@ -24,6 +24,8 @@ namespace fs = std::filesystem;
 using Items = std::vector<DicomAttributes>;
 
 constexpr const char* segmentation_storage = "1.2.840.10008.5.1.4.1.1.66.4";
+/// The fraction of a wholly filled pixel.
+constexpr std::uint16_t most_fraction = 255;
 
 using Segments = std::span<const DicomSegment>;
 
@@ -70,16 +72,46 @@ void add_planes(Segments segments, std::size_t segment, const Progress& progress
     throw std::invalid_argument("the object is empty: choose an object with at least one voxel");
 }
 
-/// The frames' pixels without gaps between rows or frames, the first in the lowest bit (PS3.5, 8.1.1).
-std::string packed_pixels(Segments segments, const Extent& extent, const Progress& progress) {
+/// The same of the planes of a segment's fractions.
+void add_planes(const Lattice& lattice, const DicomFractions& segment, std::size_t number, Extent& extent,
+                DicomDigest& digest) {
+  const std::size_t before = extent.planes.size();
+  const std::uint8_t* fraction = segment.fractions.data();
+  for (int z = 0; z < lattice.dims.z; ++z) {
+    bool is_held = false;
+    const std::uint8_t* const plane = fraction;
+    for (int y = 0; y < lattice.dims.y; ++y)
+      for (int x = 0; x < lattice.dims.x; ++x, ++fraction) {
+        if (*fraction == 0) continue;
+        is_held = true;
+        extent.low = glm::min(extent.low, glm::ivec2(x, y));
+        extent.high = glm::max(extent.high, glm::ivec2(x, y));
+      }
+    if (!is_held) continue;
+    extent.planes.push_back({number, z});
+    digest.add(&z, sizeof z);
+    digest.add(plane, static_cast<std::size_t>(fraction - plane));
+  }
+  if (extent.planes.size() == before)
+    throw std::invalid_argument("the fractions of '" + segment.label +
+                                "' are all zero: choose an object that fills a part of a voxel");
+}
+
+/// The number of bytes of the frames' pixels. Throws Error, Geometry, if it is beyond DICOM's limit.
+std::size_t pixel_bytes(const Extent& extent, unsigned bits) {
   const auto area =
       static_cast<std::uint64_t>(extent.size_px().x) * static_cast<std::uint64_t>(extent.size_px().y);
-  const std::uint64_t bytes = (area * extent.planes.size() + 7) / 8;
+  const std::uint64_t bytes = (area * extent.planes.size() * bits + 7) / 8;
   if (bytes > 0xfffffffe)
     throw Error(ErrorCode::Geometry,
                 "the segmentation's " + std::to_string(extent.planes.size()) +
                     " frames take more than DICOM's 4 GB: use larger voxels or a part of the object");
-  std::string pixels(static_cast<std::size_t>(bytes), '\0');
+  return static_cast<std::size_t>(bytes);
+}
+
+/// The frames' pixels without gaps between rows or frames, the first in the lowest bit (PS3.5, 8.1.1).
+std::string packed_pixels(Segments segments, const Extent& extent, const Progress& progress) {
+  std::string pixels(pixel_bytes(extent, 1), '\0');
   SliceBits slice;
   std::size_t bit = 0;
   for (std::size_t i = 0; i < extent.planes.size(); ++i) {
@@ -93,6 +125,33 @@ std::string packed_pixels(Segments segments, const Extent& extent, const Progres
   return pixels;
 }
 
+/// The frames' pixels, a byte each.
+std::string fraction_pixels(const Lattice& lattice, std::span<const DicomFractions> segments,
+                            const Extent& extent) {
+  std::string pixels;
+  pixels.reserve(pixel_bytes(extent, 8));
+  const auto columns = static_cast<std::size_t>(lattice.dims.x),
+             rows = static_cast<std::size_t>(lattice.dims.y);
+  for (const auto& [segment, z] : extent.planes)
+    for (int y = extent.low.y; y <= extent.high.y; ++y) {
+      const std::uint8_t* const row =
+          segments[segment].fractions.data() +
+          columns * (rows * static_cast<std::size_t>(z) + static_cast<std::size_t>(y));
+      pixels.append(row + extent.low.x, row + extent.high.x + 1);
+    }
+  return pixels;
+}
+
+/// What is written, apart from the source.
+struct Content {
+  Lattice lattice;
+  std::vector<std::string> labels = {};  ///< of the segments
+  DicomDigest digest = {};
+  Extent extent = {};
+  std::string pixels = {};
+  bool is_fractional = false;
+};
+
 /// One item with one or more attributes, as most sequences of a segmentation have.
 template <typename Fill>
 Items item(Fill fill) {
@@ -101,16 +160,20 @@ Items item(Fill fill) {
   return items;
 }
 
-void put_segments(DicomAttributes& file, Segments segments, const std::string& label) {
+void put_segments(DicomAttributes& file, const Content& content, const std::string& label) {
   // The object's anatomy is unknown. SNOMED's "Tissue" applies to every object.
   const Items tissue{dicom_code("85756007", "SCT", "Tissue")};
-  file.put(0x00620001, "CS", "BINARY");
+  file.put(0x00620001, "CS", content.is_fractional ? "FRACTIONAL" : "BINARY");
+  if (content.is_fractional) {
+    file.put_short(0x0062000e, most_fraction);
+    file.put(0x00620010, "CS", "OCCUPANCY");
+  }
   Items items;
-  for (const DicomSegment& each : segments) {
+  for (const std::string& each : content.labels) {
     DicomAttributes& segment = items.emplace_back();
     segment.put_sequence(0x00620003, tissue);
     segment.put_short(0x00620004, static_cast<std::uint16_t>(items.size()));
-    segment.put(0x00620005, "LO", each.label);
+    segment.put(0x00620005, "LO", each);
     segment.put(0x00620008, "CS", "SEMIAUTOMATIC");
     segment.put(0x00620009, "LO", "Octotomy");
     segment.put_sequence(0x0062000f, tissue);
@@ -197,7 +260,7 @@ void put_frames(DicomAttributes& file, const Lattice& lattice, const Extent& ext
   if (source) put_referenced_series(file, source->series_uid, referenced);
 }
 
-void put_image(DicomAttributes& file, const glm::ivec2& size_px) {
+void put_image(DicomAttributes& file, const glm::ivec2& size_px, std::uint16_t bits) {
   file.put(0x00080008, "CS", "DERIVED\\PRIMARY");
   file.put(0x00080016, "UI", segmentation_storage);
   file.put(0x00080023, "DA", "20000101");
@@ -211,18 +274,17 @@ void put_image(DicomAttributes& file, const glm::ivec2& size_px) {
   file.put(0x00280004, "CS", "MONOCHROME2");
   file.put_short(0x00280010, static_cast<std::uint16_t>(size_px.y));
   file.put_short(0x00280011, static_cast<std::uint16_t>(size_px.x));
-  file.put_short(0x00280100, 1);
-  file.put_short(0x00280101, 1);
-  file.put_short(0x00280102, 0);
+  file.put_short(0x00280100, bits);
+  file.put_short(0x00280101, bits);
+  file.put_short(0x00280102, static_cast<std::uint16_t>(bits - 1));
   file.put_short(0x00280103, 0);
   file.put(0x00282110, "CS", "00");
 }
 
-DicomAttributes segmentation(Segments segments, const DicomSegOptions& options) {
-  const Universe& universe = segments.front().object.universe();
-  const Lattice lattice = universe.lattice();
+/// The lattice's axes as unit vectors. Throws std::invalid_argument unless they are perpendicular.
+glm::dmat3 perpendicular_axes(const Lattice& lattice) {
   const glm::dvec3 edge_mm = lattice.spacing_mm();
-  glm::dmat3 axes(universe.lps_from_voxel);
+  glm::dmat3 axes(lattice.lps_from_voxel);
   for (int i = 0; i < 3; ++i) axes[i] /= edge_mm[i];
   // Decimal strings keep at least 13 digits. Rounding to single precision changes a right angle by less than
   // this.
@@ -230,31 +292,84 @@ DicomAttributes segmentation(Segments segments, const DicomSegOptions& options) 
     if (std::abs(glm::dot(axes[i], axes[(i + 1) % 3])) > 1e-6)
       throw std::invalid_argument(
           "a segmentation's rows, columns and planes must be perpendicular: resample the object");
-  DicomDigest digest;
-  digest.add(&universe.lps_from_voxel, sizeof universe.lps_from_voxel);
-  digest.add(options.label);
-  digest.add(options.series_description);
-  if (options.source) digest.add(options.source->series_uid);
-  Extent extent;
-  extent.low = glm::ivec2(universe.side());
+  return axes;
+}
+
+DicomAttributes segmentation(Content content, const DicomSegOptions& options) {
+  const glm::dmat3 axes = perpendicular_axes(content.lattice);
   bool in_utf8 = !is_ascii(options.label) || !is_ascii(options.series_description);
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    if (i > 0 || segments[i].label != options.label) digest.add(segments[i].label);
-    add_planes(segments, i, options.progress, extent, digest);
-    in_utf8 = in_utf8 || !is_ascii(segments[i].label);
-  }
+  for (const std::string& label : content.labels) in_utf8 = in_utf8 || !is_ascii(label);
   DicomAttributes file;
   DicomOptions study{.series_description = options.series_description, .source = options.source};
   if (study.source) study.patient_name.clear();
-  put_study(file, study, digest, in_utf8);
-  put_image(file, extent.size_px());
-  file.put(0x00080018, "UI", digest.uid("segmentation"));
-  put_segments(file, segments, options.label);
-  put_dimensions(file, digest.uid("dimensions"));
-  put_shared_groups(file, axes, edge_mm);
-  put_frames(file, lattice, extent, options.source);
-  file.put(0x7fe00010, "OB", packed_pixels(segments, extent, options.progress));
+  put_study(file, study, content.digest, in_utf8);
+  put_image(file, content.extent.size_px(), content.is_fractional ? 8 : 1);
+  file.put(0x00080018, "UI", content.digest.uid("segmentation"));
+  put_segments(file, content, options.label);
+  put_dimensions(file, content.digest.uid("dimensions"));
+  put_shared_groups(file, axes, content.lattice.spacing_mm());
+  put_frames(file, content.lattice, content.extent, options.source);
+  file.put(0x7fe00010, "OB", std::move(content.pixels));
   return file;
+}
+
+/// Content without segments, whose digest holds what all segments share.
+Content content_on(const Lattice& lattice, const DicomSegOptions& options) {
+  perpendicular_axes(lattice);
+  Content content{lattice};
+  content.digest.add(&lattice.lps_from_voxel, sizeof lattice.lps_from_voxel);
+  content.digest.add(options.label);
+  content.digest.add(options.series_description);
+  if (options.source) content.digest.add(options.source->series_uid);
+  content.extent.low = glm::max(lattice.dims.x, lattice.dims.y) * glm::ivec2(1);
+  return content;
+}
+
+Content content_of(Segments segments, const DicomSegOptions& options) {
+  Content content = content_on(segments.front().object.universe().lattice(), options);
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (i > 0 || segments[i].label != options.label) content.digest.add(segments[i].label);
+    add_planes(segments, i, options.progress, content.extent, content.digest);
+    content.labels.push_back(segments[i].label);
+  }
+  content.pixels = packed_pixels(segments, content.extent, options.progress);
+  return content;
+}
+
+Content content_of(const Lattice& lattice, std::span<const DicomFractions> segments,
+                   const DicomSegOptions& options) {
+  Content content = content_on(lattice, options);
+  content.is_fractional = true;
+  content.digest.add("fractions");
+  for (const DicomFractions& each : segments) {
+    options.progress.at(0.0);
+    content.digest.add(each.label);
+    add_planes(lattice, each, content.labels.size(), content.extent, content.digest);
+    content.labels.push_back(each.label);
+  }
+  content.pixels = fraction_pixels(lattice, segments, content.extent);
+  return content;
+}
+
+void check_texts(const DicomSegOptions& options, std::size_t segment_count) {
+  if (segment_count == 0 || segment_count > 65535)
+    throw std::invalid_argument("a segmentation has 1 to 65535 segments, not " +
+                                std::to_string(segment_count));
+  check_dicom_text(options.label, "label");
+  check_dicom_text(options.series_description, "series_description");
+  if (options.label.empty() || options.series_description.empty())
+    throw std::invalid_argument("a segmentation's label and series_description must not be empty");
+}
+
+void check_segment_label(const std::string& label) {
+  check_dicom_text(label, "label");
+  if (label.empty()) throw std::invalid_argument("a segment's label must not be empty");
+}
+
+void write_staged(const DicomAttributes& file, const fs::path& path) {
+  StagedFiles staging(path.parent_path());
+  write_dicom_file(staging.folder() / path.filename(), path, file);
+  staging.commit();
 }
 
 }  // namespace
@@ -265,23 +380,26 @@ void write_dicom_seg(const Octree& object, const fs::path& path, const DicomSegO
 }
 
 void write_dicom_seg(Segments segments, const fs::path& path, const DicomSegOptions& options) {
-  if (segments.empty() || segments.size() > 65535)
-    throw std::invalid_argument("a segmentation has 1 to 65535 segments, not " +
-                                std::to_string(segments.size()));
-  check_dicom_text(options.label, "label");
-  check_dicom_text(options.series_description, "series_description");
-  if (options.label.empty() || options.series_description.empty())
-    throw std::invalid_argument("a segmentation's label and series_description must not be empty");
+  check_texts(options, segments.size());
   for (const DicomSegment& each : segments) {
-    check_dicom_text(each.label, "label");
-    if (each.label.empty()) throw std::invalid_argument("a segment's label must not be empty");
+    check_segment_label(each.label);
     if (each.object.universe() != segments.front().object.universe())
       throw std::invalid_argument("the segments of a file must lie in one universe");
   }
-  const DicomAttributes file = segmentation(segments, options);
-  StagedFiles staging(path.parent_path());
-  write_dicom_file(staging.folder() / path.filename(), path, file);
-  staging.commit();
+  write_staged(segmentation(content_of(segments, options), options), path);
+}
+
+void write_dicom_fractions(const Lattice& lattice, std::span<const DicomFractions> segments,
+                           const fs::path& path, const DicomSegOptions& options) {
+  check_texts(options, segments.size());
+  for (const DicomFractions& each : segments) {
+    check_segment_label(each.label);
+    if (each.fractions.size() != lattice.sample_count())
+      throw std::invalid_argument("the segment '" + each.label + "' has " +
+                                  std::to_string(each.fractions.size()) + " fractions for " +
+                                  std::to_string(lattice.sample_count()) + " samples");
+  }
+  write_staged(segmentation(content_of(lattice, segments, options), options), path);
 }
 
 }  // namespace octotomy::voxel

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "voxel/scan/dicom_source.h"
 #include "voxel/space/progress.h"
@@ -45,5 +47,17 @@ void write_dicom_seg(const Octree& object, const std::filesystem::path& path,
 /// universes.
 void write_dicom_seg(std::span<const DicomSegment> segments, const std::filesystem::path& path,
                      const DicomSegOptions& options = {});
+
+/// The share of each sample's voxel that an object fills.
+struct DicomFractions {
+  std::string label;                    ///< 1 to 64 characters
+  std::vector<std::uint8_t> fractions;  ///< of the lattice's samples, in their order: 255 is a whole voxel
+};
+
+/// Writes shares of voxels as a FRACTIONAL segmentation of the type OCCUPANCY, a byte a pixel, its frames as
+/// those of write_dicom_seg() on the planes of the lattice. Throws as write_dicom_seg(); also
+/// std::invalid_argument if a segment's number of fractions is not that of the samples, or all are zero.
+void write_dicom_fractions(const Lattice& lattice, std::span<const DicomFractions> segments,
+                           const std::filesystem::path& path, const DicomSegOptions& options = {});
 
 }  // namespace octotomy::voxel

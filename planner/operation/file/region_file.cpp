@@ -154,6 +154,38 @@ PlaneDistances distances_of_planes(const std::vector<voxel::Structure>& structur
   return distances;
 }
 
+/// The largest gap beside each plane that counts as covered: the file states it for the whole region, or by slabs
+/// that meet.
+class Bridges {
+ public:
+  Bridges(const voxel::Structure& structure, const voxel::View& view, double bridge_mm) : all_mm_(bridge_mm) {
+    for (std::size_t i = 0; i < structure.slabs_mm.size(); ++i)
+      if (structure.slabs_mm[i] > 0.0)
+        slabs_.push_back({span_of(structure.contours_mm[i], view).middle_mm(), structure.slabs_mm[i]});
+    std::sort(slabs_.begin(), slabs_.end());
+  }
+
+  /// The largest gap between these neighbouring planes that is covered.
+  double across(double low_mm, double high_mm) const {
+    const double a = slab_at(low_mm), b = slab_at(high_mm);
+    return a > 0.0 && b > 0.0 ? std::max(all_mm_, 0.5 * rounding * (a + b)) : all_mm_;
+  }
+  /// The thickness that the file states for the contours of a plane; 0 if it states none.
+  double slab_at(double position_mm) const {
+    const auto found =
+        std::lower_bound(slabs_.begin(), slabs_.end(), std::pair(position_mm - 2.0 * off_plane_mm(), 0.0));
+    return found != slabs_.end() && found->first <= position_mm + 2.0 * off_plane_mm() ? found->second : 0.0;
+  }
+  double all_mm() const { return all_mm_; }
+
+  /// Positions are rounded, so a hundredth more than stated is covered.
+  static constexpr double rounding = 1.01;
+
+ private:
+  double all_mm_;
+  std::vector<std::pair<double, double>> slabs_;  ///< position and thickness, ascending
+};
+
 /// A structure's contours by plane, ascending. `source` names it in refusals.
 Slices planes_of(const voxel::Structure& structure, const voxel::View& view, const PlaneDistances& distances,
                  const std::string& source, std::vector<std::string>& findings) {
@@ -205,22 +237,27 @@ double usual_distance_mm(const Slices& planes) {
 /// A gap of one and a half distances misses a plane.
 constexpr double misses_plane = 1.5;
 
-/// The planes with empty ones where the set has one and the structure has no contour. Gaps up to `bridge_mm`
-/// are left to be interpolated.
-Slices with_empty(const Slices& planes, double apart_mm, double bridge_mm) {
+/// The planes with empty ones where the set has one and the structure has no contour. Gaps that are bridged
+/// are left to be interpolated. Beyond an end the region is as thick as its end plane states, and at least
+/// half a distance of planes.
+Slices with_empty(const Slices& planes, double apart_mm, const Bridges& bridges) {
   const double usual_mm = usual_distance_mm(planes);
-  const double end_mm = usual_mm > apart_mm && usual_mm <= bridge_mm ? usual_mm : apart_mm;
-  Slices all{{planes.front().position_mm - end_mm, {}}};
+  const double least_mm = usual_mm > apart_mm && usual_mm <= bridges.all_mm() ? usual_mm : apart_mm;
+  const auto end_mm = [&](const voxel::SliceMask::Slice& plane) {
+    return std::max(least_mm, bridges.slab_at(plane.position_mm));
+  };
+  Slices all{{planes.front().position_mm - end_mm(planes.front()), {}}};
   for (const voxel::SliceMask::Slice& plane : planes) {
     const double gap_mm = plane.position_mm - all.back().position_mm;
-    if (!all.back().polygons_mm.empty() && gap_mm > misses_plane * apart_mm && gap_mm > bridge_mm) {
+    if (!all.back().polygons_mm.empty() && gap_mm > misses_plane * apart_mm &&
+        gap_mm > bridges.across(all.back().position_mm, plane.position_mm)) {
       all.push_back({all.back().position_mm + apart_mm, {}});
       if (plane.position_mm - all.back().position_mm > misses_plane * apart_mm)
         all.push_back({plane.position_mm - apart_mm, {}});
     }
     all.push_back(plane);
   }
-  all.push_back({planes.back().position_mm + end_mm, {}});
+  all.push_back({planes.back().position_mm + end_mm(planes.back()), {}});
   return all;
 }
 
@@ -275,7 +312,7 @@ bool are_interleaved(const std::vector<Slices>& parts) {
 /// Parts that are drawn on planes between each other's, each as thick as it is alone: a plane speaks for half
 /// the gap to the part's next one, and for half its usual distance beyond its ends and beside gaps that are
 /// not bridged. Nothing is interpolated.
-Slices joined_parts(const std::vector<Slices>& parts, double bridge_mm) {
+Slices joined_parts(const std::vector<Slices>& parts, const Bridges& bridges) {
   struct Slab {
     double low_mm, high_mm;
     const voxel::SliceMask::Slice* plane;
@@ -290,6 +327,7 @@ Slices joined_parts(const std::vector<Slices>& parts, double bridge_mm) {
     const auto half_mm = [&](std::size_t below) {
       if (below >= part.size() - 1) return 0.5 * usual_mm;  // beyond either end
       const double gap_mm = part[below + 1].position_mm - part[below].position_mm;
+      const double bridge_mm = bridges.across(part[below].position_mm, part[below + 1].position_mm);
       return 0.5 * (gap_mm > std::max(misses_plane * usual_mm, bridge_mm) ? usual_mm : gap_mm);
     };
     for (std::size_t i = 0; i < part.size(); ++i) {
@@ -322,20 +360,21 @@ Slices joined_parts(const std::vector<Slices>& parts, double bridge_mm) {
 /// The largest gap that the file says to be interpolated, or that is asked for; with a hundredth more, as
 /// positions are rounded.
 double bridge_of(const voxel::Structure& structure, const std::optional<double>& asked_mm) {
-  constexpr double rounding = 1.01;
-  if (asked_mm) return rounding * *asked_mm;
+  if (asked_mm) return Bridges::rounding * *asked_mm;
   if (structure.is_interpolated) return std::numeric_limits<double>::infinity();
-  return rounding * structure.slab_mm;
+  return Bridges::rounding * structure.slab_mm;
 }
 
 /// Tells of planes of the set that lie between the structure's and have none of its contours.
-void tell_gaps(const Slices& planes, double apart_mm, double bridge_mm, const std::string& where,
+void tell_gaps(const Slices& planes, double apart_mm, const Bridges& bridges, const std::string& where,
                std::vector<std::string>& findings) {
   std::size_t gaps = 0, first = 0;
   double widest_mm = 0.0;
   for (std::size_t i = 1; i < planes.size(); ++i) {
     const double gap_mm = planes[i].position_mm - planes[i - 1].position_mm;
-    if (gap_mm <= misses_plane * apart_mm || gap_mm <= bridge_mm) continue;
+    if (gap_mm <= misses_plane * apart_mm ||
+        gap_mm <= bridges.across(planes[i - 1].position_mm, planes[i].position_mm))
+      continue;
     if (gaps++ == 0) first = i;
     widest_mm = std::max(widest_mm, gap_mm);
   }
@@ -457,22 +496,21 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
   drawn.mask.slices = std::move(planes);
   add_contour_findings(drawn.mask, where, drawn.findings);
   planes = std::move(drawn.mask.slices);
-  const double bridge_mm = bridge_of(found, options.bridge_mm);
+  const Bridges bridges(found, drawn.mask.view, bridge_of(found, options.bridge_mm));
   const std::vector<Slices> parts = parts_of(planes);
   if (!are_interleaved(parts)) {
     const double apart_mm = is_slab ? found.slab_mm : distances.least_mm;
-    tell_gaps(planes, apart_mm, bridge_mm, where, drawn.findings);
-    drawn.mask.slices = with_empty(planes, apart_mm, bridge_mm);
+    tell_gaps(planes, apart_mm, bridges, where, drawn.findings);
+    drawn.mask.slices = with_empty(planes, apart_mm, bridges);
   } else {
-    for (const Slices& part : parts)
-      tell_gaps(part, usual_distance_mm(part), bridge_mm, where, drawn.findings);
+    for (const Slices& part : parts) tell_gaps(part, usual_distance_mm(part), bridges, where, drawn.findings);
     drawn.findings.push_back(
         where + ": its " + std::to_string(parts.size()) +
         " parts are drawn on planes between each other's, first at " + plain(planes[0].position_mm) +
         " and " + plain(planes[1].position_mm) +
         " mm: each part is as thick as it is alone, and nothing is interpolated; draw all "
         "parts on the same planes to avoid this");
-    drawn.mask.slices = joined_parts(parts, bridge_mm);
+    drawn.mask.slices = joined_parts(parts, bridges);
   }
   voxel::check(drawn.mask);
   return drawn;

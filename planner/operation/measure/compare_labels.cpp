@@ -8,6 +8,7 @@
 
 #include "brep/measure/difference.h"
 #include "convert/surface/label_surfaces.h"
+#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/label_table.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/record.h"
@@ -238,7 +239,7 @@ std::vector<Pair> pairs_of(const Side& a, const Side& b, std::vector<std::string
 }  // namespace
 
 bool is_label_map(const fs::path& path) {
-  return voxel::volume_format(path).has_value() || voxel::extension_of(path) == ".dcm";
+  return voxel::volume_format(path).has_value() || (voxel::extension_of(path) == ".dcm" && !is_mesh(path));
 }
 
 FileAnswer compare_label_maps(const fs::path& path_a, const fs::path& path_b, bool other_identity,

@@ -292,5 +292,82 @@ TEST(ReadDicomSeg, APixelOfALabelMapIsTheNumberOfItsSegment) {
   EXPECT_EQ(found[2].number, 40000);
 }
 
+/// A FRACTIONAL segmentation of two frames of 2 x 2 pixels, whose pixel data are `pixels`.
+std::string fractional_file(const std::string& syntax, const std::string& pixels, std::uint16_t side = 2) {
+  const auto frame = [](const std::string& z) {
+    return DicomBytes::item(
+        DicomBytes::sequence(0x00209113,
+                             DicomBytes::item(DicomBytes::element(0x00200032, "DS", "0\\0\\" + z))) +
+        DicomBytes::sequence(0x0062000a, DicomBytes::item(DicomBytes::us(0x0062000b, 1))));
+  };
+  return DicomBytes::file(
+      syntax,
+      DicomBytes::element(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.66.4") +
+          DicomBytes::us(0x00280010, side) + DicomBytes::us(0x00280011, side) +
+          DicomBytes::us(0x00280100, 8) + DicomBytes::element(0x00620001, "CS", "FRACTIONAL") +
+          DicomBytes::sequence(0x00620002, DicomBytes::item(DicomBytes::us(0x00620004, 1) +
+                                                            DicomBytes::element(0x00620005, "LO", "Bone"))) +
+          DicomBytes::us(0x0062000e, 255) + DicomBytes::element(0x00620010, "CS", "OCCUPANCY") +
+          DicomBytes::sequence(
+              0x52009229,
+              DicomBytes::item(
+                  DicomBytes::sequence(0x00209116, DicomBytes::item(DicomBytes::element(
+                                                       0x00200037, "DS", "1\\0\\0\\0\\1\\0"))) +
+                  DicomBytes::sequence(0x00289110,
+                                       DicomBytes::item(DicomBytes::element(0x00180088, "DS", "2") +
+                                                        DicomBytes::element(0x00280030, "DS", "1\\1"))))) +
+          DicomBytes::sequence(0x52009230, frame("0") + frame("2")) + pixels);
+}
+
+/// Four pixels as a fragment of run lengths (PS3.5, annex G): one segment, the pixels as they are.
+std::string run_length_fragment(const std::string& pixels) {
+  std::string header = DicomBytes::number(1, 4) + DicomBytes::number(64, 4) + std::string(56, '\0');
+  return DicomBytes::item(header + static_cast<char>(pixels.size() - 1) + pixels + '\0');
+}
+
+std::string compressed_pixels(const std::string& fragments) {
+  return DicomBytes::tag(0x7fe00010) + "OB" + DicomBytes::number(0, 2) + DicomBytes::number(0xffffffff, 4) +
+         DicomBytes::item("") + fragments + DicomBytes::tag(0xfffee0dd) + DicomBytes::number(0, 4);
+}
+
+TEST(ReadDicomSeg, CompressedFramesAreThoseOfTheRawFile) {
+  const ScratchFolder folder;
+  const std::string pixels("\x00\x01\x80\xff\x7f\x10\x00\xfe", 8);
+  std::ofstream(folder / "raw.dcm", std::ios::binary)
+      << fractional_file("1.2.840.10008.1.2.1", DicomBytes::element(0x7fe00010, "OB", pixels));
+  std::ofstream(folder / "rle.dcm", std::ios::binary) << fractional_file(
+      "1.2.840.10008.1.2.5",
+      compressed_pixels(run_length_fragment(pixels.substr(0, 4)) + run_length_fragment(pixels.substr(4))));
+  const Scene raw = read_dicom_fractions(folder / "raw.dcm", "Bone");
+  const Scene rle = read_dicom_fractions(folder / "rle.dcm", "Bone");
+  EXPECT_EQ(std::get<FloatSamples>(raw.samples)[2], 128.0F / 255.0F);
+  EXPECT_TRUE(raw.samples == rle.samples);
+  EXPECT_TRUE(read_dicom_seg(folder / "raw.dcm").samples == read_dicom_seg(folder / "rle.dcm").samples);
+}
+
+TEST(ReadDicomSeg, CompressedFramesThatClaimMoreThanTheFileCanHoldAreRefused) {
+  const ScratchFolder folder;
+  const auto refusal = [&](const std::string& bytes) -> std::string {
+    std::ofstream(folder / "x.dcm", std::ios::binary) << bytes;
+    try {
+      read_dicom_seg(folder / "x.dcm");
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::Input);
+      return error.what();
+    }
+    return "";
+  };
+  const std::string two = run_length_fragment("abcd") + run_length_fragment("efgh");
+  EXPECT_NE(refusal(fractional_file("1.2.840.10008.1.2.5", compressed_pixels(two), 60000))
+                .find("more than its bytes can hold"),
+            std::string::npos);
+  EXPECT_NE(refusal(fractional_file("1.2.840.10008.1.2.5", compressed_pixels(two), 3)).find("frame 1"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal(fractional_file("1.2.840.10008.1.2.5", compressed_pixels(two + run_length_fragment("ijkl"))))
+          .find("no certain frames"),
+      std::string::npos);
+}
+
 }  // namespace
 }  // namespace octotomy::voxel

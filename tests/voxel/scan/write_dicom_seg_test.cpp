@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/scan/write_dicom_seg.h"
 
+#include <algorithm>
 #include <fstream>
 #include <gtest/gtest.h>
 
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/codes/run_length.h"
 #include "voxel/scan/dicom_file.h"
+#include "voxel/scan/read_scene.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -81,6 +83,60 @@ TEST(WriteDicomSeg, ALabelBeyondAsciiTurnsTheSourcesTextsIntoUtf8) {
     EXPECT_EQ(error.code(), ErrorCode::Input);
     EXPECT_NE(std::string(error.what()).find("ISO_IR 999"), std::string::npos) << error.what();
   }
+}
+
+TEST(WriteDicomSeg, FractionsComeBackAsTheyWereWritten) {
+  const tests::ScratchFolder folder;
+  const Lattice lattice = axis_aligned_lattice({5, 4, 3}, {0.5, 0.75, 2.0}, {-7, 11, 30});
+  std::vector<DicomFractions> segments{{"Bone", std::vector<std::uint8_t>(60)},
+                                       {"Plate", std::vector<std::uint8_t>(60)}};
+  // Bone in the planes 0 and 2, plate over it in plane 2.
+  for (std::size_t i = 0; i < 20; ++i) segments[0].fractions[i] = static_cast<std::uint8_t>(13 * i);
+  for (std::size_t i = 40; i < 60; ++i) {
+    segments[0].fractions[i] = static_cast<std::uint8_t>(255 - i);
+    segments[1].fractions[i] = static_cast<std::uint8_t>(i - 40 == 7 ? 1 : 255);
+  }
+  write_dicom_fractions(lattice, segments, folder / "x.dcm");
+  for (std::size_t s = 0; s < 2; ++s)
+    for (const std::string& chosen : {segments[s].label, std::to_string(s + 1)}) {
+      ReadOptions options;
+      options.series = chosen;
+      const Scene scene = read_scene(folder / "x.dcm", options);
+      EXPECT_EQ(scene.meaning, Meaning::Raw);
+      ASSERT_EQ(scene.lattice.dims, lattice.dims);
+      EXPECT_LT(glm::distance(scene.lattice.lps_mm({1, 2, 1}), lattice.lps_mm({1, 2, 1})), 1e-9);
+      const auto& samples = std::get<FloatSamples>(scene.samples);
+      for (std::size_t i = 0; i < 60; ++i)
+        EXPECT_EQ(samples[i], static_cast<float>(segments[s].fractions[i]) / 255.0F) << chosen << " " << i;
+      const auto line = std::find_if(scene.audit.begin(), scene.audit.end(),
+                                     [](const Finding& each) { return each.check == "fractions"; });
+      ASSERT_NE(line, scene.audit.end());
+      EXPECT_EQ(line->verdict, Verdict::Pass) << line->detail;
+    }
+  // As labels they are cut at one half, which the audit states with the way around it.
+  const Scene labels = read_scene(folder / "x.dcm");
+  EXPECT_EQ(labels.meaning, Meaning::Label);
+  bool is_told = false;
+  for (const Finding& line : labels.audit)
+    is_told = is_told || (line.check == "fractions" && line.detail.find("--series") != std::string::npos);
+  EXPECT_TRUE(is_told);
+  try {
+    ReadOptions options;
+    options.series = "Screw";
+    read_scene(folder / "x.dcm", options);
+    FAIL() << "an unknown segment was read";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("1 'Bone', 2 'Plate'"), std::string::npos) << error.what();
+  }
+}
+
+TEST(WriteDicomSeg, RefusesFractionsThatFitNoLatticeOrAreAllZero) {
+  const tests::ScratchFolder folder;
+  const Lattice lattice = axis_aligned_lattice({2, 2, 2}, {1, 1, 1}, {0, 0, 0});
+  const DicomFractions few{"A", {255}}, none{"A", std::vector<std::uint8_t>(8)};
+  EXPECT_THROW(write_dicom_fractions(lattice, {&few, 1}, folder / "x.dcm"), std::invalid_argument);
+  EXPECT_THROW(write_dicom_fractions(lattice, {&none, 1}, folder / "x.dcm"), std::invalid_argument);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(WriteDicomSeg, RefusesWhatItCannotSay) {

@@ -7,6 +7,8 @@ other_readers.py nifti FILE   [FILE.nii.gz]
 other_readers.py raw FILE DIMS TYPE SPACING [FILE.nii.gz]      256x256x113 >u2 1,1,2
 other_readers.py seg FILE
 other_readers.py derived FOLDER SOURCE
+other_readers.py structures FILE LABELS.nii.gz
+other_readers.py model FILE
 
 Prints one JSON object: dims, spacing_mm, lps_from_voxel, range; with FILE.nii.gz also how many of its samples
 differ ("differing") and by how much its places do ("shift_mm"). Status 77 where a package is missing.
@@ -17,7 +19,7 @@ import sys
 
 try:
     import numpy
-    if sys.argv[1] in ("dicom", "seg", "derived"):
+    if sys.argv[1] in ("dicom", "seg", "derived", "structures", "model"):
         import pydicom
     import nibabel
 except ImportError as missing:
@@ -170,6 +172,70 @@ def derived(folder, source):
     }
 
 
+def inside(points, columns, rows):
+    """Which of the grid's pixels have their centres in a polygon, by the even-odd rule."""
+    x, y = numpy.meshgrid(columns, rows, indexing="ij")
+    found = numpy.zeros(x.shape, bool)
+    for (ax, ay), (bx, by) in zip(points, numpy.roll(points, -1, 0)):
+        if ay != by:
+            found ^= ((ay > y) != (by > y)) & (x < (bx - ax) * (y - ay) / (by - ay) + ax)
+    return found
+
+
+def structures(path, labels):
+    """How far the voxels inside a structure set's contours are those of a label map on the same lattice."""
+    image = pydicom.dcmread(path)
+    samples, places = nifti(labels)
+    to_voxel = numpy.linalg.inv(places)
+    step_mm = numpy.linalg.norm(places[:3, 2])
+    names = {int(region.ROINumber): region.ROIName for region in image.StructureSetROISequence}
+    kinds, referred = set(), set()
+    voxels = differing = 0
+    farthest = 0.0
+    for region in image.ROIContourSequence:
+        number = int(region.ReferencedROINumber)
+        wanted = samples == number
+        held = numpy.zeros(samples.shape, bool)
+        for contour in region.ContourSequence:
+            kinds.add(contour.ContourGeometricType)
+            referred |= {item.ReferencedSOPInstanceUID for item in contour.get("ContourImageSequence", [])}
+            points = numpy.array(contour.ContourData, float).reshape(-1, 3)
+            points = (numpy.c_[points, numpy.ones(len(points))] @ to_voxel.T)[:, :3]
+            plane = int(round(points[:, 2].mean()))
+            farthest = max(farthest, numpy.abs(points[:, 2] - plane).max() * step_mm)
+            held[:, :, plane] ^= inside(points[:, :2], range(samples.shape[0]), range(samples.shape[1]))
+        voxels += int(wanted.sum())
+        differing += int((held != wanted).sum())
+    return {
+        "names": names,
+        "kinds": sorted(kinds),
+        "voxels": voxels,
+        "differing": differing,
+        "farthest_mm": float(farthest),
+        "references": len(referred),
+        "patient": str(image.PatientName),
+        "study": image.StudyInstanceUID,
+        "frame_of_reference": image.FrameOfReferenceUID,
+    }
+
+
+def model(path):
+    """What an encapsulated STL states, and the extent of its corners."""
+    image = pydicom.dcmread(path)
+    document = image.EncapsulatedDocument[:image.EncapsulatedDocumentLength]
+    count = int.from_bytes(document[80:84], "little")
+    kind = numpy.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")])
+    corners = numpy.frombuffer(document[84:], kind, count)["corners"].reshape(-1, 3)
+    return {
+        "type": image.MIMETypeOfEncapsulatedDocument,
+        "unit": image.MeasurementUnitsCodeSequence[0].CodeValue,
+        "patient": str(image.PatientName),
+        "frame_of_reference": image.FrameOfReferenceUID,
+        "low": corners.min(0).tolist(),
+        "high": corners.max(0).tolist(),
+    }
+
+
 def compared(samples, places, path):
     other, other_places = nifti(path)
     corners = numpy.array([[x * (samples.shape[0] - 1), y * (samples.shape[1] - 1), z * (samples.shape[2] - 1), 1]
@@ -186,6 +252,9 @@ def main():
         return
     if kind == "derived":
         print(json.dumps(derived(*arguments)))
+        return
+    if kind in ("structures", "model"):
+        print(json.dumps({"structures": structures, "model": model}[kind](*arguments)))
         return
     used = {"dicom": 1, "nifti": 1, "raw": 4}[kind]
     samples, places = {"dicom": dicom, "nifti": nifti, "raw": raw}[kind](*arguments[:used])

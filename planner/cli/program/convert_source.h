@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/cli/verb/scan_in.h"
+#include "voxel/filter/label_map.h"
+#include "voxel/scan/dicom_source.h"
+#include "voxel/scan/write_dicom_seg.h"
+#include "voxel/tree/octree_file.h"
+
+// The words of `octotomy convert`, and the series of images to which written DICOM refers.
+namespace octotomy::planner::cli {
+
+struct ConvertText {
+  std::filesystem::path in, out, source;
+  std::string label, as, planes = "images";
+  ScanIn scan;
+  bool dicom = false, other_identity = false;
+};
+
+/// The DICOM series to which the output refers; none if it was not made from one. Refuses a series of another
+/// patient than the input. Adds findings on values that could not be compared and, for --source, each WARN
+/// and FAIL of its audit.
+std::optional<voxel::DicomSource> source_of(const Program& program, const ConvertText& text, bool reads_dicom,
+                                            const voxel::Identity& identity,
+                                            std::vector<std::string>& findings);
+
+/// Points in LPS millimetres around which everything of an object lies: the corners of the smallest block of
+/// voxels along its own axes that holds it, of all objects or of a lattice.
+std::vector<glm::dvec3> corners_of(const std::vector<voxel::DicomSegment>& objects);
+std::vector<glm::dvec3> corners_of(const voxel::Lattice& lattice);
+
+/// Compares the output's points, in LPS millimetres, with the images of --source. Refuses points wholly outside
+/// them, because the input was made from another scan or has a wrong frame, unless --other-identity allows
+/// it. Adds a finding if they extend beyond the images. Does nothing if nothing is written.
+void need_on_source(const ConvertText& text, const voxel::DicomSource& source,
+                    const std::vector<glm::dvec3>& points_mm, std::vector<std::string>& findings);
+
+/// Adds findings to the JSON and prints them as warnings.
+void tell(const std::vector<std::string>& findings, Json& json);
+
+/// The labels of a label map as objects on its own lattice, with their names.
+struct LabelObjects {
+  voxel::Scene scene;
+  std::vector<voxel::Label> labels;
+  std::vector<voxel::DicomSegment> objects;  ///< one for each label
+};
+/// Reads a label map. Adds findings on its labels and names. Throws std::runtime_error if it is none.
+LabelObjects read_label_objects(const Program& program, const ConvertText& text, Timings& timings,
+                                std::vector<std::string>& findings);
+
+/// The binary octree of a file, with the name of --label, else its own. Throws std::runtime_error if the file
+/// holds another kind of octree.
+voxel::DicomSegment binary_object(const ConvertText& text, const voxel::OctreeFile& file);
+
+/// Writes the objects of an .octree or a label map as a DICOM structure set.
+int convert_structures(const Program& program, const ConvertText& text);
+/// Writes the share that objects, a surface or samples from 0 to 1 fill of each voxel as a FRACTIONAL
+/// segmentation.
+int convert_fractions(const Program& program, const ConvertText& text);
+/// Writes an STL or OBJ file as an encapsulated DICOM document.
+int convert_model(const Program& program, const ConvertText& text);
+
+}  // namespace octotomy::planner::cli

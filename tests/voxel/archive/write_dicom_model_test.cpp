@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/archive/write_dicom_model.h"
+
+#include <gtest/gtest.h>
+#include <stdexcept>
+
+#include "tests/file_bytes.h"
+#include "tests/voxel/scratch_folder.h"
+#include "voxel/scan/dicom_file.h"
+
+namespace octotomy::voxel {
+namespace {
+
+using tests::ScratchFolder;
+
+TEST(WriteDicomModel, HoldsTheFileByteForByteInMillimetres) {
+  const ScratchFolder folder;
+  DicomModelOptions options;
+  options.source.emplace();
+  options.source->series_uid = "1.2.3";
+  options.source->attributes[0x00100020] = {"LO", "A17"};
+  options.source->attributes[0x00200052] = {"UI", "1.2.5"};
+  for (const char* uid : {"1.2.3.1", "1.2.3.1", "1.2.3.2"})
+    options.source->images.push_back({"1.2.840.10008.5.1.4.1.1.2", uid, 0.0});
+  const std::string stl("solid a\nendsolid\0\x01", 18);
+  for (const ModelFormat format : {ModelFormat::Stl, ModelFormat::Obj}) {
+    const bool is_stl = format == ModelFormat::Stl;
+    // An odd length is padded, and its own length stated.
+    const std::string model = is_stl ? stl : stl + "\n";
+    write_dicom_model(model, format, folder / "x.dcm", options);
+    const std::string bytes = tests::bytes_of(folder / "x.dcm");
+    const DicomFile file(bytes, bytes.size());
+    EXPECT_EQ(file.text(0x00080016),
+              is_stl ? "1.2.840.10008.5.1.4.1.1.104.3" : "1.2.840.10008.5.1.4.1.1.104.4");
+    EXPECT_EQ(file.text(0x00420012), is_stl ? "model/stl" : "model/obj");
+    EXPECT_EQ(file.unsigned_long(0x00420015), model.size());
+    EXPECT_EQ(file.length(0x00420011), model.size() + model.size() % 2);
+    EXPECT_NE(bytes.find(model), std::string::npos);
+    EXPECT_EQ(file.items(0x004008ea).front().text(0x00080100), "mm");
+    EXPECT_EQ(file.items(0x004008ea).front().text(0x00080102), "UCUM");
+    EXPECT_EQ(file.text(0x00100020), "A17");
+    EXPECT_EQ(file.text(0x00200052), "1.2.5");
+    EXPECT_EQ(file.items(0x00420013).size(), 2U) << "an image is listed once";
+  }
+}
+
+TEST(WriteDicomModel, EqualContentIsWrittenAsEqualBytes) {
+  const ScratchFolder folder;
+  write_dicom_model("solid", ModelFormat::Stl, folder / "x.dcm");
+  write_dicom_model("solid", ModelFormat::Stl, folder / "y.dcm");
+  EXPECT_TRUE(tests::bytes_of(folder / "x.dcm") == tests::bytes_of(folder / "y.dcm"));
+  EXPECT_THROW(write_dicom_model("", ModelFormat::Stl, folder / "z.dcm"), std::invalid_argument);
+  EXPECT_THROW(write_dicom_model("solid", ModelFormat::Stl, folder / "z.dcm", {.label = ""}),
+               std::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(folder / "z.dcm"));
+}
+
+}  // namespace
+}  // namespace octotomy::voxel
