@@ -30,6 +30,7 @@ struct Register {
   std::optional<double> rest_mm;
   std::filesystem::path out;         ///< of the command only
   glm::dmat4 onto_from_object{1.0};  ///< determined before the kernels run
+  std::vector<Caveat> doubts;        ///< of that motion
 };
 
 /// The resulting motion, with its results for the report.
@@ -98,6 +99,23 @@ Laid by_landmarks(const std::filesystem::path& moving, const std::filesystem::pa
   return laid;
 }
 
+/// Several equal answers are a WARN.
+const char* verdict_of(const brep::FitTrust& trust) {
+  if (trust.verdict == brep::FitVerdict::Failed) return "FAIL";
+  return trust.verdict == brep::FitVerdict::Doubtful || !trust.equals.empty() ? "WARN" : "PASS";
+}
+
+/// The findings that make an object's certificate no PASS.
+std::vector<Caveat> doubts_of(const std::vector<std::string>& findings) {
+  std::vector<Caveat> doubts;
+  for (const std::string& finding : findings)
+    if (finding.starts_with("FAIL "))
+      doubts.push_back({voxel::Verdict::Fail, finding.substr(5), false});
+    else if (finding.starts_with("WARN "))
+      doubts.push_back({voxel::Verdict::Warn, finding.substr(5), false});
+  return doubts;
+}
+
 /// Refines the motion in `laid`, or searches for one where there is none yet.
 void by_surfaces(const brep::Mesh& moving, const brep::Mesh& fixed, const Register& asked, bool is_laid,
                  const voxel::Progress& progress, Timings& timings, Laid& laid) {
@@ -121,6 +139,22 @@ void by_surfaces(const brep::Mesh& moving, const brep::Mesh& fixed, const Regist
                               {"start", is_laid ? "landmarks" : "search"},
                               {"last_step_mm", fit.last_step_mm},
                               {"rest_mm", fit.rest_mm}};
+  const brep::FitTrust& trust = *fit.trust;
+  Json equals = Json::array();
+  for (const glm::dmat4& equal : trust.equals) equals.push_back(to_json(equal));
+  laid.details["verdict"] = verdict_of(trust);
+  laid.details["trust"] = {
+      {"matched_share", trust.matched_share},
+      {"tolerance_mm", trust.tolerance_mm},
+      {"rival_share", trust.starts == 0 ? Json(nullptr) : Json(trust.rival_share)},
+      {"noise_mm", trust.noise_mm},
+      {"starts", trust.starts},
+      {"agreeing_starts", trust.agreeing_starts},
+      {"equal_transforms", equals},
+      {"definition",
+       "matched_share of A lies within tolerance_mm of B with normals that agree to 37 degrees; rival_share "
+       "does at another motion of the search; noise_mm is the median distance of a vertex from the mean of "
+       "its neighbours"}};
   laid.onto_from_object = fit.fixed_from_moving;
   laid.rms_mm = fit.rms_mm;
   laid.findings.insert(laid.findings.end(), fit.findings.begin(), fit.findings.end());
@@ -146,6 +180,7 @@ Register settle(const Register& asked, const SettleBench& bench) {
   bench.findings.insert(bench.findings.end(), laid.findings.begin(), laid.findings.end());
   Register settled = asked;
   settled.onto_from_object = laid.onto_from_object;
+  settled.doubts = doubts_of(laid.findings);
   return settled;
 }
 
@@ -163,6 +198,7 @@ void triangles(const Register& asked, const MeshBench& bench, MeshSide& made) {
 
 void bound(const Register& asked, const BoundBench& bench, Object& made) {
   carry(asked.object.name, asked.onto_from_object, bench, made);
+  made.caveats.insert(made.caveats.end(), asked.doubts.begin(), asked.doubts.end());
 }
 
 /// Writes the mesh at its new position, with a similarity's scale.
@@ -217,7 +253,12 @@ FileAnswer on_files(const Register& asked, const FileBench& bench) {
       {"translation", grouped(shift.x, 2) + ", " + grouped(shift.y, 2) + ", " + grouped(shift.z, 2) + " mm"},
       {"written", asked.out.empty() ? "nothing, see -o" : asked.out.string()}};
   if (laid.details.contains("surfaces")) {
-    const Json& fit = laid.details["surfaces"];
+    const Json &fit = laid.details["surfaces"], &trust = laid.details["trust"];
+    answer.rows.insert(
+        answer.rows.begin() + 1,
+        {"verdict", laid.details["verdict"].get<std::string>() + ", " +
+                        three_figures(100.0 * trust["matched_share"].get<double>()) + " % lie within " +
+                        three_figures(trust["tolerance_mm"].get<double>()) + " mm"});
     answer.rows.insert(answer.rows.begin() + 1, {"rounds", rounds_text(fit["rounds"], fit["converged"],
                                                                        fit["last_step_mm"], fit["rest_mm"])});
   }
