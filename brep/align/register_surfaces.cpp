@@ -513,7 +513,8 @@ namespace {
 /// Words the verdict on a fit.
 void tell_trust(SurfaceFit& fit) {
   const FitTrust& trust = *fit.trust;
-  if (!trust.equals.empty())
+  // Surfaces that slide on each other have a finding already.
+  if (!trust.equals.empty() && fit.stiffness >= sliding_stiffness())
     fit.findings.push_back(
         "WARN registration: " + std::to_string(trust.equals.size()) +
         (trust.equals.size() == 1 ? " other motion matches" : " other motions match") +

@@ -87,7 +87,7 @@ struct SurfaceFit {
 /// with a half and a quarter of the overlap, with a finding where that is used. Throws std::invalid_argument if a surface has no area, an
 /// option is out of its range, or the overlap keeps fewer than six samples; Stopped. The same bits on any
 /// number of threads. Cost: about 75 short searches of 500 samples, then about 50 rounds of `samples`: a
-/// second for heads, twice that for a fit that is tried again. Source: Chen and Medioni, "Object modelling by registration of multiple range images",
+/// second for heads, up to three times that for a fit that is tried again. Source: Chen and Medioni, "Object modelling by registration of multiple range images",
 /// IVC 10, 1992 (point to plane); Chetverikov et al., "Robust Euclidean alignment of 3D point sets: the
 /// trimmed iterative closest point algorithm", IVC 23, 2005; Turk and Levoy 1994 (borders).
 SurfaceFit register_surfaces(const Mesh& moving, const Mesh& fixed, const SurfaceFitOptions& options = {});
