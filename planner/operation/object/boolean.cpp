@@ -115,6 +115,8 @@ FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
   const brep::Health health = brep::health(result.solid.triangles());
   const brep::Measures& measures = result.solid.measures();
   write_surface(result.solid.triangles(), asked.out, bench.timings);
+  if (auto finding = rounding_finding(asked.out, bench.timings))
+    result.findings.push_back(std::move(*finding));
   FileAnswer answer{{{"path", asked.out.string()}}};
   answer.findings = result.findings;
   answer.json.update(to_json(measures));
