@@ -175,10 +175,12 @@ std::vector<MirrorPlane> voted_planes(const Cloud& cloud, std::size_t count) {
   return planes;
 }
 
-/// A plane with its residual.
+/// A plane with its residual; infinite where too little of the surface found a counterpart.
 struct Tried {
   MirrorPlane plane;
   double rms_mm = 0.0;
+
+  bool is_fit() const { return std::isfinite(rms_mm); }
 };
 
 bool are_same(const MirrorPlane& a, const MirrorPlane& b, const Spread& spread) {
@@ -202,7 +204,7 @@ std::vector<Tried> tried(const std::vector<MirrorPlane>& starts, const Cloud& cl
     const SurfaceFit fit = fit_cloud(mirrored_cloud(cloud, start), surface, glm::dmat4(1.0), options, false);
     const bool is_fit = fit.kept_share >= 0.5 * options.overlap;
     planes.push_back({plane_of(fit, start, spread.centre_mm).plane,
-                      is_fit ? fit.rms_mm : std::numeric_limits<double>::max()});
+                      is_fit ? fit.rms_mm : std::numeric_limits<double>::infinity()});
   }
   std::stable_sort(planes.begin(), planes.end(),
                    [](const Tried& a, const Tried& b) { return a.rms_mm < b.rms_mm; });
@@ -220,9 +222,14 @@ constexpr double far_worse() {
   return 5.0;
 }
 
-/// Reports a second plane that fits nearly as well.
+/// Reports a second plane that fits nearly as well, and where none fits.
 void tell_rival(const std::vector<Tried>& planes, MirrorFit& found) {
-  if (planes.size() < 2 || planes[1].rms_mm > rival_share() * planes[0].rms_mm) return;
+  if (!planes.empty() && !planes[0].is_fit())
+    found.findings.emplace_back(
+        "WARN mid-plane: about no plane that was tried does half of the overlap have a counterpart: the "
+        "plane "
+        "is a guess; give one near the right one, --plane, or a smaller --overlap");
+  if (planes.size() < 2 || !planes[1].is_fit() || planes[1].rms_mm > rival_share() * planes[0].rms_mm) return;
   const glm::dvec3& n = planes[1].plane.normal;
   found.findings.push_back("WARN mid-plane: another plane, of normal (" + short_text(n.x) + ", " +
                            short_text(n.y) + ", " + short_text(n.z) + "), fits nearly as well, to " +

@@ -17,6 +17,7 @@
 #include <stdexcept>
 
 #include "brep/align/cloud_fit.h"
+#include "brep/align/fit_trust.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/move.h"
 #include "brep/mesh/oriented_surface.h"
@@ -33,6 +34,8 @@ constexpr std::size_t search_samples = 500;
 constexpr int search_rounds = 12;
 constexpr std::size_t finalists = 6;
 constexpr int finalist_rounds = 30;
+constexpr std::size_t narrowed_ends = 12;
+constexpr double least_narrowed = 0.3;  ///< of the overlap: it is halved twice
 
 /// Normals with a smaller cosine between them belong to different sheets of a surface, for example of a thin
 /// bone.
@@ -341,10 +344,23 @@ void sort_by_score(std::vector<Fit>& fits) {
                    [](const Fit& a, const Fit& b) { return a.score_mm < b.score_mm; });
 }
 
+/// What a search found, with few samples.
+struct Searched {
+  glm::dmat4 best{1.0};
+  std::vector<glm::dmat4> ends;    ///< of all starts, the best first
+  std::vector<glm::dmat4> others;  ///< different motions, the best first, refined further
+};
+
+std::vector<glm::dmat4> motions_of(const std::vector<Fit>& fits) {
+  std::vector<glm::dmat4> motions;
+  motions.reserve(fits.size());
+  for (const Fit& fit : fits) motions.push_back(fit.motion);
+  return motions;
+}
+
 /// The best of all rotations, each refined with few samples.
-glm::dmat4 search(const Mesh& moving, const Cloud& fixed, const OrientedSurface& surface,
-                  const SurfaceFitOptions& options) {
-  const Cloud cloud = cloud_of(moving, search_samples, "moving");
+Searched search(const Cloud& cloud, const Cloud& fixed, const OrientedSurface& surface,
+                const SurfaceFitOptions& options) {
   const Refinement refinement(cloud, surface, options);
   std::vector<Fit> fits = {refinement.run(glm::dmat4(1.0), search_rounds)};
   const std::vector<glm::dmat3> turns = icosahedral_turns();
@@ -354,10 +370,47 @@ glm::dmat4 search(const Mesh& moving, const Cloud& fixed, const OrientedSurface&
       options.progress(0.5 * static_cast<double>(fits.size()) / static_cast<double>(turns.size() + 1));
   }
   sort_by_score(fits);
+  Searched searched;
+  searched.ends = motions_of(fits);
   fits.resize(finalists);
   for (Fit& fit : fits) fit = refinement.run(fit.motion, finalist_rounds);
   sort_by_score(fits);
-  return fits.front().motion;
+  searched.best = fits.front().motion;
+  // The finalists are often one motion several times. Its rivals are refined as far.
+  for (const glm::dmat4& end : different_motions(cloud, searched.ends, finalists + 1)) {
+    const bool is_refined = apart_mm(cloud, end, searched.ends.front()) == 0.0;
+    if (!is_refined) searched.others.push_back(refinement.run(end, finalist_rounds).motion);
+  }
+  for (const Fit& fit : fits) searched.others.push_back(fit.motion);
+  searched.others = different_motions(cloud, searched.others, searched.others.size());
+  return searched;
+}
+
+/// The search's ends again with a smaller overlap, the one that matches most first.
+std::vector<glm::dmat4> narrowed(const Cloud& cloud, const Searched& searched, const OrientedSurface& surface,
+                                 double noise_mm, const SurfaceFitOptions& options) {
+  const std::vector<double> ladder_mm = trust_ladder_mm(cloud.spread_mm, noise_mm);
+  struct Candidate {
+    glm::dmat4 motion{1.0};
+    double share = 0.0;
+  };
+  const auto sorted = [&](const std::vector<glm::dmat4>& motions, double distance_mm) {
+    std::vector<Candidate> candidates;
+    for (const glm::dmat4& motion : motions)
+      candidates.push_back({motion, matched_shares(cloud, surface, motion, {distance_mm}).front()});
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.share > b.share; });
+    std::vector<glm::dmat4> order;
+    for (const Candidate& candidate : candidates) order.push_back(candidate.motion);
+    return order;
+  };
+  const Refinement refinement(cloud, surface, options);
+  std::vector<glm::dmat4> again;
+  // Short refinements end a few hundredths of the spread away from where they would come to rest.
+  const std::vector<glm::dmat4> ends = sorted(searched.ends, 2.0 * ladder_mm.back());
+  for (const glm::dmat4& end : different_motions(cloud, ends, narrowed_ends))
+    again.push_back(refinement.widened(refinement.run(end, finalist_rounds), finalist_rounds).motion);
+  return sorted(again, ladder_mm[1]);
 }
 
 void check(const SurfaceFitOptions& options) {
@@ -455,13 +508,63 @@ SurfaceFit fit_cloud(const Cloud& cloud, const OrientedSurface& fixed, const glm
   return answer;
 }
 
+namespace {
+
+/// Words the verdict on a fit.
+void tell_trust(SurfaceFit& fit) {
+  const FitTrust& trust = *fit.trust;
+  // Surfaces that slide on each other have a finding already.
+  if (!trust.equals.empty() && fit.stiffness >= sliding_stiffness())
+    fit.findings.push_back(
+        "WARN registration: " + std::to_string(trust.equals.size()) +
+        (trust.equals.size() == 1 ? " other motion matches" : " other motions match") +
+        " as much of the surface, within " + short_text(trust.tolerance_mm) +
+        " mm: the shape is symmetric, and which of the answers is meant is a guess; give --landmarks");
+  if (trust.verdict == FitVerdict::Right) return;
+  const std::string figures = trust.reason + "; the residual is " + short_text(fit.rms_mm) +
+                              " mm, the surfaces' own noise " + short_text(trust.noise_mm) + " mm";
+  if (trust.verdict == FitVerdict::Failed)
+    fit.findings.push_back("FAIL registration: no position was found at which the surfaces match: " +
+                           figures + ": give --landmarks, or keep only what both surfaces show");
+  else
+    fit.findings.push_back("WARN registration: the position is doubtful: " + figures +
+                           ": look at the result, or give --landmarks");
+}
+
+}  // namespace
+
 SurfaceFit register_surfaces(const Mesh& moving, const Mesh& fixed, const SurfaceFitOptions& options) {
   check(options);
   const Cloud cloud = cloud_of(moving, options.samples, "moving");
   const Cloud fixed_cloud = cloud_of(fixed, options.samples, "fixed");
   const OrientedSurface surface(fixed);
-  const glm::dmat4 start = options.start ? *options.start : search(moving, fixed_cloud, surface, options);
-  SurfaceFit answer = fit_cloud(cloud, surface, start, options);
+  const double noise_mm = std::max(own_noise_mm(moving), own_noise_mm(fixed));
+  SurfaceFit answer;
+  if (options.start) {
+    answer = fit_cloud(cloud, surface, *options.start, options);
+    answer.trust = trust_of(answer.fixed_from_moving, {cloud, surface, noise_mm, answer.rms_mm});
+  } else {
+    const Cloud few = cloud_of(moving, search_samples, "moving");
+    const Searched searched = search(few, fixed_cloud, surface, options);
+    answer = fit_cloud(cloud, surface, searched.best, options);
+    answer.trust = trust_of(answer.fixed_from_moving,
+                            {cloud, surface, noise_mm, answer.rms_mm, searched.others, searched.ends});
+    SurfaceFitOptions less = options;
+    while (answer.trust->verdict != FitVerdict::Right && less.overlap > least_narrowed * options.overlap) {
+      less.overlap *= 0.5;
+      if (less.overlap * static_cast<double>(search_samples) < 6.0) break;
+      const std::vector<glm::dmat4> again = narrowed(few, searched, surface, noise_mm, less);
+      SurfaceFit fit = fit_cloud(cloud, surface, again.front(), less);
+      fit.trust =
+          trust_of(fit.fixed_from_moving, {cloud, surface, noise_mm, fit.rms_mm, again, searched.ends});
+      if (fit.trust->verdict >= answer.trust->verdict) continue;
+      answer = std::move(fit);
+      answer.findings.push_back("WARN overlap: at " + short_text(100.0 * options.overlap) +
+                                " % no position was sure, so that " + short_text(100.0 * less.overlap) +
+                                " % were fitted: state by --overlap what both surfaces show");
+    }
+  }
+  tell_trust(answer);
   if (options.progress) options.progress(1.0);
   return answer;
 }

@@ -47,6 +47,22 @@ struct MotionDoubt {
   double turn_deviation(const glm::dvec3& axis) const;
 };
 
+/// Whether a fit is the true position. Doubtful: something speaks for it, but not enough.
+enum class FitVerdict { Right, Doubtful, Failed };
+
+/// Why a fit can be relied on, or not.
+struct FitTrust {
+  FitVerdict verdict = FitVerdict::Right;
+  double noise_mm = 0.0;            ///< of the rougher surface's points, against their neighbours
+  double tolerance_mm = 0.0;        ///< distance at which surfaces match
+  double matched_share = 0.0;       ///< share of the moving surface within it, with normals that agree
+  double rival_share = 0.0;         ///< the largest such share at another motion of the search
+  std::size_t starts = 0;           ///< of the search; 0 if a start was given
+  std::size_t agreeing_starts = 0;  ///< starts that ended at the answer
+  std::vector<glm::dmat4> equals;   ///< other motions that match as much: the shape is symmetric
+  std::string reason;               ///< figures behind a verdict that is not Right
+};
+
 struct SurfaceFit {
   glm::dmat4 fixed_from_moving{1.0};  ///< rigid
   double rms_mm = 0.0;                ///< point to surface, over the samples that were kept
@@ -59,16 +75,19 @@ struct SurfaceFit {
   /// zero if the surfaces can slide on each other, as spheres and planes can.
   double stiffness = 0.0;
   MotionDoubt doubt;
+  /// Computed by register_surfaces() only. Its verdict, and equal answers, are findings too.
+  std::optional<FitTrust> trust = std::nullopt;
   std::vector<std::string> findings;
 };
 
 /// The rigid motion that fits the moving surface to the fixed one, both in LPS millimetres. Parts of either
 /// may be missing: samples whose nearest point lies on the other's border, or whose normal points the other
 /// way, have no counterpart, and the furthest of the others are trimmed. The last refinement uses all samples
-/// within three standard deviations of those kept. Throws std::invalid_argument if a surface has no area, an
+/// within three standard deviations of those kept. A fit without a start that is not trusted is tried again
+/// with a half and a quarter of the overlap, with a finding where that is used. Throws std::invalid_argument if a surface has no area, an
 /// option is out of its range, or the overlap keeps fewer than six samples; Stopped. The same bits on any
-/// number of threads. Cost: about 70 short searches of 500 samples, then about 50 rounds of `samples`: a
-/// second for heads. Source: Chen and Medioni, "Object modelling by registration of multiple range images",
+/// number of threads. Cost: about 75 short searches of 500 samples, then about 50 rounds of `samples`: a
+/// second for heads, up to three times that for a fit that is tried again. Source: Chen and Medioni, "Object modelling by registration of multiple range images",
 /// IVC 10, 1992 (point to plane); Chetverikov et al., "Robust Euclidean alignment of 3D point sets: the
 /// trimmed iterative closest point algorithm", IVC 23, 2005; Turk and Levoy 1994 (borders).
 SurfaceFit register_surfaces(const Mesh& moving, const Mesh& fixed, const SurfaceFitOptions& options = {});

@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "brep/mesh/distance.h"
+#include "brep/mesh/measure.h"
 #include "brep/mesh/sample_surface.h"
 #include "brep/shape/bisected_lattice.h"
 #include "brep/shape/kuhn_cells.h"
@@ -26,10 +28,15 @@ namespace {
 /// Signed distance to the offset surface, negative within.
 class Field {
  public:
-  Field(const Solid& solid, double by_mm) : tree_(solid.tree()), by_mm_(by_mm) {}
+  Field(const SurfaceTree& tree, bool has_inside, double by_mm)
+      : tree_(tree), has_inside_(has_inside), by_mm_(by_mm) {}
 
   std::vector<double> at(const std::vector<glm::dvec3>& points_mm) const {
     std::vector<double> values = tree_.distances_mm(points_mm);
+    if (!has_inside_) {
+      for (double& value : values) value -= by_mm_;
+      return values;
+    }
     const std::vector<std::uint8_t> inside = tree_.inside(points_mm);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = (inside[i] ? -values[i] : values[i]) - by_mm_;
     return values;
@@ -37,6 +44,7 @@ class Field {
 
  private:
   const SurfaceTree& tree_;
+  bool has_inside_;
   double by_mm_;
 };
 
@@ -54,8 +62,7 @@ struct Lattice {
 /// which end where they are flat enough.
 constexpr double steps_a_cell = 4.0;
 
-Lattice lattice_about(const Solid& solid, const OffsetOptions& options) {
-  const Size& size = solid.size();
+Lattice lattice_about(const Size& size, const OffsetOptions& options) {
   // Shifted by irregular shares of a cell, so that planes at round coordinates do not coincide with lattice
   // planes, where a surface would consist of slivers.
   const double margin = std::max(options.by_mm, 0.0) + 2.0 * options.cell_mm;
@@ -151,8 +158,8 @@ std::vector<std::array<std::uint32_t, 3>> numbered(const std::vector<std::array<
   return faces;
 }
 
-void check(const Solid& solid, const OffsetOptions& options) {
-  if (solid.empty()) throw std::invalid_argument("a surface without triangles has no offset");
+void check(const Triangles& surface, const OffsetOptions& options) {
+  if (surface.faces.empty()) throw std::invalid_argument("a surface without triangles has no offset");
   if (!std::isfinite(options.by_mm)) throw std::invalid_argument("an offset is by a finite length");
   if (!std::isfinite(options.cell_mm) || options.cell_mm <= 0.0)
     throw std::invalid_argument("an offset's cells have an edge above 0 mm");
@@ -165,10 +172,11 @@ double offset_tolerance_mm(const OffsetOptions& options) {
   return std::min(cell / 16.0, cell * cell / (4.0 * std::max(by, 0.25 * cell)));
 }
 
-Solid offset(const Solid& solid, const OffsetOptions& options) {
-  check(solid, options);
-  const Lattice lattice = lattice_about(solid, options);
-  const Field field(solid, options.by_mm);
+namespace {
+
+/// The surface where the field is 0, about a solid or surface of that size.
+Solid surface_of(const Field& field, const Size& size, const OffsetOptions& options) {
+  const Lattice lattice = lattice_about(size, options);
   // A ball of the offset's length rolls along its surface: bumps and dents are as wide as that.
   const BisectionOptions bisection{.side = lattice.side,
                                    .step_mm = lattice.step_mm,
@@ -190,6 +198,20 @@ Solid offset(const Solid& solid, const OffsetOptions& options) {
   surface.points_mm = points_on(edges, bisected, field, lattice);
   options.progress.at(1.0);
   return trusted_solid(std::move(surface), Proof::Construction);
+}
+
+}  // namespace
+
+Solid offset(const Solid& solid, const OffsetOptions& options) {
+  check(solid.triangles(), options);
+  return surface_of(Field(solid.tree(), true, options.by_mm), solid.size(), options);
+}
+
+Solid thickened(const Triangles& surface, const OffsetOptions& options) {
+  check(surface, options);
+  if (!(options.by_mm > 0.0)) throw std::invalid_argument("a wall is thicker than 0 mm");
+  const SurfaceTree tree(surface);
+  return surface_of(Field(tree, false, options.by_mm), size_of(surface), options);
 }
 
 MissedWalls missed_walls(const Solid& solid, const Solid& moved, const OffsetOptions& options) {

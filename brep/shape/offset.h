@@ -31,6 +31,12 @@ double offset_tolerance_mm(const OffsetOptions& options);
 /// the surface are passed over, as distances change no faster than places do.
 Solid offset(const Solid& solid, const OffsetOptions& options);
 
+/// A surface of any kind, open or crossing itself, made a wall: all points within by_mm, above 0, of its
+/// triangles. A closed surface becomes a hollow shell. Preconditions: at least one triangle, all points finite.
+/// Guarantees, throws and costs as offset(), also std::invalid_argument where by_mm is not above 0; walls of
+/// less than two cells may be missed.
+Solid thickened(const Triangles& surface, const OffsetOptions& options);
+
 /// Parts that an offset's lattice missed because they are thinner than a cell.
 struct MissedWalls {
   double area_share = 0.0;  ///< share of the solid's surface

@@ -31,6 +31,7 @@
 #include "brep/shape/decimate.h"
 #include "brep/shape/enclose.h"
 #include "brep/shape/fill_holes.h"
+#include "brep/shape/offset.h"
 #include "brep/shape/unite_shells.h"
 #include "brep/shape/untangle.h"
 
@@ -227,6 +228,15 @@ class Mender {
             (made.cavities_filled > 0 ? ", " + std::to_string(made.cavities_filled) + " shells within filled"
                                       : ""),
         {});
+  }
+
+  /// Takes a solid made anew in cells of that size.
+  void replace(const Solid& solid, double cell_mm, const std::string& what) {
+    repair_.surface = solid.triangles();
+    origin_.assign(repair_.surface.faces.size(), is_new);
+    repair_.enclosed_cell_mm = cell_mm;
+    repair_.left.clear();
+    change("solid", what, {});
   }
 
   const Triangles& surface() const { return repair_.surface; }
@@ -572,6 +582,8 @@ void check(const Triangles& surface, const RepairOptions& options) {
     throw std::invalid_argument("repair: the distance to weld over must be 0 mm or more");
   if (options.longest_hole_mm && !(*options.longest_hole_mm > 0.0))
     throw std::invalid_argument("repair: the longest border of a hole must be above 0 mm");
+  if (options.wall_mm && !(*options.wall_mm > 0.0))
+    throw std::invalid_argument("repair: a wall is thicker than 0 mm");
   if (!(options.max_volume_share > 0.0))
     throw std::invalid_argument("repair: the largest share of the volume must be above 0");
   for (std::size_t f = 0; f < surface.faces.size(); ++f)
@@ -620,10 +632,36 @@ std::optional<double> enclosed_mm3(const Triangles& surface, double cell_mm, boo
   }
 }
 
+/// Cells of a wall: half of it, so that none of it is missed.
+double wall_cell_mm(double wall_mm, const RepairOptions& options) {
+  return std::min(options.cell_mm.value_or(0.5 * wall_mm), 0.5 * wall_mm);
+}
+
+/// The surface as given made a wall, without triangles that have no place or repeat a point.
+Solid wall_of(const Triangles& given, double wall_mm, const RepairOptions& options) {
+  Mender finite(given);
+  finite.remove_not_finite();
+  finite.remove_repeats();
+  return thickened(finite.surface(), {0.5 * wall_mm, wall_cell_mm(wall_mm, options), options.progress});
+}
+
+/// The wall that a sheet could be given: a 50th of its extent. Empty if that fails.
+std::string wall_way(const Triangles& given, double extent_mm, const RepairOptions& options) {
+  const std::string wall = short_text(0.02 * extent_mm);
+  try {
+    const Solid solid = wall_of(given, std::stod(wall), options);
+    if (solid.empty()) return {};
+    return "--wall " + wall + " makes the surface, where it is a sheet, a wall of " + wall + " mm, " +
+           short_text(solid.measures().volume_mm3) + " mm3";
+  } catch (const std::length_error&) {
+    return {};
+  }
+}
+
 /// What would be accepted in place of an enclosing that changed the volume by too much: smaller cells and the
 /// hull are tried.
-std::string ways_that_work(const Triangles& surface, double before_mm3, double now_mm3, double cell_mm,
-                           const RepairOptions& options) {
+std::string ways_that_work(const Triangles& surface, const Triangles& given, double before_mm3,
+                           double now_mm3, double cell_mm, const RepairOptions& options) {
   std::string ways;
   const auto add = [&](const std::string& way) { ways += (ways.empty() ? "" : "; or ") + way; };
   for (const double part : {0.5, 0.25}) {
@@ -635,9 +673,11 @@ std::string ways_that_work(const Triangles& surface, double before_mm3, double n
   }
   if (const std::optional<double> hull_mm3 = enclosed_mm3(surface, cell_mm, true, options.progress))
     add("--hull takes the outermost shells as full, " + short_text(*hull_mm3) + " mm3");
+  if (const std::string wall = wall_way(given, Mender(given).extent_mm(), options); !wall.empty()) add(wall);
   const double share = std::abs(now_mm3 - before_mm3) / before_mm3;
-  add("what it made has a share of " + short_text(share) + ", accepted by --max-volume-share " +
-      short_text(1.01 * share) + ": look at it, as thin sheets may be lost or closed gaps filled");
+  add("what winds round by half or more has a share of " + short_text(share) +
+      ", accepted by --max-volume-share " + short_text(1.01 * share) +
+      ": look at it, as thin sheets may be lost or closed gaps filled");
   return ways;
 }
 
@@ -693,6 +733,11 @@ void make_solid(Mender& mender, double before_mm3, const RepairOptions& options)
 Repair repair(const Triangles& surface, const RepairOptions& options) {
   check(surface, options);
   Mender mender(surface);
+  if (options.solid && options.wall_mm) {
+    mender.replace(wall_of(surface, *options.wall_mm, options), wall_cell_mm(*options.wall_mm, options),
+                   "made a wall of " + short_text(*options.wall_mm) + " mm about the surface as given");
+    return mender.result();
+  }
   connect(mender, options);
   if (!options.remove_intersections && !options.solid) {
     mender.split();
@@ -703,12 +748,18 @@ Repair repair(const Triangles& surface, const RepairOptions& options) {
   const double before_mm3 = volume_inside_mm3(mender.surface());
   if (options.solid) {
     const Triangles connected = mender.surface();
-    make_solid(mender, before_mm3, options);
+    try {
+      make_solid(mender, before_mm3, options);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::Geometry) throw;
+      const std::string wall = wall_way(surface, Mender(surface).extent_mm(), options);
+      throw Error(ErrorCode::Geometry, error.what() + (wall.empty() ? "" : "; or " + wall));
+    }
     const double now_mm3 = options.hull ? before_mm3 : volume_inside_mm3(mender.surface());
     if (!is_within_share(before_mm3, now_mm3, options))
       refuse_volume(before_mm3, now_mm3, options, "enclosing",
                     mender.cell_mm()
-                        ? ways_that_work(connected, before_mm3, now_mm3, *mender.cell_mm(), options)
+                        ? ways_that_work(connected, surface, before_mm3, now_mm3, *mender.cell_mm(), options)
                         : "allow a larger one, --max-volume-share");
   } else {
     mender.remove_intersections();

@@ -36,6 +36,9 @@ struct RepairOptions {
   /// Largest share of the volume that removing intersections and enclosing may gain or lose, above 0.
   double max_volume_share = 0.05;
   Progress progress = {};
+  /// With `solid`: makes the surface as given, holes and all, a wall of this thickness, as thickened() does; the
+  /// volume may then change. For sheets, which enclose nothing.
+  std::optional<double> wall_mm = std::nullopt;
 };
 
 /// One change that was made, or that could not be made.

@@ -22,6 +22,7 @@
 #include "brep/shape/prism.h"
 #include "convert/voxel/voxelise.h"
 #include "planner/operation/object/certify.h"
+#include "planner/operation/object/import.h"
 #include "planner/operation/object/trace.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/number_format.h"
@@ -135,6 +136,7 @@ class Evaluator {
         if (!wanted_.contains(step.id)) continue;
         if (uses_left_[scan]++ == 0 && plan_.scans.contains(scan)) names.push_back(scan);
       }
+    if (plan_.scans.empty()) return names;
     if (first.empty()) first = plan_.scans.begin()->first;
     if (std::find(names.begin(), names.end(), first) == names.end()) names.insert(names.begin(), first);
     if (options_.keep_scans)
@@ -163,6 +165,7 @@ class Evaluator {
   }
 
   void read_scans() {
+    if (plan_.scans.empty()) set_universe(universe_of(import_boxes(), plan_.voxel_mm));
     for (const std::string& name : scans_in_use()) {
       report("read " + name, 0.0);
       const ScanSource& source = plan_.scans.at(name);
@@ -209,8 +212,20 @@ class Evaluator {
     }
   }
 
-  void set_universe(const voxel::Scene& first_scan) {
-    result_.universe = universe_of(first_scan, plan_.voxel_mm);
+  /// The boxes of all meshes that steps import, wanted or not, so that the universe is always the same.
+  std::vector<voxel::Box> import_boxes() {
+    const Stopwatch watch(result_.timings, "read");
+    std::vector<voxel::Box> boxes;
+    for (const Step& step : plan_.steps)
+      if (is_import(step.action))
+        in_step(step.id, [&] { boxes.push_back(import_box(step.action, plan_.folder)); });
+    return boxes;
+  }
+
+  void set_universe(const voxel::Scene& first_scan) { set_universe(universe_of(first_scan, plan_.voxel_mm)); }
+
+  void set_universe(const voxel::Universe& universe) {
+    result_.universe = universe;
     box_ = voxel::bounds(result_.universe.lattice());
     world_ = brep::solid_of(prism_of(box_));
     expressions_ = std::make_unique<verify::MeshExpressions>(world_);
@@ -275,7 +290,12 @@ class Evaluator {
 
   /// The key of everything that all answers depend on besides their own step.
   std::string common_key() const {
-    return scan_keys_.at(result_.scans.front().name) + (options_.certify ? " certified" : "");
+    const glm::dvec3& low = box_.low_mm;
+    const std::string place =
+        plan_.scans.empty()
+            ? nlohmann::json{low.x, low.y, low.z, box_.high_mm.x, result_.universe.depth}.dump()
+            : scan_keys_.at(result_.scans.front().name);
+    return place + (options_.certify ? " certified" : "");
   }
 
   /// The key distinguishes answers with and without the mesh kernel.

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "planner/operation/object/import.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/field_json.h"
 #include "planner/operation/table/json.h"
@@ -80,11 +81,11 @@ voxel::ReadOptions read_options_of(const Keys& scan) {
 }
 
 std::map<std::string, ScanSource> scans_of(const Keys& top) {
-  const SortedJson& value = top.need("scans");
-  if (!value.is_object() || value.empty())
-    refuse("scans", "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}");
   std::map<std::string, ScanSource> scans;
-  for (const auto& [name, entry] : value.items()) {
+  const SortedJson* value = top.find("scans");
+  if (value == nullptr) return scans;
+  if (!value->is_object()) refuse("scans", "must name scans, as {\"ct\": {\"path\": \"head.nrrd\"}}");
+  for (const auto& [name, entry] : value->items()) {
     const Keys keys(entry, "scans, " + name,
                     {"path", "sha256", "series", "join", "slices", "frame", "unit", "spacing_mm", "raw",
                      "other_identity"});
@@ -209,6 +210,11 @@ Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
   if (!steps.is_array() || steps.empty()) refuse("steps", "must be a list of at least one step");
   Scope scope(names_of(plan.scans), folder);
   for (const SortedJson& step : steps) plan.steps.push_back(step_of(step, plan.steps.size(), scope));
+  const auto is_imported = [](const Step& step) { return is_import(step.action); };
+  if (plan.scans.empty() && std::none_of(plan.steps.begin(), plan.steps.end(), is_imported))
+    refuse(
+        "scans",
+        "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}, where no step imports a mesh");
   plan.landmarks = scope.landmarks();
   plan.lps_from_head = scope.lps_from_head();
   return plan;
@@ -278,7 +284,10 @@ Json plan_schema() {
           {"properties",
            {{"octotomy_plan", {{"const", plan_version}}},
             {"name", {{"type", "string"}, {"minLength", 1}}},
-            {"scans", {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", scan}}},
+            {"scans",
+             {{"description", "May be left out by plans that import meshes alone."},
+              {"type", "object"},
+              {"additionalProperties", scan}}},
             {"universe",
              {{"type", "object"},
               {"properties", {{"voxel_mm", {{"type", "number"}, {"exclusiveMinimum", 0}}}}},
@@ -298,7 +307,7 @@ Json plan_schema() {
                   {"scans_sha256", {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}}}},
                 {"required", {"by", "as", "at", "plan_sha256", "scans_sha256"}},
                 {"additionalProperties", false}}}}}}},
-          {"required", {"octotomy_plan", "name", "scans", "steps"}},
+          {"required", {"octotomy_plan", "name", "steps"}},
           {"additionalProperties", false}};
 }
 

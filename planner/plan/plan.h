@@ -31,12 +31,13 @@ struct Step {
 /// An operation as pure data: ordered steps, each of which names its result.
 struct Plan {
   std::string name;
-  std::string text;              ///< the JSON from which it was read
-  std::filesystem::path file;    ///< empty if the plan was not read from a file
-  std::filesystem::path folder;  ///< folder of the plan
-  std::map<std::string, ScanSource> scans;
-  std::optional<double>
-      voxel_mm;  ///< edge of the universe's voxels; none: as fine as the scan, at most 512 a side
+  std::string text;                         ///< the JSON from which it was read
+  std::filesystem::path file;               ///< empty if the plan was not read from a file
+  std::filesystem::path folder;             ///< folder of the plan
+  std::map<std::string, ScanSource> scans;  ///< none if all of its objects come from imported meshes
+  /// Edge of the universe's voxels. None: as fine as the scan, at most 512 a side; without scans a 128th of
+  /// the longest imported mesh.
+  std::optional<double> voxel_mm;
   std::vector<Step> steps;
   std::vector<NamedPoint> landmarks;  ///< landmarks that its steps name
   /// The head's orientation as set by a step (Scope); none: that of the scan.

@@ -74,10 +74,13 @@ void judge_evidence(Certificate& certificate) {
   const double object_mm3 = certificate.larger_mm3();
   const double unseen_mm3 = std::max(certificate.unseen_mm3(), certificate.tolerance_mm3);
   if (certificate.unresolved || !(object_mm3 > 0.0) || unseen_mm3 <= evident_share * object_mm3) return;
+  const std::string share = voxel::rounded(100.0 * unseen_mm3 / object_mm3);
+  const std::string allowed = voxel::rounded(100.0 * evident_share);
   certificate.unresolved = {
       std::nullopt, "a wrong part of " + voxel::rounded(unseen_mm3) + " mm3 could pass, " +
-                        voxel::rounded(100.0 * unseen_mm3 / object_mm3) + " % of the object; " +
-                        voxel::rounded(100.0 * evident_share) + " % are allowed: take smaller voxels"};
+                        (share == allowed ? "slightly more than the " + allowed + " % of the object that are"
+                                          : share + " % of the object; " + allowed + " % are") +
+                        " allowed: take smaller voxels"};
 }
 
 void judge_emptiness(Certificate& certificate, double missed_mm3) {

@@ -40,10 +40,18 @@ Expression on_scan_lattices(const Expression& expression) {
 
 /// A value that no sample has, below them all.
 double value_below(const Scene& frame) {
-  const double below = std::floor(range(frame).low) - 1.0;
-  const bool fits = std::holds_alternative<FloatSamples>(frame.samples) ||
-                    below >= std::numeric_limits<std::int16_t>::min();
-  if (!fits)
+  const double low = range(frame).low, below = std::floor(low) - 1.0;
+  if (std::holds_alternative<FloatSamples>(frame.samples)) {
+    // From 2^24 on, floats are further apart than 1.
+    constexpr float lowest = -std::numeric_limits<float>::max();
+    if (static_cast<float>(low) > lowest)
+      return std::min(static_cast<float>(below), std::nextafter(static_cast<float>(low), lowest));
+    throw Error(
+        ErrorCode::Input,
+        "the scan's samples reach down to the lowest float, so that none is left to mark holes: choose "
+        "a value for holes");
+  }
+  if (below < std::numeric_limits<std::int16_t>::min())
     throw Error(ErrorCode::Input,
                 "the scan's samples reach down to the lowest value of 16 bits, so that none is left to mark "
                 "holes: choose a value for holes");

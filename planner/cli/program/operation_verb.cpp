@@ -218,11 +218,12 @@ class OperationRun {
     return status(made);
   }
 
-  int write_mesh(const Object& made) {
+  int write_mesh(Object& made) {
     const brep::Solid& solid = *made.mesh.whole;
     const brep::Health health = brep::health(solid.triangles());
     const brep::Measures& measures = solid.measures();
     write_surface(solid, text_.out, timings_);
+    if (auto finding = rounding_finding(text_.out, timings_)) made.findings.push_back(std::move(*finding));
     for (const std::string& finding : made.findings) warn_finding(finding);
     Json json = answer(timings_);
     json["path"] = text_.out.string();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/verb/octree_out.h"
 
+#include <algorithm>
+
 #include "planner/operation/measure/octree_summary.h"
 
 namespace octotomy::planner::cli {
@@ -13,7 +15,9 @@ int say(const Program& program, const FileAnswer& made, const Timings& timings) 
   json.update(made.json);
   program.say(json,
               made.rows.empty() ? octree_text(json["path"].get<std::string>(), json) : lines(made.rows));
-  return done;
+  const bool failed = std::any_of(made.findings.begin(), made.findings.end(),
+                                  [](const std::string& finding) { return finding.starts_with("FAIL "); });
+  return failed ? disagreement : done;
 }
 
 int info_of_octree(const Program& program, const fs::path& path) {

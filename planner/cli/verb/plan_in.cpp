@@ -41,9 +41,11 @@ Plan plan_of(const Program& program, const PlanIn& text) {
       read.frame || read.unit) {
     if (plan.scans.size() != 1)
       throw std::runtime_error(
-          "--series, --join, --slices, --spacing, --raw, --frame and --unit apply to one scan, but the plan "
-          "has several: write series, join, slices, spacing_mm, raw, frame or unit beside their paths in the "
-          "plan");
+          "--series, --join, --slices, --spacing, --raw, --frame and --unit apply to one scan, but the "
+          "plan " +
+          std::string(plan.scans.empty() ? "has none: leave them out"
+                                         : "has several: write series, join, slices, spacing_mm, raw, frame "
+                                           "or unit beside their paths in the plan"));
     plan.scans.begin()->second.read = read;
   }
   return plan;

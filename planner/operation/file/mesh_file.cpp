@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 #include <utility>
 
+#include "brep/io/read_mesh.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/health.h"
 #include "brep/mesh/split_fans.h"
@@ -124,6 +125,16 @@ std::array<brep::Linked, 2> read_surfaces(const std::array<std::filesystem::path
     findings.insert(findings.end(), told[i].begin(), told[i].end());
   }
   return surfaces;
+}
+
+std::optional<std::string> rounding_finding(const std::filesystem::path& written, Timings& timings) {
+  if (written.extension() != ".stl" && written.extension() != ".STL") return std::nullopt;
+  const Stopwatch watch(timings, "health");
+  const brep::Health health = brep::health(brep::read_triangles(written));
+  if (health.solid()) return std::nullopt;
+  return "WARN rounding: the surface is a solid, but as .stl has it, rounded to single precision, it is none "
+         "(" +
+         health.findings.front() + "): write .ply, .off or .vtp";
 }
 
 void write_surface(const brep::Triangles& triangles, const std::filesystem::path& out, Timings& timings,

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,11 @@ brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings,
 /// The same of two files at once, as triangles with their neighbours.
 std::array<brep::Linked, 2> read_surfaces(const std::array<std::filesystem::path, 2>& paths, Timings& timings,
                                           std::vector<std::string>& findings);
+
+/// The finding that a solid is none any more in the file to which it was written: .stl rounds points to single
+/// precision, by which thin triangles cross. None for other formats. Precondition: what was written is a solid.
+/// Throws as brep::read_mesh(). Cost: reading the file, and brep::health().
+std::optional<std::string> rounding_finding(const std::filesystem::path& written, Timings& timings);
 
 /// Writes a mesh by brep::write_mesh() and replaces what `out` means, as voxel::StagedFiles; "write" in the
 /// timings.

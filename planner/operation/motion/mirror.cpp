@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "brep/mesh/health.h"
+#include "brep/mesh/triangles.h"
 #include "planner/operation/file/mesh_file.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/motion/fit_rows.h"
@@ -152,7 +154,11 @@ FileAnswer on_files(const Mirror& asked, const FileBench& bench) {
     found = fit(mesh, mirror, bench.progress("mid-plane"));
   }
   const brep::MirrorPlane plane = found ? found->plane : plane_of(mirror);
-  if (!asked.out.empty()) write_surface(brep::mirrored(mesh, plane), asked.out, bench.timings);
+  if (!asked.out.empty()) {
+    write_surface(brep::mirrored(mesh, plane), asked.out, bench.timings);
+    if (auto finding = rounding_finding(asked.out, bench.timings))
+      if (brep::health(brep::triangles_of(mesh)).solid()) findings.push_back(std::move(*finding));
+  }
   FileAnswer answer{fit_json(plane, found)};
   if (found) findings.insert(findings.end(), found->findings.begin(), found->findings.end());
   answer.findings = findings;

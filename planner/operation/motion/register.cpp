@@ -30,6 +30,7 @@ struct Register {
   std::optional<double> rest_mm;
   std::filesystem::path out;         ///< of the command only
   glm::dmat4 onto_from_object{1.0};  ///< determined before the kernels run
+  std::vector<Caveat> doubts;        ///< of that motion
 };
 
 struct LandmarkResidual {
@@ -69,13 +70,35 @@ constexpr auto members_of(const FitOfSurfaces&) {
                     member("last_step_mm", &F::last_step_mm), member("rest_mm", &F::rest_mm));
 }
 
+struct TrustOfFit {
+  double matched_share = 0.0, tolerance_mm = 0.0;
+  std::optional<double> rival_share;  ///< none where a start was given
+  double noise_mm = 0.0;
+  std::size_t starts = 0, agreeing_starts = 0;
+  Json equal_transforms;
+  std::string definition =
+      "matched_share of A lies within tolerance_mm of B with normals that agree to 37 degrees; rival_share "
+      "does at another motion of the search; noise_mm is the median distance of a vertex from the mean of "
+      "its neighbours";
+};
+constexpr auto members_of(const TrustOfFit&) {
+  using T = TrustOfFit;
+  return std::tuple(member("matched_share", &T::matched_share), member("tolerance_mm", &T::tolerance_mm),
+                    member("rival_share", &T::rival_share), member("noise_mm", &T::noise_mm),
+                    member("starts", &T::starts), member("agreeing_starts", &T::agreeing_starts),
+                    member("equal_transforms", &T::equal_transforms), member("definition", &T::definition));
+}
+
 struct FitDetails {
   std::optional<FitOfLandmarks> landmarks;
   std::optional<FitOfSurfaces> surfaces;
+  std::string verdict;  ///< of the fit of surfaces
+  std::optional<TrustOfFit> trust;
 };
 constexpr auto members_of(const FitDetails&) {
-  return std::tuple(member_if_any("landmarks", &FitDetails::landmarks),
-                    member_if_any("surfaces", &FitDetails::surfaces));
+  using F = FitDetails;
+  return std::tuple(member_if_any("landmarks", &F::landmarks), member_if_any("surfaces", &F::surfaces),
+                    member_if_any("verdict", &F::verdict), member_if_any("trust", &F::trust));
 }
 
 /// The resulting motion, with its results for the report.
@@ -143,6 +166,23 @@ Laid by_landmarks(const std::filesystem::path& moving, const std::filesystem::pa
   return laid;
 }
 
+/// Several equal answers are a WARN.
+const char* verdict_of(const brep::FitTrust& trust) {
+  if (trust.verdict == brep::FitVerdict::Failed) return "FAIL";
+  return trust.verdict == brep::FitVerdict::Doubtful || !trust.equals.empty() ? "WARN" : "PASS";
+}
+
+/// The findings that make an object's certificate no PASS.
+std::vector<Caveat> doubts_of(const std::vector<std::string>& findings) {
+  std::vector<Caveat> doubts;
+  for (const std::string& finding : findings)
+    if (finding.starts_with("FAIL "))
+      doubts.push_back({voxel::Verdict::Fail, finding.substr(5), false});
+    else if (finding.starts_with("WARN "))
+      doubts.push_back({voxel::Verdict::Warn, finding.substr(5), false});
+  return doubts;
+}
+
 /// Refines the motion in `laid`, or searches for one where there is none yet.
 void by_surfaces(const brep::Mesh& moving, const brep::Mesh& fixed, const Register& asked, bool is_laid,
                  const voxel::Progress& progress, Timings& timings, Laid& laid) {
@@ -161,6 +201,16 @@ void by_surfaces(const brep::Mesh& moving, const brep::Mesh& fixed, const Regist
   laid.details.surfaces = {fit.rms_mm,       fit.kept_share, fit.rounds,
                            fit.converged,    fit.stiffness,  is_laid ? "landmarks" : "search",
                            fit.last_step_mm, fit.rest_mm};
+  const brep::FitTrust& trust = *fit.trust;
+  laid.details.verdict = verdict_of(trust);
+  laid.details.trust = {trust.matched_share,
+                        trust.tolerance_mm,
+                        trust.starts == 0 ? std::nullopt : std::optional(trust.rival_share),
+                        trust.noise_mm,
+                        trust.starts,
+                        trust.agreeing_starts,
+                        Json::array()};
+  for (const glm::dmat4& equal : trust.equals) laid.details.trust->equal_transforms.push_back(to_json(equal));
   laid.onto_from_object = fit.fixed_from_moving;
   laid.rms_mm = fit.rms_mm;
   laid.findings.insert(laid.findings.end(), fit.findings.begin(), fit.findings.end());
@@ -186,6 +236,7 @@ Register settle(const Register& asked, const SettleBench& bench) {
   bench.findings.insert(bench.findings.end(), laid.findings.begin(), laid.findings.end());
   Register settled = asked;
   settled.onto_from_object = laid.onto_from_object;
+  settled.doubts = doubts_of(laid.findings);
   return settled;
 }
 
@@ -203,6 +254,7 @@ void triangles(const Register& asked, const MeshBench& bench, MeshSide& made) {
 
 void bound(const Register& asked, const BoundBench& bench, Object& made) {
   carry(asked.object.name, asked.onto_from_object, bench, made);
+  made.caveats.insert(made.caveats.end(), asked.doubts.begin(), asked.doubts.end());
 }
 
 /// Writes the mesh at its new position, with a similarity's scale.
@@ -256,9 +308,14 @@ FileAnswer on_files(const Register& asked, const FileBench& bench) {
                        grouped(turn.axis.y, 4) + ", " + grouped(turn.axis.z, 4) + ")"},
       {"translation", grouped(shift.x, 2) + ", " + grouped(shift.y, 2) + ", " + grouped(shift.z, 2) + " mm"},
       {"written", asked.out.empty() ? "nothing, see -o" : asked.out.string()}};
-  if (const std::optional<FitOfSurfaces>& fit = laid.details.surfaces)
+  if (const std::optional<FitOfSurfaces>& fit = laid.details.surfaces) {
+    const TrustOfFit& trust = *laid.details.trust;
+    answer.rows.insert(answer.rows.begin() + 1,
+                       {"verdict", laid.details.verdict + ", " + three_figures(100.0 * trust.matched_share) +
+                                       " % lie within " + three_figures(trust.tolerance_mm) + " mm"});
     answer.rows.insert(answer.rows.begin() + 1,
                        {"rounds", rounds_text(fit->rounds, fit->converged, fit->last_step_mm, fit->rest_mm)});
+  }
   return answer;
 }
 

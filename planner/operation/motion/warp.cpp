@@ -72,8 +72,9 @@ void refuse_turned_over(const convert::DisplacementField& field, const std::file
                            text_of(worst->centre_mm) + " mm, all between " + text_of(low_mm) + " and " +
                            text_of(high_mm) +
                            " mm (LPS): there a motion is longer than the tissue between what moves and what "
-                           "stays. Take that place "
-                           "out of 'fixed' or the motion in smaller steps, and solve the deck again");
+                           "stays. Take that place out of 'fixed', or write *STEP, NLGEOM in the deck, so "
+                           "that the solver follows the motion in increments (linear steps only scale it), "
+                           "and solve the deck again");
 }
 
 Displaced displaced(const Warp& warp, const std::filesystem::path& path, const voxel::Progress& progress,

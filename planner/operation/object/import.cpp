@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A mesh of any program as an object. Its voxels are digitised from it, so that it has no certificate of its
 // own; objects that are made with it have one.
+#include "planner/operation/object/import.h"
+
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/error.h"
 #include "planner/operation/file/mesh_in.h"
@@ -9,6 +11,8 @@
 
 namespace octotomy::planner {
 namespace {
+
+constexpr const char* name = "import";
 
 struct Import {
   std::filesystem::path path;
@@ -26,19 +30,27 @@ std::string definition(const Import& import, const Objects&) {
   return import.path.filename().string();
 }
 
+brep::MeshFile read(const Import& import, const std::filesystem::path& path) {
+  return brep::read_mesh(path, {import.frame, import.unit});
+}
+
+std::filesystem::path path_of(const Import& import, const std::filesystem::path& folder) {
+  return import.path.is_absolute() ? import.path : folder / import.path;
+}
+
 void triangles(const Import& import, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "read");
-  const std::filesystem::path path = import.path.is_absolute() ? import.path : bench.folder / import.path;
-  const brep::MeshFile read = brep::read_mesh(path, {import.frame, import.unit});
-  std::vector<brep::MeshFinding> audit = read.audit;
+  const std::filesystem::path path = path_of(import, bench.folder);
+  const brep::MeshFile file = read(import, path);
+  std::vector<brep::MeshFinding> audit = file.audit;
   for (const brep::MeshFinding& finding :
-       brep::findings_beside(read.extent(), {bench.low_mm, bench.high_mm}, "the plan's universe"))
+       brep::findings_beside(file.extent(), {bench.low_mm, bench.high_mm}, "the plan's universe"))
     audit.push_back(finding);
   made.details["audit"] = to_json(audit);
   for (const std::string& line : warnings_of(audit))
     made.findings.push_back(import.path.filename().string() + ": " + line);
   try {
-    made.whole = brep::solid_of(read.triangles);
+    made.whole = brep::solid_of(file.triangles);
   } catch (const brep::Error& error) {
     throw brep::Error(error.code(),
                       path.string() + ": " + error.what() + "; mend it first by octotomy repair");
@@ -50,8 +62,18 @@ void bound(const Import&, const BoundBench&, Object&) {}
 
 }  // namespace
 
+bool is_import(const Action& action) {
+  return action.operation().name == name;
+}
+
+voxel::Box import_box(const Action& action, const std::filesystem::path& folder) {
+  const Import& import = *static_cast<const Import*>(action.value());
+  const brep::Extent extent = read(import, path_of(import, folder)).extent();
+  return {extent.low_mm, extent.high_mm};
+}
+
 Operation import_operation() {
-  return Describe<Import>("import", "Reads a closed mesh of any program as an object.", Makes::Object)
+  return Describe<Import>(name, "Reads a closed mesh of any program as an object.", Makes::Object)
       .takes(field("path", &Import::path,
                    std::string("The file: ") + brep::mesh_formats_read + ", relative to the plan's folder.")
                  .required())

@@ -22,7 +22,7 @@ namespace {
 struct Repair {
   std::filesystem::path path, out;
   std::optional<std::string> frame, unit;
-  std::optional<double> weld_mm, longest_hole_mm, cell_mm;
+  std::optional<double> weld_mm, longest_hole_mm, cell_mm, wall_mm;
   bool duplicates = false, orient = false, flat = false, holes = false, intersections = false, solid = false,
        hull = false;
   double max_volume_share = brep::RepairOptions{}.max_volume_share;
@@ -34,8 +34,13 @@ void check(const Repair& repair, const Place& place) {
     place.refuse(
         "does only what it is asked for: say 'solid' for all, or 'weld_mm', 'duplicates', 'flat', 'orient', "
         "'holes' or 'intersections'; octotomy info tells what a mesh lacks");
-  if ((repair.hull || repair.cell_mm) && !repair.solid)
-    place.at(repair.hull ? "hull" : "cell_mm").refuse("is of a surface that is made anew: add 'solid'");
+  if (repair.wall_mm && repair.hull)
+    place.at("hull").refuse("fills what a wall leaves hollow: give 'hull' or 'wall_mm'");
+  if ((repair.hull || repair.cell_mm || repair.wall_mm) && !repair.solid)
+    place.at(repair.hull      ? "hull"
+             : repair.cell_mm ? "cell_mm"
+                              : "wall_mm")
+        .refuse("is of a surface that is made anew: add 'solid'");
 }
 
 Json changes_json(const std::vector<brep::Change>& changes) {
@@ -70,6 +75,7 @@ Mended mended(const Repair& repair, const std::filesystem::path& path, const vox
   options.solid = repair.solid;
   options.cell_mm = repair.cell_mm;
   options.hull = repair.hull;
+  options.wall_mm = repair.wall_mm;
   options.max_volume_share = repair.max_volume_share;
   options.progress = {progress.stop, progress.report};
   made.repaired = brep::repair(made.read, options);
@@ -226,6 +232,10 @@ Operation repair_operation() {
                  .greater_than(0.0))
       .takes(field("hull", &Repair::hull,
                    "Of a surface made anew, only the outermost shells: cavities are filled."))
+      .takes(field("wall_mm", &Repair::wall_mm,
+                   "Makes the surface as given, holes and all, a wall of this thickness: for sheets, which "
+                   "enclose nothing.")
+                 .greater_than(0.0))
       .takes(
           field("max_volume_share", &Repair::max_volume_share,
                 "The share of the volume that may be gained or lost where triangles intersect; beyond it the "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // An object's mesh as a file.
 #include "brep/io/write_mesh.h"
+#include "planner/operation/file/mesh_file.h"
 #include "planner/operation/file/output_path.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
@@ -30,6 +31,7 @@ void write(const Surface& surface, const AnswerBench& bench, Exported& made) {
   const std::filesystem::path file = output_file(bench.folder, made.path);
   voxel::need_disk(file, brep::least_mesh_bytes(mesh.n_vertices(), mesh.n_faces(), file));
   brep::write_mesh(mesh, file);
+  if (auto finding = rounding_finding(file, bench.timings)) made.findings.push_back(std::move(*finding));
   made.written = true;
   made.content = grouped(static_cast<double>(mesh.n_faces()), 0) + " triangles";
   made.details = {{"faces", mesh.n_faces()},

@@ -4,12 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
 
 #include "planner/operation/table/number_format.h"
 #include "voxel/space/memory_need.h"
 
 namespace octotomy::planner {
 namespace {
+
+double longest_side_mm(const voxel::Box& box) {
+  const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
+  return std::max({extent_mm.x, extent_mm.y, extent_mm.z});
+}
 
 voxel::Universe universe_about(const voxel::Lattice& scan, std::optional<double> voxel_mm, bool by_cells) {
   const voxel::Box box = voxel::bounds(scan);
@@ -49,6 +55,21 @@ voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> vo
 
 voxel::Universe universe_of(const voxel::Scene& scan, std::optional<double> voxel_mm, bool are_labels) {
   return universe_about(scan.lattice, voxel_mm, are_labels || scan.meaning == voxel::Meaning::Label);
+}
+
+voxel::Universe universe_of(const std::vector<voxel::Box>& meshes, std::optional<double> voxel_mm) {
+  constexpr double mesh_voxels = 128.0, most_a_side = 512.0;
+  if (meshes.empty()) throw std::invalid_argument("universe_of: there is no mesh");
+  voxel::Box all = meshes.front();
+  double mesh_mm = 0.0;
+  for (const voxel::Box& box : meshes) {
+    all = {glm::min(all.low_mm, box.low_mm), glm::max(all.high_mm, box.high_mm)};
+    mesh_mm = std::max(mesh_mm, longest_side_mm(box));
+  }
+  if (!(mesh_mm > 0.0)) throw std::invalid_argument("universe_of: the meshes have no extent");
+  all = {all.low_mm - 0.5 * mesh_mm, all.high_mm + 0.5 * mesh_mm};
+  return voxel::universe_around(
+      all, voxel_mm.value_or(std::max(mesh_mm / mesh_voxels, longest_side_mm(all) / most_a_side)));
 }
 
 }  // namespace octotomy::planner

@@ -21,6 +21,7 @@
 #include "convert/surface/isosurface.h"
 #include "planner/operation/anatomy/movement.h"
 #include "planner/operation/measure/result_json.h"
+#include "planner/operation/table/number_format.h"
 #include "verify/interval/size_interval.h"
 #include "voxel/solid/combine.h"
 
@@ -159,6 +160,16 @@ Json told(const Told& value) {
   return json;
 }
 
+/// A whole number as the bound of whole numbers puts the surface through their centres.
+std::optional<std::string> bound_finding(const voxel::Scene& after, double low) {
+  const voxel::Range range = voxel::range(after);
+  const bool are_labels = after.meaning == voxel::Meaning::Label || (range.low == 0.0 && range.high == 1.0);
+  if (!are_labels || low != std::floor(low)) return std::nullopt;
+  return "WARN low: the later scan's samples are labels, and with a lower bound of " + plain(low) +
+         " its surface passes through the centres of the outermost voxels, half a voxel inside: give --low " +
+         plain(low - 0.5);
+}
+
 }  // namespace
 
 Outcome outcome_of(const Plan& plan, const Evaluation& evaluation, const voxel::Scene& after,
@@ -180,6 +191,7 @@ Outcome outcome_of(const Plan& plan, const Evaluation& evaluation, const voxel::
   const Laid whole = laid(solid_of(unmoved), surface, {}, sample_mm, options);
   Outcome outcome{unmoved.id,           whole.fit.fixed_from_moving, whole.fit.rms_mm,
                   whole.fit.kept_share, whole.fit.findings,          {}};
+  if (auto finding = bound_finding(after, low)) outcome.findings.push_back(std::move(*finding));
   const std::vector<MovedLandmark> landmarks = moved_landmarks(objects, plan.landmarks);
   const glm::dmat3& head = objects.lps_from_head;
   for (const Piece& piece : pieces) {

@@ -149,6 +149,83 @@ TEST(RegisterSurfaces, TheMotionIsTheSameOnOneThreadAndRigid) {
   EXPECT_NO_THROW(moved(moving, many.fixed_from_moving));
 }
 
+/// A bent tube, somewhat thicker at its ends.
+Triangles tube() {
+  Triangles t = shapes::sphere({0, 0, 0}, 1, 4);
+  for (glm::dvec3& p : t.points_mm) {
+    const double r = 6.0 + 2.5 * p.x * p.x + 1.5 * p.x + 0.8 * std::sin(9.0 * p.x);
+    p = {70.0 * p.x, 12.0 * std::sin(2.6 * p.x) + r * p.y,
+         3.0 * std::cos(3.0 * p.x) + r * (0.8 - 0.2 * p.x) * p.z};
+  }
+  return t;
+}
+
+TEST(RegisterSurfaces, ARightFitIsTrustedAndItsSearchMatchesNothingElse) {
+  const Mesh fixed = mesh_of(tube());
+  const glm::dmat4 truth = motion(60.0, {1, 2, 3}, {10, 20, 30});
+  const Mesh moving = with_noise(moved(fixed, glm::inverse(truth)), 0.05, 3);
+  const SurfaceFit fit = register_surfaces(moving, fixed);
+  ASSERT_TRUE(fit.trust);
+  EXPECT_EQ(fit.trust->verdict, FitVerdict::Right) << fit.trust->reason;
+  EXPECT_TRUE(fit.trust->equals.empty());
+  EXPECT_GT(fit.trust->matched_share, 2.0 * fit.trust->rival_share);
+  EXPECT_GT(fit.trust->agreeing_starts, 1U);
+  EXPECT_EQ(fit.trust->starts, 61U);
+  EXPECT_TRUE(fit.findings.empty()) << fit.findings.front();
+  EXPECT_LT(error_of(fit.fixed_from_moving, truth, moving).mm, 0.2);
+}
+
+TEST(RegisterSurfaces, BodiesThatHaveNothingInCommonAreAFailedFit) {
+  const Mesh fixed = potato(3);
+  Triangles other = tube();
+  const SurfaceFit fit = register_surfaces(mesh_of(other), fixed);
+  ASSERT_TRUE(fit.trust);
+  EXPECT_EQ(fit.trust->verdict, FitVerdict::Failed);
+  ASSERT_FALSE(fit.findings.empty());
+  EXPECT_TRUE(fit.findings.back().starts_with("FAIL registration: ")) << fit.findings.back();
+  EXPECT_NE(fit.findings.back().find("--landmarks"), std::string::npos);
+  // From a start, too, where there is no search to compare with.
+  const SurfaceFit started = register_surfaces(mesh_of(other), fixed, {.start = glm::dmat4(1.0)});
+  EXPECT_NE(started.trust->verdict, FitVerdict::Right);
+  EXPECT_EQ(started.trust->starts, 0U);
+}
+
+TEST(RegisterSurfaces, AForeignBodyOfMoreThanHalfTheAreaIsFittedRightOrNotTrusted) {
+  const Mesh fixed = mesh_of(tube());
+  int right = 0, told = 0;
+  for (int i = 0; i < 3; ++i) {
+    const glm::dmat4 truth = motion(60.0, {1.0, 0.3 * i, -1.0}, {5.0 * i, 20, -30});
+    const Triangles foreign = shapes::sphere({10.0 * i, 30, 10.0 - 4.0 * i}, 15.0 + 4.0 * i, 3);
+    const Mesh moving = moved(mesh_of(shapes::together(tube(), foreign)), glm::inverse(truth));
+    const SurfaceFit fit = register_surfaces(moving, fixed, {.samples = 1000});
+    const bool is_right = error_of(fit.fixed_from_moving, truth, moved(fixed, glm::inverse(truth))).mm < 1.0;
+    if (is_right) ++right;
+    if (!is_right) {
+      ++told;
+      EXPECT_NE(fit.trust->verdict, FitVerdict::Right) << "case " << i;
+    }
+  }
+  EXPECT_GE(right, 1) << told << " told";
+}
+
+TEST(RegisterSurfaces, TheFourAnswersOfABoxAreStated) {
+  Triangles box = shapes::sphere({0, 0, 0}, 1, 4);
+  for (glm::dvec3& p : box.points_mm)
+    p = p / std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) * glm::dvec3(20, 30, 45);
+  const Mesh fixed = mesh_of(box);
+  const SurfaceFit fit = register_surfaces(moved(fixed, motion(40.0, {1, 2, 3}, {5, 6, 7})), fixed);
+  ASSERT_TRUE(fit.trust);
+  EXPECT_EQ(fit.trust->verdict, FitVerdict::Right);
+  EXPECT_EQ(fit.trust->equals.size(), 3U);
+  ASSERT_FALSE(fit.findings.empty());
+  EXPECT_NE(fit.findings.back().find("3 other motions match"), std::string::npos) << fit.findings.back();
+  // Each equal answer takes the box onto itself.
+  for (const glm::dmat4& equal : fit.trust->equals) {
+    const glm::dmat4 own = equal * glm::inverse(fit.fixed_from_moving);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(std::abs(own[axis][axis]), 1.0, 0.01);
+  }
+}
+
 TEST(RegisterSurfaces, StopsAndRefusesWhatCannotBe) {
   const Mesh mesh = potato(2);
   std::stop_source stop;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <random>
 
 #include "brep/io/read_mesh.h"
@@ -188,6 +189,40 @@ TEST(Repair, ARefusedEnclosingNamesWhatWouldBeAccepted) {
     options.max_volume_share = std::stod(told.substr(share + 19));
     EXPECT_NO_THROW(repair(plates, options)) << told;
   }
+}
+
+TEST(Repair, ASheetIsToldTheWallThatItCanBeGivenAndGetsIt) {
+  // A square sheet of 20 mm, bent up at one side: it encloses nothing.
+  Triangles sheet;
+  sheet.points_mm = {{0, 0, 0}, {20, 0, 0}, {20, 20, 0}, {0, 20, 0}, {20, 0, 10}, {20, 20, 10}};
+  sheet.faces = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
+  RepairOptions options;
+  options.solid = true;
+  options.longest_hole_mm = 1.0;
+  try {
+    repair(sheet, options);
+    FAIL() << "a sheet encloses something";
+  } catch (const Error& error) {
+    const std::string told = error.what();
+    const std::size_t wall = told.find("--wall ");
+    ASSERT_NE(wall, std::string::npos) << told;
+    options.wall_mm = std::stod(told.substr(wall + 7));
+    EXPECT_TRUE(health(repair(sheet, options).surface).solid()) << told;
+  }
+  // Its area times the wall, the bend's inner corner once, and rounded along its outline of 100 mm.
+  options.wall_mm = 1.0;
+  const Repair made = repair(sheet, options);
+  EXPECT_TRUE(health(made.surface).solid());
+  const double half = 0.5;
+  const double flat_mm3 = 600.0 - 20.0 * half * half;
+  const double bend_mm3 = 20.0 * 0.25 * std::numbers::pi * half * half;
+  const double rims_mm3 = 100.0 * 0.5 * std::numbers::pi * half * half;
+  const double corners_mm3 = std::numbers::pi * half * half * half;
+  EXPECT_NEAR(size_of(made.surface).volume_mm3, flat_mm3 + bend_mm3 + rims_mm3, 3.0 * corners_mm3);
+  ASSERT_FALSE(made.changes.empty());
+  EXPECT_NE(made.changes.back().what.find("wall of 1 mm"), std::string::npos) << made.changes.back().what;
+  options.wall_mm = 0.0;
+  EXPECT_THROW(repair(sheet, options), std::invalid_argument);
 }
 
 TEST(Repair, RefusesOptionsOutOfTheirRange) {

@@ -51,6 +51,17 @@ TEST_F(AnExpressionScan, KeepsSamplesAtRestToTheBitAndMarksHoles) {
   EXPECT_LT(made.hole, 0.0);
 }
 
+TEST(ExpressionScan, HolesLieBelowFloatsThatAreFurtherApartThanOne) {
+  Scene scene = *map_of_shares();
+  for (float& sample : std::get<FloatSamples>(scene.samples)) sample -= 16777216.0f;
+  const auto shared = std::make_shared<const Scene>(scene);
+  const GreyOctree grey = grey_octree_of(Universe{5, glm::dmat4(1.0)}, *shared, -1).with_scan(shared);
+  const Expression head = window_of(grey, -16777300.0);
+  const ExpressionScan made = expression_scan(*shared, grey, head - Sphere{{12, 12, 12}, 4.0});
+  EXPECT_EQ(made.hole, -16777218.0);
+  EXPECT_EQ(share_at(made.scene, {12, 12, 12}), -16777218.0f);
+}
+
 TEST_F(AnExpressionScan, FillsObjectsWithoutSamplesByAValueThatIsNoWholeNumber) {
   const Expression with_plate = Sphere{{12, 12, 12}, 4.0} | (head_ - Sphere{{12, 12, 12}, 4.0});
   const ExpressionScan made = expression_scan(*scene_, grey_, with_plate);

@@ -56,6 +56,44 @@ TEST(ImportStep, AMeshThatIsAThousandTimesTooSmallIsToldWithTheUnitThatFits) {
       << told(evaluation.object("block").findings);
 }
 
+TEST(ImportStep, APlanOfMeshesAloneHasItsUniverseAroundThemAllWithRoomForMotions) {
+  const ScratchFolder folder;
+  brep::write_mesh(brep::mesh_of(brep::shapes::box({-30, -30, -30}, {30, 30, 30})), folder / "block.stl");
+  brep::write_mesh(brep::mesh_of(brep::shapes::box({0, 0, 0}, {40, 40, 40})), folder / "other.stl");
+  const Plan plan =
+      parse_plan(R"({"octotomy_plan": 1, "name": "meshes", "universe": {"voxel_mm": 1}, "steps": [
+      {"id": "block", "do": "import", "path": "block.stl"},
+      {"id": "other", "do": "import", "path": "other.stl"},
+      {"id": "both", "do": "combine", "expression": "block & other"},
+      {"id": "aside", "do": "move", "object": "both", "translate_mm": [0, 0, 25]}]})",
+                 folder.path());
+  const Evaluation evaluation = evaluate(plan);
+  const voxel::Box box = voxel::bounds(evaluation.universe.lattice());
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_LE(box.low_mm[axis], -30.0 - 30.0);
+    EXPECT_GE(box.high_mm[axis], 40.0 + 30.0);
+  }
+  EXPECT_NEAR(evaluation.object("both").mesh.whole->measures().volume_mm3, 27000.0, 1e-6);
+  ASSERT_TRUE(evaluation.object("both").certificate);
+  EXPECT_NE(evaluation.object("both").certificate->verdict, verify::Verdict::Fail);
+  EXPECT_NEAR(evaluation.object("aside").mesh.whole->size().high_mm.z, 55.0, 1e-9);
+  EXPECT_TRUE(evaluation.scans.empty());
+}
+
+TEST(ImportStep, APlanWithoutScansAndWithoutAnImportIsRefused) {
+  for (const char* scans : {"", R"("scans": {},)"}) {
+    try {
+      parse_plan(std::string(R"({"octotomy_plan": 1, "name": "nothing",)") + scans +
+                     R"("steps": [{"id": "a", "do": "mask", "regions": [
+          {"view": "anterior", "polygons_mm": [[[-9,-9],[9,-9],[9,9]]]}]}]})",
+                 ".");
+      FAIL() << scans;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("no step imports a mesh"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(ImportStep, AnUnknownFrameIsRefusedWhenThePlanIsRead) {
   const ScratchFolder folder;
   try {

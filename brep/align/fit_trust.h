@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "brep/align/cloud_fit.h"
+#include "brep/align/register_surfaces.h"
+#include "brep/mesh/mesh.h"
+#include "brep/mesh/oriented_surface.h"
+
+// Whether a fit is the true position or merely the least bad one that a search reached.
+namespace octotomy::brep {
+
+/// The noise of a surface's own points: the median distance of a vertex from the mean of its neighbours, along
+/// its normal. Facets of curved surfaces count as noise. Zero for a surface without inner vertices.
+double own_noise_mm(const Mesh& mesh);
+
+/// Root mean square distance between a cloud's points under two motions.
+double apart_mm(const Cloud& cloud, const glm::dmat4& a, const glm::dmat4& b);
+
+/// The motions, each once and in their order: those closer than a tenth of the spread to an earlier one are
+/// left out. At most `most`.
+std::vector<glm::dmat4> different_motions(const Cloud& cloud, const std::vector<glm::dmat4>& motions,
+                                          std::size_t most);
+
+/// Shares of the samples that lie within each of the ladder's distances of the fixed surface and whose normal
+/// agrees to 37 degrees.
+std::vector<double> matched_shares(const Cloud& cloud, const OrientedSurface& fixed, const glm::dmat4& motion,
+                                   const std::vector<double>& ladder_mm);
+
+/// The distances at which fits are compared: three rungs, each twice the one before, from a quarter of a per
+/// cent of the spread or from a quarter of the surfaces' noise, as rungs wider than the noise match wrong fits
+/// too; a last rung of at least 2 % of the spread.
+std::vector<double> trust_ladder_mm(double spread_mm, double noise_mm);
+
+/// What a fit is compared with.
+struct TrustedFrom {
+  const Cloud& cloud;
+  const OrientedSurface& fixed;
+  double noise_mm = 0.0;                    ///< the larger of both surfaces' own noise
+  double residual_mm = 0.0;                 ///< rms of the fit's samples
+  std::vector<glm::dmat4> others = {};      ///< other motions at which a search came to rest
+  std::vector<glm::dmat4> start_ends = {};  ///< where each start of the search ended; none: a start was given
+};
+
+/// Judges a motion. A right one brings much more of the surface to within the noise than any other motion
+/// that the search found; at a wrong one, the search's other ends match about as much. Motions that match
+/// equally much, each to within the noise, are equal answers of a symmetric shape. Without a search the share
+/// alone decides, and a small one is doubtful. A residual far above the noise is doubtful, too.
+FitTrust trust_of(const glm::dmat4& motion, const TrustedFrom& from);
+
+}  // namespace octotomy::brep
