@@ -63,10 +63,11 @@ class Blame {
   Blame(const Ring& lower, const Ring& upper, const SpanClearance& sides)
       : m_(lower.points_mm.size()), n_(upper.points_mm.size()), of_(m_ * n_) {
     constexpr int most_sides = 6;
+    const double reach_mm = reach_of(lower, upper);
     for (std::size_t i = 0; i < m_; ++i)
       for (std::size_t j = 0; j < n_; ++j) {
         const glm::dvec2 &a = lower.points_mm[i], &b = upper.points_mm[j];
-        const int crossed = sides.crossed(a, b, most_sides);
+        const int crossed = glm::distance(a, b) > reach_mm ? most_sides : sides.crossed(a, b, most_sides);
         const bool is_beside = starts_inside(lower, i, b) != starts_inside(upper, j, a);
         of_[i * n_ + j] = static_cast<std::uint8_t>(crossed > 0 ? 1 + crossed : is_beside ? 0 : 1);
       }
@@ -77,6 +78,32 @@ class Blame {
 
  private:
   static double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+  /// Twice the largest distance of a point to the nearest of the other ring, and the longest side. Every strip
+  /// has a span of the largest distance at least; longer ones than this leave their neighbourhood, and are as
+  /// bad as those that cross most sides. Without the limit most of the time is spent on them.
+  static double reach_of(const Ring& lower, const Ring& upper) {
+    constexpr double far = std::numeric_limits<double>::infinity();
+    std::vector<double> of_upper(upper.points_mm.size(), far);
+    double farthest = 0.0, longest_side_mm = 0.0;
+    for (const glm::dvec2& a : lower.points_mm) {
+      double nearest = far;
+      for (std::size_t j = 0; j < of_upper.size(); ++j) {
+        const glm::dvec2 d = upper.points_mm[j] - a;
+        const double square = glm::dot(d, d);
+        nearest = std::min(nearest, square);
+        of_upper[j] = std::min(of_upper[j], square);
+      }
+      farthest = std::max(farthest, nearest);
+    }
+    for (const double square : of_upper) farthest = std::max(farthest, square);
+    for (const Ring* ring : {&lower, &upper})
+      for (std::size_t k = 0; k < ring->points_mm.size(); ++k)
+        longest_side_mm =
+            std::max(longest_side_mm,
+                     glm::distance(ring->points_mm[k], ring->points_mm[(k + 1) % ring->points_mm.size()]));
+    return 2.0 * std::sqrt(farthest) + longest_side_mm;
+  }
 
   /// Whether the way from a ring's point leads on the ring's left first, where the object is.
   static bool starts_inside(const Ring& ring, std::size_t at, const glm::dvec2& to) {

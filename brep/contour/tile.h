@@ -43,9 +43,10 @@ std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Rin
 
 /// The best strip by the cost among those whose spans cross the fewest sides of contours in projection and lie
 /// over the area of one ring alone, which keeps a strip from crossing itself: the rings' own crossings apart,
-/// such a strip exists unless a ring has folds that the other one does not see. shortest_span and least_angle
-/// start at the shortest of these spans. Throws and costs as tile(), and a test of each span against the sides
-/// near it.
+/// such a strip exists unless a ring has folds that the other one does not see. Spans longer than twice the
+/// largest distance of a point to the nearest of the other ring, and a side, count as those that cross most.
+/// shortest_span and least_angle start at the shortest of the best spans. Throws and costs as tile(), and a
+/// test of each span against the sides near it.
 std::vector<std::array<std::uint32_t, 3>> tile_clear(const Ring& lower, const Ring& upper, TileCost cost,
                                                      const SpanClearance& sides);
 
