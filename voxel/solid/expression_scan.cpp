@@ -28,9 +28,7 @@ Expression on_scan_lattices(const Expression& expression) {
         return std::visit([](const auto& leaf) { return Expression(leaf); }, *term.leaf);
       },
       [](const Expression::Term& term, const Expression& a) {
-        if (term.kind == Kind::Not) return ~a;
-        const bool turns = glm::determinant(glm::dmat3(term.moved_from_still)) > 0.0;
-        return turns ? moved(a, term.moved_from_still) : reflected(a, term.moved_from_still);
+        return term.kind == Kind::Not ? ~a : carried(a, term.moved_from_still);
       },
       [](const Expression::Term& term, const Expression& a, const Expression& b) {
         if (term.kind == Kind::And) return a & b;

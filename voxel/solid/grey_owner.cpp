@@ -54,8 +54,7 @@ bool owns_itself(const Expression::Term& term, bool positive) {
 Expression placed(TermPointer part, const std::vector<glm::dmat4>& around) {
   Expression expression{std::move(part)};
   for (auto motion = around.rbegin(); motion != around.rend(); ++motion)
-    expression = glm::determinant(glm::dmat3(*motion)) > 0.0 ? moved(expression, *motion)
-                                                             : reflected(expression, *motion);
+    expression = carried(expression, *motion);
   return expression;
 }
 
@@ -163,10 +162,8 @@ bool same_terms(const Expression::Term& one, const Expression::Term& other) {
 Expression all_samples(const GreyOctree& grey, const glm::dmat4& moved_from_still) {
   constexpr double low = std::numeric_limits<std::int16_t>::min();
   constexpr double high = std::numeric_limits<std::int16_t>::max();
-  Expression samples(Window{grey, low, high});
-  if (moved_from_still == glm::dmat4(1.0)) return samples;
-  return glm::determinant(glm::dmat3(moved_from_still)) > 0.0 ? moved(samples, moved_from_still)
-                                                              : reflected(samples, moved_from_still);
+  const Expression samples(Window{grey, low, high});
+  return moved_from_still == glm::dmat4(1.0) ? samples : carried(samples, moved_from_still);
 }
 
 // A union with all of space contains all of space, so that the intersection keeps its voxels; its window comes
