@@ -4,7 +4,8 @@
 // strip has a span at the lower ring's first point. Therefore 1 find the path of least cost from (0, 0) to
 // (m, n); from (0, n) to (m, 2n) it is the same; 2 find the path that starts half way between two known ones,
 // which it need not cross, and so on; 3 write the triangles of the best. Otherwise: 1 find the start; 2 walk
-// greedily, or find the path of least cost from there.
+// greedily, or find the path of least cost from there. Where spans are to be clear of contours, each span that is
+// not costs more than any strip without it.
 #include "brep/contour/tile.h"
 
 #include <algorithm>
@@ -55,15 +56,80 @@ std::vector<glm::dvec2> in_unit_square(const std::vector<glm::dvec2>& points) {
   return scaled;
 }
 
-std::array<std::size_t, 2> start_of(const Ring& lower, const Ring& upper) {
+/// What speaks against the spans of two rings: 0 for a span over the area of one ring alone that crosses no side,
+/// 1 for one over both or neither, as where the rings cross, otherwise more by the sides that it crosses.
+class Blame {
+ public:
+  Blame(const Ring& lower, const Ring& upper, const SpanClearance& sides)
+      : m_(lower.points_mm.size()), n_(upper.points_mm.size()), of_(m_ * n_) {
+    constexpr int most_sides = 6;
+    const double reach_mm = reach_of(lower, upper);
+    for (std::size_t i = 0; i < m_; ++i)
+      for (std::size_t j = 0; j < n_; ++j) {
+        const glm::dvec2 &a = lower.points_mm[i], &b = upper.points_mm[j];
+        const int crossed = glm::distance(a, b) > reach_mm ? most_sides : sides.crossed(a, b, most_sides);
+        const bool is_beside = starts_inside(lower, i, b) != starts_inside(upper, j, a);
+        of_[i * n_ + j] = static_cast<std::uint8_t>(crossed > 0 ? 1 + crossed : is_beside ? 0 : 1);
+      }
+  }
+
+  /// Of the span between two points, counted on beyond the rings' ends.
+  std::uint8_t operator()(std::size_t i, std::size_t j) const { return of_[i % m_ * n_ + j % n_]; }
+
+ private:
+  static double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+  /// Twice the largest distance of a point to the nearest of the other ring, and the longest side. Every strip
+  /// has a span of the largest distance at least; longer ones than this leave their neighbourhood, and are as
+  /// bad as those that cross most sides. Without the limit most of the time is spent on them.
+  static double reach_of(const Ring& lower, const Ring& upper) {
+    constexpr double far = std::numeric_limits<double>::infinity();
+    std::vector<double> of_upper(upper.points_mm.size(), far);
+    double farthest = 0.0, longest_side_mm = 0.0;
+    for (const glm::dvec2& a : lower.points_mm) {
+      double nearest = far;
+      for (std::size_t j = 0; j < of_upper.size(); ++j) {
+        const glm::dvec2 d = upper.points_mm[j] - a;
+        const double square = glm::dot(d, d);
+        nearest = std::min(nearest, square);
+        of_upper[j] = std::min(of_upper[j], square);
+      }
+      farthest = std::max(farthest, nearest);
+    }
+    for (const double square : of_upper) farthest = std::max(farthest, square);
+    for (const Ring* ring : {&lower, &upper})
+      for (std::size_t k = 0; k < ring->points_mm.size(); ++k)
+        longest_side_mm =
+            std::max(longest_side_mm,
+                     glm::distance(ring->points_mm[k], ring->points_mm[(k + 1) % ring->points_mm.size()]));
+    return 2.0 * std::sqrt(farthest) + longest_side_mm;
+  }
+
+  /// Whether the way from a ring's point leads on the ring's left first, where the object is.
+  static bool starts_inside(const Ring& ring, std::size_t at, const glm::dvec2& to) {
+    const std::size_t count = ring.points_mm.size();
+    const glm::dvec2& p = ring.points_mm[at];
+    const glm::dvec2 in = p - ring.points_mm[(at + count - 1) % count];
+    const glm::dvec2 out = ring.points_mm[(at + 1) % count] - p, way = to - p;
+    const bool left_of_in = cross(in, way) > 0.0, left_of_out = cross(out, way) > 0.0;
+    return cross(in, out) > 0.0 ? left_of_in && left_of_out : left_of_in || left_of_out;
+  }
+
+  std::size_t m_, n_;
+  std::vector<std::uint8_t> of_;
+};
+
+/// The nearest two points of the rings' scaled shapes, of those with the least blame.
+std::array<std::size_t, 2> start_of(const Ring& lower, const Ring& upper, const Blame* blame = nullptr) {
   const auto a = in_unit_square(lower.points_mm), b = in_unit_square(upper.points_mm);
   std::array<std::size_t, 2> start{};
-  double least = std::numeric_limits<double>::infinity();
+  std::pair least{std::numeric_limits<int>::max(), std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i < a.size(); ++i)
     for (std::size_t j = 0; j < b.size(); ++j) {
       const glm::dvec2 d = b[j] - a[i];
-      if (glm::dot(d, d) >= least) continue;
-      least = glm::dot(d, d);
+      const std::pair here{blame != nullptr ? int{(*blame)(i, j)} : 0, glm::dot(d, d)};
+      if (here >= least) continue;
+      least = here;
       start = {i, j};
     }
   return start;
@@ -77,14 +143,18 @@ std::vector<glm::dvec3> turned(const Ring& ring, std::size_t start) {
   return points;
 }
 
-std::vector<Step> greedy_steps(const Ring& lower, const Ring& upper, std::array<std::size_t, 2> start) {
+std::vector<Step> greedy_steps(const Ring& lower, const Ring& upper, std::array<std::size_t, 2> start,
+                               const Blame* blame = nullptr) {
   const auto a = turned({in_unit_square(lower.points_mm), 0.0}, start[0]);
   const auto b = turned({in_unit_square(upper.points_mm), 0.0}, start[1]);
   std::vector<Step> steps;
   for (std::size_t i = 0, j = 0; i + 1 < a.size() || j + 1 < b.size();) {
     const bool lower_left = i + 1 < a.size(), upper_left = j + 1 < b.size();
-    const bool lower_is_nearer =
-        lower_left && upper_left && glm::distance(a[i + 1], b[j]) <= glm::distance(a[i], b[j + 1]);
+    const auto span = [&](std::size_t k, std::size_t l) {
+      return std::pair{blame != nullptr ? int{(*blame)(start[0] + k, start[1] + l)} : 0,
+                       glm::distance(a[k], b[l])};
+    };
+    const bool lower_is_nearer = lower_left && upper_left && span(i + 1, j) <= span(i, j + 1);
     steps.push_back(!upper_left || lower_is_nearer ? along_lower : along_upper);
     ++(steps.back() == along_lower ? i : j);
   }
@@ -103,7 +173,8 @@ struct Path {
 /// The path of least cost among all starts (Fuchs, Kedem and Uselton 1977).
 class LeastPath {
  public:
-  LeastPath(const Pair& pair, TileCost cost) : m_(pair.m()), n_(pair.n()) {
+  /// With `blame`, of the rings from their first points on, of those with the least sum of it.
+  LeastPath(const Pair& pair, TileCost cost, const Blame* blame = nullptr) : m_(pair.m()), n_(pair.n()) {
     const glm::dvec3 tip = pair.lower.front();
     const auto cost_of = [&](const Triangle& t) {
       return cost == TileCost::least_area ? 0.5 * glm::length(t.normal())
@@ -115,6 +186,17 @@ class LeastPath {
         for (std::size_t j = 0; j + (step == along_upper) <= n_; ++j)
           costs_[step][i * (n_ + 1) + j] = cost_of(pair.triangle(i, j, step));
     }
+    if (blame == nullptr) return;
+    // More than the costs of two strips can differ by.
+    double dearest = 0.0;
+    for (const std::vector<double>& costs : costs_)
+      for (const double cost_of_one : costs) dearest = std::max(dearest, std::abs(cost_of_one));
+    const double weight = 2.0 * dearest * static_cast<double>(m_ + n_);
+    for (const Step step : {along_lower, along_upper})
+      for (std::size_t i = 0; i + (step == along_lower) <= m_; ++i)
+        for (std::size_t j = 0; j + (step == along_upper) <= n_; ++j)
+          costs_[step][i * (n_ + 1) + j] +=
+              weight * (*blame)(i + (step == along_lower), j + (step == along_upper));
   }
 
   /// The least path from (0, 0) between two others.
@@ -224,8 +306,11 @@ Band about(const std::vector<Step>& steps, const Pair& pair, std::size_t reach) 
 
 /// The path from (0, 0) within a band with the least sum of angles. A node has a sum for each step that may
 /// have led to it, as an angle is between the triangle of that step and the next.
-std::vector<Step> least_angle_steps(const Pair& pair, const Band& band) {
+std::vector<Step> least_angle_steps(const Pair& pair, const Band& band,
+                                    std::array<std::size_t, 2> start = {0, 0}, const Blame* blame = nullptr) {
   const std::size_t m = pair.m(), n = pair.n();
+  // More than the angles of a strip can sum up to.
+  const double weight = 4.0 * static_cast<double>(m + n);
   constexpr double far = std::numeric_limits<double>::infinity();
   using Sums = std::array<double, 2>;
   std::vector<Sums> row(n + 1, {far, far}), above;
@@ -243,9 +328,10 @@ std::vector<Step> least_angle_steps(const Pair& pair, const Band& band) {
         const std::size_t from_i = step == along_lower ? i - 1 : i, from_j = step == along_lower ? j : j - 1;
         const Sums& from = step == along_lower ? above[j] : row[j - 1];
         const Triangle here = pair.triangle(from_i, from_j, step);
+        const double blamed = blame != nullptr ? weight * (*blame)(start[0] + i, start[1] + j) : 0.0;
         for (const Step before : {along_lower, along_upper}) {
           if (from[before] == far) continue;
-          double total = from[before];
+          double total = from[before] + blamed;
           if (from_i > 0 || from_j > 0) {
             const Triangle last = before == along_lower ? pair.triangle(from_i - 1, from_j, before)
                                                         : pair.triangle(from_i, from_j - 1, before);
@@ -321,6 +407,21 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
     return faces_of(lower, upper, start, greedy_steps(lower, upper, start));
   const Pair pair{turned(lower, start[0]), turned(upper, start[1])};
   return faces_of(lower, upper, start, least_angle_steps(pair, all_of(pair)));
+}
+
+std::vector<std::array<std::uint32_t, 3>> tile_clear(const Ring& lower, const Ring& upper, TileCost cost,
+                                                     const SpanClearance& sides) {
+  check(lower, upper, cost);
+  const Blame blame(lower, upper, sides);
+  if (cost == TileCost::least_area || cost == TileCost::greatest_volume) {
+    const Path path = LeastPath({turned(lower, 0), turned(upper, 0)}, cost, &blame).find();
+    return faces_of(lower, upper, {0, path.start}, steps_of(path));
+  }
+  const std::array<std::size_t, 2> start = start_of(lower, upper, &blame);
+  if (cost == TileCost::shortest_span)
+    return faces_of(lower, upper, start, greedy_steps(lower, upper, start, &blame));
+  const Pair pair{turned(lower, start[0]), turned(upper, start[1])};
+  return faces_of(lower, upper, start, least_angle_steps(pair, all_of(pair), start, &blame));
 }
 
 std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Ring& upper, TileCost cost,

@@ -7,6 +7,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "brep/contour/span_clearance.h"
+
 namespace octotomy::brep {
 
 /// The criterion by which a strip of triangles between two contours is chosen.
@@ -38,5 +40,14 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
 /// to. With a band of 0 it is the strip of shortest spans. Throws and costs as tile().
 std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Ring& upper, TileCost cost,
                                                     std::size_t band);
+
+/// The best strip by the cost among those whose spans cross the fewest sides of contours in projection and lie
+/// over the area of one ring alone, which keeps a strip from crossing itself: the rings' own crossings apart,
+/// such a strip exists unless a ring has folds that the other one does not see. Spans longer than twice the
+/// largest distance of a point to the nearest of the other ring, and a side, count as those that cross most.
+/// shortest_span and least_angle start at the shortest of the best spans. Throws and costs as tile(), and a
+/// test of each span against the sides near it.
+std::vector<std::array<std::uint32_t, 3>> tile_clear(const Ring& lower, const Ring& upper, TileCost cost,
+                                                     const SpanClearance& sides);
 
 }  // namespace octotomy::brep

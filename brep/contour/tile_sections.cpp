@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 turn all contours with the object on their left and move every other section a little; 2 for each slab
-// overlay its sections, then put strips where a contour has one counterpart, narrow those that cross anything
-// and take back those that always do; 3 number all points in one row.
+// overlay its sections, then put strips where a contour has one counterpart, clear those that cross anything
+// of contours, narrow those that still do, and take back those that always do; 3 number all points in one row.
 #include "brep/contour/tile_sections.h"
 
 #include <algorithm>
@@ -78,7 +78,7 @@ std::uint32_t point_count(const std::vector<Contour>& contours) {
 /// One slab's surface and counts of how its contours were joined.
 struct Tiled {
   SlabSurface surface;
-  std::size_t strips = 0, narrowed_strips = 0, crossed_strips = 0, overlaid = 0;
+  std::size_t strips = 0, clear_strips = 0, narrowed_strips = 0, crossed_strips = 0, overlaid = 0;
 };
 
 /// Whether a strip is a surface: not so one whose triangles all meet at one span's two points, as the least
@@ -100,10 +100,11 @@ class Strips {
         surface_(surface),
         cost_(cost),
         strips_(surface.groups.size()),
-        attempts_(surface.groups.size(), 0) {
+        sides_(slab.lower, slab.upper),
+        attempts_(surface.groups.size(), first_attempt(cost)) {
     for (std::size_t g = 0; g < strips_.size(); ++g) {
       if (!is_pair(surface.groups[g])) continue;
-      strips_[g] = strip_of(surface.groups[g], 0);
+      strips_[g] = strip_of(surface.groups[g], attempts_[g]);
       if (!is_surface(strips_[g])) retry(g);
     }
   }
@@ -119,11 +120,13 @@ class Strips {
                                                   [&](const auto& group) { return is_pair(group); }));
   }
 
-  /// Those that are not the best by their cost.
+  /// Those that are the best by their cost whose spans are clear of contours.
+  std::size_t clear_count() const {
+    return count_if([](int attempt) { return attempt == clear_attempt; });
+  }
+  /// Those that are not even this.
   std::size_t narrowed_count() const {
-    std::size_t count = 0;
-    for (std::size_t g = 0; g < strips_.size(); ++g) count += !strips_[g].empty() && attempts_[g] > 0 ? 1 : 0;
-    return count;
+    return count_if([](int attempt) { return attempt > clear_attempt; });
   }
 
   /// Narrows the strips that cross anything until none does, and drops those that always do.
@@ -147,26 +150,37 @@ class Strips {
   }
 
  private:
-  /// Attempts after the best strip: by the same cost near the shortest spans, within an eighth and a
-  /// thirty-second of the rings' points and within two points; the shortest spans themselves; and the least
-  /// area, which crosses itself least, near them and anywhere.
-  static constexpr int shortest_attempt = 4, most_attempts = 6;
+  /// Attempts after the best strip: the best whose spans are clear of contours; by the same cost near the
+  /// shortest spans, within an eighth and a thirty-second of the rings' points and within two points; the
+  /// shortest spans themselves; and the least area, which crosses itself least, near them and anywhere.
+  static constexpr int clear_attempt = 1, shortest_attempt = 5, most_attempts = 7;
+  /// The greatest volume of all is that of a strip that crosses itself and encloses much of it twice.
+  static int first_attempt(TileCost cost) { return cost == TileCost::greatest_volume ? clear_attempt : 0; }
+
+  template <typename Wanted>
+  std::size_t count_if(const Wanted& wanted) const {
+    std::size_t count = 0;
+    for (std::size_t g = 0; g < strips_.size(); ++g)
+      count += !strips_[g].empty() && wanted(attempts_[g]) ? 1 : 0;
+    return count;
+  }
 
   static std::size_t eighth(std::size_t points) { return std::max<std::size_t>(2, points / 8); }
   static std::size_t band(std::size_t points, int attempt) {
     if (attempt == shortest_attempt) return 0;
-    return attempt == 1 ? eighth(points) : attempt == 2 ? std::max<std::size_t>(2, points / 32) : 2;
+    return attempt == 2 ? eighth(points) : attempt == 3 ? std::max<std::size_t>(2, points / 32) : 2;
   }
 
   /// Whether an attempt would repeat an earlier one.
   bool is_repeated(int attempt) const {
-    if (cost_ == TileCost::shortest_span) return attempt <= shortest_attempt;
+    if (cost_ == TileCost::shortest_span) return attempt > clear_attempt && attempt <= shortest_attempt;
     return cost_ == TileCost::least_area && attempt > shortest_attempt;
   }
 
   FaceList attempted(const Ring& below, const Ring& above, int attempt) const {
     const std::size_t points = std::max(below.points_mm.size(), above.points_mm.size());
     if (attempt == 0) return tile(below, above, cost_);
+    if (attempt == clear_attempt) return tile_clear(below, above, cost_, sides_);
     if (attempt <= shortest_attempt) return tile_near(below, above, cost_, band(points, attempt));
     return attempt < most_attempts ? tile_near(below, above, TileCost::least_area, eighth(points))
                                    : tile(below, above, TileCost::least_area);
@@ -231,7 +245,8 @@ class Strips {
   SlabSurface& surface_;
   TileCost cost_;
   std::vector<FaceList> strips_;  ///< of each group; empty where overlay()'s stands
-  std::vector<int> attempts_;     ///< of each group, after the first
+  SpanClearance sides_;
+  std::vector<int> attempts_;  ///< of each group, after the first
 };
 
 Tiled tile_slab(const Slab& slab, const std::optional<TileCost>& cost) {
@@ -243,6 +258,7 @@ Tiled tile_slab(const Slab& slab, const std::optional<TileCost>& cost) {
   const std::size_t wanted = strips.wanted();
   strips.settle();
   tiled.strips = strips.count();
+  tiled.clear_strips = strips.clear_count();
   tiled.narrowed_strips = strips.narrowed_count();
   tiled.crossed_strips = wanted - tiled.strips;
   tiled.overlaid -= wanted;
@@ -299,6 +315,7 @@ TiledSections joined(const std::vector<std::vector<Contour>>& contours, const st
       tiled.surface.faces.push_back(face);
     }
     tiled.strips += slabs[s].strips;
+    tiled.clear_strips += slabs[s].clear_strips;
     tiled.narrowed_strips += slabs[s].narrowed_strips;
     tiled.crossed_strips += slabs[s].crossed_strips;
     tiled.overlaid += slabs[s].overlaid;

@@ -31,8 +31,11 @@ struct TileSectionsOptions {
 struct TiledSections {
   Triangles surface;
   std::size_t strips = 0;  ///< pairs of contours joined by cost
-  /// Of these, pairs whose best strip crossed itself or another surface, and which were joined by the best one
-  /// nearer to that of shortest spans (tile_near()), by that, or by that of least area.
+  /// Of these, pairs whose best strip crossed itself or another surface, or would enclose a volume twice, and
+  /// which were joined by the best one by the cost whose spans are clear of contours (tile_clear()).
+  std::size_t clear_strips = 0;
+  /// Of these, pairs for which that strip crossed something, too, and which were joined by the best one nearer
+  /// to that of shortest spans (tile_near()), by that, or by that of least area.
   std::size_t narrowed_strips = 0;
   /// Pairs all of whose strips crossed something and which were joined by overlay() instead.
   std::size_t crossed_strips = 0;

@@ -35,6 +35,13 @@ FlatBox flat_box(const std::array<glm::dvec3, N>& points) {
   return box;
 }
 
+/// 1 if a, b, c run counter-clockwise in the view's plane, -1 if clockwise, 0 on one line; exact.
+int turn_of(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+  using Exact = CGAL::Exact_predicates_inexact_constructions_kernel;
+  return static_cast<int>(
+      CGAL::orientation(Exact::Point_2(a.x, a.y), Exact::Point_2(b.x, b.y), Exact::Point_2(c.x, c.y)));
+}
+
 }  // namespace
 
 ViewAxes::ViewAxes(const glm::dvec3& direction) {
@@ -45,12 +52,6 @@ ViewAxes::ViewAxes(const glm::dvec3& direction) {
   axis[least] = 1.0;
   const glm::dvec3 x = glm::normalize(glm::cross(axis, direction));
   lps_from_view = glm::dmat3(x, glm::cross(direction, x), direction);
-}
-
-int turn_of(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-  using Exact = CGAL::Exact_predicates_inexact_constructions_kernel;
-  return static_cast<int>(
-      CGAL::orientation(Exact::Point_2(a.x, a.y), Exact::Point_2(b.x, b.y), Exact::Point_2(c.x, c.y)));
 }
 
 FrontFaces::FrontFaces(const Linked& surface, const std::vector<glm::dvec3>& points)

@@ -20,9 +20,6 @@ struct ViewAxes {
   glm::dvec3 lps(const glm::dvec3& p_view) const { return lps_from_view * p_view; }
 };
 
-/// Twice the area of a, b, c in the view's plane: its sign is exact, and positive counter-clockwise.
-int turn_of(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c);
-
 /// The triangles of a closed surface that face a direction, as seen along it. Points are (x, y, depth) in the
 /// view's axes.
 class FrontFaces {

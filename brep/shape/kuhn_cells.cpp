@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <iterator>
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 #include <utility>
 
 namespace octotomy::brep {
@@ -68,29 +66,6 @@ void add_triangles(const Place& cell, const std::array<double, 8>& values,
       triangles.push_back({edge(a, c), edge(b, d), edge(b, c)});
     }
   }
-}
-
-std::vector<LatticeEdge> edges_of(const std::vector<EdgeTriangle>& triangles) {
-  std::vector<LatticeEdge> edges;
-  edges.reserve(3 * triangles.size());
-  for (const EdgeTriangle& triangle : triangles) edges.insert(edges.end(), triangle.begin(), triangle.end());
-  tbb::parallel_sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  return edges;
-}
-
-std::vector<std::array<std::uint32_t, 3>> numbered(const std::vector<EdgeTriangle>& triangles,
-                                                   const std::vector<LatticeEdge>& edges) {
-  std::vector<std::array<std::uint32_t, 3>> faces(triangles.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), 1024), [&](const auto& range) {
-    for (std::size_t f = range.begin(); f != range.end(); ++f)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto found = std::lower_bound(edges.begin(), edges.end(), triangles[f][k]);
-        assert(found != edges.end() && *found == triangles[f][k]);
-        faces[f][k] = static_cast<std::uint32_t>(found - edges.begin());
-      }
-  });
-  return faces;
 }
 
 }  // namespace octotomy::brep

@@ -8,7 +8,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 #include <vector>
 
 // A lattice of cells, each of six tetrahedra after Kuhn, and the surface between lattice points of different
@@ -89,11 +91,31 @@ using EdgeTriangle = std::array<LatticeEdge, 3>;
 void add_triangles(const Place& cell, const std::array<double, 8>& values,
                    std::vector<EdgeTriangle>& triangles);
 
-/// The edges of the triangles, each once, ascending.
-std::vector<LatticeEdge> edges_of(const std::vector<EdgeTriangle>& triangles);
+/// The edges of triangles, each once, ascending.
+template <typename Edge>
+std::vector<Edge> edges_of(const std::vector<std::array<Edge, 3>>& triangles) {
+  std::vector<Edge> edges;
+  edges.reserve(3 * triangles.size());
+  for (const auto& triangle : triangles) edges.insert(edges.end(), triangle.begin(), triangle.end());
+  tbb::parallel_sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
 
 /// The triangles by the indices of their edges in the list of edges_of().
-std::vector<std::array<std::uint32_t, 3>> numbered(const std::vector<EdgeTriangle>& triangles,
-                                                   const std::vector<LatticeEdge>& edges);
+template <typename Edge>
+std::vector<std::array<std::uint32_t, 3>> numbered(const std::vector<std::array<Edge, 3>>& triangles,
+                                                   const std::vector<Edge>& edges) {
+  std::vector<std::array<std::uint32_t, 3>> faces(triangles.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), 1024), [&](const auto& range) {
+    for (std::size_t f = range.begin(); f != range.end(); ++f)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto found = std::lower_bound(edges.begin(), edges.end(), triangles[f][k]);
+        assert(found != edges.end() && *found == triangles[f][k]);
+        faces[f][k] = static_cast<std::uint32_t>(found - edges.begin());
+      }
+  });
+  return faces;
+}
 
 }  // namespace octotomy::brep

@@ -11,8 +11,6 @@
 #include <glm/glm.hpp>
 #include <stdexcept>
 #include <string>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 #include <utility>
 #include <vector>
 
@@ -143,21 +141,6 @@ std::vector<glm::dvec3> points_on(const std::vector<CutEdge>& edges, const Bisec
   return points_mm;
 }
 
-/// The edges, each once, ascending, and the triangles by their places in that list.
-std::vector<std::array<std::uint32_t, 3>> numbered(const std::vector<std::array<CutEdge, 3>>& triangles,
-                                                   std::vector<CutEdge>& edges) {
-  for (const auto& triangle : triangles) edges.insert(edges.end(), triangle.begin(), triangle.end());
-  tbb::parallel_sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  std::vector<std::array<std::uint32_t, 3>> faces(triangles.size());
-  tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t f) {
-    for (std::size_t k = 0; k < 3; ++k)
-      faces[f][k] = static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), triangles[f][k]) -
-                                               edges.begin());
-  });
-  return faces;
-}
-
 void check(const Triangles& surface, const OffsetOptions& options) {
   if (surface.faces.empty()) throw std::invalid_argument("a surface without triangles has no offset");
   if (!std::isfinite(options.by_mm)) throw std::invalid_argument("an offset is by a finite length");
@@ -192,9 +175,10 @@ Solid surface_of(const Field& field, const Size& size, const OffsetOptions& opti
       },
       [&] { options.progress.at(0.1); });
   options.progress.at(0.6);
-  std::vector<CutEdge> edges;
+  const std::vector<std::array<CutEdge, 3>> triangles = triangles_of(bisected);
+  const std::vector<CutEdge> edges = edges_of(triangles);
   Triangles surface;
-  surface.faces = numbered(triangles_of(bisected), edges);
+  surface.faces = numbered(triangles, edges);
   surface.points_mm = points_on(edges, bisected, field, lattice);
   options.progress.at(1.0);
   return trusted_solid(std::move(surface), Proof::Construction);

@@ -823,4 +823,14 @@ RepairEffect repair_effect(const Triangles& before, const Triangles& after, cons
   return effect;
 }
 
+TurnedAlike turned_alike(const Triangles& surface) {
+  RepairOptions options;
+  options.weld_mm = 0.0;
+  options.orient = true;
+  Repair repaired = repair(surface, options);
+  const auto turned = std::count_if(repaired.changes.begin(), repaired.changes.end(),
+                                    [](const Change& change) { return change.step == "orient"; });
+  return {std::move(repaired.surface), static_cast<std::size_t>(turned)};
+}
+
 }  // namespace octotomy::brep

@@ -88,4 +88,13 @@ struct KnownSolids {
 /// parallel.
 RepairEffect repair_effect(const Triangles& before, const Triangles& after, const KnownSolids& solids = {});
 
+/// A surface whose triangles wind alike.
+struct TurnedAlike {
+  Triangles surface;
+  std::size_t turned = 0;  ///< triangles that were turned
+};
+/// Turns triangles until neighbours wind alike, shells face outward and cavities inward; nothing else changes.
+/// Throws as repair().
+TurnedAlike turned_alike(const Triangles& surface);
+
 }  // namespace octotomy::brep

@@ -71,8 +71,7 @@ VolumeSpread border_of(const brep::Solid& solid, const BoundInputs& inputs, cons
   VolumeSpread border;
   if (!inputs.scan_box_mm) return border;
   const voxel::Box& box = *inputs.scan_box_mm;
-  const double near_mm = 1e3 * std::numeric_limits<double>::epsilon() *
-                         glm::length(glm::max(glm::abs(box.low_mm), glm::abs(box.high_mm)));
+  const double near_mm = on_border_mm(box);
   const brep::Triangles& triangles = solid.triangles();
   for (const auto& face : triangles.faces) {
     const glm::dvec3 &a = triangles.points_mm[face[0]], &b = triangles.points_mm[face[1]],
@@ -223,6 +222,11 @@ DistanceBounds distance_bounds(const Evidence& evidence) {
   return {0.5 * glm::length(evidence.voxel_mm) + apart_mm + evidence.apart.mm3 / model.area_mm2,
           0.25 * longest(evidence.voxel_mm) * (1.0 + free_mm2 / model.area_mm2) / 2.0 + apart_mm +
               layers_mm3 / model.area_mm2};
+}
+
+double on_border_mm(const voxel::Box& box_mm) {
+  return 1e3 * std::numeric_limits<double>::epsilon() *
+         glm::length(glm::max(glm::abs(box_mm.low_mm), glm::abs(box_mm.high_mm)));
 }
 
 }  // namespace octotomy::verify

@@ -52,4 +52,7 @@ DistanceBounds distance_bounds(const Evidence& evidence);
 /// The longest of three edges or extents.
 double longest(const glm::dvec3& edges_mm);
 
+/// How far from a box's side a coordinate of a cut there may lie after some roundings.
+double on_border_mm(const voxel::Box& box_mm);
+
 }  // namespace octotomy::verify

@@ -17,12 +17,12 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <string>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <vector>
 
+#include "verify/certificate/difference_bound.h"
 #include "voxel/space/rounded.h"
 #include "voxel/space/shared_progress.h"
 
@@ -129,12 +129,6 @@ FarSample farthest(const brep::Triangles& mesh, const TriangleGrid& from, double
 double depth_mm(const voxel::Box& world_mm, const glm::dvec3& p_mm) {
   const glm::dvec3 depth = glm::min(p_mm - world_mm.low_mm, world_mm.high_mm - p_mm);
   return std::min({depth.x, depth.y, depth.z});
-}
-
-/// Coordinates of a cut at the border, after a few roundings.
-double on_border_mm(const voxel::Box& world_mm) {
-  return 1e3 * std::numeric_limits<double>::epsilon() *
-         glm::length(glm::max(glm::abs(world_mm.low_mm), glm::abs(world_mm.high_mm)));
 }
 
 void add_reach(Certificate& certificate, const FarSample& found, double reach_mm, const std::string& formula,

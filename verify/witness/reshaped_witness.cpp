@@ -23,11 +23,6 @@
 namespace octotomy::verify {
 namespace {
 
-/// Rounding of a point's coordinates by a motion or a Boolean on the way.
-double rounded_mm(const glm::dvec3& p_mm) {
-  return 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + glm::length(p_mm));
-}
-
 /// The neighbours of each vertex, each once.
 std::vector<std::vector<std::uint32_t>> neighbours_of(const brep::Triangles& triangles) {
   std::vector<std::vector<std::uint32_t>> neighbours(triangles.points_mm.size());

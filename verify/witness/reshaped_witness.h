@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 
 #include "brep/mesh/triangles.h"
@@ -11,6 +12,11 @@
 
 // Witnesses of objects whose surface one step made of another object's surface.
 namespace octotomy::verify {
+
+/// Rounding of a point's coordinates by some operations on the way, such as a motion or a Boolean.
+inline double rounded_mm(const glm::dvec3& p_mm) {
+  return 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + glm::length(p_mm));
+}
 
 /// Where the surface of a right answer lies.
 struct ReshapedSurface {

@@ -21,11 +21,6 @@ namespace {
 constexpr double bends = 2.0;
 constexpr int most_steps = 200;
 
-/// A point is at rest within this: some roundings of its coordinates.
-double rest_mm(const glm::dvec3& p_mm) {
-  return 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + glm::length(p_mm));
-}
-
 /// The faces that one element alone has. Corners in any order: only places on them matter.
 brep::Triangles skin_of(const convert::Tetrahedra& elements) {
   using Face = std::array<std::uint32_t, 3>;
@@ -76,7 +71,7 @@ double bent_mm(const brep::Triangles& still, const NodeMotion& motion) {
     for (const auto& [u, v, w] : places) {
       const glm::dvec3 here = u * still.points_mm[a] + v * still.points_mm[b] + w * still.points_mm[c];
       const glm::dvec3 there = u * moved_mm[a] + v * moved_mm[b] + w * moved_mm[c];
-      if (glm::distance(here + motion.displacement_mm(here), there) <= rest_mm(there)) continue;
+      if (glm::distance(here + motion.displacement_mm(here), there) <= rounded_mm(there)) continue;
       if (const auto origin = motion.origin_mm(there, here))
         off_mm[face] = std::max(off_mm[face], glm::distance(*origin, here));
     }
@@ -163,7 +158,7 @@ std::optional<glm::dvec3> NodeMotion::origin_mm(const glm::dvec3& p_mm, const gl
     const glm::dvec3 next = p_mm - displacement_mm(x);
     const double moved_mm = glm::distance(next, x);
     x = next;
-    if (moved_mm <= rest_mm(p_mm)) return x;
+    if (moved_mm <= rounded_mm(p_mm)) return x;
   }
   return std::nullopt;
 }

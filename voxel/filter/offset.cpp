@@ -11,12 +11,9 @@
 #include "voxel/filter/offset.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>

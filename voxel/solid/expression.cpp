@@ -191,11 +191,13 @@ Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still)
   return carried(a, mirrored_from_still);
 }
 
-Expression carried(const Expression& a, const glm::dmat4& moved_from_still) {
+Expression carried(const Expression& a, const glm::dmat4& carried_from_still) {
+  if (!is_affine_isometry(carried_from_still))
+    throw std::invalid_argument("a motion or reflection must keep lengths");
   auto term = std::make_shared<Expression::Term>();
   term->kind = Expression::Kind::Moved;
   term->left = a.term_;
-  term->moved_from_still = moved_from_still;
+  term->moved_from_still = carried_from_still;
   return Expression(std::shared_ptr<const Expression::Term>(std::move(term)));
 }
 

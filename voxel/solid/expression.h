@@ -78,6 +78,10 @@ class Expression {
   /// The expression's mirror image: the matrix is a reflection, LPS to LPS. Throws std::invalid_argument
   /// if it is none.
   friend Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still);
+  Expression carried(const Expression& a, const glm::dmat4& carried_from_still);
+
+  /// moved() or reflected(), whichever the matrix is. Throws std::invalid_argument if it is neither.
+  friend Expression carried(const Expression& a, const glm::dmat4& carried_from_still);
 
   /// A part of another expression, shared with it. Precondition: not null.
   explicit Expression(std::shared_ptr<const Term> term) : term_(std::move(term)) {}
@@ -85,7 +89,6 @@ class Expression {
   const Term& term() const { return *term_; }
 
  private:
-  friend Expression carried(const Expression& a, const glm::dmat4& moved_from_still);
   explicit Expression(Leaf leaf);
   Expression(Kind kind, const Expression& a, const Expression& b);
   std::shared_ptr<const Term> term_;

@@ -8,7 +8,8 @@
 #include <sstream>
 #include <tbb/parallel_for.h>
 
-#include "voxel/solid/combine_grey.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/grey_owner.h"
 #include "voxel/solid/term_walk.h"
 #include "voxel/space/error.h"
 #include "voxel/space/shared_progress.h"
@@ -27,9 +28,7 @@ Expression on_scan_lattices(const Expression& expression) {
         return std::visit([](const auto& leaf) { return Expression(leaf); }, *term.leaf);
       },
       [](const Expression::Term& term, const Expression& a) {
-        if (term.kind == Kind::Not) return ~a;
-        const bool turns = glm::determinant(glm::dmat3(term.moved_from_still)) > 0.0;
-        return turns ? moved(a, term.moved_from_still) : reflected(a, term.moved_from_still);
+        return term.kind == Kind::Not ? ~a : carried(a, term.moved_from_still);
       },
       [](const Expression::Term& term, const Expression& a, const Expression& b) {
         if (term.kind == Kind::And) return a & b;
@@ -96,21 +95,17 @@ ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, c
   need_sample(made.hole, std::holds_alternative<FloatSamples>(frame.samples) ? 0.0 : 1.0, "holes");
   need_sample(made.filled, step, "objects without samples");
   if (std::holds_alternative<Int16Samples>(frame.samples)) made.hole = std::floor(made.hole + 0.5);
-  GreyResult result;
-  result.background = own.background() * step;
-  result.filled = made.filled;
+  const auto in_steps = [&](double value) {
+    return static_cast<std::int16_t>(std::clamp(std::floor(value + 0.5), -32768.0, 32767.0));
+  };
+  const std::int16_t filled_steps = in_steps(made.filled / step);
   options.progress.at(0.0);
-  GreyOctree samples = own;
-  try {
-    samples = combine_grey(own.universe(), on_scan_lattices(expression), result);
-  } catch (const std::invalid_argument& error) {
-    throw Error(ErrorCode::Input, error.what());
-  }
-  if (samples.step() != step)
-    throw Error(ErrorCode::Input, "the objects' samples count in other steps than the scan's own");
+  const Expression expressed = on_scan_lattices(expression);
+  const Octree held = combine(own.universe(), expressed);
+  const GreyOwners owners(own.universe(), {SampleSource{expressed, std::nullopt, step}});
 
-  std::atomic<std::uint64_t> holes = 0, changed = 0;
-  const Progress writing = part_of(options.progress, 0.6, 1.0);
+  std::atomic<std::uint64_t> holes = 0, filled = 0, changed = 0;
+  const Progress writing = part_of(options.progress, 0.3, 1.0);
   SharedProgress slices(writing, static_cast<std::size_t>(dims.z));
   std::visit(
       [&](auto& values) {
@@ -118,17 +113,21 @@ ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, c
         const auto hole = stored<Sample>(made.hole);
         tbb::parallel_for(0, dims.z, [&](int z) {
           slices.one_more();
-          std::uint64_t holes_here = 0, changed_here = 0;
+          std::uint64_t holes_here = 0, filled_here = 0, changed_here = 0;
           std::size_t at = static_cast<std::size_t>(z) * static_cast<std::size_t>(dims.y) *
                            static_cast<std::size_t>(dims.x);
           for (int y = 0; y < dims.y; ++y)
             for (int x = 0; x < dims.x; ++x, ++at) {
               Sample& value = values[at];
-              const bool is_held = samples.scan().contains({x, y, z});
-              const std::int16_t steps = is_held ? samples.sample({x, y, z}) : std::int16_t{0};
+              const glm::ivec3 voxel(x, y, z);
+              const bool is_held = held.contains(voxel);
+              std::optional<OwnedSample> owned;
+              if (is_held) owned = owners.at(voxel, glm::dvec3(voxel));
+              if (is_held && !owned) ++filled_here;
+              const std::int16_t steps = owned ? in_steps(owned->in_steps) : filled_steps;
               // A sample that is the frame's, counted in steps, keeps the frame's bits.
-              const bool is_measured = own.scan().contains({x, y, z});
-              if (is_held && is_measured && own.sample({x, y, z}) == steps) continue;
+              const bool is_measured = own.scan().contains(voxel);
+              if (is_held && is_measured && own.sample(voxel) == steps) continue;
               if (!is_held && !is_measured && frame.padding) continue;
               const Sample now = is_held ? stored<Sample>(steps * step) : hole;
               if (!is_held) ++holes_here;
@@ -136,11 +135,13 @@ ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, c
               value = now;
             }
           holes += holes_here;
+          filled += filled_here;
           changed += changed_here;
         });
       },
       made.scene.samples);
   made.hole_samples = holes;
+  made.filled_samples = filled;
   made.changed_samples = changed;
   return made;
 }

@@ -23,21 +23,23 @@ struct ExpressionScanOptions {
 struct ExpressionScan {
   Scene scene;
   std::uint64_t hole_samples = 0;     ///< where the expression contains nothing
+  std::uint64_t filled_samples = 0;   ///< where only objects without samples are
   std::uint64_t changed_samples = 0;  ///< holes, and samples that differ from the frame's
   double hole = 0.0, filled = 0.0;    ///< as used
 };
 
 /// The scan that a scanner would make of an expression: samples on the frame's lattice, each from the operand
-/// that owns its place, as combine_grey() has it. A sample at rest keeps its bits; one of a moved operand is
+/// that owns its place, as GreyOwners has it. A sample at rest keeps its bits; one of a moved operand is
 /// interpolated once, trilinearly between that operand's own samples. Padding of the frame stays where the
-/// expression contains nothing. Lattice, type and meaning of the samples
-/// and the patient's identity are the frame's. `of_frame` is a grey octree that keeps the frame
-/// (GreyOctree::with_scan()); the expression's windows are of this or of others with samples in the same steps.
+/// expression contains nothing. Lattice, type and meaning of the samples and the patient's identity are the
+/// frame's. `of_frame` is a grey octree that keeps the frame (GreyOctree::with_scan()); the expression's
+/// windows are of this or of others with samples in the same steps; windows in other steps, such as those of
+/// offset(), only bound.
 ///
-/// Throws Error (Input) if the frame has more than 1,024 samples a side, if the steps differ, if a typed value
-/// is none that the samples can have, or if no value is left for holes; Stopped. Parallel; same bits on any thread count. Cost and memory: those of
-/// combine_grey() on the frame's lattice, and a copy of the frame's samples. Source: thesis, chapter 7: grey
-/// octrees of a plan's objects.
+/// Throws Error (Input) if the frame has more than 1,024 samples a side, if a typed value
+/// is none that the samples can have, or if no value is left for holes; Stopped. Parallel; same bits on any
+/// thread count. Cost and memory: those of combine() and GreyOwners on the frame's lattice, and a copy of the
+/// frame's samples. Source: thesis, chapter 7: grey octrees of a plan's objects.
 ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, const Expression& expression,
                                const ExpressionScanOptions& options = {});
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "voxel/solid/combine.h"
 #include "voxel/solid/operand_frame.h"
@@ -53,8 +54,7 @@ bool owns_itself(const Expression::Term& term, bool positive) {
 Expression placed(TermPointer part, const std::vector<glm::dmat4>& around) {
   Expression expression{std::move(part)};
   for (auto motion = around.rbegin(); motion != around.rend(); ++motion)
-    expression = glm::determinant(glm::dmat3(*motion)) > 0.0 ? moved(expression, *motion)
-                                                             : reflected(expression, *motion);
+    expression = carried(expression, *motion);
   return expression;
 }
 
@@ -159,6 +159,43 @@ bool same_terms(const Expression::Term& one, const Expression::Term& other) {
 
 }  // namespace
 
+Expression all_samples(const GreyOctree& grey, const glm::dmat4& moved_from_still) {
+  constexpr double low = std::numeric_limits<std::int16_t>::min();
+  constexpr double high = std::numeric_limits<std::int16_t>::max();
+  const Expression samples(Window{grey, low, high});
+  return moved_from_still == glm::dmat4(1.0) ? samples : carried(samples, moved_from_still);
+}
+
+// A union with all of space contains all of space, so that the intersection keeps its voxels; its window comes
+// after those of the voxels, and is tested by its own samples.
+Expression with_samples(const Expression& voxels, const Expression& samples) {
+  return voxels & (samples | ~Expression(Octree::empty({})));
+}
+
+const Expression::Term& before_samples(const Expression::Term& term) {
+  using Kind = Expression::Kind;
+  if (term.kind != Kind::And || term.right->kind != Kind::Or || term.right->right->kind != Kind::Not)
+    return term;
+  const Expression::Term& none = *term.right->right->left;
+  const auto* octree = none.kind == Kind::Leaf ? std::get_if<Octree>(&*none.leaf) : nullptr;
+  return octree != nullptr && octree->is_empty() ? *term.left : term;
+}
+
+std::vector<Window> positive_windows(const Expression& expression) {
+  using Kind = Expression::Kind;
+  std::vector<Window> found;
+  bool positive = true;
+  for_each_term(expression, [&](const MetTerm& met) {
+    if (met.term.kind != Kind::Leaf) {
+      // Met before its operands and after them, so that the sign turns back.
+      if (met.subtracted != (met.term.kind == Kind::Not)) positive = !positive;
+    } else if (const auto* window = std::get_if<Window>(&*met.term.leaf)) {
+      if (positive != met.subtracted) found.push_back(*window);
+    }
+  });
+  return found;
+}
+
 struct GreyOwners::Storage {
   Universe universe;
   std::vector<SampleSource> given;
@@ -197,6 +234,7 @@ GreyOwners::GreyOwners(const Universe& universe, const std::vector<SampleSource>
     std::shared_ptr<const Owner> limit;
     if (given.voxels) limit = std::make_shared<const Owner>(Owner{*given.voxels, true});
     for (Source& source : SourceWalk(universe, resampling)(given.expression)) {
+      if (given.step && source.window->grey.step() != *given.step) continue;
       if (limit) source.owners.push_back(limit);
       storage->sources.push_back(std::move(source));
     }
@@ -236,7 +274,8 @@ bool GreyOwners::is_same(const GreyOwners& other) const {
          (universe() == other.universe() &&
           std::equal(storage_->given.begin(), storage_->given.end(), other.storage_->given.begin(),
                      other.storage_->given.end(), [](const SampleSource& a, const SampleSource& b) {
-                       return same_terms(a.expression.term(), b.expression.term()) && a.voxels == b.voxels;
+                       return same_terms(a.expression.term(), b.expression.term()) && a.voxels == b.voxels &&
+                              a.step == b.step;
                      }));
 }
 

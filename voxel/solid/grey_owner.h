@@ -22,7 +22,23 @@ struct OwnedSample {
 struct SampleSource {
   Expression expression;
   std::optional<Octree> voxels = {};  ///< the only ones that its windows own; none: no such limit
+  /// Only windows whose samples count in this step give samples; others only bound. None: all windows do.
+  std::optional<double> step = {};
 };
+
+/// All samples of a scan, under a rigid motion or reflection of LPS onto itself.
+Expression all_samples(const GreyOctree& grey, const glm::dmat4& moved_from_still = glm::dmat4(1.0));
+
+/// The same voxels with more samples: a voxel that no window of `voxels` owns has the sample that `samples`,
+/// a window under motions, has there, if it has one. Serves voxels that were computed from a scan and are kept
+/// as an octree.
+Expression with_samples(const Expression& voxels, const Expression& samples);
+/// The term whose samples with_samples() completed; the term itself if it did not make it.
+const Expression::Term& before_samples(const Expression::Term& term);
+
+/// The windows of an expression that give samples to what they contain: those under an even number of
+/// complements and right sides of a minus. Throws as for_each_term().
+std::vector<Window> positive_windows(const Expression& expression);
 
 /// The samples of expressions at places, without a scan of them being made. The owner of a voxel is the first
 /// window, in the order of the expressions and in reading order within each, that contains the voxel and is

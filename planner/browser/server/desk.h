@@ -96,7 +96,8 @@ class Desk {
  private:
   Document& need_document() const;
   Json objects_json(const Plan& plan) const;
-  /// bone_low() of each scan that was read. A scan's is computed once; no other request waits for it.
+  /// bone_low() of each scan that was read, computed again where the scan was read anew. Calls wait for each
+  /// other; the desk's own lock is free meanwhile.
   std::map<std::string, double> bone_lows_of(const Evaluation& evaluation);
   /// The certificates and sizes of what was evaluated in both kernels, by the keys of the steps.
   void keep_certified(const Plan& plan, const Evaluation& evaluation);

@@ -236,33 +236,50 @@ Json without_steps_of(const Procedure& procedure, const Json& plan) {
   return kept;
 }
 
-/// Whether the plan's own steps are this procedure's, so that it replaces them.
-bool stands_alone(const Procedure& procedure, const Json& plan) {
-  return std::all_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& own) {
-    return std::any_of(plan.at("steps").begin(), plan.at("steps").end(),
+/// What the procedure would act on after others, in the plan without its own steps; none if it is the plan's
+/// first, or alone there, so that it replaces its steps.
+std::optional<std::string> acted_on(const Procedure& procedure, const Json& whole, const Plan& before) {
+  const bool stands_alone = std::all_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& own) {
+    return std::any_of(whole.at("steps").begin(), whole.at("steps").end(),
                        [&](const Json& step) { return step["id"] == own["id"]; });
   });
+  return stands_alone ? std::nullopt : outcome_of(before);
 }
 
-/// Adds a procedure's steps: in place of its own, after another procedure on what that has planned, or as the
-/// plan's first.
-Json procedure(Desk& desk, const Json& said, const Watched& watched) {
+Procedure known_procedure(const Json& said) {
   // A name that is a path would read any file.
   const auto name = said.at("name").get<std::string>();
   const std::vector<std::string> known = procedures();
   if (std::find(known.begin(), known.end(), name) == known.end())
     throw std::runtime_error("there is no procedure '" + name + "'" + suggestion(name, known));
-  const Procedure procedure = read_procedure(name);
+  return read_procedure(name);
+}
+
+/// What a procedure would act on, for the page to state before it is planned.
+Json acts_on(Desk& desk, const Json& said, const Watched&) {
+  const Procedure procedure = known_procedure(said);
+  const auto [whole, folder] = desk.with_document([](Document& document) {
+    return std::pair{Json(document.json()), document.path().parent_path()};
+  });
+  const std::optional<std::string> outcome =
+      acted_on(procedure, whole, parse_plan(without_steps_of(procedure, whole).dump(), folder));
+  return {{"outcome", outcome ? Json(*outcome) : Json(nullptr)}};
+}
+
+/// Adds a procedure's steps: in place of its own, after another procedure on what that has planned, or as the
+/// plan's first.
+Json procedure(Desk& desk, const Json& said, const Watched& watched) {
+  const Procedure procedure = known_procedure(said);
   const auto [text, whole, folder] = desk.with_document([](Document& document) {
     return std::tuple{document.plan()->text, Json(document.json()), document.path().parent_path()};
   });
   ProcedureInput input = input_of(said, whole, procedure);
   input.folder = folder;
   const Plan before = parse_plan(without_steps_of(procedure, whole).dump(), folder);
-  const std::optional<std::string> outcome = outcome_of(before);
+  const std::optional<std::string> outcome = acted_on(procedure, whole, before);
   Json made;
   std::vector<std::string> added, carried;
-  if (outcome && !stands_alone(procedure, whole)) {
+  if (outcome) {
     input.further_scans.clear();  // the plan has them
     // The page sends every value, those that nobody typed, too.
     for (const ProcedureValue& value : procedure.values)
@@ -321,6 +338,7 @@ const std::vector<Word>& words() {
        change([](Document& document, const Json& said) { document.name_version(said.at("name")); })},
       {"diff", Lane::Desk, false, diff},
       {"procedure", Lane::Desk, true, procedure},
+      {"acts_on", Lane::Desk, false, acts_on},
       {"landmark", Lane::Desk, true, place_landmark},
       {"find_landmarks", Lane::Long, false, find_landmarks},
       {"command", Lane::Desk, false, command_of_step},

@@ -52,17 +52,12 @@ brep::Solid read_turned_solid(const std::filesystem::path& path, Timings& timing
                               std::vector<std::string>& findings) {
   const Stopwatch watch(timings, "read");
   const brep::Triangles triangles = read_mesh_in(path);
-  brep::RepairOptions options;
-  options.weld_mm = 0.0;
-  options.orient = true;
-  const brep::Repair repaired = brep::repair(triangles, options);
-  const auto turned = std::count_if(repaired.changes.begin(), repaired.changes.end(),
-                                    [](const brep::Change& change) { return change.step == "orient"; });
+  const auto [surface, turned] = brep::turned_alike(triangles);
   if (turned > 0)
     findings.push_back("orient: " + std::to_string(turned) + " of " + std::to_string(triangles.faces.size()) +
                        " triangles of " + path.filename().string() +
                        " were turned, so that shells face outward and cavities inward");
-  return solid_in(path, turned > 0 ? repaired.surface : triangles);
+  return solid_in(path, turned > 0 ? surface : triangles);
 }
 
 brep::Solid read_mended_solid(const std::filesystem::path& path, Timings& timings,

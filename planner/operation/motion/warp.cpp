@@ -18,6 +18,7 @@
 #include "verify/witness/reshaped_witness.h"
 #include "verify/witness/warped_witness.h"
 #include "voxel/scan/write_scene.h"
+#include "voxel/space/rounded.h"
 
 namespace octotomy::planner {
 namespace {
@@ -33,11 +34,6 @@ struct Displaced {
   convert::DisplacementField field;
   Json details;
 };
-
-std::string text_of(const glm::dvec3& p_mm) {
-  return "(" + plain(std::round(p_mm.x * 10.0) / 10.0) + ", " + plain(std::round(p_mm.y * 10.0) / 10.0) +
-         ", " + plain(std::round(p_mm.z * 10.0) / 10.0) + ")";
-}
 
 /// Over how many millimetres the displacement fades. Throws std::runtime_error where the typed distance folds
 /// space.
@@ -69,8 +65,8 @@ void refuse_turned_over(const convert::DisplacementField& field, const std::file
   }
   throw std::runtime_error(path.string() + ": the displacements turn over " + std::to_string(found.size()) +
                            (found.size() == 1 ? " element" : " elements") + ", the worst at " +
-                           text_of(worst->centre_mm) + " mm, all between " + text_of(low_mm) + " and " +
-                           text_of(high_mm) +
+                           voxel::rounded(worst->centre_mm) + " mm, all between " + voxel::rounded(low_mm) +
+                           " and " + voxel::rounded(high_mm) +
                            " mm (LPS): there a motion is longer than the tissue between what moves and what "
                            "stays. Take that place out of 'fixed', or write *STEP, NLGEOM in the deck, so "
                            "that the solver follows the motion in increments (linear steps only scale it), "

@@ -175,13 +175,7 @@ std::optional<OneSurface> one_surface(const brep::Triangles& given, const brep::
   if (health.first_defect == brep::Defect::InsideOut) return std::nullopt;
   const bool is_turned = health.misoriented_edges > 0;
   const bool is_split = !health.closed || !health.manifold || is_turned;
-  brep::Triangles joined = given;
-  if (is_turned) {
-    brep::RepairOptions options;
-    options.weld_mm = 0.0;
-    options.orient = true;
-    joined = brep::repair(given, options).surface;
-  }
+  brep::Triangles joined = is_turned ? brep::turned_alike(given).surface : given;
   if (is_split) joined = brep::joined_surface(std::move(joined)).surface;
   // Merged points may be where shells touch.
   if (is_split) joined = brep::split_fans(joined).surface;

@@ -72,8 +72,10 @@ brep::Triangles tiled_contours(const voxel::Scene& scene, const SampleWindow& wi
   brep::TiledSections tiled = convert::contour_surface(scene, window.low, window.high_or_infinity(), options);
   findings.push_back(
       "contours: " + std::to_string(tiled.strips) + " pairs joined by strips, " +
+      std::to_string(tiled.clear_strips) +
+      " of them by spans that cross no contour as the best would cross something, " +
       std::to_string(tiled.narrowed_strips) +
-      " of them nearer to the shortest spans or by least area as the best would cross something, " +
+      " of them nearer to the shortest spans or by least area as that would cross something, too, " +
       std::to_string(tiled.crossed_strips) + " by overlay as their strips would cross something, " +
       std::to_string(tiled.overlaid) + " branchings, ends and lone contours by overlay");
   return std::move(tiled.surface);

@@ -4,12 +4,17 @@
 #include <cmath>
 #include <random>
 
+#include "convert/deck/scan_sampler.h"
 #include "planner/operation/object/combine.h"
+#include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "verify/question/expression_on_meshes.h"
 #include "verify/question/expression_tree.h"
 #include "verify/witness/reading.h"
+#include "verify/witness/reshaped_witness.h"
 #include "voxel/solid/expression_scan.h"
+#include "voxel/solid/grey_owner.h"
+#include "voxel/space/shared_progress.h"
 
 namespace octotomy::planner {
 namespace {
@@ -30,39 +35,108 @@ void check(const ScanOf& step, const Place& place) {
   check_expression(step.expression, place.at("expression"));
 }
 
+/// In words: "MR samples in no known unit", "labels".
+std::string kind_of(const voxel::Scene& scene) {
+  if (scene.meaning == voxel::Meaning::Label) return "labels";
+  const std::string samples = scene.modality.empty() ? "samples" : scene.modality + " samples";
+  return samples + (scene.meaning == voxel::Meaning::Hounsfield ? " in HU" : " in no known unit");
+}
+
+/// The samples that lie where an object lies, moved along with it.
+struct OwnSamples {
+  const Shown* scan = nullptr;
+  glm::dmat4 moved_from_still{1.0};
+
+  explicit operator bool() const { return scan != nullptr; }
+  bool operator==(const OwnSamples& other) const {
+    return scan != nullptr && other.scan != nullptr && scan->scan == other.scan->scan &&
+           moved_from_still == other.moved_from_still;
+  }
+};
+
+/// The own samples of what was made of objects; none if they differ.
+template <typename Parts, typename Of>
+OwnSamples in_common(const Parts& parts, const Of& of) {
+  OwnSamples common;
+  for (const auto& part : parts) {
+    const OwnSamples own = of(part);
+    if (!own || (common && !(own == common))) return {};
+    common = own;
+  }
+  return common;
+}
+
+/// The samples of the one scan from which an object derives; none if there is no such scan, or several, or if
+/// the object does not rest in its scan, such as a warped one.
+OwnSamples own_samples(const Objects& objects, const Object& object) {
+  if (object.shown) return {&*object.shown, object.shown->moved_from_still};
+  if (!object.bound.windows.empty())
+    return in_common(object.bound.windows, [](const Shown& window) {
+      return OwnSamples{&window, window.moved_from_still};
+    });
+  if (object.image) {
+    OwnSamples own = own_samples(objects, objects.at(object.image->object));
+    own.moved_from_still = object.image->image_from_object * own.moved_from_still;
+    return own;
+  }
+  if (verify::is_reshaped(object.witness) && object.bound.reshaped.size() == 1)
+    return own_samples(objects, objects.at(object.bound.reshaped.front()));
+  if (object.kind != "combine") return {};
+  std::vector<const Object*> parts;
+  for (const std::string& name : voxel::names_in(object.definition))
+    if (!objects.at(name).is_tool) parts.push_back(&objects.at(name));
+  return in_common(parts, [&](const Object* part) { return own_samples(objects, *part); });
+}
+
+/// An object's voxels with the samples of its windows, and elsewhere with those of its own scan.
+voxel::Expression sampled(const Objects& objects, const Object& object) {
+  const VoxelSide& side = object.voxel;
+  const voxel::Expression voxels = side.symbol ? *side.symbol : voxel::Expression(side.octree);
+  if (object.is_tool) return voxels;
+  const OwnSamples own = own_samples(objects, object);
+  return own ? voxel::with_samples(voxels, voxel::all_samples(own.scan->grey, own.moved_from_still)) : voxels;
+}
+
+bool is_one_grey(const voxel::GreyOctree& a, const voxel::GreyOctree& b) {
+  // Grey octrees are immutable and shared: one storage holds one universe.
+  return &a.universe() == &b.universe();
+}
+
+/// Refuses samples that mean something else than the frame's, such as a label map's beside Hounsfield units, or
+/// count in other steps.
+void need_one_meaning(const ScanOf& step, const ScanBench& bench, const voxel::Expression& expression) {
+  const LoadedScan& loaded = (*bench.scans)(step.scan.name);
+  const voxel::Scene& frame = loaded.scene();
+  const std::vector<voxel::Window> giving = voxel::positive_windows(expression);
+  for (const std::string& name : uses(step)) {
+    const Object& object = bench.objects->at(name);
+    std::vector<Shown> windows = object.bound.windows;
+    if (const OwnSamples own = own_samples(*bench.objects, object)) windows.push_back(*own.scan);
+    for (const Shown& window : windows) {
+      const bool gives = std::any_of(giving.begin(), giving.end(), [&](const voxel::Window& given) {
+        return is_one_grey(given.grey, window.grey);
+      });
+      if (!gives || !window.samples || window.scan == step.scan.name) continue;
+      const voxel::Scene& other = *window.samples;
+      const bool is_other_device =
+          !other.modality.empty() && !frame.modality.empty() && other.modality != frame.modality;
+      std::string why;
+      if (other.meaning != frame.meaning || is_other_device)
+        why = "mean something else than those of '" + step.scan.name + "' (" + kind_of(other) + " beside " +
+              kind_of(frame) + ")";
+      else if (window.grey.step() != loaded.grey.step())
+        why = "count in steps of " + plain(window.grey.step()) + ", those of '" + step.scan.name + "' in " +
+              plain(loaded.grey.step());
+      if (!why.empty())
+        throw voxel::Error(voxel::ErrorCode::Input, "the samples of '" + name + "' come from '" +
+                                                        window.scan + "' and " + why + ": leave '" + name +
+                                                        "' out, or make the scan on '" + window.scan + "'");
+    }
+  }
+}
+
 // The second reading: places of samples that are drawn at random, decided by the objects' witnesses and by an
 // interpolation of its own. Neither shares code with the voxel kernel.
-
-double stored_at(const voxel::Scene& scene, const glm::ivec3& at) {
-  const glm::ivec3& dims = scene.lattice.dims;
-  const std::size_t index =
-      static_cast<std::size_t>(at.x) +
-      static_cast<std::size_t>(dims.x) * (static_cast<std::size_t>(at.y) +
-                                          static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(at.z));
-  return std::visit([&](const auto& samples) { return static_cast<double>(samples[index]); }, scene.samples);
-}
-
-/// The trilinear sample of a scan at a point; none where a sample about it is padding or lies outside.
-std::optional<double> sample_at(const voxel::Scene& scene, const glm::dvec3& p_mm) {
-  constexpr double rounding = 1e-9;
-  const glm::dvec3 p(glm::inverse(scene.lattice.lps_from_voxel) * glm::dvec4(p_mm, 1.0));
-  const glm::dvec3 low = glm::floor(p + rounding);
-  const glm::dvec3 t = glm::max(p - low, glm::dvec3(0.0));
-  double sum = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::ivec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
-    double weight = 1.0;
-    for (int axis = 0; axis < 3; ++axis) weight *= side[axis] == 1 ? t[axis] : 1.0 - t[axis];
-    if (weight <= rounding) continue;
-    const glm::ivec3 at = glm::ivec3(low) + side;
-    if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, scene.lattice.dims)))
-      return std::nullopt;
-    const double value = stored_at(scene, at);
-    if (scene.padding && value == *scene.padding) return std::nullopt;
-    sum += weight * value;
-  }
-  return sum;
-}
 
 /// Whether a place is in an expression, and the object in it that gives the sample.
 struct Owned {
@@ -110,19 +184,26 @@ class SecondReading {
   std::vector<const Object*> objects_;
 };
 
+/// The voxel kernel's share of the progress; the second reading has the rest.
+constexpr double kernel_share = 0.6;
+
 struct Compared {
   int drawn = 0, compared = 0, differing = 0;
   double largest = 0.0;  ///< difference of a sample, in the scan's unit
 };
 
-/// What the second reading expects at a place; none where it cannot decide.
-std::optional<double> expected(const Owned& owned, const glm::dvec3& p_mm,
-                               const voxel::ExpressionScan& made) {
+/// What the second reading expects at a place; none where it cannot decide. Where the expression contains
+/// nothing, padding of the frame stays.
+std::optional<double> expected(const Owned& owned, const glm::dvec3& p_mm, const Objects& objects,
+                               bool frame_is_padding, const voxel::ExpressionScan& made) {
   if (!owned.is_known) return std::nullopt;
-  if (!owned.is_inside) return made.hole;
-  if (owned.owner == nullptr || !owned.owner->shown || !owned.owner->shown->samples) return std::nullopt;
-  const Shown& shown = *owned.owner->shown;
-  return sample_at(*shown.samples, glm::dvec3(glm::inverse(shown.moved_from_still) * glm::dvec4(p_mm, 1.0)));
+  if (!owned.is_inside) return frame_is_padding ? std::nullopt : std::optional(made.hole);
+  if (owned.owner == nullptr) return std::nullopt;
+  const OwnSamples own = own_samples(objects, *owned.owner);
+  if (!own || !own.scan->samples) return std::nullopt;
+  const convert::ScanSampler scan(*own.scan->samples);
+  const glm::dvec3 at = scan.voxel(glm::dvec3(glm::inverse(own.moved_from_still) * glm::dvec4(p_mm, 1.0)));
+  return scan.holds(at) ? std::optional(scan.at(at)) : std::nullopt;
 }
 
 /// Compares drawn samples of the made scan. Cost: `drawn` readings of the witnesses.
@@ -131,20 +212,24 @@ Compared compare(const ScanOf& step, const ScanBench& bench, const voxel::Expres
   const voxel::Lattice& lattice = made.scene.lattice;
   const LoadedScan& frame = (*bench.scans)(step.scan.name);
   const glm::dvec3 spacing = lattice.spacing_mm();
+  const convert::ScanSampler before(frame.scene()), after(made.scene);
   const SecondReading reading(step.expression, *bench.objects, std::max({spacing.x, spacing.y, spacing.z}));
   // A sample is rounded to a step of its scan.
   const double allowed = 0.5 * frame.grey.step() * (1.0 + 1e-6) + 1e-6;
   Compared result;
   std::mt19937_64 random(1);
   for (; result.drawn < drawn; ++result.drawn) {
-    bench.progress.at(0.6 + 0.4 * result.drawn / drawn);
+    bench.progress.at(kernel_share + (1.0 - kernel_share) * result.drawn / drawn);
     glm::ivec3 at;
     for (int axis = 0; axis < 3; ++axis)
       at[axis] = static_cast<int>(random() % static_cast<std::uint64_t>(lattice.dims[axis]));
     const glm::dvec3 p_mm = lattice.lps_mm(glm::dvec3(at));
-    const std::optional<double> wanted = expected(reading(p_mm), p_mm, made);
+    const glm::dvec3 voxel(at);
+    const bool frame_is_padding = frame.scene().padding && before.at(voxel) == *frame.scene().padding;
+    const std::optional<double> wanted =
+        expected(reading(p_mm), p_mm, *bench.objects, frame_is_padding, made);
     if (!wanted) continue;
-    const double off = std::abs(stored_at(made.scene, at) - *wanted);
+    const double off = std::abs(after.at(voxel) - *wanted);
     ++result.compared;
     if (off > allowed) ++result.differing;
     result.largest = std::max(result.largest, off);
@@ -152,16 +237,36 @@ Compared compare(const ScanOf& step, const ScanBench& bench, const voxel::Expres
   return result;
 }
 
+/// The windows of an object that give the made scan samples: not so the distances of offset surfaces.
+std::vector<voxel::Window> giving_of(const Objects& objects, const Object& object, const LoadedScan& frame) {
+  std::vector<voxel::Window> giving = voxel::positive_windows(sampled(objects, object));
+  std::erase_if(giving, [&](const voxel::Window& window) { return window.grey.step() != frame.grey.step(); });
+  return giving;
+}
+
+/// The objects of the expression that no scan gives samples to, as " ('plate', 'screw')"; empty if each has
+/// some.
+std::string without_samples(const ScanOf& step, const Objects& objects, const LoadedScan& frame) {
+  std::string names;
+  for (const std::string& name : uses(step)) {
+    const Object& object = objects.at(name);
+    if (object.is_tool || !giving_of(objects, object, frame).empty()) continue;
+    names += (names.empty() ? " ('" : ", '") + name + "'";
+  }
+  return names.empty() ? names : names + ")";
+}
+
 MadeScan made(const ScanOf& step, const ScanBench& bench) {
   const LoadedScan& frame = (*bench.scans)(step.scan.name);
   voxel::Names names;
   names.object = [&](std::string_view name) -> voxel::Expression {
-    const VoxelSide& object = bench.objects->at(std::string(name)).voxel;
-    return object.symbol ? *object.symbol : voxel::Expression(object.octree);
+    return sampled(*bench.objects, bench.objects->at(std::string(name)));
   };
-  voxel::ExpressionScanOptions options{step.hole_value, step.filled_value, bench.progress};
-  voxel::ExpressionScan result = voxel::expression_scan(
-      frame.scene(), frame.grey, voxel::parse_expression(step.expression, names), options);
+  const voxel::Expression expression = voxel::parse_expression(step.expression, names);
+  need_one_meaning(step, bench, expression);
+  const voxel::ExpressionScanOptions options{step.hole_value, step.filled_value,
+                                             voxel::part_of(bench.progress, 0.0, kernel_share)};
+  voxel::ExpressionScan result = voxel::expression_scan(frame.scene(), frame.grey, expression, options);
   const Compared compared = compare(step, bench, result);
   const double sample_mm3 = frame.scene().lattice.voxel_mm3();
   Json details{{"expression", step.expression},
@@ -169,6 +274,7 @@ MadeScan made(const ScanOf& step, const ScanBench& bench) {
                {"hole_samples", result.hole_samples},
                {"hole_mm3", static_cast<double>(result.hole_samples) * sample_mm3},
                {"hole_value", result.hole},
+               {"filled_samples", result.filled_samples},
                {"filled_value", result.filled},
                {"second_reading",
                 {{"drawn", compared.drawn},
@@ -177,12 +283,22 @@ MadeScan made(const ScanOf& step, const ScanBench& bench) {
                  {"largest_difference", compared.largest}}}};
   std::vector<std::string> findings;
   for (const std::string& name : uses(step)) {
-    const std::optional<Shown>& shown = bench.objects->at(name).shown;
-    if (shown && shown->scan != step.scan.name)
-      findings.push_back("the samples of '" + name + "' come from '" + shown->scan +
-                         "' and stand beside those of '" + step.scan.name +
+    const Object& object = bench.objects->at(name);
+    const OwnSamples own = own_samples(*bench.objects, object);
+    const std::vector<voxel::Window> giving = giving_of(*bench.objects, object, frame);
+    const bool is_other = std::any_of(giving.begin(), giving.end(), [&](const voxel::Window& given) {
+      return !is_one_grey(given.grey, frame.grey);
+    });
+    if (is_other)
+      findings.push_back("the samples of '" + name + "' come from " +
+                         (own ? "'" + own.scan->scan + "'" : std::string("another scan")) +
+                         " and stand beside those of '" + step.scan.name +
                          "' as they are: their units and scanners may differ");
   }
+  if (result.filled_samples > 0)
+    findings.push_back(std::to_string(result.filled_samples) + " samples lie in objects without samples" +
+                       without_samples(step, *bench.objects, frame) + " and have the value " +
+                       plain(result.filled) + ": nothing was scanned there");
   if (compared.compared == 0)
     findings.emplace_back("no sample could be read a second time: nothing confirms this scan");
   if (compared.differing > 0)
@@ -191,7 +307,7 @@ MadeScan made(const ScanOf& step, const ScanBench& bench) {
                        std::to_string(compared.largest) + ": do not rely on this scan, and please report it");
   if (step.hole_value && result.hole_samples > 0)
     findings.push_back(std::to_string(result.hole_samples) + " samples where no object is have the value " +
-                       std::to_string(*step.hole_value) + ", as chosen: nothing was scanned there");
+                       plain(*step.hole_value) + ", as chosen: nothing was scanned there");
   return {std::move(result.scene), std::move(details), std::nullopt, std::move(findings)};
 }
 

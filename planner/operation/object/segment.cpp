@@ -31,6 +31,7 @@
 #include "voxel/filter/region_grow.h"
 #include "voxel/filter/tissue.h"
 #include "voxel/solid/combine.h"
+#include "voxel/solid/grey_owner.h"
 
 namespace octotomy::planner {
 namespace {
@@ -309,7 +310,7 @@ void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
   made.findings.insert(made.findings.end(), chosen.findings.begin(), chosen.findings.end());
   made.lineage = "voxels of a window on a grey octree of the scan";
   if (why_voxels_alone(segment) != nullptr) {
-    made.symbol = voxel::Expression(made.octree);
+    made.symbol = voxel::with_samples(voxel::Expression(made.octree), voxel::all_samples(scan.grey));
     made.lineage = "voxels chosen in the scan";
     return;
   }

@@ -9,6 +9,7 @@
 #include "planner/operation/measure/counted_window.h"
 #include "verify/witness/witness.h"
 #include "voxel/solid/combine.h"
+#include "voxel/solid/grey_owner.h"
 
 namespace octotomy::planner {
 namespace {
@@ -69,6 +70,7 @@ bool is_whole_voxels(const VoxelSide& side) {
   if (!side.symbol) return true;
   const voxel::Expression::Term* term = &side.symbol->term();
   while (term->kind == voxel::Expression::Kind::Moved) term = term->left.get();
+  term = &voxel::before_samples(*term);
   return term->leaf && std::holds_alternative<voxel::Octree>(*term->leaf);
 }
 

@@ -53,15 +53,10 @@ void turn_alike(const std::filesystem::path& path, brep::Triangles& triangles,
   if (triangles.faces.empty()) return;
   const std::size_t contrary = brep::health(triangles, {.self_intersections = false}).misoriented_edges;
   if (contrary == 0) return;
-  brep::RepairOptions options;
-  options.weld_mm = 0.0;
-  options.orient = true;
-  brep::Repair repaired = brep::repair(triangles, options);
-  const auto turned = std::count_if(repaired.changes.begin(), repaired.changes.end(),
-                                    [](const brep::Change& change) { return change.step == "orient"; });
-  triangles = std::move(repaired.surface);
+  brep::TurnedAlike alike = brep::turned_alike(triangles);
+  triangles = std::move(alike.surface);
   findings.push_back("orient: " + path.string() + " has " + std::to_string(contrary) +
-                     " edges whose triangles wind against each other: " + std::to_string(turned) +
+                     " edges whose triangles wind against each other: " + std::to_string(alike.turned) +
                      " triangles were turned, so that shells face outward and cavities inward");
 }
 

@@ -15,6 +15,7 @@
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/filter/seating.h"
+#include "voxel/space/rounded.h"
 
 namespace octotomy::planner {
 namespace {
@@ -65,9 +66,8 @@ Json json_of(const Found& found, double tolerance_mm) {
 std::string sentence_of(const Found& found, const std::string& part) {
   const brep::Binding& at = *found.mesh;
   return "'" + part + "' binds on '" + found.object + "': it would go " + three_figures(at.depth_mm) +
-         " mm into it at (" + plain(std::round(10.0 * at.at_mm.x) / 10.0) + ", " +
-         plain(std::round(10.0 * at.at_mm.y) / 10.0) + ", " + plain(std::round(10.0 * at.at_mm.z) / 10.0) +
-         ") mm, from " + three_figures(at.first_mm) + " to " + three_figures(at.last_mm) +
+         " mm into it at " + voxel::rounded(at.at_mm) + " mm, from " + three_figures(at.first_mm) + " to " +
+         three_figures(at.last_mm) +
          " mm before its place; take the object's shadow along the insertion direction away from the part, "
          "or "
          "choose another direction";

@@ -88,17 +88,6 @@ Scene scene_of(const Render& render, std::vector<voxel::DrawnObject> objects, Ti
   return scene;
 }
 
-/// All samples of a scan, moved by an object's motion.
-voxel::Expression all_samples(const voxel::GreyOctree& grey,
-                              const std::optional<glm::dmat4>& moved_from_still) {
-  constexpr double low = std::numeric_limits<std::int16_t>::min();
-  constexpr double high = std::numeric_limits<std::int16_t>::max();
-  voxel::Expression samples(voxel::Window{grey, low, high});
-  if (!moved_from_still || *moved_from_still == glm::dmat4(1.0)) return samples;
-  return glm::determinant(glm::dmat3(*moved_from_still)) > 0.0 ? moved(samples, *moved_from_still)
-                                                               : reflected(samples, *moved_from_still);
-}
-
 /// The samples in the tones that are asked for; by default from the smallest to the largest sample.
 voxel::CutTones tones_of(const Render& render, voxel::GreyOwners samples) {
   if (render.tones.empty()) {
@@ -349,9 +338,11 @@ std::optional<voxel::CutTones> cut_tones_of(const Render& render,
                                   [](const voxel::DrawnObject& object) { return object.grey.has_value(); });
   for (const voxel::DrawnObject& object : objects)
     if (object.grey)
-      sources.push_back({all_samples(*object.grey, object.moved_from_still), object.octree});
+      sources.push_back({voxel::all_samples(*object.grey, object.moved_from_still.value_or(glm::dmat4(1.0))),
+                         object.octree});
     else if (made.empty() && first != objects.end())
-      sources.push_back({all_samples(*first->grey, first->moved_from_still), object.octree});
+      sources.push_back({voxel::all_samples(*first->grey, first->moved_from_still.value_or(glm::dmat4(1.0))),
+                         object.octree});
   voxel::GreyOwners samples(objects.front().octree.universe(), sources);
   if (samples.windows().empty()) return std::nullopt;
   return tones_of(render, std::move(samples));

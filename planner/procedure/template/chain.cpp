@@ -16,8 +16,32 @@ namespace {
 
 constexpr double near_mm = 8.0;
 
-bool is_outcome(const std::string& id) {
-  return id == "planned" || id == "rebuilt" || id.ends_with("_planned") || id.ends_with("_rebuilt");
+/// The program's procedures, which do not change while it runs.
+const std::vector<Procedure>& known_procedures() {
+  static const std::vector<Procedure> known = [] {
+    std::vector<Procedure> read;
+    for (const std::string& name : procedures()) read.push_back(read_procedure(name));
+    return read;
+  }();
+  return known;
+}
+
+bool has_all_steps(const Plan& plan, const Procedure& procedure) {
+  return std::all_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& own) {
+    return std::any_of(plan.steps.begin(), plan.steps.end(),
+                       [&](const Step& step) { return step.id == own.at("id"); });
+  });
+}
+
+/// Whether a step is a result: by its name, or because a procedure's file says so.
+bool is_outcome(const Plan& plan, const std::string& id) {
+  if (id == "planned" || id == "rebuilt" || id.ends_with("_planned") || id.ends_with("_rebuilt")) return true;
+  return std::any_of(known_procedures().begin(), known_procedures().end(), [&](const Procedure& procedure) {
+    if (procedure.outcome.empty()) return false;
+    return id == procedure.outcome
+               ? has_all_steps(plan, procedure)
+               : id.ends_with("_" + procedure.outcome) && is_chained_step_of(procedure, id);
+  });
 }
 
 const Step& step_of(const Plan& plan, const std::string& id) {
@@ -105,20 +129,12 @@ void add_landmarks(const std::vector<brep::Landmark>& landmarks, const Plan& pla
 
 /// Adds the scans that the procedure takes beside the patient's, where the plan has none of the name.
 void add_scans(const Procedure& procedure, const ProcedureInput& input, Json& whole) {
+  need_scans(procedure, input.further_scans, whole["scans"]);
   for (const auto& [name, entry] : input.further_scans) {
-    const bool is_asked =
-        std::any_of(procedure.scans.begin(), procedure.scans.end(),
-                    [&, &name = name](const ProcedureScan& scan) { return scan.name == name; });
-    if (!is_asked)
-      throw std::runtime_error("procedure " + procedure.name + " takes no scan '" + name + "': leave it out");
     if (whole["scans"].contains(name))
       throw std::runtime_error("the plan has a scan '" + name + "' already: leave it out");
     whole["scans"][name] = entry;
   }
-  for (const ProcedureScan& scan : procedure.scans)
-    if (!whole["scans"].contains(scan.name))
-      throw std::runtime_error("procedure " + procedure.name + " lacks a scan: '" + scan.name + "', " +
-                               scan.says + ": give it by --" + scan.name);
 }
 
 bool is_letter(char c) {
@@ -213,16 +229,19 @@ bool uses_value(const Json& value, const std::string& name) {
          std::any_of(value.begin(), value.end(), [&](const Json& part) { return uses_value(part, name); });
 }
 
-bool is_bone(const Json& step) {
+/// Whether a step is the procedure's bone: what its file says, otherwise every window of the patient's scan.
+bool is_bone(const Procedure& procedure, const Json& step) {
+  if (!procedure.acts_on.empty()) return step.value("id", "") == procedure.acts_on;
   return step.value("do", "") == "window" && step.value("scan", "") == "ct";
 }
 
 void need_used_values(const Procedure& procedure, const std::map<std::string, double>& values,
                       const std::string& on) {
   for (const auto& [name, unused] : values)
-    if (std::none_of(
-            procedure.steps.begin(), procedure.steps.end(),
-            [&, &name = name](const Json& step) { return !is_bone(step) && uses_value(step, name); }) &&
+    if (std::none_of(procedure.steps.begin(), procedure.steps.end(),
+                     [&, &name = name](const Json& step) {
+                       return !is_bone(procedure, step) && uses_value(step, name);
+                     }) &&
         std::any_of(procedure.values.begin(), procedure.values.end(),
                     [&, &name = name](const ProcedureValue& value) { return value.name == name; }))
       throw std::runtime_error("value " + name + " changes nothing: the procedure acts on '" + on +
@@ -233,7 +252,7 @@ void need_used_values(const Procedure& procedure, const std::map<std::string, do
 
 std::optional<std::string> outcome_of(const Plan& plan) {
   for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step)
-    if (is_outcome(step->id) && step->action.operation().makes == Makes::Object) return step->id;
+    if (is_outcome(plan, step->id) && step->action.operation().makes == Makes::Object) return step->id;
   return std::nullopt;
 }
 
@@ -292,11 +311,11 @@ Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& 
   std::map<std::string, std::string> names;
   for (const Json& step : steps) {
     const auto id = step.at("id").get<std::string>();
-    names[id] = is_bone(step) ? *outcome : prefix + id;
+    names[id] = is_bone(procedure, step) ? *outcome : prefix + id;
   }
   const Renaming renaming(names, places, result.plan["scans"].begin().key());
   for (const Json& step : steps) {
-    if (is_bone(step)) continue;
+    if (is_bone(procedure, step)) continue;
     result.plan["steps"].push_back(renaming(step));
     result.made.push_back(result.plan["steps"].back().at("id"));
   }

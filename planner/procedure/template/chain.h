@@ -14,7 +14,8 @@
 namespace octotomy::planner {
 
 /// The object that the plan's last procedure ends with: the last step that is called "planned" or "rebuilt",
-/// alone or after the name of a procedure and "_". None: the plan has no such step.
+/// alone or after a name and "_", or that is the outcome of one of the program's procedures whose steps the plan
+/// has. None: the plan has no such step.
 std::optional<std::string> outcome_of(const Plan& plan);
 
 /// Whether chained() has given a step this name for the procedure.

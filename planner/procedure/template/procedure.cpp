@@ -59,24 +59,6 @@ void need_landmarks(const Procedure& procedure, const std::vector<brep::Landmark
     throw std::runtime_error("procedure " + procedure.name + " lacks landmarks: " + missing + ": place them");
 }
 
-/// The plan's scans.
-Json scans_of(const Procedure& procedure, const ProcedureInput& input) {
-  Json scans{{"ct", input.scan}};
-  std::vector<std::string> known;
-  for (const ProcedureScan& scan : procedure.scans) {
-    known.push_back(scan.name);
-    const auto given = input.further_scans.find(scan.name);
-    if (given == input.further_scans.end())
-      throw std::runtime_error("procedure " + procedure.name + " lacks a scan: '" + scan.name + "', " +
-                               scan.says + ": give it by --" + scan.name);
-    scans[scan.name] = given->second;
-  }
-  for (const auto& [name, unused] : input.further_scans)
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw std::runtime_error("procedure " + procedure.name + " takes no scan '" + name + "': leave it out");
-  return scans;
-}
-
 Values values_of(const Procedure& procedure, const std::map<std::string, double>& given) {
   Values values;
   std::vector<std::string> known;
@@ -152,10 +134,22 @@ double number_at(const SortedJson& entry, const char* key, const std::string& wh
 
 }  // namespace
 
+void need_scans(const Procedure& procedure, const std::map<std::string, Json>& given, const Json& known) {
+  for (const ProcedureScan& scan : procedure.scans)
+    if (!given.contains(scan.name) && !known.contains(scan.name))
+      throw std::runtime_error("procedure " + procedure.name + " lacks a scan: '" + scan.name + "', " +
+                               scan.says + ": give it by --" + scan.name);
+  for (const auto& [name, unused] : given)
+    if (std::none_of(procedure.scans.begin(), procedure.scans.end(),
+                     [&, &name = name](const ProcedureScan& scan) { return scan.name == name; }))
+      throw std::runtime_error("procedure " + procedure.name + " takes no scan '" + name + "': leave it out");
+}
+
 Procedure parse_procedure(const std::string& text) {
   const Json root = parse_json<Json>(text);
   const SortedJson plain = root;
-  check_keys(plain, "procedure", {"procedure", "says", "landmarks", "scans", "values", "steps"});
+  check_keys(plain, "procedure",
+             {"procedure", "says", "acts_on", "outcome", "landmarks", "scans", "values", "steps"});
   Procedure procedure;
   procedure.name = word_of(need(plain, "procedure", "procedure"), "procedure");
   procedure.says = word_of(need(plain, "says", "procedure"), "says");
@@ -197,6 +191,14 @@ Procedure parse_procedure(const std::string& text) {
       add_steps_of(step, "steps[" + std::to_string(i) + "]", procedure);
     else
       procedure.steps.push_back(step);
+  }
+  for (const auto& [key, into] :
+       {std::pair("acts_on", &procedure.acts_on), std::pair("outcome", &procedure.outcome)}) {
+    if (!plain.contains(key)) continue;
+    *into = word_of(plain[key], key);
+    if (std::none_of(procedure.steps.begin(), procedure.steps.end(),
+                     [&, &into = into](const Json& step) { return step.value("id", "") == *into; }))
+      throw std::runtime_error(std::string(key) + ": no step is called '" + *into + "'");
   }
   return procedure;
 }
@@ -247,9 +249,12 @@ Json steps_of(const Procedure& procedure, const std::vector<brep::Landmark>& lan
 Json plan_of(const Procedure& procedure, const ProcedureInput& input) {
   need_landmarks(procedure, input.landmarks);
   values_of(procedure, input.values);
+  need_scans(procedure, input.further_scans, Json::object());
+  Json scans{{"ct", input.scan}};
+  for (const ProcedureScan& scan : procedure.scans) scans[scan.name] = input.further_scans.at(scan.name);
   Json plan{{"octotomy_plan", 1},
             {"name", procedure.says.substr(0, procedure.says.find('.'))},
-            {"scans", scans_of(procedure, input)},
+            {"scans", scans},
             {"universe", {{"voxel_mm", input.voxel_mm}}},
             {"steps", first_steps(input.landmarks)}};
   // Parses the plan so far for the head's directions, and to refuse invalid landmarks.

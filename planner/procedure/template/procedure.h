@@ -37,6 +37,10 @@ struct Procedure {
   std::vector<ProcedureScan> scans;  ///< in addition to the patient's, which is "ct"
   std::vector<ProcedureValue> values;
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();
+  /// The step that is the patient's bone. After another procedure, that one's outcome takes its place.
+  std::string acts_on = {};
+  /// The step with the result, on which a further procedure acts.
+  std::string outcome = {};
 };
 
 /// The largest number of values of a procedure.
@@ -49,6 +53,11 @@ Procedure parse_procedure(const std::string& json);
 Procedure read_procedure(const std::string& name_or_path);
 /// Names of the program's procedures.
 std::vector<std::string> procedures();
+
+/// Checks the scans that are given beside the patient's: each is one that the procedure takes, and each that it
+/// takes is given or in `known`. Throws std::runtime_error, with the scan's definition.
+void need_scans(const Procedure& procedure, const std::map<std::string, nlohmann::ordered_json>& given,
+                const nlohmann::ordered_json& known);
 
 struct ProcedureInput {
   nlohmann::ordered_json scan;                                  ///< as a plan's entry: {"path": ...}

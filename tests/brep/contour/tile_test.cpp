@@ -201,5 +201,39 @@ TEST(Tile, RefusesRingsWhoseTablesWouldNotFitTheMemory) {
     }
 }
 
+TEST(TileClear, KeepsToTheAreaBetweenTheRingsWhateverTheCost) {
+  // A ring with a deep bay about a ring that follows it: the greatest volume of all closes the bay.
+  const auto bay = [](double out, double z) {
+    Ring made{{}, z};
+    for (int k = 0; k < 80; ++k) {
+      const double t = 2.0 * M_PI * k / 80,
+                   depth = std::exp(-t * t * 3.0) + std::exp(-(t - 2.0 * M_PI) * (t - 2.0 * M_PI) * 3.0);
+      made.points_mm.push_back((out + 10.0 - 7.0 * depth) * glm::dvec2(std::cos(t), std::sin(t)));
+    }
+    return made;
+  };
+  const Ring lower = bay(1.0, 0.0), upper = bay(0.0, 1.0);
+  const SpanClearance sides({{lower.points_mm}}, {{upper.points_mm}});
+  const auto crossed = [&](const std::vector<std::array<std::uint32_t, 3>>& faces) {
+    int count = 0;
+    for (const auto& face : faces)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t a = face[k], b = face[(k + 1) % 3], m = lower.points_mm.size();
+        if (a < m && b >= m) count += sides.crossed(lower.points_mm[a], upper.points_mm[b - m], 6);
+      }
+    return count;
+  };
+  for (const TileCost cost : all_costs) EXPECT_EQ(crossed(tile_clear(lower, upper, cost, sides)), 0);
+  const auto clear = tile_clear(lower, upper, TileCost::greatest_volume, sides);
+  EXPECT_GT(crossed(tile(lower, upper, TileCost::greatest_volume)), 0) << "the bay matters";
+  // Of the clear strips the best by its cost, as far as the others show.
+  for (const TileCost cost : all_costs) {
+    const auto other = tile_clear(lower, upper, cost, sides);
+    EXPECT_GE(sums_of(lower, upper, clear).cones, sums_of(lower, upper, other).cones * (1 - 1e-12));
+    EXPECT_LE(sums_of(lower, upper, tile_clear(lower, upper, TileCost::least_area, sides)).area,
+              sums_of(lower, upper, other).area * (1 + 1e-12));
+  }
+}
+
 }  // namespace
 }  // namespace octotomy::brep

@@ -46,6 +46,16 @@ TEST(Repair, DoesNothingUnasked) {
   EXPECT_EQ(untouched.surface.points_mm, bad.points_mm);
 }
 
+TEST(TurnedAlike, TurnsWhatWindsAgainstTheRestAndMovesNothing) {
+  Triangles bad = sound_ball;
+  for (const std::size_t f : {3, 7, 40}) std::swap(bad.faces[f][0], bad.faces[f][1]);
+  const TurnedAlike alike = turned_alike(bad);
+  EXPECT_EQ(alike.turned, 3u);
+  EXPECT_EQ(alike.surface.points_mm, sound_ball.points_mm);
+  EXPECT_TRUE(health(alike.surface).solid());
+  EXPECT_EQ(turned_alike(sound_ball).turned, 0u);
+}
+
 TEST(Repair, ASoupOfTrianglesIsWeldedAndEveryPointThatMovedIsListed) {
   RepairOptions options;
   options.weld_mm = 1e-3;

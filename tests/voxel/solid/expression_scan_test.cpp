@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+#include "voxel/solid/grey_owner.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::voxel {
@@ -66,12 +67,37 @@ TEST_F(AnExpressionScan, FillsObjectsWithoutSamplesByAValueThatIsNoWholeNumber) 
   const Expression with_plate = Sphere{{12, 12, 12}, 4.0} | (head_ - Sphere{{12, 12, 12}, 4.0});
   const ExpressionScan made = expression_scan(*scene_, grey_, with_plate);
   EXPECT_EQ(made.filled, 0.75) << "the largest sample";
+  std::uint64_t in_plate = 0;
+  for (int z = 8; z <= 16; ++z)
+    for (int y = 8; y <= 16; ++y)
+      for (int x = 8; x <= 16; ++x)
+        in_plate += glm::distance(glm::dvec3(x, y, z), glm::dvec3(12)) <= 4.0 ? 1 : 0;
+  EXPECT_EQ(made.filled_samples, in_plate);
   EXPECT_NEAR(share_at(made.scene, {12, 12, 12}), 0.75, 0.5 * grey_.step());
   EXPECT_EQ(made.hole_samples, 0u);
   ExpressionScanOptions options;
   options.filled = 0.3;
   EXPECT_NEAR(share_at(expression_scan(*scene_, grey_, with_plate, options).scene, {12, 12, 12}), 0.3,
               0.5 * grey_.step());
+}
+
+TEST_F(AnExpressionScan, FillsNothingWhereAnObjectIsCompletedByItsScan) {
+  const Expression part = with_samples(Sphere{{12, 12, 12}, 4.0}, all_samples(grey_));
+  const ExpressionScan made = expression_scan(*scene_, grey_, part);
+  EXPECT_EQ(made.filled_samples, 0u);
+  EXPECT_EQ(share_at(made.scene, {13, 11, 12}), share_at(*scene_, {13, 11, 12}));
+}
+
+TEST_F(AnExpressionScan, ReportsProgressThatOnlyRises) {
+  double last = -1.0;
+  ExpressionScanOptions options;
+  options.progress.report = [&](double share) {
+    EXPECT_GE(share, last);
+    last = share;
+  };
+  expression_scan(*scene_, grey_, head_ - Sphere{{12, 12, 12}, 4.0}, options);
+  EXPECT_GT(last, 0.3);
+  EXPECT_LE(last, 1.0);
 }
 
 TEST_F(AnExpressionScan, RefusesValuesThatTheSamplesCannotHave) {

@@ -217,6 +217,8 @@ TEST(Moved, RefusesWhatIsNotRigid) {
   glm::dmat4 mirrored(1.0);
   mirrored[0][0] = -1.0;
   EXPECT_THROW(moved(a, mirrored), std::invalid_argument);
+  EXPECT_THROW(carried(a, scaled), std::invalid_argument);
+  EXPECT_EQ(carried(a, mirrored).term().moved_from_still, reflected(a, mirrored).term().moved_from_still);
 }
 
 TEST(MovedFromStill, TurnsAboutThePointAndThenTranslates) {

@@ -89,5 +89,33 @@ TEST(GreyOwners, AreTheSameOfOneScanAndAnotherOfAMovedOne) {
                    .is_same(GreyOwners(grey.universe(), {{moved(all, shifted({2, 0, 0}))}})));
 }
 
+TEST(WithSamples, KeepsTheVoxelsAndItsOwnWindowsFirst) {
+  const GreyOctree other = grey_octree_of(
+      unit_universe(5), tests::field_scene<std::int16_t>(unit_universe(5).lattice(),
+                                                         [](const auto& p_mm) { return 1000.0 + p_mm.y; }));
+  const Expression box = slab({2.5, 2.5, 2.5}, {20.5, 12.5, 12.5});
+  const Expression voxels =
+      (Expression(Window{ramp(), 100.0, 32767.0}) & box) | slab({2.5, 2.5, 2.5}, {6.5, 12.5, 12.5});
+  const Expression completed = with_samples(voxels, all_samples(other));
+  EXPECT_EQ(combine(unit_universe(5), completed), combine(unit_universe(5), voxels));
+  const GreyOwners owners(unit_universe(5), {{completed}});
+  EXPECT_EQ(owners.at({12, 8, 8}, {12, 8, 8})->value(), 120.0) << "its own window";
+  EXPECT_EQ(owners.at({4, 8, 8}, {4, 8, 8})->value(), 1008.0) << "the other scan";
+  EXPECT_EQ(&before_samples(completed.term()), &voxels.term());
+  EXPECT_EQ(&before_samples(voxels.term()), &voxels.term());
+}
+
+TEST(PositiveWindows, AreThoseNotTakenAway) {
+  const Expression a{Window{ramp(), 1.0, 10.0}}, b{Window{ramp(), 2.0, 10.0}}, c{Window{ramp(), 3.0, 10.0}};
+  const auto lows = [](const Expression& expression) {
+    std::vector<double> found;
+    for (const Window& window : positive_windows(expression)) found.push_back(window.low);
+    return found;
+  };
+  EXPECT_EQ(lows(a - (b - c)), (std::vector<double>{1.0, 3.0}));
+  EXPECT_EQ(lows(~(a | ~b) & moved(c, shifted({1, 0, 0}))), (std::vector<double>{2.0, 3.0}));
+  EXPECT_EQ(lows(a - ~b), (std::vector<double>{1.0, 2.0}));
+}
+
 }  // namespace
 }  // namespace octotomy::voxel

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Procedures: chosen by name, given the scans that they take, placed by landmarks, and planned with a few
 // values.
-import {change_plan, edit, evaluate} from "../actions";
+import {change_plan, edit, evaluate, try_to} from "../actions";
 import {Dialog, open_dialog} from "../base/dialog";
 import {objects_of_plan} from "../drawn_objects";
 import {open_picker} from "./files";
@@ -9,7 +9,7 @@ import {button, Child, el} from "../base/html";
 import {label_of} from "../panel/schema_form";
 import {ask_for_landmarks} from "../tool/point_tools";
 import {PlanState, ProcedureSays} from "../protocol";
-import {on_leaving_plan, set, state, steps} from "../state";
+import {on_leaving_plan, set, state} from "../state";
 import {Vec3} from "../base/vector";
 
 const values: {[name: string]: number} = {};
@@ -23,20 +23,25 @@ on_leaving_plan(() => {
 /// Chooses a procedure, has its landmarks placed, takes its values and adds its steps.
 export function open_procedure(name?: string): void {
   const dialog = open_dialog("Procedure from landmarks", "procedure");
-  const show = (chosen: ProcedureSays|undefined): void => dialog.refill(
+  const show = async(chosen: ProcedureSays|undefined): Promise<void> => {
+    // The server knows what the plan's steps end with; the page does not guess it.
+    const before = chosen ? (await try_to<{outcome: string | null}>("acts_on", {name: chosen.name}))?.outcome ?? null : null;
+    dialog.refill(
       el("div", {class: "presets"},
          (state.hello?.procedures ??
-          []).map((one) => button(one.says.split(":")[0], one.says, () => show(one), {
+          []).map((one) => button(one.says.split(":")[0], one.says, () => void show(one), {
                     class: one === chosen ? "on" : ""
                   }))),
       chosen ?
-          procedure_form(dialog, chosen) :
+          procedure_form(dialog, chosen, before) :
           el("p", {class: "says"},
              "Each procedure is placed by named landmarks and a few values. What it writes are ordinary steps that you can change."));
-  show(state.hello?.procedures.find((one) => one.name === name));
+  };
+  void show(state.hello?.procedures.find((one) => one.name === name));
 }
 
-function procedure_form(dialog: Dialog, chosen: ProcedureSays): Child {
+/// `before`: what an earlier procedure of the plan ends with, on which this one acts.
+function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|null): Child {
   const placed = new Map((state.plan?.landmarks ?? []).map((mark) => [mark.name, mark.point]));
   const lacks_scan = chosen.scans.some((scan) => !scans()[scan.name]);
   const missing = chosen.landmarks.filter((mark) => !placed.has(mark.name));
@@ -50,7 +55,7 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays): Child {
     for (const mark of chosen.landmarks) landmarks[mark.name] = placed.get(mark.name)!;
     const set_values = Object.fromEntries(
         chosen.values.map((one) => [one.name, values[`${chosen.name}.${one.name}`] ?? one.default]));
-    const before = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));
+    const shown = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));
     dialog.close();
     const planned: (PlanState&{made?: string[]})|null =
         await change_plan("procedure", {name: chosen.name, landmarks, values: set_values});
@@ -58,14 +63,13 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays): Child {
     // The pieces take the place of what was shown before, until the procedure is undone.
     const made = planned.made ?? [];
     const behind = made[made.length - 1];
-    const hidden = before.filter((id) => behind && !made.includes(id)).map((id) => {
+    const hidden = shown.filter((id) => behind && !made.includes(id)).map((id) => {
       const {visible: _visible, ...look} = state.looks[id] ?? {};
       return [id, {...look, behind}] as const;
     });
     set({looks: {...state.looks, ...Object.fromEntries(hidden)}});
     void evaluate();
   };
-  const before = outcome_before(chosen.name);
   return [
     el("p", {class: "says"}, chosen.says),
     before ? el("p", {class: "says"},
@@ -109,10 +113,6 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays): Child {
         ],
   ];
 }
-/// What an earlier procedure of the plan ends with, on which a further one acts.
-const outcome_before = (procedure: string): string|null =>
-    steps().filter((step) => /(^|_)(planned|rebuilt)$/.test(step.id) && !step.id.startsWith(`${procedure}_`)).pop()?.id ??
-    null;
 const scans = (): {[name: string]: {path: string}} => state.plan?.plan.scans ?? {};
 
 /// A scan that a procedure takes beside the patient's: the file that it is, or a button to choose one.

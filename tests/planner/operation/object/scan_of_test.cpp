@@ -107,6 +107,101 @@ TEST(ScanOf, HolesTakeAChosenValueAndTheAuditSaysSo) {
     EXPECT_EQ(value_at(read, at), value_at(made, at));
 }
 
+/// Steps for a scan of one expression after others.
+std::string scan_of(const std::string& before, const std::string& expression, const std::string& more = "") {
+  return before + R"(, {"id": "operated", "do": "scan_of", "scan": "ct", "expression": ")" + expression +
+         "\"" + more + "}";
+}
+
+bool warns(const Evaluation& evaluation, const std::string& of) {
+  const std::vector<voxel::Finding>& audit = evaluation.scans.back().audit;
+  return std::any_of(audit.begin(), audit.end(), [&](const voxel::Finding& finding) {
+    return finding.check == "scan_of" && finding.verdict == voxel::Verdict::Warn &&
+           finding.detail.find(of) != std::string::npos;
+  });
+}
+
+TEST(ScanOf, ObjectsWithoutWindowsOfTheirOwnKeepTheSamplesOfTheirScan) {
+  const std::string cavity = R"({"id": "hollow", "do": "shell", "object": "ball", "thickness_mm": 5},
+      {"id": "full", "do": "fill", "object": "hollow"})";
+  const std::string smooth = R"({"id": "even", "do": "smooth", "object": "ball", "rounds": 5})";
+  const std::string seeded =
+      R"({"id": "grown", "do": "segment", "scan": "ct", "window": "500:", "seeds_mm": [[0, 0, 0]]})";
+  for (const auto& [steps, name] :
+       {std::pair(cavity, "full"), std::pair(smooth, "even"), std::pair(seeded, "grown")}) {
+    const ScratchFolder folder;
+    const Evaluation evaluation = evaluate(ball_plan(folder, scan_of(steps, name)), keeping_scans());
+    const voxel::Scene& before = evaluation.loaded.at("ct")->scene();
+    const voxel::Scene& after = evaluation.loaded.at("operated")->scene();
+    const glm::ivec3 middle = before.lattice.dims / 2;
+    EXPECT_EQ(value_at(after, middle), value_at(before, middle)) << name;
+    const auto& details = evaluation.scans.back().details;
+    EXPECT_EQ(details["filled_samples"], 0) << name;
+    EXPECT_EQ(details["second_reading"]["differing"], 0) << name << details.dump();
+    EXPECT_GT(details["changed_samples"], 1000) << name << ": holes about the ball";
+  }
+}
+
+TEST(ScanOf, SamplesOfAMovedSmoothObjectMoveWithIt) {
+  const ScratchFolder folder;
+  const std::string steps = R"({"id": "even", "do": "smooth", "object": "ball", "rounds": 5},
+      {"id": "away", "do": "move", "object": "even", "translate_mm": [8.5, 0, 0]},
+      {"id": "half", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-40, -40], [40, -40], [40, 0.2], [-40, 0.2]]]}]},
+      {"id": "part", "do": "combine", "expression": "away & half"})";
+  const Evaluation evaluation = evaluate(ball_plan(folder, scan_of(steps, "part")), keeping_scans());
+  const auto& details = evaluation.scans.back().details;
+  EXPECT_EQ(details["filled_samples"], 0);
+  EXPECT_EQ(details["second_reading"]["differing"], 0) << details.dump();
+  const voxel::Scene& before = evaluation.loaded.at("ct")->scene();
+  const voxel::Scene& after = evaluation.loaded.at("operated")->scene();
+  // At the ball's right border, half a voxel between two samples.
+  const glm::ivec3 at(before.lattice.voxel({-10.5, 0.5, -0.5}) + 0.5);
+  const glm::dvec3 from = glm::dvec3(at) - glm::dvec3(8.5, 0, 0);
+  EXPECT_EQ(value_at(after, at), std::floor(voxel::interpolate(before, from) + 0.5));
+}
+
+TEST(ScanOf, CountsSamplesOfObjectsThatComeFromNoScan) {
+  const ScratchFolder folder;
+  const Evaluation evaluation =
+      evaluate(ball_plan(folder, scan_of(R"({"id": "thick", "do": "offset", "object": "ball", "by_mm": 2})",
+                                         "ball | thick", R"(, "filled_value": 77)")),
+               keeping_scans());
+  const auto& details = evaluation.scans.back().details;
+  const auto& objects = evaluation.objects;
+  // The two lattices coincide, so that each voxel is a sample.
+  const std::uint64_t beside =
+      objects.at("thick").voxel.octree.voxel_count() - objects.at("ball").voxel.octree.voxel_count();
+  EXPECT_EQ(details["filled_samples"], beside);
+  EXPECT_GT(beside, 1000u);
+  EXPECT_TRUE(warns(
+      evaluation,
+      std::to_string(beside) + " samples lie in objects without samples ('thick') and have the value 77"));
+}
+
+TEST(ScanOf, PaddingThatStaysIsNoDifference) {
+  const ScratchFolder folder;
+  const Evaluation evaluation = evaluate(ball_plan(folder, moved_cap("moved | rest") + R"json(,
+          {"id": "seen", "do": "window", "scan": "operated", "low": 0},
+          {"id": "again", "do": "scan_of", "scan": "operated", "expression": "seen", "hole_value": -500})json"),
+                                         keeping_scans());
+  const auto& details = evaluation.scans.back().details;
+  EXPECT_GT(details["second_reading"]["compared"], 10000);
+  EXPECT_EQ(details["second_reading"]["differing"], 0) << details.dump();
+}
+
+TEST(ScanOf, RefusesSamplesOfAnotherMeaning) {
+  const ScratchFolder folder;
+  const std::string edges = R"({"id": "edges", "do": "marr_hildreth", "scan": "ct", "sigma_mm": 2},
+      {"id": "edge", "do": "window", "scan": "edges", "low": 1})";
+  try {
+    evaluate(ball_plan(folder, scan_of(edges, "ball | edge")));
+    FAIL() << "nothing was thrown";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("mean something else"), std::string::npos) << error.what();
+  }
+}
+
 TEST(ScanOf, BadInputIsRefused) {
   const ScratchFolder folder;
   EXPECT_NE(ball_refusal(folder, moved_cap("moved | nothing")).find("nothing"), std::string::npos);

@@ -139,6 +139,51 @@ TEST_F(Chain, EachProcedureHasNamesOfItsOwnAndEachStaysEditable) {
   EXPECT_EQ(kept, Json::parse(first.text)["steps"]);
 }
 
+TEST(Procedures, SayWhatTheyActOnAndWhatTheyEndWith) {
+  for (const std::string& name : procedures()) {
+    const Procedure procedure = read_procedure(name);
+    const auto step_of = [&](const std::string& id) {
+      const auto step = std::find_if(procedure.steps.begin(), procedure.steps.end(),
+                                     [&](const Json& each) { return each.value("id", "") == id; });
+      return step == procedure.steps.end() ? Json::object() : *step;
+    };
+    EXPECT_EQ(step_of(procedure.acts_on).value("do", ""), "window") << name;
+    EXPECT_EQ(step_of(procedure.acts_on).value("scan", ""), "ct") << name;
+    EXPECT_EQ(step_of(procedure.outcome).value("do", ""), "combine") << name;
+  }
+}
+
+TEST(Procedures, RefuseAnOutcomeThatIsNoStep) {
+  const std::string text = R"({"procedure": "p", "says": "s.", "landmarks": [], "values": [],
+      "steps": [{"id": "skull", "do": "window", "scan": "ct", "low": 300}], "outcome": )";
+  EXPECT_EQ(parse_procedure(text + R"("skull"})").outcome, "skull");
+  try {
+    parse_procedure(text + R"("planned"})");
+    FAIL() << "nothing was thrown";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "outcome: no step is called 'planned'");
+  }
+}
+
+TEST(OutcomeOf, AReconstructionIsItsRepairedBoneAndOfOtherPlansItIsNot) {
+  const auto plan_with = [](const std::vector<std::string>& ids) {
+    Json steps = Json::array();
+    for (const std::string& id : ids)
+      steps.push_back({{"id", id}, {"do", "window"}, {"scan", "ct"}, {"low", 300}});
+    return parse_plan(
+        Json{{"octotomy_plan", 1}, {"name", "p"}, {"scans", {{"ct", {{"path", "a.nrrd"}}}}}, {"steps", steps}}
+            .dump(),
+        ".");
+  };
+  std::vector<std::string> own;
+  for (const Json& step : read_procedure("mirrored_reconstruction_side").steps) own.push_back(step.at("id"));
+  EXPECT_EQ(outcome_of(plan_with(own)), "repaired");
+  EXPECT_EQ(outcome_of(plan_with({"planned", "repaired"})), "planned") << "a step of another meaning";
+  EXPECT_EQ(outcome_of(plan_with({"planned", "mirrored_reconstruction_side_repaired", "more"})),
+            "mirrored_reconstruction_side_repaired");
+  EXPECT_EQ(outcome_of(plan_with({"skull"})), std::nullopt);
+}
+
 TEST(ChainedSteps, AreKnownByTheProceduresNameAndTheirOwn) {
   const Procedure procedure = read_procedure("le_fort_i");
   EXPECT_TRUE(is_chained_step_of(procedure, "le_fort_i_maxilla"));
