@@ -18,8 +18,6 @@
 #include <stdexcept>
 
 #include "brep/boolean/boolean.h"
-#include "brep/mesh/error.h"
-#include "brep/shape/decimate.h"
 #include "brep/shape/offset.h"
 #include "brep/shape/shadow.h"
 #include "planner/operation/measure/result_json.h"
@@ -62,7 +60,7 @@ constexpr double search_deg = 20.0, search_step_deg = 10.0;
 /// Beyond this angle from the arch's normal a direction runs along the teeth's sides.
 constexpr double steepest_deg = 60.0;
 /// Cells of the mesh's offsets of teeth; flat parts lie within a 16th of it.
-constexpr double fit_cell_mm = 0.4;
+constexpr double fit_cell_mm = 0.5;
 
 const ObjectName& name_of(const Splint& splint, int jaw) {
   return jaw == 0 ? splint.upper : splint.lower;
@@ -271,23 +269,6 @@ void voxels(const Splint& splint, const VoxelBench& bench, VoxelSide& made) {
         opened - voxel::Expression(bench.combined(opened - voxel::Expression(pieces.largest))));
 }
 
-/// An offset's surface without the triangles that flat parts do not need. The remaining points do not move; the
-/// error is below that of the offset's chords across cells.
-brep::Solid level_set(const brep::Solid& solid, double by_mm, double cell_mm,
-                      const brep::Progress& progress) {
-  const brep::Solid moved = brep::offset(solid, {by_mm, cell_mm, progress});
-  if (moved.empty()) return moved;
-  brep::DecimateOptions options;
-  options.max_error_mm = cell_mm / 50.0;
-  options.max_normal_deviation_deg = 15.0;
-  try {
-    return brep::trusted_solid(brep::decimate(moved, options), brep::Proof::Construction);
-  } catch (const brep::Error& error) {
-    if (error.code() != brep::ErrorCode::Geometry) throw;
-    return moved;
-  }
-}
-
 /// The same of a jaw's mesh.
 std::vector<brep::Solid> taken_by(const Splint& splint, int jaw, const MeshBench& bench, MeshSide& made) {
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
@@ -296,9 +277,10 @@ std::vector<brep::Solid> taken_by(const Splint& splint, int jaw, const MeshBench
                     splint.jaws[jaw].near.solid(), bench.progress.stop);
   made.shift_mm += near.shift_mm;
   if (near.solid.empty()) return {};
-  std::vector<brep::Solid> taken{level_set(near.solid, splint.offset_mm, fit_cell_mm, progress)};
+  std::vector<brep::Solid> taken{brep::offset(near.solid, {splint.offset_mm, fit_cell_mm, progress})};
   const double by_mm = shadow_by_mm(splint);
-  const brep::Solid casts = by_mm == 0.0 ? near.solid : level_set(near.solid, by_mm, fit_cell_mm, progress);
+  const brep::Solid casts =
+      by_mm == 0.0 ? near.solid : brep::offset(near.solid, {by_mm, fit_cell_mm, progress});
   const brep::Shadow shadow =
       brep::shadow(casts, {splint.jaws[jaw].along, splint.jaws[jaw].end_mm, progress});
   taken.push_back(shadow.solid);
@@ -339,15 +321,15 @@ void triangles(const Splint& splint, const MeshBench& bench, MeshSide& made) {
     made.whole = whole;
     return;
   }
-  const double radius_mm = 0.5 * splint.thickness_mm, cell_mm = 0.25 * splint.thickness_mm;
-  const brep::Solid core = level_set(whole, -radius_mm, cell_mm, progress);
+  const double radius_mm = 0.5 * splint.thickness_mm, cell_mm = splint.thickness_mm / 3.0;
+  const brep::Solid core = brep::offset(whole, {-radius_mm, cell_mm, progress});
   if (core.empty()) {
     made.findings.push_back("no part of the splint is " + three_figures(splint.thickness_mm) +
                             " mm thick: open the bite, or raise 'depth_mm' or 'width_mm'");
     made.whole = core;
     return;
   }
-  const brep::Solid reach = level_set(core, radius_mm + opening_room_mm(splint), cell_mm, progress);
+  const brep::Solid reach = brep::offset(core, {radius_mm + opening_room_mm(splint), cell_mm, progress});
   made.whole = largest_piece(
       take(brep::boolean(whole, brep::Operation::Intersection, reach, bench.progress.stop)), made.findings);
   made.details["thin_mm3"] = made.details["before_opening_mm3"].get<double>() - brep::volume_mm3(*made.whole);

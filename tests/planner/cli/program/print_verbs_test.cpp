@@ -24,7 +24,7 @@ class PrintVerbs : public tests::CommandLine {
       prism.to_mm = 20.0;
       add(all, brep::solid_of(prism).triangles(), false);
     }
-    brep::write_mesh(all, at(name));
+    brep::write_mesh(all, folder_ / name);
   }
 
   static void add(brep::Triangles& all, const brep::Triangles& more, bool is_turned) {
@@ -107,7 +107,7 @@ TEST_F(PrintVerbs, AClosedCavityFailsAtItsPlace) {
   brep::Triangles hollow;
   add(hollow, brep::solid_of(outer).triangles(), false);
   add(hollow, brep::solid_of(inner).triangles(), true);
-  brep::write_mesh(hollow, at("hollow.ply"));
+  brep::write_mesh(hollow, folder_ / "hollow.ply");
   const SortedJson cavities = line(printable("hollow.ply"), "cavities");
   EXPECT_EQ(cavities["verdict"], "FAIL");
   EXPECT_EQ(cavities["count"], 1);
@@ -122,14 +122,14 @@ TEST_F(PrintVerbs, SpoiledSurfacesFailByTheirOwnLineWithThePlace) {
   const brep::Triangles good = brep::solid_of(prism).triangles();
   brep::Triangles open = good, inside_out, crossing = good;
   open.faces.pop_back();
-  brep::write_mesh(open, at("open.ply"));
+  brep::write_mesh(open, folder_ / "open.ply");
   add(inside_out, good, true);
-  brep::write_mesh(inside_out, at("inside_out.ply"));
+  brep::write_mesh(inside_out, folder_ / "inside_out.ply");
   prism.polygons_mm = {box(5, 5, 15, 15)};
   prism.from_mm = 5.0;
   prism.to_mm = 15.0;
   add(crossing, brep::solid_of(prism).triangles(), false);
-  brep::write_mesh(crossing, at("crossing.ply"));
+  brep::write_mesh(crossing, folder_ / "crossing.ply");
   for (const auto& [file, check] : {std::pair("open.ply", "closed"), std::pair("inside_out.ply", "outward"),
                                     std::pair("crossing.ply", "self_crossing")}) {
     const SortedJson answer = printable(file);
