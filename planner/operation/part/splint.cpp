@@ -9,7 +9,7 @@
 //   the fitting surface is that of the grown teeth.
 // 4 Walls thinner than asked are cut off: only what balls of that diameter within the splint hold stays. Cuts
 //   stand off those balls, so that the fitting surface itself does not move.
-// 5 The largest piece.
+// 5 The largest piece, with points that files for printers can hold.
 //
 // 1 and 2 are settled once, by mesh and voxels, and are shared values of both kernels.
 #include <algorithm>
@@ -18,8 +18,11 @@
 #include <stdexcept>
 
 #include "brep/boolean/boolean.h"
+#include "brep/mesh/flat_triangles.h"
+#include "brep/mesh/health.h"
 #include "brep/shape/offset.h"
 #include "brep/shape/shadow.h"
+#include "brep/shape/untangle.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/object/trace.h"
 #include "planner/operation/part/arch_band.h"
@@ -299,6 +302,24 @@ brep::Solid largest_piece(const brep::Solid& solid, std::vector<std::string>& fi
                              brep::proof_of_part(solid.proof()));
 }
 
+/// The solid with points of single precision, as files for printers have them, and still without triangles that
+/// intersect: thin ones, where a Boolean's surfaces meet, would cross their neighbours when a file is written.
+brep::Solid in_single_precision(const brep::Solid& solid, std::vector<std::string>& findings) {
+  constexpr int most_rounds = 4;
+  brep::Triangles triangles = solid.triangles();
+  for (int round = 0; round < most_rounds; ++round) {
+    for (glm::dvec3& p_mm : triangles.points_mm) p_mm = glm::dvec3(glm::vec3(p_mm));
+    brep::Mesh mesh = brep::mesh_of(triangles);
+    brep::take_out_flat_triangles(mesh);
+    if (brep::health(mesh).solid()) return brep::trusted_solid(mesh, brep::Proof::Health);
+    triangles = brep::untangle(mesh).surface;
+  }
+  findings.push_back(
+      "triangles intersect where its points are rounded to single precision: mend a file of it by octotomy "
+      "repair --solid before it is printed");
+  return solid;
+}
+
 void triangles(const Splint& splint, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "splint");
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
@@ -330,8 +351,10 @@ void triangles(const Splint& splint, const MeshBench& bench, MeshSide& made) {
     return;
   }
   const brep::Solid reach = brep::offset(core, {radius_mm + opening_room_mm(splint), cell_mm, progress});
-  made.whole = largest_piece(
-      take(brep::boolean(whole, brep::Operation::Intersection, reach, bench.progress.stop)), made.findings);
+  made.whole = in_single_precision(
+      largest_piece(take(brep::boolean(whole, brep::Operation::Intersection, reach, bench.progress.stop)),
+                    made.findings),
+      made.findings);
   made.details["thin_mm3"] = made.details["before_opening_mm3"].get<double>() - brep::volume_mm3(*made.whole);
 }
 
