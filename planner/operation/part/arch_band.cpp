@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace octotomy::planner {
 namespace {
@@ -41,15 +42,18 @@ std::vector<glm::dvec2> curve_through(const std::vector<glm::dvec2>& points_mm) 
   return curve;
 }
 
-double distance_to(const std::vector<glm::dvec2>& curve, const glm::dvec2& p_mm) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
-    const glm::dvec2 along = curve[i + 1] - curve[i];
-    const double share =
-        std::clamp(glm::dot(p_mm - curve[i], along) / std::max(glm::dot(along, along), 1e-12), 0.0, 1.0);
-    least = std::min(least, glm::distance(p_mm, curve[i] + share * along));
+/// Whether a point beside the curve's point `i`, half a width off it, is beyond a bend's centre: nearer to
+/// another point of the curve. Points further along the curve than half the width keep a hundredth more away, so
+/// that the two sides of a bend do not cross.
+bool is_beyond_bend(const std::vector<glm::dvec2>& curve, std::size_t i, const glm::dvec2& p_mm,
+                    double half_mm) {
+  constexpr double rounding = 1e-6;
+  const auto near = static_cast<std::size_t>(half_mm / curve_step_mm);
+  for (std::size_t other = 0; other < curve.size(); ++other) {
+    const bool is_near = (other > i ? other - i : i - other) <= near;
+    if (glm::distance(p_mm, curve[other]) < half_mm * (is_near ? 1.0 - rounding : 1.01)) return true;
   }
-  return least;
+  return false;
 }
 
 }  // namespace
@@ -93,11 +97,8 @@ std::vector<glm::dvec2> band_outline(const std::vector<glm::dvec2>& points_mm, d
     const glm::dvec2 along =
         glm::normalize(curve[std::min(i + 1, curve.size() - 1)] - curve[i == 0 ? 0 : i - 1]);
     const glm::dvec2 aside(-along.y, along.x);
-    // A point nearer to the curve than half the width is beyond the bend's centre. Chords of the curve's steps
-    // come nearer than the curve by less than a hundredth of a step.
-    for (auto& [side, sign] : {std::pair(&left, 1.0), std::pair(&right, -1.0)})
-      if (const glm::dvec2 p_mm = curve[i] + sign * half_mm * aside;
-          distance_to(curve, p_mm) > half_mm - 0.02 * curve_step_mm - 1e-9 * half_mm)
+    for (const auto& [side, sign] : {std::pair(&left, 1.0), std::pair(&right, -1.0)})
+      if (const glm::dvec2 p_mm = curve[i] + sign * half_mm * aside; !is_beyond_bend(curve, i, p_mm, half_mm))
         side->push_back(p_mm);
   }
   left.insert(left.end(), right.rbegin(), right.rend());

@@ -98,19 +98,21 @@ void need_one_jaw(const std::vector<glm::dvec3>& points_mm, const Splint& splint
   }
 }
 
-/// The tips of a jaw's teeth in the band: the least p . look of the upper jaw's points, the largest of the
-/// lower's.
-double tip_of(const brep::Solid& jaw, const Slab& within, double sign, const std::string& name,
-              double width_mm) {
+/// The tips of a jaw's teeth in the band: the least p . look of the upper jaw there, the largest of the lower.
+/// The column is the band, as far up and down as jaws count.
+double tip_of(const brep::Solid& jaw, const Slab& column, double sign, const std::string& name,
+              const SettleBench& bench) {
+  const brep::Solid teeth =
+      brep::boolean(jaw, brep::Operation::Intersection, column.solid(), bench.progress.stop).solid;
   double tip_mm = std::numeric_limits<double>::infinity();
-  for (const glm::dvec3& p_mm : jaw.triangles().points_mm)
-    if (const double height_mm = sign * glm::dot(p_mm, within.frame.look);
-        height_mm < tip_mm && voxel::contains({within.outline_mm}, within.frame.project(p_mm)))
-      tip_mm = height_mm;
-  if (!(std::abs(sign * tip_mm - within.frame.height_mm) < reach_mm))
-    throw std::runtime_error("'" + name + "' has no teeth within " + three_figures(0.5 * width_mm) +
-                             " mm of the arch's curve: give points on its biting surfaces, or a larger "
-                             "'width_mm'");
+  for (const glm::dvec3& p_mm : teeth.triangles().points_mm)
+    tip_mm = std::min(tip_mm, sign * glm::dot(p_mm, column.frame.look));
+  // A jaw that goes on beyond the column has its tips nowhere in it.
+  constexpr double cut_mm = 1e-3;
+  if (!(std::abs(sign * tip_mm - column.frame.height_mm) < reach_mm - cut_mm))
+    throw std::runtime_error("'" + name + "' has no tips of teeth within " + three_figures(reach_mm) +
+                             " mm above or below the arch's points: give points on its biting surfaces, and "
+                             "jaws that end there");
   return sign * tip_mm;
 }
 
@@ -143,6 +145,15 @@ Splint settle(const Splint& asked, const SettleBench& bench) {
   need_one_jaw(points_mm, asked, bench);
   slab.outline_mm = band_outline(slab.frame.points_mm, asked.width_mm);
   const double middle_mm = slab.frame.height_mm;
+  slab.low_mm = middle_mm - reach_mm;
+  slab.high_mm = middle_mm + reach_mm;
+  try {
+    static_cast<void>(slab.solid());
+  } catch (const std::invalid_argument&) {
+    throw std::runtime_error("a band of " + three_figures(asked.width_mm) +
+                             " mm about the arch's points crosses itself: take a smaller 'width_mm', or "
+                             "points in their order along the arch");
+  }
   bench.details = {{"arch_normal", to_json(slab.frame.look)}, {"jaws", nlohmann::ordered_json::array()}};
   for (int jaw = 0; jaw < 2; ++jaw) {
     SplintJaw& of = made.jaws[jaw];
@@ -150,11 +161,8 @@ Splint settle(const Splint& asked, const SettleBench& bench) {
                band_outline(longer_by(slab.frame.points_mm, margin_mm), asked.width_mm + 2.0 * margin_mm),
                middle_mm - reach_mm, middle_mm + reach_mm};
     const std::string& name = name_of(asked, jaw).name;
-    const brep::Solid near =
-        brep::boolean(bench.object(name), brep::Operation::Intersection, of.near.solid(), bench.progress.stop)
-            .solid;
-    of.tip_mm =
-        tip_of(near, {slab.frame, slab.outline_mm, 0.0, 0.0}, jaw == 0 ? 1.0 : -1.0, name, asked.width_mm);
+    of.tip_mm = tip_of(bench.object(name), {slab.frame, slab.outline_mm, of.near.low_mm, of.near.high_mm},
+                       jaw == 0 ? 1.0 : -1.0, name, bench);
   }
   slab.high_mm = made.jaws[0].tip_mm + asked.depth_mm;
   slab.low_mm = made.jaws[1].tip_mm - asked.depth_mm;
@@ -163,13 +171,6 @@ Splint settle(const Splint& asked, const SettleBench& bench) {
                              three_figures(made.jaws[1].tip_mm - made.jaws[0].tip_mm) + " mm, so that " +
                              three_figures(slab.high_mm - slab.low_mm) + " mm are left for a splint of " +
                              three_figures(asked.thickness_mm) + " mm: open the bite, or raise 'depth_mm'");
-  try {
-    static_cast<void>(slab.solid());
-  } catch (const std::invalid_argument&) {
-    throw std::runtime_error("a band of " + three_figures(asked.width_mm) +
-                             " mm about the arch's points crosses itself: take a smaller 'width_mm', or "
-                             "points in their order along the arch");
-  }
   for (int jaw = 0; jaw < 2; ++jaw) {
     SplintJaw& of = made.jaws[jaw];
     const double sign = jaw == 0 ? 1.0 : -1.0;

@@ -62,7 +62,7 @@ TEST(ArchBand, InABendSharperThanHalfTheWidthTheInnerSideIsCutShort) {
     bend.emplace_back(3.0 * std::cos(i * M_PI / 8.0), 3.0 * std::sin(i * M_PI / 8.0));
   const std::vector<glm::dvec2> outline = band_outline(bend, 8.0);
   // Half a disc of 7 mm, which the square ends go beyond by what they reach past its middle.
-  EXPECT_GT(area_mm2(outline), 0.5 * M_PI * 49.0 * 0.95);
+  EXPECT_GT(area_mm2(outline), 0.5 * M_PI * 49.0 * 0.85);
   EXPECT_LT(area_mm2(outline), 0.5 * M_PI * 49.0 + 2.0 * 49.0);
 }
 
@@ -105,10 +105,10 @@ TEST(SplintStep, AtARimThatIsUndercutItCanBePutOnBothJaws) {
   const Plan plan = ball_plan(folder, splint_step(arch_at_rim + R"(, "width_mm": 10)") + R"(,
       {"id": "up", "do": "seating", "object": "wafer", "against": ["upper"], "direction": [0, 0, 1]},
       {"id": "down", "do": "seating", "object": "wafer", "against": ["lower"], "direction": [0, 0, -1]},
-      {"id": "aside", "do": "seating", "object": "wafer", "against": ["upper"], "direction": [0, 1, 0]})");
+      {"id": "aside", "do": "seating", "object": "wafer", "against": ["upper"], "direction": [0, -1, 0]})");
   const Json measured = measurements_json(plan, evaluate(plan, options));
   for (const Json& seat : measured) {
-    // Over the rim it reaches 2 mm above the face, which nothing passes from the side.
+    // In front of the rim it reaches 2 mm above the face, which cannot pass the ball from behind.
     EXPECT_EQ(seat.at("verdict"), seat.at("id") == "aside" ? "FAIL" : "PASS") << seat.dump(1);
     if (seat.at("id") == "aside") {
       EXPECT_GT(seat.at("depth_mm").get<double>(), 0.5) << seat.dump(1);
