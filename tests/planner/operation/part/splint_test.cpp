@@ -34,7 +34,7 @@ std::string splint_refusal(const ScratchFolder& folder, const std::string& field
   return "";
 }
 
-void expect_says(const std::string& refusal, const std::string& words) {
+void expect_refused_with(const std::string& refusal, const std::string& words) {
   EXPECT_NE(refusal.find(words), std::string::npos) << refusal;
 }
 
@@ -118,16 +118,17 @@ TEST(SplintStep, AtARimThatIsUndercutItCanBePutOnBothJaws) {
 
 TEST(SplintStep, RefusesWhatMakesNoSplintInASentenceThatSaysWhy) {
   const ScratchFolder folder;
-  expect_says(splint_refusal(folder, arch_within + R"(, "thickness_mm": 0.1)"), "thickness_mm");
-  expect_says(splint_refusal(folder, R"("arch": [[-10, 0, 5], [0, 0, 5], [10, 0, 5]])"), "lie on one line");
-  expect_says(splint_refusal(folder, R"("arch": [[-10, 2, 5], [0, -8, 5], [10, 2, -5]])"),
-              "point 3 of the arch lies on 'lower', the others on 'upper'");
-  expect_says(splint_refusal(folder, R"("arch": [[-30, 2, 30], [0, -40, 30], [30, 2, 30]])"),
-              "mm off 'upper'");
-  expect_says(splint_refusal(folder, arch_within + R"(, "upper_direction": [1, 0, 0])"),
-              "along the teeth's sides nothing can be put on");
-  expect_says(splint_refusal(folder, arch_within + R"(, "upper_direction": [0, 0, -1])"),
-              "180 degrees off the arch's normal");
+  expect_refused_with(splint_refusal(folder, arch_within + R"(, "thickness_mm": 0.1)"), "thickness_mm");
+  expect_refused_with(splint_refusal(folder, R"("arch": [[-10, 0, 5], [0, 0, 5], [10, 0, 5]])"),
+                      "lie on one line");
+  expect_refused_with(splint_refusal(folder, R"("arch": [[-10, 2, 5], [0, -8, 5], [10, 2, -5]])"),
+                      "point 3 of the arch lies on 'lower', the others on 'upper'");
+  expect_refused_with(splint_refusal(folder, R"("arch": [[-30, 2, 30], [0, -40, 30], [30, 2, 30]])"),
+                      "mm off 'upper'");
+  expect_refused_with(splint_refusal(folder, arch_within + R"(, "upper_direction": [1, 0, 0])"),
+                      "along the teeth's sides nothing can be put on");
+  expect_refused_with(splint_refusal(folder, arch_within + R"(, "upper_direction": [0, 0, -1])"),
+                      "180 degrees off the arch's normal");
 }
 
 }  // namespace
