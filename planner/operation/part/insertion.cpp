@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/operation/part/insertion.h"
 
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
 #include <stdexcept>
 
 #include "planner/operation/table/number_format.h"
@@ -26,6 +29,23 @@ void check(const Insertion& insertion, const Place& place) {
 glm::dvec3 direction_of(const Insertion& insertion, const glm::dmat3& lps_from_head) {
   if (insertion.direction) return glm::normalize(*insertion.direction);
   return glm::normalize(lps_from_head * voxel::parse_view(*insertion.seen_from).look);
+}
+
+std::vector<glm::dvec3> directions_about(const glm::dvec3& first, double within_deg, double step_deg) {
+  const glm::dvec3 beside = std::abs(first.z) < 0.6 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 u = glm::normalize(glm::cross(beside, first)), v = glm::cross(first, u);
+  std::vector<glm::dvec3> found{first};
+  const int rings = static_cast<int>(std::floor(within_deg / step_deg + 1e-9));
+  for (int ring = 1; ring <= rings; ++ring) {
+    const double tilt = glm::radians(ring * step_deg);
+    const int count = std::max(4, static_cast<int>(std::round(360.0 * std::sin(tilt) / step_deg)));
+    for (int i = 0; i < count; ++i) {
+      const double turn = 2.0 * glm::pi<double>() * i / count;
+      found.push_back(glm::normalize(std::cos(tilt) * first +
+                                     std::sin(tilt) * (std::cos(turn) * u + std::sin(turn) * v)));
+    }
+  }
+  return found;
 }
 
 std::string in_words(const Insertion& insertion) {

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "planner/operation/table/field.h"
 #include "planner/operation/table/scope.h"
@@ -20,6 +21,9 @@ struct Insertion {
 void check(const Insertion& insertion, const Place& place);
 /// A unit vector, LPS.
 glm::dvec3 direction_of(const Insertion& insertion, const glm::dmat3& lps_from_head);
+/// The first direction, then rings about it a step apart up to `within_deg`, their directions about a step
+/// apart. Precondition: a unit vector.
+std::vector<glm::dvec3> directions_about(const glm::dvec3& first, double within_deg, double step_deg);
 /// "(0, 1, 0)", "the view from anterior".
 std::string in_words(const Insertion& insertion);
 

@@ -4,7 +4,6 @@
 // repeats the first and the best one.
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <vector>
 
 #include "brep/shape/shadow.h"
@@ -28,24 +27,6 @@ void check(const InsertionSearch& asked, const Place& place) {
   check(asked.insertion, place);
   if (asked.step_deg > asked.within_deg)
     place.at("step_deg").refuse("is larger than 'within_deg', so no direction but the first is tried");
-}
-
-/// The first direction, then rings about it a step apart, their directions about a step apart.
-std::vector<glm::dvec3> directions_about(const glm::dvec3& first, double within_deg, double step_deg) {
-  const glm::dvec3 beside = std::abs(first.z) < 0.6 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
-  const glm::dvec3 u = glm::normalize(glm::cross(beside, first)), v = glm::cross(first, u);
-  std::vector<glm::dvec3> found{first};
-  const int rings = static_cast<int>(std::floor(within_deg / step_deg + 1e-9));
-  for (int ring = 1; ring <= rings; ++ring) {
-    const double tilt = glm::radians(ring * step_deg);
-    const int count = std::max(4, static_cast<int>(std::round(360.0 * std::sin(tilt) / step_deg)));
-    for (int i = 0; i < count; ++i) {
-      const double turn = 2.0 * glm::pi<double>() * i / count;
-      found.push_back(glm::normalize(std::cos(tilt) * first +
-                                     std::sin(tilt) * (std::cos(turn) * u + std::sin(turn) * v)));
-    }
-  }
-  return found;
 }
 
 double by_mesh_mm3(const brep::Solid& solid, const glm::dvec3& direction, const AnswerBench& bench) {

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "brep/mesh/solid.h"
+
+namespace octotomy::brep {
+
+/// The space that a solid leaves free in a box, which stands off the solid by `margin_mm`: its walls are the
+/// solid's gaps and holes. Cavities of the solid belong to it. Has the solid's proof, because the box touches
+/// nothing. Throws std::invalid_argument if the solid is empty or the margin is not above 0. Cost: linear.
+Solid free_space(const Solid& solid, double margin_mm);
+
+}  // namespace octotomy::brep

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "brep/mesh/health.h"
+#include "brep/mesh/solid.h"
+#include "planner/operation/table/json.h"
+#include "voxel/space/progress.h"
+#include "voxel/tree/octree.h"
+
+// Whether a printer can make a part: one line a question, each with its verdict, numbers and place.
+namespace octotomy::planner {
+
+/// A printer and its material.
+struct PrintLimits {
+  glm::dvec3 up{0.0, 0.0, 1.0};  ///< unit, LPS: from the bed to the layers above
+  double overhang_deg = 45.0;
+  double least_wall_mm = 0.6, least_gap_mm = 0.5;
+  glm::dvec3 bed_mm{145.0, 145.0, 185.0};  ///< width, depth and height of what the printer can hold
+};
+
+/// The answer to one question.
+struct PrintCheck {
+  std::string check;                   ///< "wall"
+  std::optional<std::string> verdict;  ///< PASS, WARN or FAIL; none: not measured
+  std::string says;                    ///< one sentence
+  std::optional<glm::dvec3> at_mm;     ///< the place of the worst fault, LPS
+  Json numbers = Json::object();
+};
+
+/// Closed, self-crossing and outward: what health() finds, with the place of the first fault.
+std::vector<PrintCheck> health_checks(const brep::Triangles& triangles, const brep::Health& health);
+/// Overhangs and the printer's bed, of any surface that has triangles. Precondition: it can be linked.
+std::vector<PrintCheck> build_checks(const brep::Linked& surface, const PrintLimits& limits);
+/// Pieces, cavities, the smallest wall and the smallest gap of a solid. Voxels, where there are any, answer the
+/// same and turn a PASS into a WARN where they are further apart than voxels can tell. Precondition: the solid
+/// is not empty.
+std::vector<PrintCheck> solid_checks(const brep::Solid& solid, const voxel::Octree* voxels,
+                                     const PrintLimits& limits, const voxel::Progress& progress);
+/// The same four, as not measured, with the reason.
+std::vector<PrintCheck> missing_solid_checks(const std::string& why);
+
+/// FAIL before WARN before PASS.
+std::string worst_verdict(const std::vector<PrintCheck>& checks);
+Json to_json(const std::vector<PrintCheck>& checks);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A splint between two jaws: a slab along the arch less what the teeth need.
+//
+// 1 The arch's plane and a band about the curve through its points; the slab reaches `depth_mm` over the tips
+//   of both rows of teeth. The jaws near the band are all that counts.
+// 2 The insertion directions, typed or found: that of a grid along which the least of the teeth is undercut.
+// 3 From the slab are taken the teeth grown by the offset, and the shadow of the teeth grown by the offset less
+//   the tolerated undercut. That shadow lies within the grown teeth where there is no undercut, so that there
+//   the fitting surface is that of the grown teeth.
+// 4 Walls thinner than asked are cut off: only what balls of that diameter within the splint hold stays. Cuts
+//   stand off those balls, so that the fitting surface itself does not move.
+// 5 The largest piece, with points that files for printers can hold.
+//
+// 1 and 2 are settled once, by mesh and voxels, and are shared values of both kernels.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/flat_triangles.h"
+#include "brep/mesh/health.h"
+#include "brep/shape/offset.h"
+#include "brep/shape/shadow.h"
+#include "brep/shape/untangle.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/part/arch_band.h"
+#include "planner/operation/part/insertion.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "verify/witness/offset_witness.h"
+#include "voxel/filter/components.h"
+#include "voxel/filter/offset.h"
+#include "voxel/filter/shadow.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::planner {
+namespace {
+
+/// What is settled of a jaw.
+struct SplintJaw {
+  Slab near;                  ///< the part of the jaw that counts
+  glm::dvec3 along{0, 0, 1};  ///< unit, LPS: in which the splint moves onto it
+  double end_mm = 0.0;        ///< p . along, behind all that counts
+  double tip_mm = 0.0;        ///< p . look of the teeth's tips
+};
+
+struct Splint {
+  ObjectName upper, lower;
+  std::vector<Mark> arch;
+  double offset_mm = 0.1, depth_mm = 2.0, thickness_mm = 1.5, width_mm = 14.0, tolerance_mm = 0.12;
+  std::optional<glm::dvec3> upper_direction, lower_direction;
+  // Settled.
+  Slab slab;
+  SplintJaw jaws[2];  ///< upper, lower
+};
+
+/// How far around the band, and above and below it, a jaw counts.
+constexpr double margin_mm = 3.0, reach_mm = 12.0;
+/// Found directions are tilted from the arch's normal by at most this, in steps.
+constexpr double search_deg = 20.0, search_step_deg = 10.0;
+/// Beyond this angle from the arch's normal a direction runs along the teeth's sides.
+constexpr double steepest_deg = 60.0;
+/// Cells of the mesh's offsets of teeth; flat parts lie within a 16th of it.
+constexpr double fit_cell_mm = 0.5;
+
+const ObjectName& name_of(const Splint& splint, int jaw) {
+  return jaw == 0 ? splint.upper : splint.lower;
+}
+
+void check(const Splint& splint, const Place& place) {
+  if (splint.upper.name == splint.lower.name)
+    place.at("lower").refuse("is the upper jaw itself: name the object with the lower teeth");
+}
+
+/// Throws where the points do not all lie on one jaw.
+void need_one_jaw(const std::vector<glm::dvec3>& points_mm, const Splint& splint, const SettleBench& bench) {
+  constexpr double on_mm = 3.0;  // landmarks are placed by hand
+  std::vector<double> to[2];
+  double sum[2] = {0.0, 0.0};
+  for (int jaw = 0; jaw < 2; ++jaw) {
+    const brep::Solid& solid = bench.object(name_of(splint, jaw).name);
+    if (solid.empty())
+      throw std::runtime_error("'" + name_of(splint, jaw).name + "' is empty: it has no teeth");
+    for (const brep::Foot& foot : solid.tree().feet(points_mm)) to[jaw].push_back(foot.distance_mm);
+    for (const double mm : to[jaw]) sum[jaw] += mm;
+  }
+  const int on = sum[0] <= sum[1] ? 0 : 1;
+  for (std::size_t i = 0; i < points_mm.size(); ++i) {
+    if (to[on][i] <= on_mm) continue;
+    const std::string point = "point " + std::to_string(i + 1) + " of the arch lies ";
+    if (to[1 - on][i] < to[on][i])
+      throw std::runtime_error(point + "on '" + name_of(splint, 1 - on).name + "', the others on '" +
+                               name_of(splint, on).name + "': give points on the teeth of one jaw");
+    throw std::runtime_error(point + three_figures(to[on][i]) + " mm off '" + name_of(splint, on).name +
+                             "': give points on the biting surfaces of its teeth");
+  }
+}
+
+/// The tips of a jaw's teeth in the band: the least p . look of the upper jaw there, the largest of the lower.
+/// The column is the band, as far up and down as jaws count.
+double tip_of(const brep::Solid& jaw, const Slab& column, double sign, const std::string& name,
+              const SettleBench& bench) {
+  const brep::Solid teeth =
+      brep::boolean(jaw, brep::Operation::Intersection, column.solid(), bench.progress.stop).solid;
+  double tip_mm = std::numeric_limits<double>::infinity();
+  for (const glm::dvec3& p_mm : teeth.triangles().points_mm)
+    tip_mm = std::min(tip_mm, sign * glm::dot(p_mm, column.frame.look));
+  // A jaw that goes on beyond the column has its tips nowhere in it.
+  constexpr double cut_mm = 1e-3;
+  if (!(std::abs(sign * tip_mm - column.frame.height_mm) < reach_mm - cut_mm))
+    throw std::runtime_error("'" + name + "' has no tips of teeth within " + three_figures(reach_mm) +
+                             " mm above or below the arch's points: give points on its biting surfaces, and "
+                             "jaws that end there");
+  return sign * tip_mm;
+}
+
+/// The direction along which the least of the teeth within the slab is undercut.
+glm::dvec3 found_direction(const Object& object, const Slab& slab, double sign, const SettleBench& bench,
+                           nlohmann::ordered_json& details) {
+  const glm::dvec3 first = sign * slab.frame.look;
+  if (!object.voxel.symbol || object.voxel.octree.is_empty()) return first;
+  const voxel::Universe universe = object.voxel.octree.universe();
+  const voxel::Expression solid =
+      *object.voxel.symbol & slab.expression() & voxel::Expression(voxel::bounds(universe.lattice()));
+  const voxel::Octree teeth =
+      voxel::combine(universe, voxel::Expression(object.voxel.octree) & slab.expression());
+  if (teeth.is_empty()) return first;
+  const std::vector<glm::dvec3> directions = directions_about(first, search_deg, search_step_deg);
+  const std::vector<double> filled = voxel::filled_mm3(teeth, solid, directions, bench.progress);
+  const auto best = static_cast<std::size_t>(std::min_element(filled.begin(), filled.end()) - filled.begin());
+  details["filled_mm3"] = filled[best];
+  details["filled_along_normal_mm3"] = filled[0];
+  return directions[best];
+}
+
+Splint settle(const Splint& asked, const SettleBench& bench) {
+  const Stopwatch watch(bench.timings, "splint_settle");
+  Splint made = asked;
+  std::vector<glm::dvec3> points_mm;
+  for (const Mark& mark : asked.arch) points_mm.push_back(mark_mm(mark, bench.objects));
+  Slab& slab = made.slab;
+  slab.frame = arch_frame(points_mm, bench.objects.lps_from_head[2]);
+  need_one_jaw(points_mm, asked, bench);
+  slab.outline_mm = band_outline(slab.frame.points_mm, asked.width_mm);
+  const double middle_mm = slab.frame.height_mm;
+  slab.low_mm = middle_mm - reach_mm;
+  slab.high_mm = middle_mm + reach_mm;
+  try {
+    static_cast<void>(slab.solid());
+  } catch (const std::invalid_argument&) {
+    throw std::runtime_error("a band of " + three_figures(asked.width_mm) +
+                             " mm about the arch's points crosses itself: take a smaller 'width_mm', or "
+                             "points in their order along the arch");
+  }
+  bench.details = {{"arch_normal", to_json(slab.frame.look)}, {"jaws", nlohmann::ordered_json::array()}};
+  for (int jaw = 0; jaw < 2; ++jaw) {
+    SplintJaw& of = made.jaws[jaw];
+    of.near = {slab.frame,
+               band_outline(longer_by(slab.frame.points_mm, margin_mm), asked.width_mm + 2.0 * margin_mm),
+               middle_mm - reach_mm, middle_mm + reach_mm};
+    const std::string& name = name_of(asked, jaw).name;
+    of.tip_mm = tip_of(bench.object(name), {slab.frame, slab.outline_mm, of.near.low_mm, of.near.high_mm},
+                       jaw == 0 ? 1.0 : -1.0, name, bench);
+  }
+  slab.high_mm = made.jaws[0].tip_mm + asked.depth_mm;
+  slab.low_mm = made.jaws[1].tip_mm - asked.depth_mm;
+  if (!(slab.high_mm - slab.low_mm >= asked.thickness_mm))
+    throw std::runtime_error("the rows of teeth overlap by " +
+                             three_figures(made.jaws[1].tip_mm - made.jaws[0].tip_mm) + " mm, so that " +
+                             three_figures(slab.high_mm - slab.low_mm) + " mm are left for a splint of " +
+                             three_figures(asked.thickness_mm) + " mm: open the bite, or raise 'depth_mm'");
+  for (int jaw = 0; jaw < 2; ++jaw) {
+    SplintJaw& of = made.jaws[jaw];
+    const double sign = jaw == 0 ? 1.0 : -1.0;
+    nlohmann::ordered_json details{{"object", name_of(asked, jaw).name}};
+    const std::optional<glm::dvec3>& typed = jaw == 0 ? asked.upper_direction : asked.lower_direction;
+    if (typed) {
+      of.along = glm::normalize(*typed);
+      const double off_deg =
+          glm::degrees(std::acos(std::clamp(sign * glm::dot(of.along, slab.frame.look), -1.0, 1.0)));
+      if (off_deg > steepest_deg)
+        throw std::runtime_error(std::string(jaw == 0 ? "'upper_direction'" : "'lower_direction'") +
+                                 " lies " + three_figures(off_deg) +
+                                 " degrees off the arch's normal: along the teeth's sides nothing can be put "
+                                 "on, so point it from the splint to the teeth");
+    } else {
+      of.along = found_direction(bench.objects.at(name_of(asked, jaw).name), slab, sign, bench, details);
+    }
+    // The jaw counts a little beyond the slab, where no cut of it comes near.
+    (jaw == 0 ? of.near.high_mm : of.near.low_mm) =
+        jaw == 0 ? slab.high_mm + margin_mm : slab.low_mm - margin_mm;
+    of.end_mm = std::max(of.near.far_end_mm(of.along), slab.far_end_mm(of.along)) + margin_mm;
+    details["direction"] = to_json(of.along);
+    details["is_found"] = !typed;
+    details["tip_mm"] = of.tip_mm;
+    bench.details["jaws"].push_back(details);
+  }
+  bench.details["bite_mm"] = made.jaws[0].tip_mm - made.jaws[1].tip_mm;
+  bench.details["height_mm"] = slab.high_mm - slab.low_mm;
+  if (slab.frame.off_plane_mm > asked.depth_mm)
+    bench.findings.push_back("points of the arch lie up to " + three_figures(slab.frame.off_plane_mm) +
+                             " mm off their plane: teeth there are covered that much less or more");
+  return made;
+}
+
+std::string definition(const Splint& splint, const Objects&) {
+  return "splint between " + splint.upper.name + " and " + splint.lower.name + ", " +
+         plain(splint.offset_mm) + " mm off the teeth";
+}
+
+/// How far the surface that casts the shadow lies off the teeth. The teeth themselves cast it where that is
+/// less than flat parts of the mesh's offsets are good to.
+double shadow_by_mm(const Splint& splint) {
+  const double by_mm = splint.offset_mm - splint.tolerance_mm;
+  return std::abs(by_mm) < fit_cell_mm / 16.0 ? 0.0 : by_mm;
+}
+
+/// Balls of the thickness that stand off by this reach over the splint's surface: above the error of either
+/// kernel's distances on flat and gently curved parts.
+double opening_room_mm(const Splint& splint) {
+  return 0.05 * splint.thickness_mm;
+}
+
+/// The voxels of a jaw that a splint needs free.
+voxel::Expression taken_by(const Splint& splint, int jaw, const VoxelBench& bench) {
+  const VoxelSide& object = bench.object(name_of(splint, jaw).name);
+  const voxel::Expression near = splint.jaws[jaw].near.expression();
+  const voxel::Octree octree = bench.combined(voxel::Expression(object.octree) & near);
+  if (octree.is_empty()) return voxel::Expression(octree);
+  const voxel::Expression solid = bench.within_universe(*object.symbol & near);
+  const voxel::Expression grown(voxel::offset(octree, solid, splint.offset_mm, bench.progress));
+  voxel::Expression casts = solid;
+  if (shadow_by_mm(splint) != 0.0)
+    casts = voxel::Expression(voxel::offset(octree, solid, shadow_by_mm(splint), bench.progress));
+  const voxel::Octree casting = bench.combined(casts);
+  if (casting.is_empty()) return grown;
+  const voxel::Shadow shadow =
+      voxel::shadow(casting, casts, {splint.jaws[jaw].along, splint.jaws[jaw].end_mm, bench.progress});
+  return grown | voxel::Expression(shadow.window);
+}
+
+void voxels(const Splint& splint, const VoxelBench& bench, VoxelSide& made) {
+  made.lineage = "the slab less distances to, and columns of, the octrees of the teeth";
+  const voxel::Expression slab = splint.slab.expression();
+  const voxel::Expression taken = [&] {
+    const Stopwatch watch(bench.timings, "splint_voxel");
+    return taken_by(splint, 0, bench) | taken_by(splint, 1, bench);
+  }();
+  const voxel::Expression whole = slab - taken;
+  const voxel::Octree octree = bench.combined(whole);
+  if (octree.is_empty()) {
+    made.octree = octree;
+    made.symbol = voxel::Expression(octree);
+    return;
+  }
+  const Stopwatch watch(bench.timings, "splint_voxel");
+  const double radius_mm = 0.5 * splint.thickness_mm;
+  const voxel::Expression core(
+      voxel::offset(octree, bench.within_universe(whole), -radius_mm, bench.progress));
+  const voxel::Octree cores = bench.combined(core);
+  voxel::Expression opened(cores);
+  if (!cores.is_empty())
+    opened = whole & voxel::Expression(
+                         voxel::offset(cores, core, radius_mm + opening_room_mm(splint), bench.progress));
+  const voxel::Components pieces = voxel::components(bench.combined(opened));
+  made.octree = pieces.largest;
+  // What is not of the largest piece is taken away with a voxel around it.
+  made.symbol = bench.within_universe(opened);
+  if (pieces.voxel_counts.size() > 1)
+    made.symbol = bench.within_universe(
+        opened - voxel::Expression(bench.combined(opened - voxel::Expression(pieces.largest))));
+}
+
+/// The same of a jaw's mesh.
+std::vector<brep::Solid> taken_by(const Splint& splint, int jaw, const MeshBench& bench, MeshSide& made) {
+  const brep::Progress progress{bench.progress.stop, bench.progress.report};
+  const brep::BooleanResult near =
+      brep::boolean(bench.object(name_of(splint, jaw).name), brep::Operation::Intersection,
+                    splint.jaws[jaw].near.solid(), bench.progress.stop);
+  made.shift_mm += near.shift_mm;
+  if (near.solid.empty()) return {};
+  std::vector<brep::Solid> taken{brep::offset(near.solid, {splint.offset_mm, fit_cell_mm, progress})};
+  const double by_mm = shadow_by_mm(splint);
+  const brep::Solid casts =
+      by_mm == 0.0 ? near.solid : brep::offset(near.solid, {by_mm, fit_cell_mm, progress});
+  const brep::Shadow shadow =
+      brep::shadow(casts, {splint.jaws[jaw].along, splint.jaws[jaw].end_mm, progress});
+  taken.push_back(shadow.solid);
+  return taken;
+}
+
+/// The largest component; a finding lists what is dropped.
+brep::Solid largest_piece(const brep::Solid& solid, std::vector<std::string>& findings) {
+  const std::vector<brep::Component>& pieces = solid.components();
+  if (pieces.size() < 2) return solid;
+  double dropped_mm3 = 0.0;
+  for (std::size_t i = 1; i < pieces.size(); ++i) dropped_mm3 += pieces[i].volume_mm3;
+  findings.push_back(std::to_string(pieces.size() - 1) + " pieces of " + three_figures(dropped_mm3) +
+                     " mm\u00b3 beside the splint are left out");
+  return brep::trusted_solid(brep::part_of(solid.mesh(), pieces.front().faces),
+                             brep::proof_of_part(solid.proof()));
+}
+
+/// The solid with points of single precision, as files for printers have them, and still without triangles that
+/// intersect: thin ones, where a Boolean's surfaces meet, would cross their neighbours when a file is written.
+brep::Solid in_single_precision(const brep::Solid& solid, std::vector<std::string>& findings) {
+  constexpr int most_rounds = 4;
+  brep::Triangles triangles = solid.triangles();
+  for (int round = 0; round < most_rounds; ++round) {
+    for (glm::dvec3& p_mm : triangles.points_mm) p_mm = glm::dvec3(glm::vec3(p_mm));
+    brep::Mesh mesh = brep::mesh_of(triangles);
+    brep::take_out_flat_triangles(mesh);
+    if (brep::health(mesh).solid()) return brep::trusted_solid(mesh, brep::Proof::Health);
+    triangles = brep::untangle(mesh).surface;
+  }
+  findings.push_back(
+      "triangles intersect where its points are rounded to single precision: mend a file of it by octotomy "
+      "repair --solid before it is printed");
+  return solid;
+}
+
+void triangles(const Splint& splint, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "splint");
+  const brep::Progress progress{bench.progress.stop, bench.progress.report};
+  std::vector<brep::Solid> operands{splint.slab.solid()};
+  for (int jaw = 0; jaw < 2; ++jaw) {
+    const std::vector<brep::Solid> taken = taken_by(splint, jaw, bench, made);
+    operands.insert(operands.end(), taken.begin(), taken.end());
+  }
+  const auto take = [&](const brep::BooleanResult& found) {
+    made.shift_mm += found.shift_mm;
+    made.findings.insert(made.findings.end(), found.findings.begin(), found.findings.end());
+    return found.solid;
+  };
+  brep::Solid whole = operands.front();
+  for (std::size_t i = 1; i < operands.size(); ++i)
+    whole = take(brep::boolean(whole, brep::Operation::Difference, operands[i], bench.progress.stop));
+  made.details["before_opening_mm3"] = brep::volume_mm3(whole);
+  made.lineage = "the slab's mesh less level sets of the distance to the teeth and their exact shadows";
+  if (whole.empty()) {
+    made.whole = whole;
+    return;
+  }
+  const double radius_mm = 0.5 * splint.thickness_mm, cell_mm = splint.thickness_mm / 3.0;
+  const brep::Solid core = brep::offset(whole, {-radius_mm, cell_mm, progress});
+  if (core.empty()) {
+    made.findings.push_back("no part of the splint is " + three_figures(splint.thickness_mm) +
+                            " mm thick: open the bite, or raise 'depth_mm' or 'width_mm'");
+    made.whole = core;
+    return;
+  }
+  const brep::Solid reach = brep::offset(core, {radius_mm + opening_room_mm(splint), cell_mm, progress});
+  made.whole = in_single_precision(
+      largest_piece(take(brep::boolean(whole, brep::Operation::Intersection, reach, bench.progress.stop)),
+                    made.findings),
+      made.findings);
+  made.details["thin_mm3"] = made.details["before_opening_mm3"].get<double>() - brep::volume_mm3(*made.whole);
+}
+
+void bound(const Splint& splint, const BoundBench& bench, Object& made) {
+  double apart_mm = 0.0;
+  const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
+  for (int jaw = 0; jaw < 2; ++jaw) {
+    const Object& object = bench.objects.at(name_of(splint, jaw).name);
+    inherit(object, made);
+    if (!object.mesh.whole || !made.mesh.whole || made.mesh.whole->empty()) continue;
+    double of_mm = verify::offset_allowance_mm(
+        {object.witness, object.voxel.octree, *object.mesh.whole, is_whole_voxels(object.voxel)},
+        {splint.offset_mm, fit_cell_mm}, made.mesh.whole->measures().area_mm2);
+    if (is_whole_voxels(object.voxel)) of_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+    apart_mm = std::max(apart_mm, of_mm);
+    made.bound.reshaped.push_back(object.id);
+  }
+  made.bound.measured_apart_mm += apart_mm;
+  const std::vector<CutPlane> sides = planes_of(splint.slab.sides());
+  made.bound.planes.insert(made.bound.planes.end(), sides.begin(), sides.end());
+  constexpr double rounding = 1e-9;
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(splint.slab.frame.look[axis]) > 1.0 - rounding)
+      for (const double height_mm : {splint.slab.low_mm, splint.slab.high_mm})
+        made.bound.planes.push_back({axis, splint.slab.frame.look, height_mm, 1.0});
+  made.shared_values.push_back("the slab's place and the insertion directions");
+  made.ends_with_universe = true;
+}
+
+}  // namespace
+
+Operation splint_operation() {
+  return Describe<Splint>("splint",
+                          "Makes a splint between the teeth of two jaws that can be slid onto both.",
+                          Makes::Object)
+      .takes(field("upper", &Splint::upper, "The upper jaw at its planned place.")
+                 .required()
+                 .positional("upper"))
+      .takes(field("lower", &Splint::lower, "The lower jaw at its place, with the bite that is planned.")
+                 .required()
+                 .positional("lower"))
+      .takes(field("arch", &Splint::arch,
+                   "Three or more points on the biting surfaces of one jaw, from one end of the arch to the "
+                   "other: [x, y, z] or landmarks.")
+                 .required()
+                 .from(3))
+      .takes(field("offset_mm", &Splint::offset_mm,
+                   "The gap between splint and teeth; 0.05 to 0.2 are published.")
+                 .from(0.05)
+                 .to(0.5))
+      .takes(
+          field("depth_mm", &Splint::depth_mm,
+                "How far the splint reaches over the tips of both rows; published splints of 5 seat badly.")
+              .from(0.5)
+              .to(6.0))
+      .takes(field("thickness_mm", &Splint::thickness_mm,
+                   "Thinner walls are cut off; 0.6 is the least thickness published for splints.")
+                 .from(0.6)
+                 .to(5.0))
+      .takes(field("width_mm", &Splint::width_mm,
+                   "The splint's width across the arch; molars are about 10 wide.")
+                 .from(4.0)
+                 .to(40.0))
+      .takes(field("tolerance_mm", &Splint::tolerance_mm,
+                   "How far the splint may reach into undercuts of the gap's surface, so that it snaps on; "
+                   "the default is the one published for splints.")
+                 .from(0.0)
+                 .to(0.5))
+      .takes(field("upper_direction", &Splint::upper_direction,
+                   "The direction in which the splint moves onto the upper teeth, LPS. Default: the one of "
+                   "least undercut within 20 degrees of the arch's normal.")
+                 .direction())
+      .takes(field("lower_direction", &Splint::lower_direction, "The same onto the lower teeth.").direction())
+      .example(R"({"id": "wafer", "do": "splint", "upper": "advanced", "lower": "rest",
+        "arch": [[-24, -52, -56], [0, -86, -56], [24, -52, -56]]})")
+      .on_files("octotomy splint upper.stl lower.stl --arch -24,-52,-56 0,-86,-56 24,-52,-56 -o splint.stl")
+      .of_head()
+      .check(check)
+      .settle(settle)
+      .object(definition, voxels, triangles, bound);
+}
+
+}  // namespace octotomy::planner
