@@ -12,7 +12,7 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr const char* name = "import";
+constexpr const char* import_name = "import";
 
 struct Import {
   std::filesystem::path path;
@@ -63,7 +63,7 @@ void bound(const Import&, const BoundBench&, Object&) {}
 }  // namespace
 
 bool is_import(const Action& action) {
-  return action.operation().name == name;
+  return action.operation().name == import_name;
 }
 
 voxel::Box import_box(const Action& action, const std::filesystem::path& folder) {
@@ -73,7 +73,7 @@ voxel::Box import_box(const Action& action, const std::filesystem::path& folder)
 }
 
 Operation import_operation() {
-  return Describe<Import>(name, "Reads a closed mesh of any program as an object.", Makes::Object)
+  return Describe<Import>(import_name, "Reads a closed mesh of any program as an object.", Makes::Object)
       .takes(field("path", &Import::path,
                    std::string("The file: ") + brep::mesh_formats_read + ", relative to the plan's folder.")
                  .required())
