@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <tbb/parallel_for.h>
 
@@ -80,10 +81,15 @@ ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, c
                                const ExpressionScanOptions& options) {
   const GreyOctree& own = of_frame.on_scan_lattice();
   const glm::ivec3& dims = frame.lattice.dims;
-  if (own.universe().lps_from_voxel != frame.lattice.lps_from_voxel ||
-      own.universe().side() < std::max({dims.x, dims.y, dims.z}))
-    throw Error(ErrorCode::Input,
-                "the scan has more samples along an axis than an octree can: crop it, or average it down");
+  // From samples to voxels: the plan's universe serves where its voxels lie on the samples.
+  const std::optional<glm::ivec3> offset =
+      whole_voxel_offset(glm::inverse(own.universe().lps_from_voxel) * frame.lattice.lps_from_voxel);
+  if (!offset || glm::any(glm::lessThan(*offset, glm::ivec3(0))) ||
+      glm::any(glm::greaterThan(*offset + dims, glm::ivec3(own.universe().side()))))
+    throw Error(
+        ErrorCode::Input,
+        "the scan reaches out of the plan's universe, or has more samples along an axis than an octree "
+        "can: crop it, or average it down");
   ExpressionScan made{frame};
   made.hole = options.hole ? *options.hole : frame.padding ? *frame.padding : value_below(frame);
   if (!options.hole) made.scene.padding = made.hole;
@@ -119,7 +125,7 @@ ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, c
           for (int y = 0; y < dims.y; ++y)
             for (int x = 0; x < dims.x; ++x, ++at) {
               Sample& value = values[at];
-              const glm::ivec3 voxel(x, y, z);
+              const glm::ivec3 voxel = glm::ivec3(x, y, z) + *offset;
               const bool is_held = held.contains(voxel);
               std::optional<OwnedSample> owned;
               if (is_held) owned = owners.at(voxel, glm::dvec3(voxel));

@@ -52,6 +52,34 @@ TEST_F(AnExpressionScan, KeepsSamplesAtRestToTheBitAndMarksHoles) {
   EXPECT_LT(made.hole, 0.0);
 }
 
+/// A plan whose voxels are as large as the samples and whose universe begins before the scan.
+TEST(ExpressionScan, IsTheSameInAUniverseThatLiesOnTheSamples) {
+  const auto scene = map_of_shares();
+  glm::dmat4 lps_from_voxel(1.0);
+  lps_from_voxel[3] = {-3.0, -5.0, -1.0, 1.0};
+  const GreyOctree own = grey_octree_of(Universe{5, glm::dmat4(1.0)}, *scene, -1).with_scan(scene);
+  const GreyOctree shifted = grey_octree_of(Universe{5, lps_from_voxel}, *scene, -1).with_scan(scene);
+  const auto scan = [&](const GreyOctree& grey) {
+    const Expression head = window_of(grey, -0.5);
+    const Expression piece = head & Sphere{{12, 12, 12}, 4.0};
+    const glm::dmat4 up{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 2.5, 1}};
+    return expression_scan(*scene, grey, moved(piece, up) | (head - Sphere{{12, 12, 12}, 4.0}));
+  };
+  const ExpressionScan expected = scan(own), made = scan(shifted);
+  EXPECT_GT(made.changed_samples, 100u);
+  EXPECT_EQ(made.changed_samples, expected.changed_samples);
+  EXPECT_EQ(made.hole_samples, expected.hole_samples);
+  EXPECT_EQ(std::get<FloatSamples>(made.scene.samples), std::get<FloatSamples>(expected.scene.samples));
+}
+
+TEST(ExpressionScan, RefusesAScanThatReachesOutOfTheUniverse) {
+  const auto scene = map_of_shares();
+  glm::dmat4 lps_from_voxel(1.0);
+  lps_from_voxel[3] = {1.0, 0.0, 0.0, 1.0};
+  const GreyOctree grey = grey_octree_of(Universe{5, lps_from_voxel}, *scene, -1).with_scan(scene);
+  EXPECT_THROW(expression_scan(*scene, grey, window_of(grey, -0.5)), Error);
+}
+
 TEST(ExpressionScan, HolesLieBelowFloatsThatAreFurtherApartThanOne) {
   Scene scene = *map_of_shares();
   for (float& sample : std::get<FloatSamples>(scene.samples)) sample -= 16777216.0f;
