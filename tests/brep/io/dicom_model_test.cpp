@@ -63,7 +63,7 @@ std::string refusal(const std::string& bytes) {
   return "";
 }
 
-const MeshFinding& finding(const MeshFile& file, const std::string& check) {
+const MeshFinding& model_finding(const MeshFile& file, const std::string& check) {
   for (const MeshFinding& each : file.audit)
     if (each.check == check) return each;
   throw std::runtime_error("no line about " + check);
@@ -79,16 +79,16 @@ TEST(DicomModel, HasTheUnitOfTheDicomHeader) {
     SCOPED_TRACE(code);
     const MeshFile file = read(dicom(stl_box({10, 20, 30}), code));
     EXPECT_LT(glm::distance(file.extent().high_mm, mm * glm::dvec3(10, 20, 30)), 1e-6 * mm);
-    EXPECT_EQ(finding(file, "unit").verdict, MeshVerdict::Pass);
-    EXPECT_NE(finding(file, "unit").detail.find(code), std::string::npos);
-    EXPECT_EQ(finding(file, "frame").verdict, MeshVerdict::Pass);
-    EXPECT_NE(finding(file, "file").detail.find("'A17'"), std::string::npos);
+    EXPECT_EQ(model_finding(file, "unit").verdict, MeshVerdict::Pass);
+    EXPECT_NE(model_finding(file, "unit").detail.find(code), std::string::npos);
+    EXPECT_EQ(model_finding(file, "frame").verdict, MeshVerdict::Pass);
+    EXPECT_NE(model_finding(file, "file").detail.find("'A17'"), std::string::npos);
   }
 }
 
 TEST(DicomModel, AMissingUnitIsAWarning) {
   const MeshFile file = read(dicom(stl_box({10, 20, 30}), ""));
-  EXPECT_EQ(finding(file, "unit").verdict, MeshVerdict::Warn);
+  EXPECT_EQ(model_finding(file, "unit").verdict, MeshVerdict::Warn);
   EXPECT_EQ(file.extent().high_mm, glm::dvec3(10, 20, 30));
 }
 

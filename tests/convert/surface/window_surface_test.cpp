@@ -28,7 +28,7 @@ using tests::area_mm2;
 using tests::fault_in_closedness;
 using tests::volume_mm3;
 
-constexpr double no_limit = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 /// Samples drawn from a list of values, each with the same chance, in a shell of `border` samples of the last.
 voxel::Scene drawn(const glm::ivec3& dims, unsigned seed, const std::vector<float>& values, int border = 0) {
@@ -133,7 +133,7 @@ TEST(WindowSurface, OfNeighbouringWindowsAddsUpToThatOfBoth) {
     const double both = volume(from, to);
     EXPECT_GT(both, 1000.0);
     EXPECT_NEAR(volume(from, middle) + volume(middle, to), both, share * both);
-    EXPECT_NEAR(volume(from, to) + volume(to, no_limit), volume(from, no_limit), share * both);
+    EXPECT_NEAR(volume(from, to) + volume(to, unbounded), volume(from, unbounded), share * both);
   };
   expect_sums(drawn({20, 19, 18}, 11, {0, 40, 90, 110, 150, 190, 260, 300, -500, 900, 0}, 2), 99.5, 199.5,
               299.5, 0.03);
@@ -143,10 +143,10 @@ TEST(WindowSurface, OfNeighbouringWindowsAddsUpToThatOfBoth) {
 
 TEST(WindowSurface, WithoutSamplesOnOneSideHasTheBitsOfTheOtherBoundAlone) {
   const voxel::Scene scene = drawn({12, 11, 10}, 5, {1, 2, 3, 4, 5, 6});
-  const brep::Triangles one = isosurface(scene, 3.5, no_limit), two = isosurface(scene, 3.5, 6.0);
+  const brep::Triangles one = isosurface(scene, 3.5, unbounded), two = isosurface(scene, 3.5, 6.0);
   EXPECT_EQ(one.points_mm, two.points_mm);
   EXPECT_EQ(one.faces, two.faces);
-  const brep::Triangles below = isosurface(scene, -no_limit, 3.5), from = isosurface(scene, 1.0, 3.5);
+  const brep::Triangles below = isosurface(scene, -unbounded, 3.5), from = isosurface(scene, 1.0, 3.5);
   EXPECT_EQ(below.points_mm, from.points_mm);
   EXPECT_EQ(below.faces, from.faces);
 }
