@@ -39,14 +39,14 @@ TEST(Recommended, OfVoxelsThatPassOverAnObjectReachesWhatIsSeen) {
   EXPECT_EQ(found.area_mm2.sources.back().name, "mesh");
 }
 
-TEST(Recommended, IsToldWithUnitHalfWidthCoverageAndSources) {
-  const Json json = to_json(verify::Interval{12.0, 0.5, {{"window", "S d", 0.5}}}, "mm3");
-  EXPECT_EQ(json["value"], 12.0);
-  EXPECT_EQ(json["unit"], "mm3");
-  EXPECT_EQ(json["half_width"], 0.5);
-  EXPECT_EQ(json["coverage"], 0.99);
-  ASSERT_EQ(json["sources"].size(), 1U);
-  EXPECT_EQ(json["sources"][0]["name"], "window");
+TEST(Recommended, HasItsUnitHalfWidthCoverageAndSources) {
+  const MeasuredInterval found = measured(verify::Interval{12.0, 0.5, {{"window", "S d", 0.5}}}, "mm3");
+  EXPECT_EQ(found.value, 12.0);
+  EXPECT_EQ(found.unit, "mm3");
+  EXPECT_EQ(found.half_width, 0.5);
+  EXPECT_EQ(found.coverage, 0.99);
+  ASSERT_EQ(found.sources.size(), 1U);
+  EXPECT_EQ(found.sources[0].name, "window");
 }
 
 }  // namespace
