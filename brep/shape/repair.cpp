@@ -642,6 +642,7 @@ Solid wall_of(const Triangles& given, double wall_mm, const RepairOptions& optio
   Mender finite(given);
   finite.remove_not_finite();
   finite.remove_repeats();
+  if (finite.surface().faces.empty()) return {};
   return thickened(finite.surface(), {0.5 * wall_mm, wall_cell_mm(wall_mm, options), options.progress});
 }
 

@@ -84,7 +84,11 @@ std::map<std::string, ScanSource> scans_of(const Keys& top) {
   std::map<std::string, ScanSource> scans;
   const SortedJson* value = top.find("scans");
   if (value == nullptr) return scans;
-  if (!value->is_object()) refuse("scans", "must name scans, as {\"ct\": {\"path\": \"head.nrrd\"}}");
+  if (!value->is_object() || value->empty())
+    refuse("scans",
+           "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}; a plan of imported meshes "
+           "alone "
+           "leaves it out");
   for (const auto& [name, entry] : value->items()) {
     const Keys keys(entry, "scans, " + name,
                     {"path", "sha256", "series", "join", "slices", "frame", "unit", "spacing_mm", "raw",
@@ -287,6 +291,7 @@ Json plan_schema() {
             {"scans",
              {{"description", "May be left out by plans that import meshes alone."},
               {"type", "object"},
+              {"minProperties", 1},
               {"additionalProperties", scan}}},
             {"universe",
              {{"type", "object"},
