@@ -88,6 +88,30 @@ bool Necks::is_thick(Side& side, const std::vector<glm::ivec3>& part) const {
   return std::any_of(part.begin(), part.end(), [&](const glm::ivec3& at) { return has(*side.eroded, at); });
 }
 
+bool Necks::is_surely_connected(const std::vector<glm::ivec3>& part) const {
+  const voxel::Lattice lattice = octree_.universe().lattice();
+  const auto is_sure = [&](const glm::dvec3& voxel) {
+    const Reading reading = whole_.words(lattice.lps_mm(voxel));
+    return reading.voxel.in && !reading.voxel.near && reading.mesh.in && !reading.mesh.near;
+  };
+  // The part is a whole group of voxels, so a path out of it ends at its first voxel of both answers.
+  const auto leads_to = [&](const glm::ivec3& at, const glm::ivec3& on) {
+    for (int i = 0; i <= fine; ++i)
+      if (!is_sure(glm::mix(glm::dvec3(at), glm::dvec3(on), static_cast<double>(i) / fine))) return false;
+    return true;
+  };
+  return std::any_of(part.begin(), part.end(), [&](const glm::ivec3& at) {
+    if (has(octree_, at) == has(*digitised_, at)) return false;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int by : {-1, 1}) {
+        glm::ivec3 on = at;
+        on[axis] += by;
+        if (has(*common_, on) && leads_to(at, on)) return true;
+      }
+    return false;
+  });
+}
+
 std::optional<glm::dvec3> Necks::neck_by_voxels(Side& side, const std::vector<glm::ivec3>& part) const {
   if (!side.whole) side.whole = connected(*side.set, *common_);
   if (!has(*side.whole, part.front())) return std::nullopt;
@@ -147,9 +171,11 @@ std::optional<glm::dvec3> Necks::neck_mm(const std::vector<glm::dvec3>& part_mm)
       if (near == nullptr) return std::nullopt;
       if (side == nullptr) side = near;
     }
-    if (side == nullptr || is_thick(*side, part)) return std::nullopt;
+    if (side == nullptr) return std::nullopt;
+    const bool is_thin = !is_thick(*side, part);
+    if (!is_thin && is_surely_connected(part)) return std::nullopt;
     std::optional<glm::dvec3> neck = neck_by_voxels(*side, part);
-    if (!neck) neck = neck_by_reading(part.front());
+    if (!neck && is_thin) neck = neck_by_reading(part.front());
     return neck && is_decided(*neck) ? std::nullopt : neck;
   });
 }

@@ -15,10 +15,12 @@
 namespace octotomy::verify {
 
 /// With fewer voxels across, noise and the position of the voxels decide whether a neck is present. The same
-/// holds for a neck thinner than the spacing of the scan's samples, because the kernels interpolate
-/// differently between samples.
+/// holds for a neck thinner than the spacing of the scan's samples, and for any neck through which no path
+/// leads whose points both kernels must have inside, because the kernels interpolate differently between
+/// samples.
 inline constexpr int bridge_voxels = 3;
-inline constexpr const char* thin_neck = "3 voxels or a sample";
+inline constexpr const char* thin_neck =
+    "3 voxels, a sample or the difference of the kernels' interpolations";
 static_assert(bridge_voxels == 3);
 
 /// Two answers that chose connected parts of one object, and the necks by which a part of one answer alone
@@ -36,7 +38,8 @@ class Necks {
 
   /// Returns the place of the thin neck that connects a part to the voxels of both answers. `part_mm` are the
   /// part's points, LPS millimetres, which one answer alone has. None in four cases: the answers agree at one
-  /// of the points; one of the points is connected by a neck that is not thin; no path inside the reading
+  /// of the points; one of the points is connected by a neck that is not thin, along a path whose points both
+  /// kernels must have inside; no path inside the reading
   /// leads from the first point to the voxels of both answers; or the plan decides about the neck. Cost: at
   /// the first call a labelling and an erosion of the set.
   std::optional<glm::dvec3> neck_mm(const std::vector<glm::dvec3>& part_mm) const;
@@ -52,6 +55,9 @@ class Necks {
   /// The side of the answer that alone has the voxel or a neighbour of it; null where the answers agree.
   Side* side_near(const glm::ivec3& at) const;
   bool is_thick(Side& side, const std::vector<glm::ivec3>& part) const;
+  /// Whether the reading leaves both kernels one answer on a path from the part to voxels of both answers. Both
+  /// kernels must then have connected the part, however they interpolate.
+  bool is_surely_connected(const std::vector<glm::ivec3>& part) const;
   std::optional<glm::dvec3> neck_by_voxels(Side& side, const std::vector<glm::ivec3>& part) const;
   std::optional<glm::dvec3> neck_by_reading(const glm::ivec3& from) const;
   bool is_decided(const glm::dvec3& neck_mm) const;

@@ -3,26 +3,21 @@
 #include "planner/operation/object/parts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/components.h"
 #include "brep/mesh/distance.h"
 #include "brep/shape/prism.h"
-#include "convert/voxel/voxelise.h"
+#include "planner/operation/object/part_choice.h"
 #include "planner/operation/object/trace.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
-#include "verify/certificate/certify_bounded.h"
 #include "verify/witness/witness.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/morphology.h"
-#include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
-#include "voxel/space/rounded.h"
 
 namespace octotomy::planner {
 namespace {
@@ -152,203 +147,6 @@ bool stays(const brep::Triangles& triangles, const std::vector<std::uint32_t>& f
     }
     return brep::is_inside(p_mm, *part);
   });
-}
-
-namespace {
-
-/// The pieces of a set that share no voxel with another.
-voxel::Octree pieces_apart(const voxel::Octree& set, const voxel::Octree& other) {
-  const voxel::Universe universe = set.universe();
-  const voxel::Octree common = voxel::combine(universe, voxel::Expression(set) & voxel::Expression(other));
-  return voxel::combine(universe, voxel::Expression(set) - voxel::Expression(voxel::components_that_meet(
-                                                               set, common, voxel::Neighbours::Corners)));
-}
-
-/// The least corner of a component. It identifies the component: selecting among components does not move it.
-using Corner = std::array<double, 3>;
-Corner corner_of(const brep::Triangles& triangles, const brep::Component& component) {
-  Corner least{std::numeric_limits<double>::infinity()};
-  for (const std::uint32_t face : component.faces)
-    for (const std::uint32_t corner : triangles.faces[face]) {
-      const glm::dvec3& p = triangles.points_mm[corner];
-      least = std::min(least, Corner{p.x, p.y, p.z});
-    }
-  return least;
-}
-
-voxel::Octree common_of(const voxel::Octree& a, const voxel::Octree& b) {
-  return voxel::combine(a.universe(), voxel::Expression(a) & voxel::Expression(b));
-}
-
-voxel::Octree digitised_part(const brep::Solid& solid, const brep::Component& component,
-                             const voxel::Universe& universe) {
-  return convert::voxelise(
-      universe, brep::trusted_solid(brep::part_of(solid, component.faces), brep::proof_of_part(solid.proof()))
-                    .linked());
-}
-
-/// Components of a solid that contain a voxel of a set. Components smaller than a quarter of the set's
-/// smallest part, or larger than four times its largest part, are left out.
-std::vector<std::size_t> components_in(const brep::Solid& solid, const voxel::Octree& set) {
-  if (set.is_empty()) return {};
-  const std::vector<std::uint64_t> counts = voxel::components(set).voxel_counts;
-  const double voxel_mm3 = set.universe().lattice().voxel_mm3();
-  const double least_mm3 = 0.25 * voxel_mm3 * static_cast<double>(counts.back());
-  const double most_mm3 = 4.0 * voxel_mm3 * static_cast<double>(counts.front());
-  std::vector<std::size_t> found;
-  const std::vector<brep::Component>& all = solid.components();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].volume_mm3 < least_mm3 || all[i].volume_mm3 > most_mm3) continue;
-    if (!common_of(digitised_part(solid, all[i], set.universe()), set).is_empty()) found.push_back(i);
-  }
-  return found;
-}
-
-brep::Solid solid_of(const brep::Solid& whole, const std::vector<std::size_t>& components) {
-  std::vector<std::uint32_t> faces;
-  for (const std::size_t i : components) {
-    const std::vector<std::uint32_t>& own = whole.components()[i].faces;
-    faces.insert(faces.end(), own.begin(), own.end());
-  }
-  std::sort(faces.begin(), faces.end());
-  return faces.empty() ? brep::Solid()
-                       : brep::trusted_solid(brep::part_of(whole, faces), brep::proof_of_part(whole.proof()));
-}
-
-/// Whether the voxels and the mesh are the same parts.
-bool is_same(const voxel::Octree& voxels, const brep::Solid& mesh, const verify::Witness& parts,
-             const Object& made) {
-  verify::BoundInputs inputs;
-  inputs.scan_spacing_mm = made.bound.spacing_mm;
-  inputs.flat_cut_mm2 = area_on_planes(mesh.triangles(), made.bound.planes);
-  inputs.scan_box_mm = made.bound.scan_box_mm;
-  inputs.witness = verify::both(parts, verify::witness_of_box(voxel::bounds(voxels.universe().lattice())));
-  if (made.bound.shift_mm > 0.0) inputs.witness = verify::loosened(inputs.witness, made.bound.shift_mm);
-  return verify::certify_bounded(voxels, mesh, inputs).verdict != voxel::Verdict::Fail;
-}
-
-std::string size_and_place(const voxel::Octree& parts) {
-  const voxel::Measures measures = voxel::measure(parts);
-  return voxel::rounded(measures.volume_mm3) + " mm\u00b3 about " + voxel::rounded(*measures.centroid_mm);
-}
-
-/// Parts that only one of the kernels selected, as voxels and as components of the whole mesh.
-struct Differing {
-  voxel::Octree by_voxels, passed_over;  ///< selected by the voxels only, and by the mesh only
-  std::vector<std::size_t> wanted, unwanted;
-};
-
-/// Whether each kernel selected correctly by its own volumes: the larger parts, or with `least_mm3` the parts
-/// that reach it. Components are sorted by volume.
-bool is_by_measure(const Differing& parts, const std::vector<brep::Component>& all,
-                   const std::optional<double>& least_mm3) {
-  const auto counts = [](const voxel::Octree& set) { return voxel::components(set).voxel_counts; };
-  if (!least_mm3)
-    return !parts.wanted.empty() && !parts.unwanted.empty() && !parts.passed_over.is_empty() &&
-           counts(parts.by_voxels).back() >= counts(parts.passed_over).front() &&
-           all[parts.unwanted.back()].volume_mm3 >= all[parts.wanted.front()].volume_mm3;
-  const double voxel_mm3 = parts.by_voxels.universe().lattice().voxel_mm3();
-  return parts.wanted.empty() == parts.by_voxels.is_empty() &&
-         parts.unwanted.empty() == parts.passed_over.is_empty() &&
-         !(parts.wanted.empty() && parts.unwanted.empty()) &&
-         (parts.wanted.empty() || all[parts.wanted.front()].volume_mm3 < *least_mm3) &&
-         (parts.unwanted.empty() ||
-          (all[parts.unwanted.back()].volume_mm3 >= *least_mm3 &&
-           static_cast<double>(counts(parts.passed_over).front()) * voxel_mm3 < *least_mm3));
-}
-
-std::string doubt_of(const std::vector<Differing>& settled, const std::optional<double>& least_mm3) {
-  std::string kept, left;
-  for (const Differing& parts : settled) {
-    if (kept.empty() && !parts.by_voxels.is_empty()) kept = size_and_place(parts.by_voxels) + " is kept";
-    if (left.empty() && !parts.passed_over.is_empty()) left = size_and_place(parts.passed_over) + " is not";
-  }
-  if (!least_mm3)
-    return "Two parts are nearly as large as each other: " + kept + ", " + left +
-           ", which the mesh kernel finds larger. Name the one that is meant: 'parts' with 'at_mm'.";
-  return "The kernels find " + std::to_string(settled.size()) + (settled.size() == 1 ? " part" : " parts") +
-         " on different sides of 'at_least_mm3': " + kept + (kept.empty() || left.empty() ? "" : ", ") +
-         left + ", as the voxels have it. Choose a volume that is not so close to a part's.";
-}
-
-/// Each connected piece of a set; the whole set as one piece where there are more than 32.
-std::vector<voxel::Octree> pieces_of(voxel::Octree set) {
-  constexpr std::size_t most = 32;
-  if (set.is_empty()) return {};
-  if (voxel::component_count(set) > most) return {std::move(set)};
-  std::vector<voxel::Octree> pieces;
-  while (!set.is_empty()) {
-    pieces.push_back(voxel::components(set).largest);
-    set = voxel::combine(set.universe(), voxel::Expression(set) - voxel::Expression(pieces.back()));
-  }
-  return pieces;
-}
-
-/// Groups of parts that are decided together: one part each with a least volume, otherwise all of them.
-/// `chosen` are the parts that the voxels keep.
-std::vector<Differing> differing(const WholeObject& whole, const brep::Solid& solid,
-                                 const voxel::Octree& chosen, const voxel::Octree& by_voxels,
-                                 const voxel::Octree& by_mesh, const std::optional<double>& least_mm3) {
-  const voxel::Octree none = voxel::Octree::empty(by_voxels.universe());
-  const voxel::Octree voxels = by_mesh.is_empty() ? none : whole.voxels();
-  const auto over = [&](const voxel::Octree& piece) { return voxel::components_that_meet(voxels, piece); };
-  if (!least_mm3)
-    return {{by_voxels, over(by_mesh), components_in(solid, by_voxels), components_in(solid, by_mesh)}};
-  std::vector<Differing> all;
-  for (voxel::Octree& piece : pieces_of(by_voxels)) {
-    std::vector<std::size_t> wanted = components_in(solid, piece);
-    all.push_back({std::move(piece), none, std::move(wanted), {}});
-  }
-  // A thin part of the mesh may be several parts of voxels, each of which is too small. Components are sorted
-  // by volume.
-  const double most_mm3 =
-      4.0 * by_mesh.universe().lattice().voxel_mm3() * static_cast<double>(by_mesh.voxel_count());
-  const std::vector<brep::Component>& components = solid.components();
-  for (std::size_t i = 0; i < components.size() && components[i].volume_mm3 >= *least_mm3; ++i) {
-    if (components[i].volume_mm3 > most_mm3) continue;
-    const voxel::Octree digitised = digitised_part(solid, components[i], by_mesh.universe());
-    const voxel::Octree own = common_of(digitised, by_mesh);
-    // A part of which the voxels keep some hangs together by a thin neck: it is not passed over.
-    if (!own.is_empty() && common_of(digitised, chosen).is_empty()) all.push_back({none, over(own), {}, {i}});
-  }
-  return all;
-}
-
-}  // namespace
-
-void settle_choice(const WholeObject& whole, const voxel::Universe& universe,
-                   const std::optional<double>& least_mm3, Object& made) {
-  const voxel::Octree& chosen = made.voxel.octree;
-  const voxel::Octree digitised = convert::voxelise(universe, made.mesh.whole->linked());
-  const voxel::Octree by_voxels = pieces_apart(chosen, digitised), by_mesh = pieces_apart(digitised, chosen);
-  if (least_mm3 ? by_voxels.is_empty() && by_mesh.is_empty() : by_voxels.is_empty() || by_mesh.is_empty())
-    return;
-  const brep::Solid solid = whole.mesh();
-  const std::vector<brep::Component>& all = solid.components();
-  const verify::Witness reading = verify::witness_of_parts(whole.witness);
-  const auto agrees = [&](const voxel::Octree& voxels, const std::vector<std::size_t>& components) {
-    return components.empty() || is_same(voxels, solid_of(solid, components), reading, made);
-  };
-  std::vector<Differing> settled = differing(whole, solid, chosen, by_voxels, by_mesh, least_mm3);
-  std::erase_if(settled, [&](const Differing& parts) {
-    return !is_by_measure(parts, all, least_mm3) || !agrees(parts.by_voxels, parts.wanted) ||
-           !agrees(parts.passed_over, parts.unwanted);
-  });
-  if (settled.empty()) return;
-  std::set<Corner> kept;
-  for (const brep::Component& component : made.mesh.whole->components())
-    kept.insert(corner_of(made.mesh.whole->triangles(), component));
-  for (const Differing& parts : settled) {
-    for (const std::size_t i : parts.unwanted) kept.erase(corner_of(solid.triangles(), all[i]));
-    for (const std::size_t i : parts.wanted) kept.insert(corner_of(solid.triangles(), all[i]));
-  }
-  std::vector<std::size_t> inside, others;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    (kept.contains(corner_of(solid.triangles(), all[i])) ? inside : others).push_back(i);
-  made.mesh.whole = solid_of(solid, inside);
-  if (made.mesh.parts_of) made.mesh.parts_of->second = solid_of(solid, others);
-  made.caveats.push_back({voxel::Verdict::Warn, doubt_of(settled, least_mm3), false});
-  made.findings.push_back(made.caveats.back().reason);
 }
 
 namespace {
@@ -488,7 +286,7 @@ void bound(const Parts& parts, const BoundBench& bench, Object& made) {
                      double shift_mm = 0.0;
                      return cut_bridges(*object.mesh.whole, bridges, {}, shift_mm);
                    },
-                   whole},
+                   whole, static_cast<std::size_t>(parts.largest.value_or(1))},
                   bench.universe, parts.at_least_mm3, made);
   made.witness = made.mesh.whole
                      ? verify::witness_of_parts(whole, {made.voxel.octree, *made.mesh.whole,

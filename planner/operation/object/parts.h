@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <stop_token>
@@ -10,7 +9,6 @@
 
 #include "brep/mesh/mesh.h"
 #include "brep/mesh/solid.h"
-#include "planner/operation/table/object.h"
 #include "planner/operation/table/scope.h"
 #include "verify/witness/reading.h"
 #include "voxel/filter/components.h"
@@ -72,25 +70,6 @@ struct KeptParts {
 /// cavities; and the parts that the decisions keep.
 KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::optional<double> at_least_mm3,
                      const BridgeDecisions& bridges = {});
-
-/// An object that parts are selected from. Both functions are called only where the kernels selected
-/// different parts.
-struct WholeObject {
-  std::function<voxel::Octree()> voxels;
-  std::function<brep::Solid()> mesh;
-  verify::Witness witness;
-};
-
-/// Replaces the mesh's parts by those of the voxels where the kernels selected different parts only because
-/// their volumes differ slightly. Of two parts of nearly the same volume, the kernels may disagree on which
-/// is larger; of a part near `least_mm3`, on whether it reaches it. Without `least_mm3` the largest parts
-/// were selected.
-/// The mesh is changed where each kernel selected correctly by its own volumes and both objects contain each
-/// other's parts (verify::certify_bounded); a caveat then names both parts. Otherwise nothing changes and the
-/// certificate fails. Cost: digitising the mesh; where the selections differ, two certificates as well.
-/// Throws as its functions.
-void settle_choice(const WholeObject& whole, const voxel::Universe& universe,
-                   const std::optional<double>& least_mm3, Object& made);
 
 /// The expression of the parts that were selected from an object's voxels. The samples around the parts
 /// remain in it: they place the surface within a voxel, and a motion samples that surface.

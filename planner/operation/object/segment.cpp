@@ -16,6 +16,7 @@
 #include "planner/operation/file/contour_findings.h"
 #include "planner/operation/file/label_table.h"
 #include "planner/operation/file/region_file.h"
+#include "planner/operation/object/part_choice.h"
 #include "planner/operation/object/parts.h"
 #include "planner/operation/object/trace.h"
 #include "planner/operation/table/json.h"
@@ -374,7 +375,8 @@ void settle_parts(const Segment& segment, const LoadedScan& scan, const voxel::U
     const brep::Solid whole = window_mesh(segment, scan.scene(), {}, shift_mm);
     return segment.fill ? filled(whole) : whole;
   };
-  settle_choice({voxels, mesh, segment.fill ? verify::witness_of_filled(made.witness) : made.witness},
+  settle_choice({voxels, mesh, segment.fill ? verify::witness_of_filled(made.witness) : made.witness,
+                 static_cast<std::size_t>(segment.components.value_or(1))},
                 universe, segment.largest || segment.components ? std::nullopt : segment.at_least_mm3, made);
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "planner/operation/object/part_choice.h"
 #include "tests/planner/ct_scene.h"
 #include "tests/planner/operation/ball_operation.h"
 #include "voxel/solid/combine.h"
