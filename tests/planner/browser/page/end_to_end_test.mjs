@@ -235,7 +235,7 @@ test('a server that stands still, as behind a network that stalls or a tab aslee
   server.process.kill('SIGCONT');
   await one.at_rest();
   assert.deepEqual(names(), listed);
-  assert.equal(await one.page.locator('div.lost').isVisible(), false);
+  assert.equal(await one.page.locator('section.lost').isVisible(), false);
 });
 
 test('the server is killed: the page says so, and goes on with everything when it is back', async () => {
@@ -249,10 +249,10 @@ test('the server is killed: the page says so, and goes on with everything when i
   server.stop();
   for (let i = 0; i < 5; ++i) await one.page.mouse.move(at.x + 20 + i, at.y);
   await one.page.mouse.up();
-  await one.page.locator('div.lost').waitFor({ state: 'visible' });
+  await one.page.locator('section.lost').waitFor({ state: 'visible' });
   const token = path.join(folder, 'token');
   fs.writeFileSync(token, url.searchParams.get('token'), { mode: 0o600 });
   server = await start_server(folder, ['--port', url.port, '--token-file', token, plan_path]);
-  await one.page.locator('div.lost').waitFor({ state: 'hidden' });
+  await one.page.locator('section.lost').waitFor({ state: 'hidden' });
   await one.until(async () => JSON.stringify(await one.page.locator('.lists .name').allInnerTexts()) === JSON.stringify(listed), 'the same steps');
 });

@@ -254,15 +254,15 @@ test('a network that is cut in mid-drag is noticed, and nothing is lost', async 
     proxy.cut();
     await far.page.mouse.move(to.x, to.y, { steps: 4 });
     await far.page.mouse.up();
-    await far.page.locator('div.lost').waitFor({ state: 'visible' });
+    await far.page.locator('section.lost').waitFor({ state: 'visible' });
     assert.equal(step('piece_moved').by.forward_mm, forward_mm);
     proxy.mend();
-    await far.page.locator('div.lost').waitFor({ state: 'hidden' });
+    await far.page.locator('section.lost').waitFor({ state: 'hidden' });
     await far.until(() => Math.abs(step('piece_moved').by.forward_mm - forward_mm - 4) < 0.5, 'the motion of the drag');
     await far.at_rest();
     proxy.cut();
     await far.press('Control+z');
-    await far.page.locator('div.lost').waitFor({ state: 'visible' });
+    await far.page.locator('section.lost').waitFor({ state: 'visible' });
     proxy.mend();
     await far.until(() => step('piece_moved').by.forward_mm === forward_mm, 'the drag undone, once');
     await far.at_rest();

@@ -111,7 +111,7 @@ test('a tab that slept shows what another window did meanwhile', async () => {
     await far.page.waitForTimeout(10000);
     await devtools.send('Page.setWebLifecycleState', { state: 'active' });
     await one.until(async () => (await one.page.locator('.lists .name', { hasText: /^cut$/ }).count()) === 0, 'the plan as it is now');
-    await one.page.locator('div.lost').waitFor({ state: 'hidden' });
+    await one.page.locator('section.lost').waitFor({ state: 'hidden' });
     await one.press('Control+y');
     await one.until(() => step('cut'), 'redone by the tab that slept');
     assert.deepEqual(far.problems, []);
