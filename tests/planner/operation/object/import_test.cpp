@@ -89,7 +89,8 @@ TEST(ImportStep, APlanWithoutScansAndWithoutAnImportIsRefused) {
                  ".");
       FAIL() << scans;
     } catch (const std::runtime_error& error) {
-      EXPECT_NE(std::string(error.what()).find("no step imports a mesh"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("scans: must name at least one scan"), std::string::npos)
+          << error.what();
     }
   }
 }
