@@ -29,12 +29,17 @@
 namespace octotomy::planner {
 namespace {
 
+voxel::Octree common_of(const voxel::Octree& a, const voxel::Octree& b) {
+  return voxel::combine(a.universe(), voxel::Expression(a) & voxel::Expression(b));
+}
+
+voxel::Octree without(const voxel::Octree& a, const voxel::Octree& b) {
+  return voxel::combine(a.universe(), voxel::Expression(a) - voxel::Expression(b));
+}
+
 /// The pieces of a set that share no voxel with another.
 voxel::Octree pieces_apart(const voxel::Octree& set, const voxel::Octree& other) {
-  const voxel::Universe universe = set.universe();
-  const voxel::Octree common = voxel::combine(universe, voxel::Expression(set) & voxel::Expression(other));
-  return voxel::combine(universe, voxel::Expression(set) - voxel::Expression(voxel::components_that_meet(
-                                                               set, common, voxel::Neighbours::Corners)));
+  return without(set, voxel::components_that_meet(set, common_of(set, other), voxel::Neighbours::Corners));
 }
 
 /// The least corner of a component. It identifies the component: selecting among components does not move it.
@@ -47,10 +52,6 @@ Corner corner_of(const brep::Triangles& triangles, const brep::Component& compon
       least = std::min(least, Corner{p.x, p.y, p.z});
     }
   return least;
-}
-
-voxel::Octree common_of(const voxel::Octree& a, const voxel::Octree& b) {
-  return voxel::combine(a.universe(), voxel::Expression(a) & voxel::Expression(b));
 }
 
 /// Copies the component's own points, because a solid may have thousands of components.
@@ -146,7 +147,7 @@ std::vector<voxel::Octree> pieces_of(voxel::Octree set) {
   std::vector<voxel::Octree> pieces;
   while (!set.is_empty()) {
     pieces.push_back(voxel::components(set).largest);
-    set = voxel::combine(set.universe(), voxel::Expression(set) - voxel::Expression(pieces.back()));
+    set = without(set, pieces.back());
   }
   return pieces;
 }
@@ -258,10 +259,6 @@ std::vector<std::pair<std::size_t, voxel::Octree>> components_of(const brep::Sol
     if (!common_of(digitised, set).is_empty()) found.emplace_back(i, std::move(digitised));
   }
   return found;
-}
-
-voxel::Octree without(const voxel::Octree& a, const voxel::Octree& b) {
-  return voxel::combine(a.universe(), voxel::Expression(a) - voxel::Expression(b));
 }
 
 /// The largest parts that only one kernel selected. None where a kernel did not select the largest of its own
