@@ -265,10 +265,10 @@ template <typename Samples>
 std::optional<WindowBits> two_sided(Samples& samples, double low, double high) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (!(low < high) || low == -infinity || high == infinity) return std::nullopt;
-  InsideBits measured = samples.measured();
   InsideBits above = samples.inside(std::nextafter(high, infinity), infinity);
   if (std::none_of(above.bits.begin(), above.bits.end(), [](std::uint64_t word) { return word != 0; }))
     return std::nullopt;
+  InsideBits measured = samples.measured();
   InsideBits from_low = samples.inside(low, infinity);
   if (!any_beyond(measured, from_low)) return std::nullopt;
   return WindowBits{std::move(measured), std::move(from_low), std::move(above)};
