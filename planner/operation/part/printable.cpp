@@ -151,8 +151,8 @@ Operation printable_operation() {
                  .greater_than(0.0)
                  .to(10.0))
       .takes(field("bed_mm", &Printable::bed_mm,
-                   "Width, depth and height that the printer can hold; the default is that of a desktop "
-                   "printer for dental resin."))
+                   "Width, depth and height that your printer can hold; the default is a size of desktop "
+                   "printers and of no certain one: state yours."))
       .verb_takes(field("voxel_mm", &Printable::voxel_mm,
                         "Edge of the voxels of the second answer. Default: half of the smallest wall or "
                         "gap, or the extent's 256th where that is larger.")
