@@ -44,8 +44,8 @@ struct Names {
 void check_operand(const Solid& solid, const std::string& name) {
   const double volume_mm3 = solid.size().volume_mm3;
   if (!std::isfinite(volume_mm3) || volume_mm3 < 0.0)
-    throw std::invalid_argument("operand " + name + " has volume " + std::to_string(volume_mm3) +
-                                " mm3: its triangles face inward; reverse them first");
+    throw InvalidInput("operand " + name + " has volume " + std::to_string(volume_mm3) +
+                       " mm3: its triangles face inward; reverse them first");
 }
 
 double extent_mm(const Size& a, const Size& b) {

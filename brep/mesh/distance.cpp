@@ -17,6 +17,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/for_vectors.h"
 #include "brep/mesh/halving.h"
 #include "brep/mesh/morton_tree.h"
@@ -388,7 +389,7 @@ struct SurfaceTree::Tree {
 
   void check_not_empty() const {
     if (nodes.empty())
-      throw std::invalid_argument(
+      throw InvalidInput(
           "there is no distance to a surface without triangles; check whether it is empty first");
   }
 

@@ -14,6 +14,8 @@
 #include <unordered_set>
 #include <utility>
 
+#include "brep/mesh/error.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -110,9 +112,8 @@ class Bisection {
 
   void check_count(std::size_t more) const {
     if (found_.simplices.size() + more > most_simplices)
-      throw std::length_error(
-          "the offset surface passes more than 2^22 tetrahedra of a lattice with steps of " +
-          std::to_string(options_.step_mm) + " mm: take larger cells");
+      throw TooLarge("the offset surface passes more than 2^22 tetrahedra of a lattice with steps of " +
+                     std::to_string(options_.step_mm) + " mm: take larger cells");
   }
 
   static glm::dvec3 centre_of(const Simplex& simplex) {

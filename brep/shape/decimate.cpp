@@ -171,7 +171,7 @@ constexpr double lock_reach() {
 }
 
 void check(const DecimateOptions& options) {
-  const auto refuse = [](const std::string& why) { throw std::invalid_argument("decimate: " + why); };
+  const auto refuse = [](const std::string& why) { throw InvalidInput("decimate: " + why); };
   if (!(options.max_error_mm > 0.0)) refuse("the largest error must be positive");
   if (!(options.max_normal_deviation_deg > 0.0 && options.max_normal_deviation_deg <= 90.0))
     refuse("the normals' deviation must be above 0 and at most 90 degrees");

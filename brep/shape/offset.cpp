@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "brep/mesh/distance.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/measure.h"
 #include "brep/mesh/sample_surface.h"
 #include "brep/shape/bisected_lattice.h"
@@ -68,9 +69,9 @@ Lattice lattice_about(const Size& size, const OffsetOptions& options) {
   const glm::dvec3 extent = size.high_mm - size.low_mm + 2.0 * margin;
   const double steps = steps_a_cell * std::max({extent.x, extent.y, extent.z}) / options.cell_mm;
   if (!(steps < (1 << (side_bits - 1))))
-    throw std::length_error(
-        "cells of " + std::to_string(options.cell_mm) + " mm are too small for a solid of " +
-        std::to_string(std::max({extent.x, extent.y, extent.z})) + " mm: a side has at most 2^17 of them");
+    throw TooLarge("cells of " + std::to_string(options.cell_mm) + " mm are too small for a solid of " +
+                   std::to_string(std::max({extent.x, extent.y, extent.z})) +
+                   " mm: a side has at most 2^17 of them");
   Lattice lattice{size.low_mm - margin + odd_mm, options.cell_mm / steps_a_cell, 2};
   while (lattice.side < steps) lattice.side *= 2;
   return lattice;
@@ -142,10 +143,10 @@ std::vector<glm::dvec3> points_on(const std::vector<CutEdge>& edges, const Bisec
 }
 
 void check(const Triangles& surface, const OffsetOptions& options) {
-  if (surface.faces.empty()) throw std::invalid_argument("a surface without triangles has no offset");
-  if (!std::isfinite(options.by_mm)) throw std::invalid_argument("an offset is by a finite length");
+  if (surface.faces.empty()) throw InvalidInput("a surface without triangles has no offset");
+  if (!std::isfinite(options.by_mm)) throw InvalidInput("an offset is by a finite length");
   if (!std::isfinite(options.cell_mm) || options.cell_mm <= 0.0)
-    throw std::invalid_argument("an offset's cells have an edge above 0 mm");
+    throw InvalidInput("an offset's cells have an edge above 0 mm");
 }
 
 }  // namespace
@@ -193,7 +194,7 @@ Solid offset(const Solid& solid, const OffsetOptions& options) {
 
 Solid thickened(const Triangles& surface, const OffsetOptions& options) {
   check(surface, options);
-  if (!(options.by_mm > 0.0)) throw std::invalid_argument("a wall is thicker than 0 mm");
+  if (!(options.by_mm > 0.0)) throw InvalidInput("a wall is thicker than 0 mm");
   const SurfaceTree tree(surface);
   return surface_of(Field(tree, false, options.by_mm), size_of(surface), options);
 }

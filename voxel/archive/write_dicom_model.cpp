@@ -6,6 +6,7 @@
 
 #include "voxel/scan/character_set.h"
 #include "voxel/scan/dicom_derived.h"
+#include "voxel/space/error.h"
 #include "voxel/space/staged_files.h"
 
 namespace octotomy::voxel {
@@ -64,7 +65,7 @@ void write_dicom_model(const std::string& bytes, ModelFormat format, const fs::p
   check_dicom_text(options.label, "label");
   check_dicom_text(options.series_description, "series_description");
   if (options.label.empty() || options.series_description.empty())
-    throw std::invalid_argument("a model's label and series_description must not be empty");
+    throw InvalidInput("a model's label and series_description must not be empty");
   if (bytes.size() > 0xfffffffe)
     throw Error(ErrorCode::Geometry, "the surface takes more than DICOM's 4 GB: decimate it first");
   const Storage storage = storage_of(format);

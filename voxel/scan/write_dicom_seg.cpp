@@ -13,6 +13,7 @@
 
 #include "voxel/scan/character_set.h"
 #include "voxel/scan/dicom_derived.h"
+#include "voxel/space/error.h"
 #include "voxel/space/staged_files.h"
 #include "voxel/tree/slice_bits.h"
 
@@ -69,7 +70,7 @@ void add_planes(Segments segments, std::size_t segment, const Progress& progress
     digest.add(slice.words.data(), slice.words.size() * sizeof slice.words[0]);
   }
   if (extent.planes.size() == before)
-    throw std::invalid_argument("the object is empty: choose an object with at least one voxel");
+    throw InvalidInput("the object is empty: choose an object with at least one voxel");
 }
 
 /// The same of the planes of a segment's fractions.
@@ -93,8 +94,8 @@ void add_planes(const Lattice& lattice, const DicomFractions& segment, std::size
     digest.add(plane, static_cast<std::size_t>(fraction - plane));
   }
   if (extent.planes.size() == before)
-    throw std::invalid_argument("the fractions of '" + segment.label +
-                                "' are all zero: choose an object that fills a part of a voxel");
+    throw InvalidInput("the fractions of '" + segment.label +
+                       "' are all zero: choose an object that fills a part of a voxel");
 }
 
 /// The number of bytes of the frames' pixels. Throws Error, Geometry, if it is beyond DICOM's limit.
@@ -290,7 +291,7 @@ glm::dmat3 perpendicular_axes(const Lattice& lattice) {
   // this.
   for (int i = 0; i < 3; ++i)
     if (std::abs(glm::dot(axes[i], axes[(i + 1) % 3])) > 1e-6)
-      throw std::invalid_argument(
+      throw InvalidInput(
           "a segmentation's rows, columns and planes must be perpendicular: resample the object");
   return axes;
 }
@@ -353,17 +354,16 @@ Content content_of(const Lattice& lattice, std::span<const DicomFractions> segme
 
 void check_texts(const DicomSegOptions& options, std::size_t segment_count) {
   if (segment_count == 0 || segment_count > 65535)
-    throw std::invalid_argument("a segmentation has 1 to 65535 segments, not " +
-                                std::to_string(segment_count));
+    throw InvalidInput("a segmentation has 1 to 65535 segments, not " + std::to_string(segment_count));
   check_dicom_text(options.label, "label");
   check_dicom_text(options.series_description, "series_description");
   if (options.label.empty() || options.series_description.empty())
-    throw std::invalid_argument("a segmentation's label and series_description must not be empty");
+    throw InvalidInput("a segmentation's label and series_description must not be empty");
 }
 
 void check_segment_label(const std::string& label) {
   check_dicom_text(label, "label");
-  if (label.empty()) throw std::invalid_argument("a segment's label must not be empty");
+  if (label.empty()) throw InvalidInput("a segment's label must not be empty");
 }
 
 void write_staged(const DicomAttributes& file, const fs::path& path) {
@@ -384,7 +384,7 @@ void write_dicom_seg(Segments segments, const fs::path& path, const DicomSegOpti
   for (const DicomSegment& each : segments) {
     check_segment_label(each.label);
     if (each.object.universe() != segments.front().object.universe())
-      throw std::invalid_argument("the segments of a file must lie in one universe");
+      throw InvalidInput("the segments of a file must lie in one universe");
   }
   write_staged(segmentation(content_of(segments, options), options), path);
 }

@@ -31,6 +31,7 @@
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/partial_volume.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/grey_octree_build.h"
 #include "voxel/tree/octree_file.h"
 
@@ -284,7 +285,7 @@ void add_partial_volume(const voxel::Window& window, Timings& timings, Json& jso
   try {
     json["volume_partial_mm3"] = voxel::partial_volume_mm3(window);
     json["volume_partial_estimator"] = "trilinear interpolant of the samples";
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     json["findings"].push_back(std::string("volume_partial_mm3: ") + error.what());
   }
 }

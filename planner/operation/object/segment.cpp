@@ -33,6 +33,7 @@
 #include "voxel/filter/tissue.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/grey_owner.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -74,7 +75,7 @@ std::vector<glm::ivec3> seed_voxels(const Segment& segment, const voxel::Univers
 std::vector<voxel::Label> labels_or_none(const voxel::Scene& scene) {
   try {
     return voxel::labels(scene);
-  } catch (const std::invalid_argument&) {
+  } catch (const voxel::InvalidInput&) {
     return {};
   }
 }
