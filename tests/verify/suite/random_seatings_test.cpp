@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <gtest/gtest.h>
 #include <optional>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/distance.h"
