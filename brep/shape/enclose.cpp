@@ -317,7 +317,8 @@ std::vector<std::uint64_t> cells_of(const std::vector<Passage>& passages, const 
       throw Error(ErrorCode::Geometry, "the surface passes more than 2^24 cells of " +
                                            short_text(lattice.cell_mm) + " mm: take larger ones, --cell");
     std::vector<std::uint64_t> beyond =
-        appended<std::uint64_t>(fresh, [&](const Place& cell, std::vector<std::uint64_t>& found) {
+        appended<std::uint64_t>(fresh, [&](std::uint64_t key, std::vector<std::uint64_t>& found) {
+          const Place cell = place_of(key);
           add_neighbours(cell, field.about(cell), lattice, found);
         });
     tbb::parallel_sort(beyond.begin(), beyond.end());
@@ -452,7 +453,8 @@ Enclosed enclose(const Triangles& given, const EncloseOptions& options) {
   const std::vector<std::uint64_t> cells = cells_of(passages, lattice, field, options.progress);
   options.progress.at(0.6);
   const auto triangles =
-      appended<EdgeTriangle>(cells, [&](const Place& cell, std::vector<EdgeTriangle>& made) {
+      appended<EdgeTriangle>(cells, [&](std::uint64_t key, std::vector<EdgeTriangle>& made) {
+        const Place cell = place_of(key);
         add_triangles(cell, field.about(cell), made);
       });
   if (triangles.empty())

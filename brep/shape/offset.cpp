@@ -11,6 +11,7 @@
 #include <glm/glm.hpp>
 #include <stdexcept>
 #include <string>
+#include <tbb/parallel_for.h>
 #include <utility>
 #include <vector>
 
@@ -31,13 +32,15 @@ class Field {
       : tree_(tree), has_inside_(has_inside), by_mm_(by_mm) {}
 
   std::vector<double> at(const std::vector<glm::dvec3>& points_mm) const {
-    std::vector<double> values = tree_.distances_mm(points_mm);
-    if (!has_inside_) {
-      for (double& value : values) value -= by_mm_;
-      return values;
-    }
-    const std::vector<std::uint8_t> inside = tree_.inside(points_mm);
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = (inside[i] ? -values[i] : values[i]) - by_mm_;
+    std::vector<std::uint32_t> nearest(points_mm.size(), SurfaceTree::unknown_triangle);
+    return at(points_mm, nearest);
+  }
+  /// The same; each search starts with its triangle in `nearest`, and stores the nearest one there.
+  std::vector<double> at(const std::vector<glm::dvec3>& points_mm,
+                         std::vector<std::uint32_t>& nearest) const {
+    std::vector<double> values =
+        has_inside_ ? tree_.signed_distances_mm(points_mm, nearest) : tree_.distances_mm(points_mm);
+    for (double& value : values) value -= by_mm_;
     return values;
   }
 
@@ -107,32 +110,34 @@ std::vector<glm::dvec3> points_on(const std::vector<CutEdge>& edges, const Bisec
                                   const Field& field, const Lattice& lattice) {
   std::vector<Root> roots(edges.size());
   std::vector<std::size_t> open(edges.size());
-  for (std::size_t i = 0; i < edges.size(); ++i) {
+  tbb::parallel_for(std::size_t{0}, edges.size(), [&](std::size_t i) {
     roots[i].at_low = bisected.distances_mm.at(edges[i].from);
     roots[i].at_high = bisected.distances_mm.at(edges[i].to);
     roots[i].guess();
     open[i] = i;
-  }
+  });
+  std::vector<std::uint32_t> nearest(edges.size(), SurfaceTree::unknown_triangle);
   const auto place = [&](std::size_t i) {
     const glm::dvec3 from = lattice.at(edges[i].from);
     return from + roots[i].share * (lattice.at(edges[i].to) - from);
   };
   // Twenty-four rounds would do by halving alone, were it ever needed.
   for (int round = 0; round < 24 && !open.empty(); ++round) {
-    std::vector<glm::dvec3> tried_mm;
-    tried_mm.reserve(open.size());
-    for (const std::size_t i : open) tried_mm.push_back(place(i));
-    const std::vector<double> values = field.at(tried_mm);
+    std::vector<glm::dvec3> tried_mm(open.size());
+    tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t k) { tried_mm[k] = place(open[k]); });
+    const std::vector<double> values = field.at(tried_mm, nearest);
     assert(values.size() == open.size());
-    std::vector<std::size_t> still_open;
+    std::size_t still_open = 0;
     for (std::size_t k = 0; k < open.size(); ++k) {
       if (std::abs(values[k]) <= 0x1p-9 * lattice.step_mm) continue;
       Root& root = roots[open[k]];
       root.learn(values[k]);
       root.guess();
-      still_open.push_back(open[k]);
+      nearest[still_open] = nearest[k];
+      open[still_open++] = open[k];
     }
-    open = std::move(still_open);
+    open.resize(still_open);
+    nearest.resize(still_open);
   }
   std::vector<glm::dvec3> points_mm;
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -169,9 +174,9 @@ Solid surface_of(const Field& field, const Size& size, const OffsetOptions& opti
   const BisectedLattice bisected = bisected_lattice(
       bisection,
       [&](const std::vector<glm::dvec3>& places) {
-        std::vector<glm::dvec3> points_mm;
-        points_mm.reserve(places.size());
-        for (const glm::dvec3& place : places) points_mm.push_back(lattice.at(place));
+        std::vector<glm::dvec3> points_mm(places.size());
+        tbb::parallel_for(std::size_t{0}, places.size(),
+                          [&](std::size_t i) { points_mm[i] = lattice.at(places[i]); });
         return field.at(points_mm);
       },
       [&] { options.progress.at(0.1); });
