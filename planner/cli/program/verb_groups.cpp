@@ -45,6 +45,7 @@ constexpr std::array verb_table{
     GroupedVerb{planning, "plan"},
     GroupedVerb{planning, "schema"},
     GroupedVerb{planning, "outcome"},
+    GroupedVerb{planning, "pack"},
     GroupedVerb{scans, "prepare"},
     GroupedVerb{scans, "segment"},
     GroupedVerb{scans, "convert"},
