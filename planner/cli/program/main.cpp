@@ -244,6 +244,7 @@ int parse_and_run(int count, char** arguments) {
   cli::add_cephalometry(program);
   cli::add_outcome(program);
   cli::add_pack(program);
+  cli::add_scene(program);
   cli::add_serve(program);
   cli::group_verbs(app);
   try {

@@ -46,6 +46,7 @@ constexpr std::array verb_table{
     GroupedVerb{planning, "schema"},
     GroupedVerb{planning, "outcome"},
     GroupedVerb{planning, "pack"},
+    GroupedVerb{planning, "scene"},
     GroupedVerb{scans, "prepare"},
     GroupedVerb{scans, "segment"},
     GroupedVerb{scans, "convert"},

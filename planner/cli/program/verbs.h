@@ -22,6 +22,7 @@ void add_cohort(Program& program);
 void add_cephalometry(Program& program);
 void add_outcome(Program& program);
 void add_pack(Program& program);
+void add_scene(Program& program);
 void add_serve(Program& program);
 
 }  // namespace octotomy::planner::cli
