@@ -43,6 +43,10 @@ void need_used(const ConvertText& text, bool writes_dicom, bool writes_segments)
     throw std::runtime_error("--other-identity needs --source: give it, or leave both out");
 }
 
+voxel::DicomSegKind kind_of(const ConvertText& text) {
+  return text.as == "labelmap" ? voxel::DicomSegKind::LabelMap : voxel::DicomSegKind::Binary;
+}
+
 int convert_octree(const Program& program, const ConvertText& text) {
   if (text.out.extension() != ".dcm")
     throw std::runtime_error(
@@ -61,6 +65,7 @@ int convert_octree(const Program& program, const ConvertText& text) {
   voxel::DicomSegOptions options;
   options.label = object.label;
   options.series_description = "Octotomy, segmented";
+  options.kind = kind_of(text);
   options.progress.stop = program.stop.get_token();
   {
     const Stopwatch watch(timings, "source");
@@ -104,6 +109,7 @@ int convert_labels(const Program& program, const ConvertText& text) {
   voxel::DicomSegOptions options;
   options.label = text.label.empty() ? "Objects" : text.label;
   options.series_description = "Octotomy, segmented";
+  options.kind = kind_of(text);
   options.progress.stop = program.stop.get_token();
   options.source = source_of(program, text, false, scene.identity, findings);
   if (!options.source) warn("no --source: the segmentation gets a study of its own and refers to no images");
@@ -135,7 +141,8 @@ std::optional<int> convert_as(const Program& program, const ConvertText& text) {
   need_folder_of(text.out);
   if (text.as == "structures") return convert_structures(program, text);
   if (text.as == "fractions") return convert_fractions(program, text);
-  if (is_mesh(text.in) && text.as != "segmentation") return convert_model(program, text);
+  if (is_mesh(text.in) && text.as != "segmentation" && text.as != "labelmap")
+    return convert_model(program, text);
   if (is_mesh(text.in))
     throw std::runtime_error(text.in.string() +
                              ": a surface has no voxels: octotomy voxelise makes an .octree of it, or --as "
@@ -233,10 +240,11 @@ void add_convert(Program& program) {
       ->required();
   verb.add_option(
           "--as", text->as,
-          "The kind of .dcm: segmentation (default), structures (contours on the images of --source), "
+          "The kind of .dcm: segmentation (default), labelmap (a segmentation of numbers, for objects that "
+          "share no voxel and readers of 2025 or later), structures (contours on the images of --source), "
           "fractions (the share of each voxel that is filled), or, of a "
           "surface, stl or obj (default: its own)")
-      ->check(CLI::IsMember({"segmentation", "structures", "fractions", "stl", "obj"}));
+      ->check(CLI::IsMember({"segmentation", "labelmap", "structures", "fractions", "stl", "obj"}));
   verb.add_option("--planes", text->planes,
                   "Planes of the contours of --as structures: the images' (default) or the voxels'")
       ->check(CLI::IsMember({"images", "voxels"}));
