@@ -208,7 +208,7 @@ LatticeBall ball_about(const glm::ivec3& centre, const Pyramid& pyramid, double 
   return ball;
 }
 
-/// Every voxel, or about so many of them by a multiplicative hash of their number.
+/// Every voxel, or about the given number of them, chosen by a multiplicative hash of their number.
 std::vector<glm::ivec3> some_of(const std::vector<glm::ivec3>& voxels, std::size_t wanted) {
   if (voxels.size() <= wanted) return voxels;
   const double share = static_cast<double>(wanted) / static_cast<double>(voxels.size());

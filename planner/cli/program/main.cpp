@@ -243,6 +243,8 @@ int parse_and_run(int count, char** arguments) {
   cli::add_cohort(program);
   cli::add_cephalometry(program);
   cli::add_outcome(program);
+  cli::add_pack(program);
+  cli::add_scene(program);
   cli::add_serve(program);
   cli::group_verbs(app);
   try {
