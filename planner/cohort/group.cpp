@@ -5,12 +5,12 @@
 #include <fstream>
 #include <map>
 
-#include "planner/cohort/group_page.h"
 #include "planner/cohort/participant.h"
 #include "planner/cohort/plots.h"
 #include "planner/cohort/statistics.h"
 #include "planner/operation/table/csv.h"
 #include "planner/operation/table/json.h"
+#include "planner/result/report/drawn_page.h"
 #include "planner/result/report/result_folder.h"
 #include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
@@ -102,11 +102,24 @@ std::string shown_unit(const std::string& unit) {
   return unit == "mm2" ? "mm²" : unit;
 }
 
+/// One number over a cohort, with its plots.
+struct GroupColumn {
+  std::string name, unit;
+  Json summary;
+  std::vector<std::pair<std::string, std::string>> plots;  ///< a kind, and its SVG
+};
+
+Json to_json(const GroupColumn& column) {
+  Json plots = Json::array();
+  for (const auto& [kind, svg] : column.plots) plots.push_back(svg);
+  return {{"name", column.name}, {"unit", column.unit}, {"summary", column.summary}, {"plots", plots}};
+}
+
 /// The numbers, plots and outliers of a column.
 GroupColumn summarised(const CohortColumn& column, const std::vector<Subject>& subjects,
                        const std::optional<CohortTable>& other) {
   const std::string unit = shown_unit(column.unit);
-  GroupColumn made{column.name(), unit, {}, {}, {}};
+  GroupColumn made{column.name(), unit, {}, {}};
   std::vector<double> numbers, undoubted;
   Json doubtful = Json::array();
   for (const CohortValue& value : column.values) {
@@ -117,13 +130,11 @@ GroupColumn summarised(const CohortColumn& column, const std::vector<Subject>& s
       undoubted.push_back(value.value);
   }
   const Spread spread = spread_of(numbers);
-  for (const CohortValue& value : column.values)
-    if (value.value < spread.lower_fence || value.value > spread.upper_fence)
-      made.outliers.push_back({value.subject, value.value});
   made.plots.emplace_back("distribution", distribution_svg(column.name(), unit, numbers));
   Json outliers = Json::array();
-  for (const auto& [subject, value] : made.outliers)
-    outliers.push_back({{"subject", subjects[subject].label}, {"value", value}});
+  for (const CohortValue& value : column.values)
+    if (value.value < spread.lower_fence || value.value > spread.upper_fence)
+      outliers.push_back({{"subject", subjects[value.subject].label}, {"value", value.value}});
   made.summary = {{"measurement", column.measurement},
                   {"quantity", column.quantity},
                   {"unit", column.unit},
@@ -202,7 +213,7 @@ Json merge_group(const std::vector<Subject>& subjects, const fs::path& out, cons
   std::optional<CohortTable> other;
   if (options.against) other.emplace();
   std::vector<std::string> labels;
-  GroupPage page;
+  Json shown = Json::array(), columns = Json::array();
   std::size_t done = 0, doubtful = 0, failed = 0;
   AuditFindings audits;
   Json findings = options.findings;
@@ -234,28 +245,34 @@ Json merge_group(const std::vector<Subject>& subjects, const fs::path& out, cons
     subjects_file << csv_line({subject.label, to_string(record.state), has_answer ? "" : record.reason,
                                csv_number(record.seconds), csv_number(record.peak_mb),
                                joined(record.audit_findings)});
-    page.subjects.push_back({subject.label, has_answer ? "" : record.reason,
-                             fs::exists(out / subject.folder() / "picture.png"), is_doubtful,
-                             is_doubtful ? joined(record.audit_findings) : ""});
+    shown.push_back({{"label", subject.label},
+                     {"reason", has_answer ? "" : record.reason},
+                     {"has_picture", fs::exists(out / subject.folder() / "picture.png")},
+                     {"is_doubtful", is_doubtful},
+                     {"audit", is_doubtful ? joined(record.audit_findings) : ""}});
   }
   if (!rows_file.flush() || !subjects_file.flush())
     throw voxel::Error(voxel::ErrorCode::Resource,
                        folder.path().string() + ": cannot be written: the disk may be full");
 
   audits.append_to(findings);
-  for (const Json& finding : findings) page.findings.push_back(finding.get<std::string>());
   Json summary{{"octotomy", OCTOTOMY_VERSION}, {"subjects", subjects.size()}, {"done", done},
                {"doubtful", doubtful},         {"without_answer", failed},    {"findings", findings},
                {"measurements", Json::array()}};
   for (const CohortColumn& column : table.columns()) {
-    page.columns.push_back(summarised(column, subjects, other));
-    summary["measurements"].push_back(page.columns.back().summary);
-    for (const auto& [kind, svg] : page.columns.back().plots)
+    const GroupColumn made = summarised(column, subjects, other);
+    columns.push_back(to_json(made));
+    summary["measurements"].push_back(made.summary);
+    for (const auto& [kind, svg] : made.plots)
       voxel::write_file(folder.path() / "plots" / (column.name() + "_" + kind + ".svg"), svg);
   }
   voxel::write_file(folder.path() / "wide.csv", wide_table(labels, table));
   voxel::write_file(folder.path() / "summary.json", summary.dump(2) + "\n");
-  voxel::write_file(folder.path() / "index.html", group_page(page));
+  voxel::write_file(
+      folder.path() / "index.html",
+      drawn_page("Cohort of " + std::to_string(subjects.size()) + " subjects",
+                 {{"kind", "cohort"}, {"subjects", shown}, {"columns", columns}, {"findings", findings}},
+                 "Without scripts, read summary.json, wide.csv and the folder plots beside it."));
   folder.publish();
   return summary;
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "planner/result/report/html.h"
+#include "planner/result/report/drawn_page.h"
 
 namespace octotomy::planner {
 namespace {

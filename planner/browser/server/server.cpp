@@ -20,6 +20,7 @@
 #include "planner/browser/server/page.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/json_file.h"
+#include "planner/result/report/drawn_page.h"
 
 namespace octotomy::planner::serve {
 namespace {
@@ -45,10 +46,15 @@ constexpr const char* page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
     "'self'; "
     "worker-src 'self' blob:; frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-/// Content policy for output files such as reports, which contain styles and pictures but no scripts.
-constexpr const char* file_policy =
-    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox; base-uri 'none'; "
-    "frame-ancestors 'self'";
+/// Content policy for output files such as reports, which contain styles, pictures and the one script that
+/// draws them. Any other script does not run.
+const std::string& file_policy() {
+  static const std::string policy =
+      "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox allow-scripts; base-uri "
+      "'none'; frame-ancestors 'self'; script-src " +
+      page_script_source();
+  return policy;
+}
 
 struct Context {
   Service& service;
@@ -217,7 +223,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
   template <typename Body>
-  void set_fields(http::response<Body>& response, const std::string& type, const char* policy) {
+  void set_fields(http::response<Body>& response, const std::string& type, const std::string& policy) {
     response.set(http::field::content_type, type);
     response.set("Content-Security-Policy", policy);
     response.set("X-Content-Type-Options", "nosniff");
@@ -266,7 +272,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
                : ending == ".png"  ? "image/png"
                : ending == ".json" ? "application/json"
                                    : "application/octet-stream",
-               file_policy);
+               file_policy());
     write(response);
   }
 

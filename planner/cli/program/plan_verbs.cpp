@@ -163,8 +163,7 @@ void add_plan_verbs(Program& program) {
                   "The result's folder: new, empty, or an earlier result; files that you put there stay")
       ->required();
   add_certify(verb, text->certify);
-  verb.add_flag("--pdf", text->as_pdf,
-                "Also print the report as report.pdf; needs WeasyPrint or Chromium on the PATH");
+  verb.add_flag("--pdf", text->as_pdf, "Also print the report as report.pdf; needs Chromium on the PATH");
   add_anonymous(verb, text->anonymous);
   const auto seen = std::make_shared<PreviewText>();
   CLI::App& draws =

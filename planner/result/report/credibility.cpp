@@ -9,8 +9,7 @@
 #include <map>
 #include <vector>
 
-#include "planner/operation/table/number_format.h"
-#include "planner/result/report/html.h"
+#include "planner/result/report/drawn_page.h"
 #include "planner/result/report/result_record.h"
 
 namespace octotomy::planner {
@@ -452,85 +451,11 @@ Json credibility_json(const Json& json) {
   return print_record(made);
 }
 
-namespace {
-
-std::string words(const Json& json) {
-  if (json.is_null()) return "\u2013";
-  if (json.is_number_float()) return three_figures(json.get<double>());
-  return escaped(json.is_string() ? json.get<std::string>() : json.dump());
-}
-
-std::string spaced(std::string key) {
-  std::replace(key.begin(), key.end(), '_', ' ');
-  return key;
-}
-
-/// A value formatted for a sentence.
-std::string in_line(const Json& value) {
-  if (value.is_number_float()) return three_figures(value.get<double>());
-  if (value.is_string()) return value.get<std::string>();
-  if (!value.is_structured()) return value.dump();
-  std::string line;
-  for (const auto& [key, one] : value.items())
-    line += (line.empty() ? "" : ", ") + (value.is_object() ? spaced(key) + " " : "") + in_line(one);
-  return line;
-}
-
-/// "certificate, object skull, verdict PASS" in a list.
-std::string lines_of(const std::vector<Json>& evidence) {
-  std::vector<std::string> lines;
-  for (const Json& one : evidence) {
-    std::string line;
-    for (const auto& [key, value] : one.items()) {
-      if (key == "factor" || value.is_null() || (value.is_structured() && value.empty())) continue;
-      line += (line.empty() ? "" : ", ") + (key == "check" ? "" : spaced(key) + " ") + in_line(value);
-    }
-    lines.push_back(line);
-  }
-  return list(lines);
-}
-
-std::string factor_rows(const std::vector<CredibilityFactor>& factors) {
-  std::string rows = "<tr><th>Credibility factor</th><th>This run</th><th>Not in this run</th></tr>";
-  for (const CredibilityFactor& one : factors)
-    rows += "<tr>" + cell(escaped(one.group) + ": " + element("b", escaped(one.factor))) +
-            cell(one.evidence.empty() ? "nothing" : lines_of(one.evidence)) +
-            cell(one.gap ? escaped(*one.gap) : "\u2013") + "</tr>";
-  return element("table", rows);
-}
-
-std::string number_rows(const std::vector<SupportedNumber>& numbers) {
-  std::string rows =
-      "<tr><th>Number</th><th class=\"n\">value</th><th>supported by</th><th>contradicted "
-      "by</th><th>gaps</th></tr>";
-  for (const SupportedNumber& one : numbers)
-    rows += "<tr>" + cell(element("b", escaped(one.step)) + ", " + escaped(one.quantity)) +
-            figure_cell(words(one.value) + " " + escaped(one.unit)) +
-            cell(one.supported_by.empty() ? "nothing" : lines_of(one.supported_by)) +
-            cell(lines_of(one.contradicted_by)) + cell(list(one.gaps)) + "</tr>";
-  return element("table", rows);
-}
-
-}  // namespace
-
-std::string credibility_html(const Json& json) {
-  const auto credibility = record_of<Credibility>(json);
-  const auto asked = [](const char* name) {
-    return element("p", element("b", name) + ": " + to_state + ".");
-  };
-  const std::optional<std::string>& plan = credibility.context_of_use.plan;
-  return html_page(
-      "Credibility",
-      element("header",
-              element("div", element("h1", "Credibility: " + (plan ? escaped(*plan) : "\u2013")) +
-                                 element("p class=\"soft\"", escaped(credibility.claim) + " Terms: " +
-                                                                 escaped(credibility.terms) + "."))) +
-          asked("Context of use") + asked("Question of interest") +
-          asked("Model risk, of model influence and decision consequence") +
-          element("h2", "Numbers and what supports them") + number_rows(credibility.numbers) +
-          element("h2", "Credibility factors") + factor_rows(credibility.credibility_factors) +
-          element("footer",
-                  "Octotomy " + escaped(credibility.octotomy) + ". The same as data: credibility.json."));
+std::string credibility_html(const Json& credibility) {
+  const Json& plan = credibility.at("context_of_use").at("plan");
+  return drawn_page("Credibility: " + (plan.is_string() ? plan.get<std::string>() : "\u2013"),
+                    {{"kind", "credibility"}, {"credibility", credibility}},
+                    "Without scripts, read credibility.json beside it.");
 }
 
 }  // namespace octotomy::planner

@@ -39,8 +39,6 @@ using Words = std::vector<std::string>;
 
 /// The command line for printing; empty if no printer is installed. `profile`: a folder for Chromium's files.
 Words printing(const fs::path& page, const fs::path& pdf, const fs::path& profile) {
-  if (const auto weasyprint = on_path("weasyprint"))
-    return {weasyprint->string(), "--quiet", page.string(), pdf.string()};
   for (const char* name : {"chromium", "chromium-browser", "google-chrome"})
     if (const auto chromium = on_path(name)) {
       Words words{chromium->string(),
@@ -80,7 +78,7 @@ int run(const Words& words, const std::stop_token& stop) {
 void need_pdf_printer() {
   if (printing({}, {}, {}).empty())
     throw std::runtime_error(
-        "--pdf: no program that prints pages is installed: apt-get install weasyprint, or chromium");
+        "--pdf: no program that runs a page's script and prints it is installed: apt-get install chromium");
 }
 
 void print_pdf(const fs::path& page, const fs::path& pdf, const std::stop_token& stop) {

@@ -12,7 +12,7 @@
 #include "planner/operation/table/json_file.h"
 #include "planner/procedure/cephalometry/cephalogram.h"
 #include "planner/procedure/cephalometry/measured.h"
-#include "planner/result/report/contact_report.h"
+#include "planner/result/report/contact_pictures.h"
 #include "planner/result/report/credibility.h"
 #include "planner/result/report/patient.h"
 #include "planner/result/report/pdf.h"

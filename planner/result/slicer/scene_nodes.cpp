@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "planner/operation/table/number_format.h"
-#include "planner/result/report/html.h"
+#include "planner/result/report/drawn_page.h"
 
 namespace octotomy::planner {
 namespace {

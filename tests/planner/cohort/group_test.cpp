@@ -7,6 +7,7 @@
 #include "planner/cohort/result_rows.h"
 #include "tests/file_bytes.h"
 #include "tests/planner/cohort/ball_cohort.h"
+#include "tests/planner/result/report/page_data.h"
 
 namespace octotomy::planner {
 namespace {
@@ -114,9 +115,11 @@ TEST_F(CohortAudit, ASubjectWithAFailInAScansAuditIsDoubtfulEverywhere) {
   EXPECT_TRUE(has_failed && has_passed);
   EXPECT_NE(tests::bytes_of(out_ / "group/subjects.csv").find("1,doubtful,"), std::string::npos);
   EXPECT_NE(tests::bytes_of(out_ / "group/wide.csv").find("FAIL"), std::string::npos);
-  const std::string page = tests::bytes_of(out_ / "group/index.html");
-  EXPECT_NE(page.find("<h2>Doubtful</h2>"), std::string::npos);
-  EXPECT_NE(page.find("FAIL, patient: "), std::string::npos);
+  const Json shown = tests::page_data(tests::bytes_of(out_ / "group/index.html"))["subjects"];
+  EXPECT_EQ(shown[0]["label"], "1");
+  EXPECT_EQ(shown[0]["is_doubtful"], true);
+  EXPECT_NE(shown[0]["audit"].get<std::string>().find("FAIL, patient: "), std::string::npos);
+  EXPECT_EQ(shown[1]["is_doubtful"], false);
 }
 
 TEST_F(CohortAudit, AGroupWithoutAFailHasNobodyDoubtful) {
@@ -129,7 +132,8 @@ TEST_F(CohortAudit, AGroupWithoutAFailHasNobodyDoubtful) {
     EXPECT_TRUE(measurement["doubtful"].empty());
     EXPECT_FALSE(measurement.contains("without_doubtful"));
   }
-  EXPECT_EQ(tests::bytes_of(out_ / "group/index.html").find("<h2>Doubtful</h2>"), std::string::npos);
+  for (const Json& subject : tests::page_data(tests::bytes_of(out_ / "group/index.html"))["subjects"])
+    EXPECT_EQ(subject["is_doubtful"], false);
 }
 
 TEST(ResultRows, NoVerdictIsBetterThanTheAuditsOfTheScans) {

@@ -28,7 +28,8 @@ export function el<Tag extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-function put(element: Element, children: Child[]): void {
+/// Appends children, texts and lists of them; leaves out what is null or false.
+export function put(element: Element, children: Child[]): void {
   for (const child of children) {
     if (child === null || child === undefined || child === false) continue;
     if (Array.isArray(child))

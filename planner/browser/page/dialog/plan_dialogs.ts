@@ -105,18 +105,13 @@ export async function write_report(): Promise<void> {
   if (answer.left_out.length)
     notify(`The report lacks what failed: ${answer.left_out.join(", ")}. Its findings say why.`, "warning");
   void evaluate(true);  // the report has certified everything: badges show it
-  const dialog = open_dialog("Report", "report");
-  const frame: HTMLIFrameElement = el("iframe", {
-    src: file_url(answer.file),
-    title: "Report",
-    sandbox: "allow-same-origin",
-    // Keys that are pressed in the report do not reach the page.
-    onload: () => frame.contentDocument?.addEventListener(
-        "keydown",
-        (event) => {
-          if (event.key === "Escape") dialog.close();
-        })
-  });
+  // The report's script runs in an origin of its own, which reaches nothing of this page.
+  const frame = el("iframe", {src: file_url(answer.file), title: "Report", sandbox: "allow-scripts"});
+  const follow = (event: MessageEvent): void => {
+    if (event.source === frame.contentWindow && event.data === "Escape") dialog.close();
+  };
+  const dialog = open_dialog("Report", "report", () => removeEventListener("message", follow));
+  addEventListener("message", follow);
   dialog.refill(
       frame,
       el("div", {class: "row end"}, el("small", {class: "path"}, answer.folder),

@@ -2,7 +2,7 @@
 // The start page, and the audit of a scan that is shown before anything else.
 import {open_plan, try_to} from "../actions";
 import {audit_rows} from "../panel/audit";
-import {grouped} from "../panel/certificate_badge";
+import {grouped} from "../base/numbers";
 import {dialogs} from "../commands";
 import {patient_button, patient_facts} from "../panel/patient";
 import {file_chooser, most_upload_words} from "./files";

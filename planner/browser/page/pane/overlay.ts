@@ -8,6 +8,7 @@ import type {Pane} from "./panes";
 import {Json, Measurement, Step} from "../protocol";
 import {is_elsewhere, shown_scan, state, step_of, steps} from "../state";
 import {active_tool} from "../tool/tool";
+import {round_length} from "../base/numbers";
 import {add, dot, scaled, Vec2, Vec3} from "../base/vector";
 import {edge_letters, view_of_plane, view_text} from "../base/view_frame";
 
@@ -198,9 +199,7 @@ function draw_letters(pane: Pane, context: CanvasRenderingContext2D): void {
 function draw_scale(pane: Pane, context: CanvasRenderingContext2D): void {
   const frame = pane.frame;
   const [width, height] = pane.size;
-  const wanted_mm = width * 0.2 * frame.pixel_mm;
-  const ten = 10 ** Math.floor(Math.log10(wanted_mm));
-  const mm = ([5, 2, 1].find((n) => n * ten <= wanted_mm) ?? 1) * ten;
+  const mm = round_length(width * 0.2 * frame.pixel_mm);
   const long = mm / frame.pixel_mm;
   const right = width - 10 * pane.ratio;
   const y = height - 10 * pane.ratio;

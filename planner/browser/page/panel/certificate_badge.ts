@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A certificate as a badge on every number: both kernels agree, doubt, disagree, or have not been asked.
 import {Child, el} from "../base/html";
+import {grouped, unit_text} from "../base/numbers";
 import {show_place} from "../pane/pane_grid";
 import {Certificate, Measured} from "../protocol";
 import {set} from "../state";
@@ -67,8 +68,7 @@ export function badge(
 /// "56 764 ± 310 mm³", grouped and with as many digits as the half-width leaves.
 export function measured_text(measured: Measured|null|undefined): string {
   if (!measured || measured.value === null || !Number.isFinite(measured.value)) return "–";
-  const unit = measured.unit.replace("mm3", "mm³").replace("mm2", "mm²").replace("deg", "°").replace(
-      "per_mm", "per mm");
+  const unit = unit_text(measured.unit);
   const half = measured.half_width ?? null;
   const is_length = unit === "mm" || unit === "°";
   const digits = unit === "per mm" ? 4 : is_length ? 2 : Math.abs(measured.value) < 100 ? 1 : 0;
@@ -77,5 +77,3 @@ export function measured_text(measured: Measured|null|undefined): string {
       `${number} ${unit}` :
       `${number} ± ${grouped(half, half < 10 ? Math.max(digits, 1) : 0)} ${unit}`;
 }
-export const grouped = (value: number, digits = 0): string =>
-    value.toFixed(digits).replace(/\B(?=(\d{3})+(?!\d))/g, "\u202f").replace("-", "−");

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The plan's numbers: volumes and measurements with their certificates.
 import {try_to} from "../actions";
-import {badge, grouped, judged, measured_text} from "./certificate_badge";
+import {badge, judged, measured_text} from "./certificate_badge";
 import {certify_all} from "../commands";
 import {is_overlap} from "../drawn_objects";
 import {button, Child, el} from "../base/html";
 import {icon} from "../base/icons";
+import {grouped} from "../base/numbers";
 import {makes_body} from "../operations";
 import {show_place} from "../pane/pane_grid";
 import {Measurement} from "../protocol";

@@ -154,8 +154,11 @@ test('STL and a deck are exported', async () => {
 
 test('the report is written', async () => {
   await one.click(one.page.locator('.bar').getByRole('button', { name: 'Report' }));
-  await one.page.locator('dialog.report iframe').waitFor();
-  await one.press('Escape');
+  const report = one.page.frameLocator('dialog.report iframe');
+  await report.getByRole('heading', { name: 'Certificates' }).waitFor();
+  assert.ok(await report.locator('svg image').count() >= 8);
+  await report.locator('body').press('Escape');
+  await one.page.locator('dialog.report').waitFor({ state: 'detached' });
 });
 
 test(`a Le Fort I takes at most ${most_actions} actions`, (context) => {

@@ -119,13 +119,16 @@ TEST_F(PlanDocument, AReportIsPrintedByWhatPrintsPagesAndRefusedBeforeTheWorkWit
   };
   const std::string bin = (folder_ / "bin").string();
   std::filesystem::create_directory(bin);
-  expect_refused(with_path(bin), "apt-get install weasyprint");
+  expect_refused(with_path(bin), "apt-get install chromium");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "report"));
-  write("bin/weasyprint", "#!/bin/sh\n/bin/cp \"$2\" \"$3\"\n");
-  std::filesystem::permissions(folder_ / "bin/weasyprint", std::filesystem::perms::owner_all);
+  write("bin/chromium",
+        "#!/bin/sh\nfor word; do case $word in --print-to-pdf=*) pdf=${word#*=};; file://*) "
+        "page=${word#file://};; "
+        "esac; done\n/bin/cp \"$page\" \"$pdf\"\n");
+  std::filesystem::permissions(folder_ / "bin/chromium", std::filesystem::perms::owner_all);
   EXPECT_EQ(with_path(bin).status, 0);
   EXPECT_EQ(tests::bytes_of(folder_ / "report/report.pdf"), tests::bytes_of(folder_ / "report/report.html"));
-  write("bin/weasyprint", "#!/bin/sh\nexit 1\n");
+  write("bin/chromium", "#!/bin/sh\nexit 1\n");
   const auto failed = with_path(bin);
   EXPECT_EQ(failed.status, 3) << failed.errors;
   EXPECT_NE(failed.errors.find("leave out --pdf"), std::string::npos) << failed.errors;

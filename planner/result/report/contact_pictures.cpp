@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/result/report/contact_report.h"
+#include "planner/result/report/contact_pictures.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "planner/operation/table/number_format.h"
-#include "planner/result/report/html.h"
+#include "planner/result/report/measurement.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
@@ -78,40 +77,6 @@ void add_contact_pictures(Result& result) {
          contact_picture_px, objects.lps_from_head);
     result.pictures.push_back(std::move(group));
   }
-}
-
-std::string contact_tables(const std::vector<Measurement>& measurements) {
-  std::string made;
-  const auto number = [](const std::optional<double>& value, int decimals) {
-    return value ? grouped(*value, decimals) : std::string("\u2013");
-  };
-  for (const Measurement& measurement : measurements) {
-    if (!measurement.contacts) continue;
-    const MeasuredContacts& map = *measurement.contacts;
-    const std::string object = escaped(map.object), against = escaped(map.against);
-    std::string rows =
-        "<tr><th>Contact</th><th class=\"n\">x, y, z, mm</th><th class=\"n\">nearest, mesh kernel, "
-        "mm</th><th "
-        "class=\"n\">nearest, voxel kernel, mm</th><th class=\"n\">depth, mm</th><th class=\"n\">area, "
-        "mm\u00b2</th></tr>";
-    int count = 0;
-    for (const MeasuredContact& contact : map.contacts) {
-      const glm::dvec3& at = contact.at_mm;
-      rows += "<tr>" + cell(std::to_string(++count)) +
-              figure_cell(number(at.x, 1) + ", " + number(at.y, 1) + ", " + number(at.z, 1)) +
-              figure_cell(number(contact.nearest_mm, 2) + " \u00b1 " + three_figures(contact.half_width_mm)) +
-              figure_cell(number(contact.voxel_nearest_mm, 2)) + figure_cell(number(contact.depth_mm, 2)) +
-              figure_cell(number(contact.area_mm2, 1)) + "</tr>";
-    }
-    std::string says = plural(count, "place") + " of " + object + " within " + number(map.within_mm, 2) +
-                       " mm of " + against;
-    if (map.certain_count) says += ", " + std::to_string(*map.certain_count) + " of them beyond doubt";
-    if (count == 0 && map.nearest_mm) says += "; the nearest is " + number(map.nearest_mm, 2) + " mm away";
-    made += element("h3", "Contacts " + escaped(measurement.id)) +
-            element("p", says + ". Distances are signed, negative where they overlap.") +
-            (count > 0 ? element("table", rows) : "") + list(map.findings);
-  }
-  return made;
 }
 
 }  // namespace octotomy::planner

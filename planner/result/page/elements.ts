@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What all pages are made of: tables, lists, verdicts as labels, SVG. Text enters as text nodes and attributes, so
+// that no name in a result can become markup.
+import {Attributes, Child, el, put} from "../../browser/page/base/html";
+import {grouped, three_figures} from "../../browser/page/base/numbers";
+import {Counts, Interval, Verdict} from "./result";
+
+/// Cells; cells of a row without a line below it, because wide_row() continues it; or a row that is an element already.
+export type Row = Child[]|{lead: Child[]}|HTMLElement;
+
+/// A table. Columns whose heads begin with "#" hold numbers and are aligned at the right.
+export function table(heads: readonly string[], rows: readonly Row[], above: Child = null): HTMLElement {
+  const columns = heads.map((head) => head.startsWith("#") ? "n" : null);
+  const drawn = (cells: Child[], css: string|null): Child =>
+      el("tr", {class: css}, cells.map((cell, i) => el("td", {class: columns[i]}, cell)));
+  return el(
+      "table", {},
+      el("thead", {}, above,
+         el("tr", {}, heads.map(
+             (head, i) => head ? el("th", {scope: "col", class: columns[i]}, head.replace("#", "")) : el("td")))),
+      el("tbody", {}, rows.map(
+          (row) => Array.isArray(row) ? drawn(row, null) : "lead" in row ? drawn(row.lead, "lead") : row)));
+}
+/// A row of one cell over several columns.
+export const wide_row = (columns: number, ...children: Child[]): HTMLElement =>
+    el("tr", {}, el("td", {colspan: columns}, children));
+/// A heading and what follows it; nothing where that is empty.
+export const section = (title: string, ...children: Child[]): Child =>
+    children.some((child) => child && !(Array.isArray(child) && !child.length)) ? [el("h2", {}, title), children] : null;
+export const soft = (...children: Child[]): HTMLElement => el("p", {class: "soft small"}, children);
+/// Lines as a list; nothing without lines.
+export const list = (lines: readonly string[]|null|undefined): Child =>
+    lines?.length ? el("ul", {class: "findings small"}, lines.map((line) => el("li", {}, line))) : null;
+export const footer = (version: string, ...children: Child[]): HTMLElement =>
+    el("footer", {}, `Octotomy ${version}. `, children);
+export const facts = (...pairs: [string, Child][]): HTMLElement =>
+    el("dl", {class: "facts"}, pairs.map(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));
+/// The stages of a run with their times, in one line.
+export const times = (timings: {[stage: string]: number}): string =>
+    Object.entries(timings).map(([stage, ms]) => `${stage} ${grouped(ms)} ms`).join(" · ");
+
+/// An SVG element. Names of elements and attributes are the page's own.
+export function svg(tag: string, attributes: Attributes = {}, ...children: Child[]): SVGElement {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes))
+    if (value !== null && value !== undefined) made.setAttribute(name, String(value));
+  put(made, children);
+  return made;
+}
+
+/// A verdict as a coloured label. Of an object that is not resolved it says so; its PASS is grey.
+export function pill(verdict: Verdict, resolved = true): HTMLElement {
+  const css = resolved || verdict !== "PASS" ? verdict.toLowerCase() : "below";
+  return el("span", {class: `pill ${css}`}, resolved ? verdict : `${verdict}, not resolved`);
+}
+/// A bar whose length is a value's share of the allowed one.
+export function gauge(value: number, allowed: number, verdict: Verdict): HTMLElement {
+  const share = allowed > 0 ? Math.min(1, Math.abs(value) / allowed) : value === 0 ? 0 : 1;
+  const bar = el("i", {style: `width:${(100 * share).toFixed(2)}%`});
+  return el("span", {class: `gauge ${verdict.toLowerCase()}`}, bar);
+}
+export const plural = (count: number, one: string): string => `${count} ${one}${count === 1 ? "" : "s"}`;
+
+/// A number with its half-width, if it has one.
+export const doubtful =
+    (value: number|null|undefined, half_width: number|null|undefined, digits: number): string =>
+        grouped(value, digits) + (typeof half_width === "number" ? ` ± ${three_figures(half_width)}` : "");
+export const recommended = (interval: Interval|undefined, digits: number): string =>
+    doubtful(interval?.value, interval?.half_width, digits);
+
+/// A sentence on all certificates and their counts; nothing if there are none.
+export function overall_verdict(counts: Counts): Child {
+  const all = counts.PASS + counts.WARN + counts.FAIL;
+  if (!all) return null;
+  const [css, title] = counts.FAIL ? ["fail", "The two kernels disagree"] :
+      counts.WARN                  ? ["warn", "The two kernels agree, with doubts"] :
+      counts.PASS > counts.pass_not_resolved ?
+                                     ["pass", "The two kernels agree"] :
+                                     ["below", "The two kernels agree on objects that voxels do not resolve"];
+  const few = (count: number, words: string): string => count ? words : "";
+  return el(
+      "div", {class: `verdict ${css}`}, el("b", {}, title),
+      el("span", {class: "soft"}, `${plural(all, "certificate")}: ${counts.PASS} pass`,
+         few(counts.WARN, `, ${counts.WARN} warn`), few(counts.FAIL, `, ${counts.FAIL} fail`),
+         few(counts.not_resolved, `; ${counts.not_resolved} not resolved`),
+         few(counts.without_certificate, `; ${plural(counts.without_certificate, "object")} without a certificate`)));
+}
