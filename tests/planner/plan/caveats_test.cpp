@@ -88,6 +88,25 @@ TEST_F(Caveats, APartThatLeavesTheScanIsWholeInEveryObjectMadeOfIt) {
   EXPECT_TRUE(evaluation.object("back").voxel.octree == evaluation.object("ball").voxel.octree);
 }
 
+// The mesh kernel alone decimates. A motion reads the digitised voxels, which lie up to half a voxel's diagonal
+// from the surface.
+TEST_F(Caveats, ADecimatedSurfaceIsSharedAndNotContradictedThroughMotionsAndBooleans) {
+  const SortedJson turn{{"degrees", 7}, {"axis", {1, 2, 0}}, {"about_mm", {0, 3, 0}}};
+  const auto move = [&](const char* id, const char* object) {
+    add({{"id", id}, {"do", "move"}, {"object", object}, {"translate_mm", {2, 1, 0}}, {"rotate", turn}});
+  };
+  add({{"id", "fewer"}, {"do", "decimate"}, {"object", "ball"}, {"faces", 800}});
+  move("moved", "fewer");
+  move("again", "moved");
+  add({{"id", "part"}, {"do", "combine"}, {"expression", "fewer & top"}});
+  move("moved_part", "part");
+  add({{"id", "both"}, {"do", "combine"}, {"expression", "(moved_part | ball) - (ball - top)"}});
+  const Evaluation evaluation = evaluated();
+  for (const char* id : {"fewer", "moved", "again", "part", "moved_part", "both"})
+    EXPECT_EQ(evaluation.object(id).certificate->verdict, Verdict::Warn)
+        << id << reasons(evaluation.object(id));
+}
+
 TEST_F(Caveats, AnEmptyObjectProvesNothing) {
   add({{"id", "cap"}, {"do", "combine"}, {"expression", "ball & top"}});
   add({{"id", "away"}, {"do", "combine"}, {"expression", "cap - ball"}});
