@@ -109,6 +109,7 @@ void add_specks(Certificate& certificate, const Specks& specks) {
                              voxel::rounded(specks.largest->at_mm) + ", and distances leave them out",
                   .statement = "The mesh has parts and cavities of % that hold no voxel's centre"},
                  Verdict::Warn);
+  judge_evidence(certificate);
 }
 
 /// Compares area and distances; for a resolved object with a witness, at first on a sample of the surfaces'
@@ -116,9 +117,9 @@ void add_specks(Certificate& certificate, const Specks& specks) {
 /// by those is not resolved there, and the certificate states the lost area.
 void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
                       const brep::Solid& solid) {
-  const bool is_strict = evidence.witnessed && certificate.resolved();
   const Specks specks = evidence.witnessed ? specks_of(solid, octree.universe().lattice()) : Specks();
   add_specks(certificate, specks);
+  const bool is_strict = evidence.witnessed && certificate.resolved();
   const brep::Triangles& measured = specks.others.faces.empty() ? solid.triangles() : specks.others;
   SurfaceDistances distances(octree, solid, measured, is_strict);
   certificate.hausdorff_mm = distances.largest_mm();
@@ -147,6 +148,7 @@ void compare_surfaces(Certificate& certificate, const Evidence& evidence, const 
   }
   if (loses_area && certificate.unresolved)
     certificate.unresolved->reason += ", and " + lost_share + " % of its surface is lost";
+  if (is_strict && certificate.unresolved) certificate.unresolved->reason += ": take smaller voxels";
   // Sheets thinner than a voxel lose much area and little volume, so the verdict is WARN at worst.
   compare(certificate, evidence, std::move(area), Verdict::Warn);
   compare(certificate, evidence,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 Shells. Triangles that share an edge belong to one shell. Its volume is that of the tetrahedra from the shell's
-//   own first point, so that no digits cancel far from the origin.
+// 1 Shells. Triangles that share an edge belong to one shell. Its volume is that of the tetrahedra from the
+//   shell's own first point, so that no digits cancel far from the origin.
 // 2 Crossings. Of each small shell, every row of centres along the universe's first axis is crossed with the
-//   triangles. A shell encloses a centre if a centre lies between a row's first and second crossing, or third and
-//   fourth, and so on.
+//   triangles. A shell encloses a centre if a centre lies between a row's first and second crossing, or third
+//   and fourth, and so on.
 #include "verify/certificate/specks.h"
 
 #include <algorithm>
@@ -89,8 +89,8 @@ double twice_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c)
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// Adds the rows that cross a triangle, whose corners are in voxels. Rows are moved by a part of a voxel that no
-/// lattice of samples has, so that they meet no corner or edge of a mesh along the lattice.
+/// Adds the rows that cross a triangle, whose corners are in voxels. Rows are moved by a part of a voxel that
+/// no lattice of samples has, so that they meet no corner or edge of a mesh along the lattice.
 void add_crossings(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
                    std::vector<Crossing>& crossings) {
   constexpr double by_y = 1.37e-7, by_z = 2.71e-7;

@@ -21,8 +21,8 @@ struct Specks {
   /// The solid's other triangles; without specks none, because they are the solid's own.
   brep::Triangles others;
 };
-/// Triangles that share an edge belong to one shell. Shells of more than 4096 voxels are no specks. Cost: linear.
-/// Parallel in parts; same answer on any thread count.
+/// Triangles that share an edge belong to one shell. Shells of more than 4096 voxels are no specks. Cost:
+/// linear. Parallel in parts; same answer on any thread count.
 Specks specks_of(const brep::Solid& solid, const voxel::Lattice& lattice);
 
 }  // namespace octotomy::verify

@@ -22,8 +22,8 @@ class SurfaceDistances {
   /// Measures every point. With `sampled`, mean and percentile use one random point of each run of
   /// neighbours, at most 32,768 points in each direction; the largest distance always covers all points.
   /// Preconditions: neither object is empty, and the universe's axes are perpendicular. Keeps references to
-  /// both objects. Parallel; same answer on any thread count. Points lie on `measured`, the solid's triangles or
-  /// some of them.
+  /// both objects. Parallel; same answer on any thread count. Points lie on `measured`, the solid's triangles
+  /// or some of them.
   SurfaceDistances(const voxel::Octree& octree, const brep::Solid& solid, const brep::Triangles& measured,
                    bool sampled);
 

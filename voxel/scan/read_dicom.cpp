@@ -434,9 +434,9 @@ class SeriesReader {
     return count;
   }
 
-  /// Replaces padding by `value` where it is scattered inside of the images: a measured sample may be as dark as
-  /// the padding at the rims. Returns the number of such samples; none if padding inside of the images fills
-  /// areas.
+  /// Replaces padding by `value` where it is scattered inside of the images: a measured sample may be as dark
+  /// as the padding at the rims. Returns the number of such samples; none if padding inside of the images
+  /// fills areas.
   template <typename Samples>
   std::size_t take_scattered_inside(Samples& samples, const glm::ivec2& size_px, double value) const {
     using Sample = typename Samples::value_type;
