@@ -479,6 +479,7 @@ class Checker:
         self.check_movements()
         self.check_exports()
         self.check_tables()
+        self.check_report()
         return self.findings
 
     def plan_is_the_one(self):
@@ -890,6 +891,25 @@ class Checker:
             self.findings.claim(len(rows) == len(stated) and not wrong,
                                 f"tables/{part}.csv: its {compared} cells are the values of result.json"
                                 + (f", but for {wrong[0]}" if wrong else ""))
+
+
+    def check_report(self):
+        """The page draws the data that it holds; these are result.json and the plan's text."""
+        page = self.archive.bytes("result/report.html").decode("utf-8")
+        found = re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)
+        try:
+            data = json.loads(found.group(1)) if found else {}
+        except ValueError:
+            data = {}
+        self.findings.claim(without_times(data.get("result")) == without_times(self.result)
+                            and data.get("plan_text", "").encode() == self.archive.bytes("plan.plan.json"),
+                            "report.html draws the values of result.json and the text of plan.plan.json")
+
+
+def without_times(value):
+    if isinstance(value, dict):
+        return {key: without_times(member) for key, member in value.items() if key != "timings_ms"}
+    return [without_times(member) for member in value] if isinstance(value, list) else value
 
 
 def member(value, column):

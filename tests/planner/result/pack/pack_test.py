@@ -20,7 +20,7 @@ import numpy as np
 ROOT = Path(__file__).parents[4]
 CHECKER = ROOT / "planner/result/pack/check_pack.py"
 PROGRAM = os.environ["OCTOTOMY_PROGRAM"]
-FORGERIES = int(os.environ.get("OCTOTOMY_FORGERIES", "39"))
+FORGERIES = int(os.environ.get("OCTOTOMY_FORGERIES", "42"))
 
 PLAN = {
     "octotomy_plan": 1, "name": "An advancement", "scans": {"ct": {"path": "head.nrrd"}},
@@ -170,9 +170,14 @@ def change_a_table(forger):
     forger.entries[name] = forger.entries[name].replace(b"PASS", b"FAIL", 1)
 
 
+def change_the_report(forger):
+    name = "result/report.html"
+    forger.entries[name] = forger.entries[name].replace(b'"verdict":"PASS"', b'"verdict":"FAIL"', 1)
+
+
 WAYS = [move_a_vertex, turn_a_triangle, lengthen_a_run, exchange_objects, change_the_threshold, change_a_polygon,
         change_the_motion, change_an_expression, change_a_verdict, change_a_volume, change_a_measurement,
-        change_the_exported_file, change_a_table]
+        change_the_exported_file, change_a_table, change_the_report]
 
 
 class Pack(unittest.TestCase):
