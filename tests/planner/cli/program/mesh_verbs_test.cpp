@@ -130,6 +130,14 @@ TEST_F(MeshVerbs, AMeshIsAskedForSectionsWaysAnglesWallsAndCurvature) {
   EXPECT_NE(run("measure " + at("ball.off") + " --curvature").out.find("curvature"), std::string::npos);
   expect_refused(run("measure " + at("ball.nrrd") + " --window 0: --thickness"), "mesh");
   expect_refused(run("measure " + at("ball.off") + " --angle 0,0,0 0,0,0 1,0,0"), "--angle");
+  // Typed points need no file. An option that would change nothing is refused.
+  const SortedJson typed =
+      SortedJson::parse(run("measure --distance 1,2,3 4,6,15 --angle 1,0,0 0,0,0 1,1,0 --json").out);
+  EXPECT_DOUBLE_EQ(typed["distance_mm"], 13.0);
+  EXPECT_NEAR(typed["angle_deg"].get<double>(), 45.0, 1e-12);
+  expect_refused(run("measure --angle 0,0,0 0,0,0 1,0,0"), "--angle");
+  expect_refused(run("measure --distance 1,2,3 4,6,15 --voxel 2"), "file is required");
+  expect_refused(run("measure"), "file is required");
   expect_refused(run("measure " + at("ball.off") + " -o " + at("p.vtp")), "--thickness");
 }
 
