@@ -152,7 +152,7 @@ FaceSet view_code(int octant) {
   return faces;
 }
 
-std::string text(FaceSet faces) {
+std::string face_text(FaceSet faces) {
   std::string result;
   for (int axis = 0; axis < 3; ++axis)
     for (const int side : {1, 0}) {

@@ -41,7 +41,7 @@ Octree octree_of(const MaskedOctree& masked);
 /// The faces that an observer beyond an octant sees (table 4.1). Precondition: the octant is in 0..7.
 FaceSet view_code(int octant);
 /// The faces in the order of equation 3.2, x- x+ y- y+ z- z+: `E F F E E F`, F for a face of the set.
-std::string text(FaceSet faces);
+std::string face_text(FaceSet faces);
 
 /// What drawing back to front costs (4.4.3.1).
 struct MaskedDrawing {

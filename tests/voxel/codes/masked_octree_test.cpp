@@ -126,8 +126,8 @@ TEST(MaskedOctree, IsDrawnWithoutWhatItsMasksHide) {
 }
 
 TEST(MaskedOctree, FaceSetsAreTheThesiss) {
-  EXPECT_EQ(text(view_code(0)), "F E F E F E");
-  EXPECT_EQ(text(view_code(5)), "E F F E E F");
+  EXPECT_EQ(face_text(view_code(0)), "F E F E F E");
+  EXPECT_EQ(face_text(view_code(5)), "E F F E E F");
   const char* masks[] = {"172105", "174212", "630423", "631054", "747400", "740360"};
   for (int i = 0; i < direction_count; ++i)
     EXPECT_EQ(neighbour_mask(static_cast<Direction>(i)), std::strtoul(masks[i], nullptr, 8)) << i;
