@@ -19,8 +19,8 @@
 #include "voxel/solid/combine.h"
 #include "voxel/solid/digitise.h"
 #include "voxel/space/view.h"
-#include "voxel/view/grey_visits.h"
 #include "voxel/view/render.h"
+#include "voxel/view/visits.h"
 
 namespace octotomy::verify {
 namespace {
@@ -198,8 +198,8 @@ void table_a_2(const Octree& skull, RepresentationStudy& study) {
        {"1.00 0.81 0.26 0.22 0.36", "0.00 0.19 0.74 0.81 0.78", "2.44733 1.87321 0.62960 0.53852 0.88955"},
        {"1.00 0.75 0.21 0.19 0.29", "0.00 0.25 0.79 0.84 0.82", "8.17665 6.11504 1.81234 1.52448 2.39753"}}};
   for (int level = 3; level <= depth; ++level) {
-    // The printed total of level 3 is that of the whole tree cut there (table 3.1), so a node with any Full voxel
-    // becomes Full.
+    // The printed total of level 3 is that of the whole tree cut there (table 3.1), so a node with any Full
+    // voxel becomes Full.
     const Octree object = reduced(skull, depth - level, {voxel::Reduction::Of::Children, 0.0});
     const voxel::DrawnObject head{"skull", object};
     const voxel::MaskedDrawing masked = draw_back_to_front(masked_octree(object), front);

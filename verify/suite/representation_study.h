@@ -8,8 +8,8 @@
 
 namespace octotomy::verify {
 
-/// A row of a table that depends on a patient's scan that was not published, and the same of the head phantom. The two are
-/// to be read side by side; they need not agree.
+/// A row of a table that depends on a patient's scan that was not published, and the same of the head
+/// phantom. The two are to be read side by side; they need not agree.
 struct ThesisComparison {
   std::string where;    ///< "table A.2"
   std::string item;     ///< "level 8, visits per node"
@@ -23,9 +23,10 @@ struct RepresentationStudy {
   std::vector<ThesisComparison> beside;
 };
 
-/// The thesis's study of representations (chapters 3 to 5, 7, appendix A) on the head phantom: 256 voxels a side, 64 grey
-/// levels of which the upper 44 are bone. Costs are counted in visits to nodes, where the thesis also prints seconds of two
-/// computers of 1989. Deterministic. Cost: about ten seconds of processor time, half of it for the phantom.
+/// The thesis's study of representations (chapters 3 to 5, 7, appendix A) on the head phantom: 256 voxels a
+/// side, 64 grey levels of which the upper 44 are bone. Costs are counted in visits to nodes, where the
+/// thesis also prints seconds of two computers of 1989. Deterministic. Cost: about ten seconds of processor
+/// time, half of it for the phantom.
 RepresentationStudy representation_study();
 
 }  // namespace octotomy::verify

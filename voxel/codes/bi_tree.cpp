@@ -10,8 +10,8 @@
 #include "voxel/tree/logical_build.h"
 #include "voxel/tree/slice_build.h"
 
-// Dynamic programming over all boxes that halving can reach. Srihari leaves the choice of axes open because of its
-// cost; with at most 2^7 voxels a side the exact optimum is affordable.
+// Dynamic programming over all boxes that halving can reach. Srihari leaves the choice of axes open because
+// of its cost; with at most 2^7 voxels a side the exact optimum is affordable.
 
 namespace octotomy::voxel {
 namespace {

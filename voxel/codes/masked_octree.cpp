@@ -7,8 +7,8 @@
 #include "voxel/tree/level_tally.h"
 #include "voxel/tree/logical_build.h"
 
-// The masks are found in one walk that carries, with each node, the six nodes of its size beside it. A homogeneous node
-// stands for its virtual children, so a neighbour of the same size always exists.
+// The masks are found in one walk that carries, with each node, the six nodes of its size beside it. A
+// homogeneous node stands for its virtual children, so a neighbour of the same size always exists.
 
 namespace octotomy::voxel {
 namespace {

@@ -10,7 +10,6 @@
 #include "voxel/measure/grey_level_counts.h"
 #include "voxel/view/axis_walk.h"
 #include "voxel/view/counted_walk.h"
-#include "voxel/view/grey_visits.h"
 
 namespace octotomy::voxel {
 namespace {

@@ -9,7 +9,8 @@ namespace octotomy::voxel {
 namespace {
 
 TEST(GreyRuns, OfFigure31AreTheThesiss) {
-  // The text's fourth to last runs read (0:11), (0:1), (0:2): the middle one is of ones, as its own list of one-runs says.
+  // The text's fourth to last runs read (0:11), (0:1), (0:2): the middle one is of ones, as its own list of
+  // one-runs says.
   const std::string printed =
       "(0:8), (1:2), (0:2), (1:2), (0:9), (1:4), (0:1), (1:2), (0:11), (1:1), (0:2), (1:1), (0:12), (1:1), "
       "(0:6)";

@@ -61,7 +61,8 @@ TEST_F(MeshVerbs, AnOffsetByNothingIsRefusedBeforeTheMeshIsRead) {
 
 TEST_F(MeshVerbs, AShadowGoesAlongTheTypedDirectionToTheObjectsFarEnd) {
   brep::write_mesh(brep::mesh_of(brep::shapes::box({-2, -3, -5}, {2, 3, 5})), folder_ / "box.off");
-  // The silhouette's area times half the depth, and half the box: it is its own mirror image about its middle.
+  // The silhouette's area times half the depth, and half the box: it is its own mirror image about its
+  // middle.
   const double silhouette_mm2 = 0.6 * 4 * 10 + 0.8 * 4 * 6, half_depth_mm = 0.5 * (0.6 * 6 + 0.8 * 10);
   const double truth_mm3 = silhouette_mm2 * half_depth_mm + 0.5 * 240.0;
   for (const char* direction : {"0,0.6,0.8", "0,-3,-4"}) {

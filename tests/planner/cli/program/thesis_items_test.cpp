@@ -5,13 +5,13 @@
 #include "tests/file_bytes.h"
 #include "tests/planner/cli/program/command_line.h"
 
-// Walks the list of the thesis's items, tests/golden/thesis/items.json. A row names a section, an item, the commands
-// that show it, and values that the last command's answer is held to:
+// Walks the list of the thesis's items, tests/golden/thesis/items.json. A row names a section, an item, the
+// commands that show it, and values that the last command's answer is held to:
 //   json   pointers into standard output, each with a value or [lowest, highest]
 //   text   pieces of standard output
 //   file   files in the commands' folder, each with its whole text
-// The values are closed forms, counts of another program, or printed in the thesis; a range is as wide as digitisation
-// allows. A row without commands says what is missing.
+// The values are closed forms, counts of another program, or printed in the thesis; a range is as wide as
+// digitisation allows. A row without commands says what is missing.
 
 namespace octotomy::planner {
 namespace {
