@@ -7,7 +7,7 @@
 //   guide may lie there. Where there is no undercut, the fitting surface is that of the grown bone.
 // 3 The region's bone grown by clearance and thickness, so that the guide's rim is round; about each slot walls
 //   that reach as far before the bone as the slot is deep: that shadow moved back along the saw; a rod for each
-//   sleeve.
+//   sleeve. Edges of the walls are rounded.
 // 4 3 less 2, then less slots and holes.
 // 5 The largest piece, with points that files for printers can hold.
 //
@@ -55,7 +55,8 @@ struct Guide {
   double reach_mm = 25.0;
   double clearance_mm = 0.25, thickness_mm = 3.0;
   std::vector<ObjectName> cuts;
-  double kerf_mm = 1.0, play_mm = 0.2, slot_depth_mm = 15.0, slot_wall_mm = 2.0, slot_end_mm = 4.0;
+  double kerf_mm = 1.0, play_mm = 0.2, slot_depth_mm = 15.0, slot_wall_mm = 2.0, slot_end_mm = 4.0,
+         rounding_mm = 1.0;
   std::string slot_form = "closed";
   std::vector<ObjectName> screws;
   double drill_mm = 1.5, sleeve_wall_mm = 1.5, sleeve_height_mm = 6.0;
@@ -93,6 +94,8 @@ void check(const Guide& guide, const Place& place) {
   };
   check_view(guide.side, place.at("side"));
   if (guide.region) check_view(guide.region->view, place.at("region").at("view"));
+  if (guide.rounding_mm > 0.9 * guide.slot_wall_mm)
+    place.at("rounding_mm").refuse("is more than 0.9 of 'slot_wall_mm': rounding would cut the walls off");
   if (place.scope == nullptr) return;
   for (std::size_t i = 0; i < guide.cuts.size(); ++i) {
     const std::string& maker = place.scope->maker_of(guide.cuts[i].name).name;
@@ -216,8 +219,9 @@ void voxels(const Guide& guide, const VoxelBench& bench, VoxelSide& made) {
   voxel::Expression whole(
       voxel::offset(patch, solid & base, guide.clearance_mm + guide.thickness_mm, bench.progress));
   for (const SawSlot& slot : guide.slots)
-    whole = whole |
-            (slot.walls.expression(guide.walls_width_mm(slot)) & base & moved(taken, to_rim(guide, slot)));
+    whole = whole | rounded(slot.walls.expression(guide.walls_width_mm(slot)) & base &
+                                moved(taken, to_rim(guide, slot)),
+                            guide.rounding_mm, bench);
   for (const Sleeve& sleeve : guide.sleeves)
     whole = whole | rod_of(sleeve.outer_mm, sleeve.through_mm(below_mm), guide.sleeve_radius_mm());
   whole = whole - (taken | grown);
@@ -281,13 +285,12 @@ void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
   const brep::Solid outer = timed("guide_offset", [&] {
     return brep::offset(patch, {guide.clearance_mm + guide.thickness_mm, outer_cell_mm, progress});
   });
-  made.details["triangles"] = {{"bone", bone.triangles().faces.size()},
-                               {"taken", taken.triangles().faces.size()},
-                               {"outer", outer.triangles().faces.size()}};
   std::vector<brep::Solid> parts{outer};
-  for (const SawSlot& slot : guide.slots)
-    parts.push_back(of(of(slot.walls.solid(guide.walls_width_mm(slot)), Intersection, base), Intersection,
-                       brep::moved(taken, to_rim(guide, slot))));
+  for (const SawSlot& slot : guide.slots) {
+    const brep::Solid walls = of(of(slot.walls.solid(guide.walls_width_mm(slot)), Intersection, base),
+                                 Intersection, brep::moved(taken, to_rim(guide, slot)));
+    parts.push_back(timed("guide_rounding", [&] { return rounded(walls, guide.rounding_mm, bench, made); }));
+  }
   for (const Sleeve& sleeve : guide.sleeves)
     parts.push_back(rod(sleeve.outer_mm, sleeve.through_mm(below_mm), guide.sleeve_radius_mm()));
   brep::Solid whole = noted(brep::boolean(parts, Union, bench.progress.stop), made);
@@ -414,6 +417,12 @@ Operation guide_operation() {
                    "closed: both ends of slots are closed; three_sided: the end of the line's last point is "
                    "open.")
                  .one_of({"closed", "three_sided"}))
+      .takes(
+          field("rounding_mm", &Guide::rounding_mm,
+                "The radius of the edges of slots' walls, which are thicker than twice this; the default is "
+                "a project's choice. The base's rim is round by itself.")
+              .from(0.3)
+              .to(5.0))
       .takes(field("screws", &Guide::screws, "Screws of this plan whose holes the guide drills.")
                  .in_plans_only())
       .takes(field("drill_mm", &Guide::drill_mm, "The drill's diameter; 1.5 is usual for screws of 2 mm.")

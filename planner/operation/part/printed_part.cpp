@@ -3,11 +3,42 @@
 
 #include "brep/mesh/flat_triangles.h"
 #include "brep/mesh/health.h"
+#include "brep/shape/offset.h"
 #include "brep/shape/untangle.h"
 #include "planner/operation/table/number_format.h"
 #include "voxel/filter/components.h"
+#include "voxel/filter/offset.h"
 
 namespace octotomy::planner {
+namespace {
+
+/// How far cuts stand off, as a share of the radius: above the error of either kernel's distances on flat and
+/// gently curved parts.
+constexpr double standing_off = 0.1;
+
+}  // namespace
+
+voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench) {
+  const voxel::Octree octree = bench.combined(solid);
+  if (octree.is_empty()) return voxel::Expression(octree);
+  const voxel::Expression core(
+      voxel::offset(octree, bench.within_universe(solid), -radius_mm, bench.progress));
+  const voxel::Octree cores = bench.combined(core);
+  if (cores.is_empty()) return voxel::Expression(cores);
+  return solid &
+         voxel::Expression(voxel::offset(cores, core, (1.0 + standing_off) * radius_mm, bench.progress));
+}
+
+brep::Solid rounded(const brep::Solid& solid, double radius_mm, const MeshBench& bench, MeshSide& made) {
+  const brep::Progress progress{bench.progress.stop, bench.progress.report};
+  if (solid.empty()) return solid;
+  // Flat parts lie within a 16th of a cell, which is less than cuts stand off.
+  const double cell_mm = radius_mm;
+  const brep::Solid core = brep::offset(solid, {-radius_mm, cell_mm, progress});
+  if (core.empty()) return core;
+  const brep::Solid reach = brep::offset(core, {(1.0 + standing_off) * radius_mm, cell_mm, progress});
+  return noted(brep::boolean(solid, brep::Operation::Intersection, reach, bench.progress.stop), made);
+}
 
 void keep_largest(const voxel::Expression& solid, const VoxelBench& bench, VoxelSide& made) {
   const voxel::Octree whole = bench.combined(solid);

@@ -6,8 +6,14 @@
 #include "brep/boolean/boolean.h"
 #include "planner/operation/table/bench.h"
 
-// The last steps of a printed part, in each kernel: the largest piece, points that files hold.
+// The last steps of a printed part, in each kernel: rounded edges, the largest piece, points that files hold.
 namespace octotomy::planner {
+
+/// What balls of the radius within a solid hold: edges are rounded, and walls thinner than twice the radius are
+/// cut off. Cuts stand off those balls by a tenth of the radius, so that the other surfaces do not move.
+voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench);
+/// The same of a mesh. Empty if no ball fits. Throws as brep::offset() and brep::boolean().
+brep::Solid rounded(const brep::Solid& solid, double radius_mm, const MeshBench& bench, MeshSide& made);
 
 /// Keeps the largest piece. What is not of it is taken away with a voxel around it.
 void keep_largest(const voxel::Expression& solid, const VoxelBench& bench, VoxelSide& made);

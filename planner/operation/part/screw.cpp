@@ -253,7 +253,7 @@ Operation screw_operation() {
               .from(0.0)
               .to(20.0))
       .example(R"({"id": "left_1", "do": "screw", "object": "maxilla", "at": [18, -80, -34],
-        "direction": [0, 1, 0], "length_mm": 5, "cuts": ["cut"]})")
+        "direction": [0, 1, 0], "length_mm": 5, "cuts": ["sawn"]})")
       .tool()
       .check(check)
       .settle(settle)
