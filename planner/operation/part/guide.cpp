@@ -183,7 +183,7 @@ std::string definition(const Guide& guide, const Objects&) {
 
 /// The motion that brings what lies behind the bone to what lies behind a slot's outer rim.
 glm::dmat4 to_rim(const Guide& guide, const SawSlot& slot) {
-  return glm::translate(glm::dmat4(1.0), -(guide.slot_depth_mm + guide.clearance_mm) * slot.goes_in);
+  return glm::translate(glm::dmat4(1.0), -guide.slot_depth_mm * slot.goes_in);
 }
 
 voxel::Expression rod_of(const glm::dvec3& from_mm, const glm::dvec3& to_mm, double radius_mm) {
@@ -400,8 +400,8 @@ Operation guide_operation() {
                  .to(1.0))
       .takes(
           field("slot_depth_mm", &Guide::slot_depth_mm,
-                "How far before the bone a slot's walls reach along the saw: they lead the blade over this "
-                "length, and their rim stops its shaft. 15 is published for guides.")
+                "How long a slot's walls are along the saw, from the fitting surface to their rim: they lead "
+                "the blade over this length, and the rim stops its shaft. 15 is published for guides.")
               .from(1.0)
               .to(40.0))
       .takes(field("slot_wall_mm", &Guide::slot_wall_mm,

@@ -71,8 +71,9 @@ TEST(ScrewStep, AScrewThatGoesIntoARootIsNamed) {
 
 TEST(ScrewStep, RefusesAPointOffTheBoneAndADirectionOutOfIt) {
   const ScratchFolder folder;
-  EXPECT_NE(screw_refusal(folder, screw_step(R"("at": [0, -30, 0])")).find("10 mm off the surface of 'ball'"),
-            std::string::npos);
+  EXPECT_NE(
+      screw_refusal(folder, screw_step(R"("at": [0, -30, 0])")).find("10.0 mm off the surface of 'ball'"),
+      std::string::npos);
   EXPECT_NE(screw_refusal(folder, R"({"id": "screw", "do": "screw", "object": "ball", "at": [0, -20, 0],
                                       "direction": [0, -1, 0]})")
                 .find("does not enter 'ball'"),
