@@ -422,7 +422,12 @@ class Evaluator {
                                                        {options_.stop, {}},
                                                        plan_.folder,
                                                        told,
-                                                       object.findings});
+                                                       object.findings,
+                                                       [this](const std::string& name) -> const Action* {
+                                                         for (const Step& made_by : plan_.steps)
+                                                           if (made_by.id == name) return &made_by.action;
+                                                         return nullptr;
+                                                       }});
     const void* value = settled ? settled.get() : step.action.value();
     object.is_tool = operation.is_tool;
     object.definition = operation.definition(value, result_.objects);

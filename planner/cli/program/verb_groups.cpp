@@ -71,6 +71,7 @@ constexpr std::array verb_table{
     GroupedVerb{shaping, "shell"},
     GroupedVerb{shaping, "shadow"},
     GroupedVerb{shaping, "splint"},
+    GroupedVerb{shaping, "guide"},
     GroupedVerb{elements, "tet"},
     GroupedVerb{elements, "warp"},
     GroupedVerb{measuring, "measure"},

@@ -229,7 +229,7 @@ Json to_json(const ScanRecord& scan) {
 }
 
 Json to_json(const Object& object) {
-  return {
+  Json json{
       {"id", object.id},
       {"kind", object.kind},
       {"definition", object.definition},
@@ -239,6 +239,8 @@ Json to_json(const Object& object) {
       {"verdict", object.certificate ? Json(verify::to_string(object.certificate->verdict)) : Json(nullptr)},
       {"resolved", object.certificate ? Json(object.certificate->resolved()) : Json(nullptr)},
       {"findings", object.findings}};
+  if (!object.mesh.details.empty()) json["details"] = object.mesh.details;
+  return json;
 }
 
 namespace {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A saw cut: a polyline swept in one direction, as wide as the blade.
-#include "brep/shape/saw.h"
+#include "planner/operation/object/saw.h"
 
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/components.h"
 #include "brep/mesh/error.h"
+#include "brep/shape/saw.h"
 #include "planner/operation/object/provenance.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
@@ -13,14 +14,6 @@
 
 namespace octotomy::planner {
 namespace {
-
-struct Saw {
-  ObjectName object;
-  std::vector<glm::dvec3> line_mm;
-  glm::dvec3 direction{0, 1, 0};
-  double depth_mm = 100.0;
-  double kerf_mm = 1.0;
-};
 
 brep::SawCut cut_of(const Saw& saw) {
   return {saw.line_mm, saw.direction, saw.depth_mm, saw.kerf_mm};

@@ -24,6 +24,8 @@ struct DicomSource;
 
 namespace octotomy::planner {
 
+class Action;
+
 /// A scan while steps need its samples.
 struct LoadedScan {
   std::shared_ptr<const voxel::Scene> shared;  ///< witnesses keep it
@@ -83,6 +85,8 @@ struct SettleBench {
   /// Reported facts about the computed values.
   nlohmann::ordered_json& details;
   std::vector<std::string>& findings;
+  /// The step that made an earlier object, as typed; null where there is none, as in a verb on files.
+  std::function<const Action*(const std::string& name)> maker_of = {};
 
   /// An earlier object's solid. Throws std::runtime_error if the object has none.
   const brep::Solid& object(const std::string& name) const;

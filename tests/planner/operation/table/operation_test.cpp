@@ -23,6 +23,8 @@ Scope scope_for(const Operation& operation, const SortedJson& example) {
   };
   for (const char* name : {"skull", "cut", "maxilla", "rest", "soft", "tumour"}) bind(name, "window");
   bind("advanced", "move");
+  bind("sawn", "saw");
+  bind("left_1", "screw");
   EXPECT_EQ(example.at("do"), operation.name);
   return scope;
 }

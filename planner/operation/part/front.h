@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "brep/mesh/solid.h"
+#include "planner/operation/part/arch_band.h"
+
+namespace octotomy::planner {
+
+/// Where a line of sight first meets a bone.
+struct Seen {
+  double depth_mm = 0.0;   ///< p . look
+  glm::dvec3 normal{0.0};  ///< of the triangle, unit, LPS
+  std::uint32_t face = 0;  ///< of the bone's triangles
+};
+
+/// The side of a bone that is seen along a frame's look, within a box of the view.
+class Front {
+ public:
+  /// `low` and `high` are corners of the box in the frame's millimetres (u, v).
+  Front() = default;
+  Front(const brep::Solid& bone, const ArchFrame& frame, const glm::dvec2& low, const glm::dvec2& high);
+
+  /// None where the line of sight through a place of the view meets no bone.
+  std::optional<Seen> first(const glm::dvec2& p_mm) const;
+  /// The least p . look of the bone's points within the box; none where there are none.
+  const std::optional<double>& foremost_mm() const { return foremost_mm_; }
+
+ private:
+  brep::Triangles turned_;  ///< (p . look, p . right, p . up)
+  std::vector<std::uint32_t> face_of_;
+  glm::dmat3 lps_from_turned_{1.0};
+  std::optional<double> foremost_mm_;
+  std::shared_ptr<const brep::SurfaceTree> tree_;
+};
+
+}  // namespace octotomy::planner

@@ -1,0 +1,451 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A guide for saw and drill on the surface of a bone.
+//
+// 1 The region, about points or drawn, and the way in which the guide is put on, from the side that the surgeon
+//   reaches (guide_site.h). The slots follow from the plan's cuts (guide_slots.h), sleeves from its screws.
+// 2 The bone near the region, grown by the clearance, and all that lies behind it along that way: no part of the
+//   guide may lie there. Where there is no undercut, the fitting surface is that of the grown bone.
+// 3 The region's bone grown by clearance and thickness, so that the guide's rim is round; about each slot walls
+//   that reach as far before the bone as the slot is deep: that shadow moved back along the saw; a rod for each
+//   sleeve. Edges of the walls are rounded.
+// 4 3 less 2, then less slots and holes.
+// 5 The largest piece, with points that files for printers can hold.
+//
+// 1 is settled once and is a shared value of both kernels.
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <stdexcept>
+
+#include "brep/measure/gap.h"
+#include "brep/shape/offset.h"
+#include "brep/shape/shadow.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/part/guide_site.h"
+#include "planner/operation/part/guide_slots.h"
+#include "planner/operation/part/printed_part.h"
+#include "planner/operation/part/screw.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "verify/witness/offset_witness.h"
+#include "voxel/filter/offset.h"
+#include "voxel/filter/shadow.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::planner {
+namespace {
+
+/// A sleeve about a screw's axis, which a drill passes.
+struct Sleeve {
+  ScrewAxis axis;
+  glm::dvec3 outer_mm{0.0};  ///< the middle of its outer end
+
+  glm::dvec3 through_mm(double by_mm) const { return axis.head_mm + by_mm * axis.along; }
+};
+
+struct Guide {
+  ObjectName object;
+  std::string side;
+  std::optional<glm::dvec3> direction;
+  std::vector<Mark> points;
+  double radius_mm = 10.0;
+  std::optional<DrawnSite> region;
+  double reach_mm = 25.0;
+  double clearance_mm = 0.25, thickness_mm = 3.0;
+  std::vector<ObjectName> cuts;
+  double kerf_mm = 1.0, play_mm = 0.2, slot_depth_mm = 15.0, slot_wall_mm = 2.0, slot_end_mm = 4.0,
+         rounding_mm = 1.0;
+  std::string slot_form = "closed";
+  std::vector<ObjectName> screws;
+  double drill_mm = 1.5, sleeve_wall_mm = 1.5, sleeve_height_mm = 6.0;
+  // Settled.
+  GuideSite site;
+  std::vector<SawSlot> slots;
+  std::vector<Sleeve> sleeves;
+
+  double slot_width_mm(const SawSlot& slot) const { return slot.kerf_mm + play_mm; }
+  double walls_width_mm(const SawSlot& slot) const { return slot_width_mm(slot) + 2.0 * slot_wall_mm; }
+  double hole_radius_mm() const { return 0.5 * (drill_mm + play_mm); }
+  double sleeve_radius_mm() const { return hole_radius_mm() + sleeve_wall_mm; }
+};
+
+/// Cells of the mesh's offsets: of the fitting surface, and of the outer one.
+constexpr double fit_cell_mm = 0.5, outer_cell_mm = 2.0;
+/// Room about the region beyond what the guide needs.
+constexpr double room_mm = 1.0;
+/// How far rods and holes go on below the bone's surface, which is not known to a hair at a screw's point.
+constexpr double below_mm = 5.0;
+
+void check(const Guide& guide, const Place& place) {
+  if (guide.points.empty() == !guide.region)
+    place.refuse(guide.region
+                     ? "says its region twice, by 'points' and by 'region': keep one of them"
+                     : "the region is missing: add 'points' on the bone, or 'region', drawn in a view");
+  if (guide.region && guide.region->polygons_mm.size() != 1)
+    place.at("region").refuse("must be one polygon: a guide is one piece");
+  const auto check_view = [&](const std::string& view, const Place& at) {
+    try {
+      voxel::parse_view(view);
+    } catch (const std::invalid_argument& error) {
+      at.refuse(error.what());
+    }
+  };
+  check_view(guide.side, place.at("side"));
+  if (guide.region) check_view(guide.region->view, place.at("region").at("view"));
+  if (guide.rounding_mm > 0.9 * guide.slot_wall_mm)
+    place.at("rounding_mm").refuse("is more than 0.9 of 'slot_wall_mm': rounding would cut the walls off");
+  if (place.scope == nullptr) return;
+  for (std::size_t i = 0; i < guide.cuts.size(); ++i) {
+    const std::string& maker = place.scope->maker_of(guide.cuts[i].name).name;
+    if (maker != "saw" && maker != "mask")
+      place.at("cuts[" + std::to_string(i) + "]")
+          .refuse("'" + guide.cuts[i].name + "' was made by '" + maker +
+                  "': name a saw step or a mask whose walls are cuts");
+  }
+}
+
+/// Sleeves, each within the region and beside all slots.
+std::vector<Sleeve> sleeves_of(const Guide& guide, const SettleBench& bench) {
+  std::vector<Sleeve> sleeves;
+  for (const ObjectName& name : guide.screws) {
+    Sleeve sleeve{screw_axis(name.name, bench), {}};
+    sleeve.outer_mm = sleeve.through_mm(-guide.sleeve_height_mm);
+    const std::string says = "the sleeve of '" + name.name + "' ";
+    if (!voxel::contains({guide.site.base.outline_mm}, guide.site.base.frame.project(sleeve.axis.head_mm)))
+      throw std::runtime_error(says +
+                               "lies beside the guide's region: make the region larger, or leave it "
+                               "out of 'screws'");
+    if (glm::dot(sleeve.axis.along, guide.site.along) < 0.5)
+      throw std::runtime_error(says +
+                               "points more than 60 degrees off the way in which the guide is put on: "
+                               "turn the screw, or choose another 'side'");
+    const brep::Solid body = rod(sleeve.outer_mm, sleeve.axis.head_mm, guide.sleeve_radius_mm());
+    for (const SawSlot& slot : guide.slots) {
+      const brep::Solid opening = slot.opening.solid(guide.slot_width_mm(slot));
+      if (opening.tree().is_inside(sleeve.axis.head_mm) ||
+          brep::gap(body.triangles(), opening.triangles()).distance_mm <= 0.0)
+        throw std::runtime_error(
+            says + "runs through the slot of '" + slot.cut + "': move the screw at least " +
+            three_figures(guide.sleeve_radius_mm() + 0.5 * guide.slot_width_mm(slot)) + " mm off the cut");
+    }
+    sleeves.push_back(std::move(sleeve));
+  }
+  return sleeves;
+}
+
+Guide settle(const Guide& asked, const SettleBench& bench) {
+  const Stopwatch watch(bench.timings, "guide_settle");
+  Guide made = asked;
+  std::vector<glm::dvec3> points_mm;
+  for (const Mark& mark : asked.points) points_mm.push_back(mark_mm(mark, bench.objects));
+  const double shell_mm = asked.clearance_mm + asked.thickness_mm;
+  const double before_mm =
+      shell_mm + room_mm +
+      std::max(asked.cuts.empty() ? 0.0 : asked.slot_depth_mm,
+               asked.screws.empty() ? 0.0 : asked.sleeve_height_mm + asked.sleeve_wall_mm);
+  made.site = guide_site({asked.object.name, asked.side, asked.direction, points_mm, asked.radius_mm,
+                          asked.region, asked.reach_mm, before_mm, shell_mm + room_mm},
+                         bench);
+  const GuideSite& site = made.site;
+  const SlotsAsked slots{site.base,
+                         site.along,
+                         [&site](const glm::dvec2& p_mm) { return site.bone_at(p_mm); },
+                         asked.kerf_mm,
+                         asked.slot_end_mm,
+                         asked.slot_form == "three_sided",
+                         asked.slot_depth_mm + shell_mm + room_mm};
+  for (const ObjectName& cut : asked.cuts)
+    for (SawSlot& slot : slots_of(cut.name, slots, bench)) made.slots.push_back(std::move(slot));
+  made.sleeves = sleeves_of(made, bench);
+  bench.details = {{"direction", to_json(site.along)},
+                   {"slots", nlohmann::ordered_json::array()},
+                   {"sleeves", nlohmann::ordered_json::array()}};
+  for (const SawSlot& slot : made.slots)
+    bench.details["slots"].push_back({{"cut", slot.cut},
+                                      {"width_mm", made.slot_width_mm(slot)},
+                                      {"length_mm", slot.length_mm},
+                                      {"depth_mm", asked.slot_depth_mm},
+                                      {"goes_in", to_json(slot.goes_in)}});
+  for (const Sleeve& sleeve : made.sleeves)
+    bench.details["sleeves"].push_back({{"screw", sleeve.axis.screw},
+                                        {"hole_mm", 2.0 * made.hole_radius_mm()},
+                                        {"at_mm", to_json(sleeve.axis.head_mm)},
+                                        {"along", to_json(sleeve.axis.along)}});
+  return made;
+}
+
+std::string definition(const Guide& guide, const Objects&) {
+  return "guide on " + guide.object.name + " from " + guide.side + ", " + std::to_string(guide.slots.size()) +
+         " slots, " + std::to_string(guide.sleeves.size()) + " sleeves";
+}
+
+/// The motion that brings what lies behind the bone to what lies behind a slot's outer rim.
+glm::dmat4 to_rim(const Guide& guide, const SawSlot& slot) {
+  return glm::translate(glm::dmat4(1.0), -guide.slot_depth_mm * slot.goes_in);
+}
+
+voxel::Expression rod_of(const glm::dvec3& from_mm, const glm::dvec3& to_mm, double radius_mm) {
+  return voxel::Expression(voxel::Cylinder{from_mm, to_mm, radius_mm});
+}
+
+/// How far beyond a sleeve's outer end and below the bone a drill's hole goes.
+double beyond_mm(const Guide& guide) {
+  return guide.clearance_mm + guide.thickness_mm + guide.sleeve_height_mm + room_mm;
+}
+
+void voxels(const Guide& guide, const VoxelBench& bench, VoxelSide& made) {
+  made.lineage = "distances to, and columns of, the octree of the bone";
+  const VoxelSide& object = bench.object(guide.object.name);
+  const voxel::Expression near = guide.site.near.expression();
+  const voxel::Octree bone = bench.combined(voxel::Expression(object.octree) & near);
+  const voxel::Expression nothing(voxel::Octree::empty(bench.universe));
+  const auto has_none = [&] {
+    made.findings.push_back("no voxel lies within the guide's walls: take smaller voxels");
+    made.octree = voxel::Octree::empty(bench.universe);
+    made.symbol = nothing;
+  };
+  if (bone.is_empty()) return has_none();
+  const Stopwatch watch(bench.timings, "guide_voxel");
+  const voxel::Expression solid = bench.within_universe(*object.symbol & near);
+  const voxel::Expression grown(voxel::offset(bone, solid, guide.clearance_mm, bench.progress));
+  const voxel::Expression taken(
+      voxel::shadow(bench.combined(grown), grown, {guide.site.along, guide.site.end_mm, bench.progress})
+          .window);
+  const voxel::Expression base = guide.site.base.expression();
+  const voxel::Octree patch = bench.combined(voxel::Expression(bone) & base);
+  if (patch.is_empty()) return has_none();
+  voxel::Expression whole(
+      voxel::offset(patch, solid & base, guide.clearance_mm + guide.thickness_mm, bench.progress));
+  for (const SawSlot& slot : guide.slots)
+    whole = whole | rounded(slot.walls.expression(guide.walls_width_mm(slot)) & base &
+                                moved(taken, to_rim(guide, slot)),
+                            guide.rounding_mm, bench);
+  for (const Sleeve& sleeve : guide.sleeves)
+    whole = whole | rod_of(sleeve.outer_mm, sleeve.through_mm(below_mm), guide.sleeve_radius_mm());
+  whole = whole - (taken | grown);
+  for (const SawSlot& slot : guide.slots) whole = whole - slot.opening.expression(guide.slot_width_mm(slot));
+  for (const Sleeve& sleeve : guide.sleeves)
+    whole = whole - rod_of(sleeve.through_mm(-beyond_mm(guide)), sleeve.through_mm(beyond_mm(guide)),
+                           guide.hole_radius_mm());
+  keep_largest(whole, bench, made);
+  if (made.octree.is_empty()) has_none();
+}
+
+/// How far the hole in a mesh lies off a screw's axis: a circle's middle by least squares through the hole's
+/// points. None where too few are left to tell.
+std::optional<double> hole_off_mm(const brep::Solid& solid, const ScrewAxis& axis, double radius_mm) {
+  constexpr double near_mm = 0.05;  // the corners of the hole's prism and their rounding
+  const glm::dvec3 aside = std::abs(axis.along.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  const glm::dvec3 u = glm::normalize(glm::cross(axis.along, aside)), v = glm::cross(axis.along, u);
+  // u^2 + v^2 = 2 a u + 2 b v + c, summed over the points.
+  glm::dmat3 sums(0.0);
+  glm::dvec3 right(0.0);
+  int count = 0;
+  for (const glm::dvec3& p_mm : solid.triangles().points_mm) {
+    const glm::dvec3 from = p_mm - axis.head_mm;
+    const glm::dvec2 q(glm::dot(from, u), glm::dot(from, v));
+    if (std::abs(glm::length(q) - radius_mm) > near_mm) continue;
+    const glm::dvec3 row(2.0 * q.x, 2.0 * q.y, 1.0);
+    sums += glm::outerProduct(row, row);
+    right += row * glm::dot(q, q);
+    ++count;
+  }
+  constexpr int least = 12;
+  if (count < least || !(std::abs(glm::determinant(sums)) > 0.0)) return std::nullopt;
+  const glm::dvec3 found = glm::inverse(sums) * right;
+  return std::hypot(found.x, found.y);
+}
+
+void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "guide");
+  const brep::Progress progress{bench.progress.stop, bench.progress.report};
+  const auto of = [&](const brep::Solid& a, brep::Operation operation, const brep::Solid& b) {
+    return noted(brep::boolean(a, operation, b, bench.progress.stop), made);
+  };
+  using enum brep::Operation;
+  made.lineage = "level sets of the distance to the bone less their exact shadow";
+  const brep::Solid bone = noted(guide.site.bone, made);
+  if (bone.empty()) throw std::runtime_error("no bone of the mesh lies in the region");
+  const auto timed = [&](const char* stage, const auto& work) {
+    const Stopwatch part(bench.timings, stage);
+    return work();
+  };
+  // The shadow of the grown bone is the bone's shadow grown, and that has fewer triangles.
+  const brep::Solid behind = timed("guide_shadow", [&] {
+    return brep::shadow(bone, {guide.site.along, guide.site.end_mm, progress}).solid;
+  });
+  const brep::Solid taken = timed("guide_offset", [&] {
+    return brep::offset(behind, {guide.clearance_mm, fit_cell_mm, progress});
+  });
+  const brep::Solid base = guide.site.base.solid();
+  const brep::Solid patch = of(bone, Intersection, base);
+  if (patch.empty()) throw std::runtime_error("no bone of the mesh lies in the region");
+  const brep::Solid outer = timed("guide_offset", [&] {
+    return brep::offset(patch, {guide.clearance_mm + guide.thickness_mm, outer_cell_mm, progress});
+  });
+  std::vector<brep::Solid> parts{outer};
+  for (const SawSlot& slot : guide.slots) {
+    const brep::Solid walls = of(of(slot.walls.solid(guide.walls_width_mm(slot)), Intersection, base),
+                                 Intersection, brep::moved(taken, to_rim(guide, slot)));
+    parts.push_back(timed("guide_rounding", [&] { return rounded(walls, guide.rounding_mm, bench, made); }));
+  }
+  for (const Sleeve& sleeve : guide.sleeves)
+    parts.push_back(rod(sleeve.outer_mm, sleeve.through_mm(below_mm), guide.sleeve_radius_mm()));
+  brep::Solid whole = noted(brep::boolean(parts, Union, bench.progress.stop), made);
+  whole = of(whole, Difference, taken);
+  if (whole.empty()) throw std::runtime_error("nothing of the guide is left: make the region larger");
+  std::vector<brep::Solid> operands{whole};
+  for (const SawSlot& slot : guide.slots) operands.push_back(slot.opening.solid(guide.slot_width_mm(slot)));
+  for (const Sleeve& sleeve : guide.sleeves)
+    operands.push_back(rod(sleeve.through_mm(-beyond_mm(guide)), sleeve.through_mm(beyond_mm(guide)),
+                           guide.hole_radius_mm()));
+  if (operands.size() > 1) whole = noted(brep::boolean(operands, Difference, bench.progress.stop), made);
+  made.whole = timed("guide_printed", [&] { return printed(whole, "guide", made); });
+  made.details["holes"] = nlohmann::ordered_json::array();
+  for (const Sleeve& sleeve : guide.sleeves) {
+    const std::optional<double> off_mm = hole_off_mm(*made.whole, sleeve.axis, guide.hole_radius_mm());
+    made.details["holes"].push_back({{"screw", sleeve.axis.screw}, {"off_axis_mm", nullptr}});
+    if (off_mm)
+      made.details["holes"].back()["off_axis_mm"] = *off_mm;
+    else
+      made.findings.push_back("the guide has no hole for '" + sleeve.axis.screw +
+                              "': its sleeve is on a piece that is left out, so make the region larger");
+  }
+}
+
+void bound(const Guide& guide, const BoundBench& bench, Object& made) {
+  const Object& object = bench.objects.at(guide.object.name);
+  inherit(object, made);
+  if (object.mesh.whole && made.mesh.whole && !made.mesh.whole->empty()) {
+    const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
+    double apart_mm =
+        verify::offset_allowance_mm({object.witness,
+                                     voxel::combine(bench.universe, voxel::Expression(object.voxel.octree) &
+                                                                        guide.site.near.expression()),
+                                     guide.site.bone.solid, is_whole_voxels(object.voxel)},
+                                    {guide.clearance_mm, fit_cell_mm}, made.mesh.whole->measures().area_mm2);
+    if (is_whole_voxels(object.voxel)) apart_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+    made.bound.measured_apart_mm += apart_mm;
+    made.bound.reshaped.push_back(object.id);
+  }
+  const auto add = [&](const voxel::RegionMask& sides) {
+    const std::vector<CutPlane> planes = planes_of(sides);
+    made.bound.planes.insert(made.bound.planes.end(), planes.begin(), planes.end());
+  };
+  add(guide.site.base.sides());
+  for (const SawSlot& slot : guide.slots) {
+    add(slot.opening.sides(guide.slot_width_mm(slot)));
+    add(slot.walls.sides(guide.walls_width_mm(slot)));
+  }
+  made.shared_values.push_back("the region, the insertion direction, slots and sleeves");
+  made.ends_with_universe = true;
+}
+
+}  // namespace
+
+Operation guide_operation() {
+  return Describe<Guide>("guide", "Makes a guide for saw and drill that sits on a region of a bone.",
+                         Makes::Object)
+      .takes(field("object", &Guide::object, "The bone, before it is cut.").required().positional("bone"))
+      .takes(field("side", &Guide::side,
+                   "The side from which the surgeon reaches the bone: anterior, posterior, left, right, "
+                   "superior, inferior, or AZ,EL in degrees; of the head as it is held.")
+                 .required())
+      .takes(field("direction", &Guide::direction,
+                   "The direction in which the guide is put on, LPS. Default: straight from the side.")
+                 .direction())
+      .takes(field("points", &Guide::points,
+                   "Points on the bone, in their order along it, about which the guide lies: [x, y, z] or "
+                   "landmarks."))
+      .takes(field("radius_mm", &Guide::radius_mm,
+                   "How far the guide reaches about the line through the points, as it is put on.")
+                 .from(3.0)
+                 .to(60.0)
+                 .read_if<Guide>([](const Guide& guide) { return !guide.region; },
+                                 "is of 'points': leave it out"))
+      .takes(record("region", &Guide::region, "In place of the points, a region drawn in a view.",
+                    {field("view", &DrawnSite::view, "The view in which the region is drawn.").required(),
+                     field("polygons_mm", &DrawnSite::polygons_mm,
+                           "One closed polygon of points [u, v] in the view's millimetres.")
+                         .required()})
+                 .in_plans_only())
+      .takes(field("reach_mm", &Guide::reach_mm,
+                   "How far the guide reaches back from the region's foremost bone; the default is a "
+                   "project's choice.")
+                 .from(2.0)
+                 .to(150.0))
+      .takes(field("clearance_mm", &Guide::clearance_mm,
+                   "The gap between guide and bone: 0.25 is usual for resin, 0.4 for filament.")
+                 .from(0.05)
+                 .to(2.0))
+      .takes(
+          field("thickness_mm", &Guide::thickness_mm,
+                "The thickness of the base; 3 is usual, and 1 the least that is stiff enough to lead a saw.")
+              .from(1.0)
+              .to(10.0))
+      .takes(field("cuts", &Guide::cuts,
+                   "Saw steps and masks of this plan whose cuts get slots; of a mask the walls that cut bone "
+                   "in the region.")
+                 .in_plans_only())
+      .takes(field("kerf_mm", &Guide::kerf_mm,
+                   "The width of the saw's cut for masks, which state none; saw steps have their own.")
+                 .from(0.1)
+                 .to(5.0))
+      .takes(field("play_mm", &Guide::play_mm,
+                   "By how much slots are wider than the kerf, and holes than the drill, so that these run; "
+                   "the default is a project's choice.")
+                 .from(0.0)
+                 .to(1.0))
+      .takes(
+          field("slot_depth_mm", &Guide::slot_depth_mm,
+                "How long a slot's walls are along the saw, from the fitting surface to their rim: they lead "
+                "the blade over this length, and the rim stops its shaft. 15 is published for guides.")
+              .from(1.0)
+              .to(40.0))
+      .takes(field("slot_wall_mm", &Guide::slot_wall_mm,
+                   "The thickness of the walls beside a slot; the default is a project's choice.")
+                 .from(1.0)
+                 .to(10.0))
+      .takes(
+          field("slot_end_mm", &Guide::slot_end_mm,
+                "What is left of the guide beyond a slot's closed ends; the default is a project's choice.")
+              .from(1.0)
+              .to(30.0))
+      .takes(field("slot_form", &Guide::slot_form,
+                   "closed: both ends of slots are closed; three_sided: the end of the line's last point is "
+                   "open.")
+                 .one_of({"closed", "three_sided"}))
+      .takes(
+          field("rounding_mm", &Guide::rounding_mm,
+                "The radius of the edges of slots' walls, which are thicker than twice this; the default is "
+                "a project's choice. The base's rim is round by itself.")
+              .from(0.3)
+              .to(5.0))
+      .takes(field("screws", &Guide::screws, "Screws of this plan whose holes the guide drills.")
+                 .in_plans_only())
+      .takes(field("drill_mm", &Guide::drill_mm, "The drill's diameter; 1.5 is usual for screws of 2 mm.")
+                 .from(0.5)
+                 .to(6.0))
+      .takes(field("sleeve_wall_mm", &Guide::sleeve_wall_mm,
+                   "The wall of a drill's sleeve; the default is a project's choice.")
+                 .from(1.0)
+                 .to(5.0))
+      .takes(field("sleeve_height_mm", &Guide::sleeve_height_mm,
+                   "How far before the bone's surface a sleeve reaches along its axis; the default is a "
+                   "project's choice.")
+                 .from(1.0)
+                 .to(40.0))
+      .example(R"({"id": "saw_guide", "do": "guide", "object": "skull", "side": "anterior",
+        "points": [[-24, -70, -30], [-14, -80, -34], [14, -80, -34], [24, -70, -30]], "radius_mm": 9,
+        "cuts": ["sawn"], "screws": ["left_1"]})")
+      .on_files(
+          "octotomy guide bone.stl --side anterior --points -14,-80,-34 14,-80,-34 --radius 9 -o guide.stl")
+      .of_head()
+      .check(check)
+      .settle(settle)
+      .object(definition, voxels, triangles, bound);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "brep/boolean/boolean.h"
+#include "planner/operation/part/arch_band.h"
+#include "planner/operation/part/front.h"
+#include "planner/operation/table/bench.h"
+#include "planner/operation/table/field.h"
+
+// The region of a bone on which a guide sits, and the side from which it is put on.
+namespace octotomy::planner {
+
+/// A region drawn in a view.
+struct DrawnSite {
+  std::string view;
+  Polygons polygons_mm;  ///< one
+};
+
+struct SiteAsked {
+  std::string bone;  ///< the name of the object
+  std::string side;  ///< a view of the head as it is held
+  std::optional<glm::dvec3> direction;
+  std::vector<glm::dvec3> points_mm;  ///< where nothing is drawn
+  double radius_mm = 10.0;            ///< of the region about the points
+  std::optional<DrawnSite> drawn;
+  double reach_mm = 25.0;  ///< behind the region's foremost bone
+  double before_mm = 5.0;  ///< how far the guide goes before the bone
+  double margin_mm = 5.0;  ///< how far beside the region bone counts
+};
+
+struct GuideSite {
+  Slab base;                  ///< the region, from before the bone to the reach
+  Slab near;                  ///< the bone that counts
+  glm::dvec3 along{0, 1, 0};  ///< unit, LPS: in which the guide is put on
+  double end_mm = 0.0;        ///< p . along behind all that counts
+  brep::BooleanResult bone;   ///< its mesh
+  Front front;                ///< of the bone about the region
+
+  /// The bone that is seen at a place of the base's view, within the reach.
+  std::optional<glm::dvec3> bone_at(const glm::dvec2& p_mm) const;
+};
+
+/// Settles where a guide sits. Throws std::runtime_error in a sentence that says what to change: points off
+/// the bone, on two bones or hidden behind bone, a region on two bones or drawn from another side, a direction
+/// along the bone's sides or from another side.
+GuideSite guide_site(const SiteAsked& asked, const SettleBench& bench);
+
+}  // namespace octotomy::planner

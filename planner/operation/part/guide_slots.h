@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/operation/part/arch_band.h"
+#include "planner/operation/table/bench.h"
+
+// The slots of a guide, from the cuts of a plan.
+namespace octotomy::planner {
+
+/// A line of straight pieces swept along a direction, as a saw's blade, for each kernel.
+struct Blade {
+  std::vector<glm::dvec3> line_mm;  ///< LPS; all points have one p . direction
+  glm::dvec3 direction{0, 1, 0};    ///< unit
+  double depth_mm = 1.0;
+
+  brep::Solid solid(double width_mm) const;
+  voxel::Expression expression(double width_mm) const;
+  voxel::RegionMask sides(double width_mm) const;
+};
+
+/// A slot through a guide: what the saw passes, and what guides it.
+struct SawSlot {
+  std::string cut;              ///< the step whose cut it is
+  glm::dvec3 goes_in{0, 1, 0};  ///< unit: in which the saw enters the bone
+  double kerf_mm = 1.0;         ///< of the cut
+  double length_mm = 0.0;       ///< of its opening, along the bone
+  Blade opening, walls;         ///< the walls go on beyond closed ends
+};
+
+/// What slots are cut into, and how.
+struct SlotsAsked {
+  Slab base;                  ///< the guide's region
+  glm::dvec3 along{0, 1, 0};  ///< unit: in which the guide is put on
+  std::function<std::optional<glm::dvec3>(const glm::dvec2& p_mm)>
+      bone_at;                ///< of a place in the base's view
+  double mask_kerf_mm = 1.0;  ///< the saw's width for masks, which state none
+  double end_mm = 4.0;        ///< wall beyond a closed end
+  bool is_open = false;       ///< the end of the line's last point is open
+  double margin_mm = 20.0;    ///< how far openings reach before and behind the bone
+};
+
+/// The slots of a saw step or a mask. Throws std::runtime_error, in a sentence that names the step: it is no
+/// cut, the saw goes in from another side, the cut misses the region.
+std::vector<SawSlot> slots_of(const std::string& cut, const SlotsAsked& asked, const SettleBench& bench);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/part/printed_part.h"
+
+#include "brep/mesh/flat_triangles.h"
+#include "brep/mesh/health.h"
+#include "brep/shape/offset.h"
+#include "brep/shape/untangle.h"
+#include "planner/operation/table/number_format.h"
+#include "voxel/filter/components.h"
+#include "voxel/filter/offset.h"
+
+namespace octotomy::planner {
+namespace {
+
+/// How far cuts stand off, as a share of the radius: above the error of either kernel's distances on flat and
+/// gently curved parts.
+constexpr double standing_off = 0.1;
+
+}  // namespace
+
+voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench) {
+  const voxel::Octree octree = bench.combined(solid);
+  if (octree.is_empty()) return voxel::Expression(octree);
+  const voxel::Expression core(
+      voxel::offset(octree, bench.within_universe(solid), -radius_mm, bench.progress));
+  const voxel::Octree cores = bench.combined(core);
+  if (cores.is_empty()) return voxel::Expression(cores);
+  return solid &
+         voxel::Expression(voxel::offset(cores, core, (1.0 + standing_off) * radius_mm, bench.progress));
+}
+
+brep::Solid rounded(const brep::Solid& solid, double radius_mm, const MeshBench& bench, MeshSide& made) {
+  const brep::Progress progress{bench.progress.stop, bench.progress.report};
+  if (solid.empty()) return solid;
+  // Flat parts lie within a 16th of a cell, which is less than cuts stand off.
+  const double cell_mm = radius_mm;
+  const brep::Solid core = brep::offset(solid, {-radius_mm, cell_mm, progress});
+  if (core.empty()) return core;
+  const brep::Solid reach = brep::offset(core, {(1.0 + standing_off) * radius_mm, cell_mm, progress});
+  return noted(brep::boolean(solid, brep::Operation::Intersection, reach, bench.progress.stop), made);
+}
+
+void keep_largest(const voxel::Expression& solid, const VoxelBench& bench, VoxelSide& made) {
+  const voxel::Octree whole = bench.combined(solid);
+  const voxel::Components pieces = voxel::components(whole);
+  made.octree = pieces.largest;
+  made.symbol =
+      bench.within_universe(pieces.voxel_counts.size() < 2
+                                ? solid
+                                : solid - voxel::Expression(bench.combined(
+                                              voxel::Expression(whole) - voxel::Expression(pieces.largest))));
+}
+
+brep::Solid printed(const brep::Solid& solid, const std::string& part, MeshSide& made) {
+  brep::Triangles triangles = solid.triangles();
+  const std::vector<brep::Component>& pieces = solid.components();
+  if (pieces.size() > 1) {
+    double dropped_mm3 = 0.0;
+    for (std::size_t i = 1; i < pieces.size(); ++i) dropped_mm3 += pieces[i].volume_mm3;
+    made.findings.push_back(std::to_string(pieces.size() - 1) + " pieces of " + three_figures(dropped_mm3) +
+                            " mm\u00b3 beside the " + part + " are left out");
+    triangles = brep::triangles_of(brep::part_of(solid.mesh(), pieces.front().faces));
+  }
+  // Thin triangles, where a Boolean's surfaces meet, would cross their neighbours when a file is written.
+  constexpr int most_rounds = 4;
+  for (int round = 0; round < most_rounds; ++round) {
+    for (glm::dvec3& p_mm : triangles.points_mm) p_mm = glm::dvec3(glm::vec3(p_mm));
+    brep::Mesh mesh = brep::mesh_of(triangles);
+    brep::take_out_flat_triangles(mesh);
+    if (brep::health(mesh).solid()) return brep::trusted_solid(mesh, brep::Proof::Health);
+    triangles = brep::untangle(mesh).surface;
+  }
+  made.findings.push_back("triangles intersect where points of the " + part +
+                          " are rounded to single precision: mend a file of it by octotomy repair --solid "
+                          "before it is printed");
+  return solid;
+}
+
+brep::Solid noted(const brep::BooleanResult& result, MeshSide& made) {
+  made.shift_mm += result.shift_mm;
+  made.findings.insert(made.findings.end(), result.findings.begin(), result.findings.end());
+  return result.solid;
+}
+
+}  // namespace octotomy::planner

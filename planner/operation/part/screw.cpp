@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A screw's axis, and how far the screw stays from what it must not touch: roots, a nerve's canal, saw cuts.
+// Each kernel measures on its own answer to those objects; the mesh's distance is the one that counts.
+#include "planner/operation/part/screw.h"
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <optional>
+#include <stdexcept>
+
+#include "brep/measure/gap.h"
+#include "brep/shape/prism.h"
+#include "brep/shape/saw.h"
+#include "planner/operation/measure/gap.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/object/mask.h"
+#include "planner/operation/object/saw.h"
+#include "planner/operation/object/trace.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/saw_blade.h"
+#include "voxel/space/rounded.h"
+
+namespace octotomy::planner {
+namespace {
+
+/// How far from the bone's surface a screw's point may be typed: landmarks are placed by hand.
+constexpr double on_surface_mm = 3.0;
+
+void check(const Screw& screw, const Place& place) {
+  if (place.scope == nullptr) return;
+  for (std::size_t i = 0; i < screw.cuts.size(); ++i) {
+    const std::string& maker = place.scope->maker_of(screw.cuts[i].name).name;
+    if (maker != "saw" && maker != "mask")
+      place.at("cuts[" + std::to_string(i) + "]")
+          .refuse("'" + screw.cuts[i].name + "' was made by '" + maker +
+                  "': name a saw step or a mask whose walls are cuts");
+  }
+  for (const ObjectName& object : screw.away_from)
+    if (object.name == screw.object.name)
+      place.at("away_from").refuse("names '" + object.name + "', in which the screw sits");
+}
+
+/// How far the screw stays from one object, in both kernels.
+struct Clear {
+  std::string object;
+  bool is_cut = false;
+  double mesh_mm = 0.0;
+  std::optional<double> voxel_mm;
+};
+
+/// By voxels; none where the screw or the other object has none.
+std::optional<double> voxel_gap_mm(const voxel::Octree& screw, const voxel::Octree& other) {
+  if (screw.is_empty() || other.is_empty()) return std::nullopt;
+  return gap_between(screw, other, std::nullopt, std::nullopt).voxel_mm;
+}
+
+Clear clear_of_object(const Object& object, const brep::Solid& rod, const voxel::Octree& voxels) {
+  Clear clear{object.id, false, 0.0, voxel_gap_mm(voxels, object.voxel.octree)};
+  const brep::Solid& solid = *object.mesh.whole;
+  const bool is_inside = solid.tree().is_inside(rod.triangles().points_mm.front());
+  if (!is_inside) clear.mesh_mm = brep::gap(rod.triangles(), solid.triangles()).distance_mm;
+  return clear;
+}
+
+/// From the walls of a mask, on whichever side the screw is, or from what a saw takes away.
+Clear clear_of_cut(const Object& object, const Action& maker, const brep::Solid& rod,
+                   const voxel::Octree& voxels) {
+  const voxel::Universe universe = voxels.universe();
+  if (const Saw* saw = maker.get_if<Saw>()) {
+    const brep::Solid blade = brep::saw_blade({saw->line_mm, saw->direction, saw->depth_mm, saw->kerf_mm});
+    const voxel::Octree taken = voxel::combine(
+        universe, voxel::saw_blade({saw->line_mm, saw->direction, saw->depth_mm, saw->kerf_mm}));
+    return {object.id, true,
+            blade.tree().is_inside(rod.triangles().points_mm.front())
+                ? 0.0
+                : brep::gap(rod.triangles(), blade.triangles()).distance_mm,
+            voxel_gap_mm(voxels, taken)};
+  }
+  Clear clear{object.id, true, brep::gap(rod.triangles(), object.mesh.whole->triangles()).distance_mm, {}};
+  const voxel::Octree within =
+      voxel::combine(universe, voxel::Expression(voxels) & voxel::Expression(object.voxel.octree));
+  const bool is_inside = !within.is_empty();
+  clear.voxel_mm =
+      voxel_gap_mm(voxels, is_inside ? voxel::combine(universe, ~voxel::Expression(object.voxel.octree))
+                                     : object.voxel.octree);
+  return clear;
+}
+
+std::vector<Clear> clearances(const Screw& screw, const SettleBench& bench) {
+  const Object& bone = bench.objects.at(screw.object.name);
+  const brep::Solid body = rod(screw.head_mm, screw.tip_mm, 0.5 * screw.diameter_mm);
+  const voxel::Octree voxels = voxel::combine(
+      bone.voxel.octree.universe(),
+      voxel::Expression(voxel::Cylinder{screw.head_mm, screw.tip_mm, 0.5 * screw.diameter_mm}));
+  std::vector<Clear> found;
+  const auto need_mesh = [&](const Object& object) {
+    if (!object.mesh.whole || object.mesh.whole->empty())
+      throw std::runtime_error("'" + object.id + "' has no mesh, so no distance to it can be measured");
+  };
+  for (const ObjectName& name : screw.away_from) {
+    const Object& object = bench.objects.at(name.name);
+    need_mesh(object);
+    found.push_back(clear_of_object(object, body, voxels));
+  }
+  for (const ObjectName& name : screw.cuts) {
+    const Object& object = bench.objects.at(name.name);
+    const Action* maker = bench.maker_of ? bench.maker_of(name.name) : nullptr;
+    if (maker == nullptr)
+      throw std::runtime_error("'" + name.name + "' is no step of this plan: cuts are saw steps and masks");
+    if (maker->get_if<Saw>() == nullptr) need_mesh(object);
+    found.push_back(clear_of_cut(object, *maker, body, voxels));
+  }
+  return found;
+}
+
+void report(const Screw& screw, const std::vector<Clear>& clearances, const SettleBench& bench) {
+  const voxel::Universe universe = bench.objects.at(screw.object.name).voxel.octree.universe();
+  // Each digitised surface may lie half a voxel's diagonal off.
+  const double voxel_error_mm = glm::length(universe.lattice().spacing_mm());
+  bench.details["clearances"] = nlohmann::ordered_json::array();
+  for (const Clear& clear : clearances) {
+    nlohmann::ordered_json line{{"object", clear.object},
+                                {"is_cut", clear.is_cut},
+                                {"distance_mm", clear.mesh_mm},
+                                {"voxel_distance_mm", nullptr}};
+    if (clear.voxel_mm) line["voxel_distance_mm"] = *clear.voxel_mm;
+    bench.details["clearances"].push_back(line);
+    const std::string what = clear.is_cut ? "the cut '" + clear.object + "'" : "'" + clear.object + "'";
+    if (clear.mesh_mm <= 0.0)
+      bench.findings.push_back("the screw goes into " + what + ": move its point or turn its direction");
+    else if (clear.mesh_mm < screw.least_mm)
+      bench.findings.push_back("the screw comes within " + three_figures(clear.mesh_mm) + " mm of " + what +
+                               ", less than the " + three_figures(screw.least_mm) +
+                               " mm that are asked for: move its point or turn its direction");
+    if (clear.voxel_mm && std::abs(*clear.voxel_mm - clear.mesh_mm) > voxel_error_mm)
+      bench.findings.push_back("the kernels disagree about the distance to " + what + ": " +
+                               three_figures(clear.mesh_mm) + " mm in meshes, " +
+                               three_figures(*clear.voxel_mm) + " mm in voxels");
+  }
+}
+
+Screw settle(const Screw& asked, const SettleBench& bench) {
+  const Stopwatch watch(bench.timings, "screw");
+  Screw made = asked;
+  const brep::Solid& bone = bench.object(asked.object.name);
+  if (bone.empty()) throw std::runtime_error("'" + asked.object.name + "' is empty: no screw holds in it");
+  made.head_mm = mark_mm(asked.at, bench.objects);
+  std::uint32_t start = 0;
+  const double off_mm = bone.tree().distance_mm(made.head_mm, start);
+  if (off_mm > on_surface_mm)
+    throw std::runtime_error("the point " + voxel::rounded(made.head_mm) + " mm lies " +
+                             three_figures(off_mm) + " mm off the surface of '" + asked.object.name +
+                             "': give a point on that surface");
+  made.tip_mm = made.head_mm + asked.length_mm * glm::normalize(asked.direction);
+  bench.details = {
+      {"head_mm", to_json(made.head_mm)}, {"tip_mm", to_json(made.tip_mm)}, {"off_surface_mm", off_mm}};
+  // Half of the axis lies in bone, or the screw points out of it.
+  constexpr int samples = 32;
+  int inside = 0;
+  for (int i = 0; i < samples; ++i)
+    if (bone.tree().is_inside(glm::mix(made.head_mm, made.tip_mm, (i + 0.5) / samples))) ++inside;
+  if (inside == 0)
+    throw std::runtime_error("the screw does not enter '" + asked.object.name +
+                             "': point 'direction' from its head into the bone");
+  bench.details["in_bone_mm"] = asked.length_mm * inside / samples;
+  report(made, clearances(made, bench), bench);
+  return made;
+}
+
+std::string definition(const Screw& screw, const Objects&) {
+  return "screw of " + plain(screw.diameter_mm) + " x " + plain(screw.length_mm) + " mm in " +
+         screw.object.name;
+}
+
+void voxels(const Screw& screw, const VoxelBench& bench, VoxelSide& made) {
+  const voxel::Expression body(voxel::Cylinder{screw.head_mm, screw.tip_mm, 0.5 * screw.diameter_mm});
+  made.symbol = bench.within_universe(body);
+  made.octree = bench.combined(body);
+  made.lineage = "a cylinder at voxel centres";
+}
+
+void triangles(const Screw& screw, const MeshBench&, MeshSide& made) {
+  made.whole = rod(screw.head_mm, screw.tip_mm, 0.5 * screw.diameter_mm);
+  made.lineage = "a prism of 48 sides";
+}
+
+void bound(const Screw&, const BoundBench&, Object&) {}
+
+}  // namespace
+
+brep::Solid rod(const glm::dvec3& from_mm, const glm::dvec3& to_mm, double radius_mm) {
+  constexpr int sides = 48;
+  const double turn = 2.0 * glm::pi<double>() / sides;
+  // A polygon with the disc's area.
+  const double corner_mm = radius_mm * std::sqrt(turn / std::sin(turn));
+  brep::Prism prism;
+  prism.look = glm::normalize(to_mm - from_mm);
+  const glm::dvec3 aside = std::abs(prism.look.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  prism.right = glm::normalize(glm::cross(prism.look, aside));
+  prism.up = glm::cross(prism.right, prism.look);
+  const glm::dvec2 middle(glm::dot(from_mm, prism.right), glm::dot(from_mm, prism.up));
+  std::vector<glm::dvec2>& polygon = prism.polygons_mm.emplace_back();
+  for (int i = 0; i < sides; ++i)
+    polygon.push_back(middle + corner_mm * glm::dvec2(std::cos(i * turn), std::sin(i * turn)));
+  prism.from_mm = glm::dot(from_mm, prism.look);
+  prism.to_mm = glm::dot(to_mm, prism.look);
+  return brep::solid_of(prism);
+}
+
+ScrewAxis screw_axis(const std::string& name, const SettleBench& bench) {
+  const Object& object = bench.objects.at(name);
+  const Object& still = still_of(bench.objects, object);
+  const Action* maker = bench.maker_of ? bench.maker_of(still.id) : nullptr;
+  const Screw* screw = maker == nullptr ? nullptr : maker->get_if<Screw>();
+  if (screw == nullptr)
+    throw std::runtime_error("'" + name + "' is no screw: name a screw step, or a screw that was moved");
+  const glm::dmat4 image = object.image ? object.image->image_from_object : glm::dmat4(1.0);
+  const glm::dvec3 head_mm = mark_mm(screw->at, bench.objects);
+  return {name,
+          screw->object.name,
+          glm::dvec3(image * glm::dvec4(head_mm, 1.0)),
+          glm::dmat3(image) * glm::normalize(screw->direction),
+          screw->diameter_mm,
+          screw->length_mm};
+}
+
+Operation screw_operation() {
+  return Describe<Screw>("screw", "Places a screw: its axis goes with the bone, to guides and plates.",
+                         Makes::Object)
+      .takes(field("object", &Screw::object, "The bone or piece in which the screw sits.").required())
+      .takes(field("at", &Screw::at, "Where its axis meets the bone's surface: [x, y, z] or a landmark.")
+                 .required())
+      .takes(field("direction", &Screw::direction, "The direction from the screw's head to its tip, LPS.")
+                 .required()
+                 .direction())
+      .takes(field("diameter_mm", &Screw::diameter_mm,
+                   "The outer diameter; 2 is usual for plates of the midface.")
+                 .from(0.8)
+                 .to(6.0))
+      .takes(field("length_mm", &Screw::length_mm,
+                   "The length below the bone's surface; 5 to 7 are usual in one cortex of the midface.")
+                 .from(2.0)
+                 .to(60.0))
+      .takes(field("away_from", &Screw::away_from,
+                   "Objects that the screw must not touch, such as roots or the nerve's canal."))
+      .takes(field("cuts", &Screw::cuts,
+                   "Saw steps and masks of this plan whose cuts the screw must stay away from."))
+      .takes(
+          field("least_mm", &Screw::least_mm,
+                "The least distance to these; nearer ones are findings. The default is a project's choice.")
+              .from(0.0)
+              .to(20.0))
+      .example(R"({"id": "left_1", "do": "screw", "object": "maxilla", "at": [18, -80, -34],
+        "direction": [0, 1, 0], "length_mm": 5, "cuts": ["sawn"]})")
+      .tool()
+      .check(check)
+      .settle(settle)
+      .object(definition, voxels, triangles, bound);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "brep/mesh/solid.h"
+#include "planner/operation/table/bench.h"
+#include "planner/operation/table/field.h"
+
+// Screws as objects of a plan: guides drill their holes before the cut, plates have their holes where the
+// plan's motions bring them.
+namespace octotomy::planner {
+
+struct Screw {
+  ObjectName object;  ///< the bone or piece in which it sits
+  Mark at;            ///< where its axis meets the surface
+  glm::dvec3 direction{0.0, 1.0, 0.0};
+  double diameter_mm = 2.0, length_mm = 6.0;
+  std::vector<ObjectName> away_from, cuts;
+  double least_mm = 1.0;
+  // Settled.
+  glm::dvec3 head_mm{0.0}, tip_mm{0.0};
+};
+
+/// A screw's axis at the place to which the plan's motions carried it.
+struct ScrewAxis {
+  std::string screw;    ///< the name of the object
+  std::string sits_in;  ///< the bone or piece of the plan
+  glm::dvec3 head_mm{0.0};
+  glm::dvec3 along{0.0, 1.0, 0.0};  ///< unit, from the head to the tip
+  double diameter_mm = 2.0, length_mm = 6.0;
+};
+
+/// The axis of a screw of the plan, or of a screw that steps moved. Throws std::runtime_error, which names the
+/// object, if it is no screw.
+ScrewAxis screw_axis(const std::string& name, const SettleBench& bench);
+
+/// A rod between two points as meshes have it: a prism of 48 sides whose volume is the cylinder's.
+/// Preconditions: the points are apart, the radius is above 0.
+brep::Solid rod(const glm::dvec3& from_mm, const glm::dvec3& to_mm, double radius_mm);
+
+}  // namespace octotomy::planner
