@@ -22,7 +22,7 @@
 #include "brep/shape/offset.h"
 #include "brep/shape/shadow.h"
 #include "planner/operation/measure/result_json.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/part/guide_site.h"
 #include "planner/operation/part/guide_slots.h"
 #include "planner/operation/part/printed_part.h"
@@ -78,17 +78,17 @@ constexpr double room_mm = 1.0;
 /// How far rods and holes go on below the bone's surface, which is not known to a hair at a screw's point.
 constexpr double below_mm = 5.0;
 
-void check(const Guide& guide, const Place& place) {
+void check(const Guide& guide, const FieldLocation& place) {
   if (guide.points.empty() == !guide.region)
     place.refuse(guide.region
                      ? "says its region twice, by 'points' and by 'region': keep one of them"
                      : "the region is missing: add 'points' on the bone, or 'region', drawn in a view");
   if (guide.region && guide.region->polygons_mm.size() != 1)
     place.at("region").refuse("must be one polygon: a guide is one piece");
-  const auto check_view = [&](const std::string& view, const Place& at) {
+  const auto check_view = [&](const std::string& view, const FieldLocation& at) {
     try {
       voxel::parse_view(view);
-    } catch (const std::invalid_argument& error) {
+    } catch (const voxel::InvalidInput& error) {
       at.refuse(error.what());
     }
   };

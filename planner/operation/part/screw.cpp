@@ -14,8 +14,8 @@
 #include "planner/operation/measure/gap.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/object/mask.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/object/saw.h"
-#include "planner/operation/object/trace.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/solid/combine.h"
@@ -28,7 +28,7 @@ namespace {
 /// How far from the bone's surface a screw's point may be typed: landmarks are placed by hand.
 constexpr double on_surface_mm = 3.0;
 
-void check(const Screw& screw, const Place& place) {
+void check(const Screw& screw, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   for (std::size_t i = 0; i < screw.cuts.size(); ++i) {
     const std::string& maker = place.scope->maker_of(screw.cuts[i].name).name;
