@@ -72,7 +72,7 @@ struct Guide {
 };
 
 /// Cells of the mesh's offsets: of the fitting surface, and of the outer one.
-constexpr double fit_cell_mm = 0.5, outer_cell_mm = 2.0;
+constexpr double base_cell_mm = 0.5, outer_cell_mm = 2.0;
 /// Room about the region beyond what the guide needs.
 constexpr double room_mm = 1.0;
 /// How far rods and holes go on below the bone's surface, which is not known to a hair at a screw's point.
@@ -277,7 +277,7 @@ void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
     return brep::shadow(bone, {guide.site.along, guide.site.end_mm, progress}).solid;
   });
   const brep::Solid taken = timed("guide_offset", [&] {
-    return brep::offset(behind, {guide.clearance_mm, fit_cell_mm, progress});
+    return brep::offset(behind, {guide.clearance_mm, base_cell_mm, progress});
   });
   const brep::Solid base = guide.site.base.solid();
   const brep::Solid patch = of(bone, Intersection, base);
@@ -325,7 +325,7 @@ void bound(const Guide& guide, const BoundBench& bench, Object& made) {
                                      voxel::combine(bench.universe, voxel::Expression(object.voxel.octree) &
                                                                         guide.site.near.expression()),
                                      guide.site.bone.solid, is_whole_voxels(object.voxel)},
-                                    {guide.clearance_mm, fit_cell_mm}, made.mesh.whole->measures().area_mm2);
+                                    {guide.clearance_mm, base_cell_mm}, made.mesh.whole->measures().area_mm2);
     if (is_whole_voxels(object.voxel)) apart_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
     made.bound.measured_apart_mm += apart_mm;
     made.bound.reshaped.push_back(object.id);

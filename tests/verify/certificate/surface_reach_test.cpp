@@ -231,7 +231,7 @@ TEST_F(ReshapedBalls, ReadsOnceAndIsNoneOfItsCopiesUnderABoolean) {
   });
   EXPECT_EQ(calls, 0);
   const Witness copy = witness;
-  EXPECT_EQ(copy.words({0, 0, 0}).mesh, certainly_in);
+  EXPECT_EQ(copy.allowed_sides({0, 0, 0}).mesh, certainly_in);
   EXPECT_EQ(witness.allowed_sides({22, 0, 0}).voxel, certainly_in);
   EXPECT_EQ(witness.allowed_sides({15, 0, 0}).mesh, certainly_out);
   EXPECT_EQ(witness.of_mesh({0, 0, 12.0}).mesh, on_surface);
@@ -251,8 +251,8 @@ TEST_F(ReshapedBalls, CutByABoxItIsReadAsBothAndKeepsItsSurface) {
     EXPECT_EQ(read.voxel, expected.voxel) << z;
     EXPECT_EQ(read.surfaces, expected.surfaces) << z;
   }
-  EXPECT_EQ(cut.words({0, 0, 9.0}).mesh, certainly_out);
-  EXPECT_EQ(whole.words({0, 0, 9.0}).mesh, certainly_in);
+  EXPECT_EQ(cut.allowed_sides({0, 0, 9.0}).mesh, certainly_out);
+  EXPECT_EQ(whole.allowed_sides({0, 0, 9.0}).mesh, certainly_in);
   const Witness again = cut_by_box(cut, world);
   ASSERT_TRUE(is_reshaped(cut) && is_reshaped(again));
   EXPECT_EQ(&expected_surface(cut), &expected_surface(whole));

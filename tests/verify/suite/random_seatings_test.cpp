@@ -29,7 +29,8 @@ namespace {
 
 using brep::shapes::sphere;
 
-constexpr double head_mm = 12.0, gap_mm = 0.25, tolerance_mm = 0.12, resolution_mm = 0.01, voxel_mm = 0.5;
+constexpr double head_mm = 12.0, gap_mm = 0.25, tolerance_mm = 0.12, resolution_mm = 0.01,
+                 head_voxel_mm = 0.5;
 
 using Random = std::mt19937_64;
 double uniform(Random& random, double low, double high) {
@@ -178,7 +179,7 @@ int cases_wanted() {
 
 TEST(RandomSeatings, EveryPartThatBindsIsNamedWithItsPlaceAndNoneFalsely) {
   const voxel::Universe universe =
-      voxel::universe_around({glm::dvec3(-2.2 * head_mm), glm::dvec3(2.2 * head_mm)}, voxel_mm);
+      voxel::universe_around({glm::dvec3(-2.2 * head_mm), glm::dvec3(2.2 * head_mm)}, head_voxel_mm);
   const double voxel_error_mm = glm::length(universe.lattice().spacing_mm());
   int binding = 0, free = 0, left_out = 0, named_by_voxels = 0;
   std::vector<double> seconds;
@@ -212,17 +213,17 @@ TEST(RandomSeatings, EveryPartThatBindsIsNamedWithItsPlaceAndNoneFalsely) {
     EXPECT_GT(mesh_mm, truth_mm - flat_mm - resolution_mm);
     ASSERT_TRUE(by_mesh.binding);
     const brep::Binding& at = *by_mesh.binding;
-    EXPECT_GT(made->lug->depth_mm(at.at_mm), -voxel_mm) << "the place is not in the lug's way";
+    EXPECT_GT(made->lug->depth_mm(at.at_mm), -head_voxel_mm) << "the place is not in the lug's way";
     // Voxels alone name places that are deeper than what they cannot tell, which is everywhere.
     EXPECT_TRUE(by_voxels.binding || truth_mm < voxel_error_mm);
     if (voxels_mm > voxel_error_mm) {
       ++named_by_voxels;
-      EXPECT_GT(made->lug->depth_mm(by_voxels.binding->at_mm), -voxel_mm);
+      EXPECT_GT(made->lug->depth_mm(by_voxels.binding->at_mm), -head_voxel_mm);
     }
     // The lug comes over the place `first` before the end, and has passed it `last` before the end.
     EXPECT_GE(at.first_mm, at.last_mm);
     const double before_mm = -glm::dot(at.at_mm - made->lug->centre_mm, made->direction);
-    EXPECT_GT(at.first_mm, before_mm - voxel_mm);
+    EXPECT_GT(at.first_mm, before_mm - head_voxel_mm);
   }
   EXPECT_EQ(binding + free, cases_wanted());
   EXPECT_GT(binding, cases_wanted() / 3);
