@@ -355,16 +355,20 @@ voxel::GreyOctree Desk::alone(const Snapshot& snapshot, const std::string& scan)
   return alone_->second;
 }
 
-Desk::Preview Desk::preview(const std::string& object, const Json& move, const std::vector<std::string>& with,
+Desk::Preview Desk::preview(const Json& asked, const std::vector<std::string>& with,
                             const std::stop_token& stop) {
-  Json step = move;
-  step["id"] = Preview::moved;
-  step["do"] = "move";
-  step["object"] = object;
-  Json steps = Json::array({step});
+  Json steps = asked.value("steps", Json::array());
+  std::string moved;
+  if (steps.empty()) {
+    moved = asked.contains("of") ? asked["of"] : asked.at("object");
+    steps.push_back(asked.at("move"));
+    steps.back()["do"] = "move";
+    steps.back()["object"] = moved;
+  }
+  steps.back()["id"] = Preview::moved;
   std::string others;
   for (const std::string& name : with)
-    if (name != object) others += (others.empty() ? "" : " | ") + name;
+    if (name != moved) others += (others.empty() ? "" : " | ") + name;
   if (!others.empty())
     steps.push_back({{"id", Preview::overlap},
                      {"do", "combine"},

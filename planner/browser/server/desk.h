@@ -79,14 +79,16 @@ class Desk {
   /// Caches the newest one.
   voxel::GreyOctree alone(const Snapshot& snapshot, const std::string& scan);
 
-  /// A plan's object moved as by a step "move", in voxels only, and its overlap with other objects.
+  /// An object after a change that is not in the plan, in voxels only: moved, or made by further steps; and its
+  /// overlap with other objects.
   struct Preview {
     std::shared_ptr<const Evaluation> evaluation;
     static constexpr const char* moved = "dragged_piece";
     static constexpr const char* overlap = "dragged_overlap";
   };
-  Preview preview(const std::string& object, const Json& move, const std::vector<std::string>& with,
-                  const std::stop_token& stop);
+  /// `asked` is {"object", "of", "move"}: `of`, or else `object`, moved as by a step "move"; or {"steps"}: the
+  /// last of steps that follow the plan's.
+  Preview preview(const Json& asked, const std::vector<std::string>& with, const std::stop_token& stop);
 
   /// The plan's state for a page; null if none is open.
   Json state() const;

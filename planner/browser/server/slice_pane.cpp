@@ -112,8 +112,7 @@ Message draw_slice(Desk& desk, const Request& request, const std::stop_token& st
   if (const Json asked = said.value("preview", Json()); asked.is_object()) {
     replaced = asked.at("object");
     const auto against = asked.value("against", std::vector<std::string>{});
-    preview = desk.preview(asked.value("of", replaced), asked.at("move"),
-                           said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
+    preview = desk.preview(asked, said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
   }
   std::vector<Outlined> outlined, hatched;
   std::vector<std::string> hatch_colours;

@@ -245,8 +245,7 @@ void ViewPane::add_objects(Desk& desk, const Json& said, Drawing& drawing, const
   if (const Json asked = said.value("preview", Json()); !asked.is_null()) {
     dragged = asked.at("object");
     const auto against = asked.value("against", std::vector<std::string>{});
-    preview = desk.preview(asked.value("of", dragged), asked.at("move"),
-                           said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
+    preview = desk.preview(asked, said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
     drawing.is_of_plan = false;
   }
   const Object* moved = preview.evaluation ? find(*preview.evaluation, Desk::Preview::moved) : nullptr;
