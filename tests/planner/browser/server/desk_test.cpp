@@ -126,9 +126,7 @@ TEST_F(DeskTest, TheLargestPartOfAnOverlapHasAPlace) {
   add({{"id", "both"}, {"do", "combine"}, {"expression", "bone & moved"}});
   add({{"id", "none"}, {"do", "combine"}, {"expression", "bone - bone"}});
   desk_->evaluate({}, false, {});
-  const auto part = [&](const char* id) {
-    return find_word("largest_part").answer(*desk_, {{"object", id}}, {});
-  };
+  const auto part = [&](const char* id) { return find_word("part").answer(*desk_, {{"object", id}}, {}); };
   const Json both = part("both");
   EXPECT_EQ(both["parts"], 1);
   EXPECT_GT(both["mm3"], 0.0);
@@ -136,6 +134,48 @@ TEST_F(DeskTest, TheLargestPartOfAnOverlapHasAPlace) {
   EXPECT_NEAR(both["at_mm"][1].get<double>(), 0.0, 0.5);
   EXPECT_TRUE(part("none")["at_mm"].is_null());
   EXPECT_THROW(part("nobody"), voxel::Error);
+}
+
+TEST_F(DeskTest, APartIsFoundAtAPointOfItsSurface) {
+  desk_->open(folder_ / "ball.nrrd", {});
+  add({{"id", "moved"}, {"do", "move"}, {"object", "bone"}, {"translate_mm", {30, 0, 0}}});
+  add({{"id", "two"}, {"do", "combine"}, {"expression", "bone | moved"}});
+  add({{"id", "one"}, {"do", "parts"}, {"object", "two"}, {"at_mm", {{0, 0, 0}}}});
+  desk_->evaluate({}, false, {});
+  const auto part = [&](const char* id, const Json& near_mm) {
+    return find_word("part").answer(*desk_, {{"object", id}, {"near_mm", near_mm}}, {});
+  };
+  const double one_mm3 = part("one", {0, 0, 0})["mm3"];
+  const Json found = part("two", {0, 8.4, 0});
+  EXPECT_EQ(found["parts"], 2);
+  EXPECT_EQ(found["mm3"], one_mm3);
+  EXPECT_EQ(found["whole_mm3"], 2.0 * one_mm3);
+  const glm::dvec3 at(found["at_mm"][0], found["at_mm"][1], found["at_mm"][2]);
+  EXPECT_LT(glm::length(at), 7.5) << "deeper than the surface, so that both kernels have the point within";
+  EXPECT_THROW(part("two", {0, 20, 0}), voxel::Error);
+  EXPECT_THROW(part("two", {1e300, 0, 0}), voxel::Error);
+}
+
+TEST_F(DeskTest, StepsAreTriedWithoutAChangeOfThePlan) {
+  desk_->open(folder_ / "ball.nrrd", {});
+  desk_->evaluate({}, false, {});
+  const Json before = desk_->state()["plan"];
+  const double bone_mm3 = desk_->state()["objects"][0]["volume"]["value"];
+  const Json held{{"id", "held"}, {"do", "clamp_streaks"}, {"scan", "ct"}, {"metal", 1}, {"low", -1},
+                  {"high", 1}};
+  const Json none{{"id", "none"}, {"do", "window"}, {"scan", "held"}, {"low", 300}};
+  const Json same{{"id", "same"}, {"do", "parts"}, {"object", "bone"}, {"largest", 1}};
+  const Json made = find_word("try").answer(*desk_, {{"steps", {held, none, same}}}, {});
+  ASSERT_EQ(made["scans"].size(), 1U);
+  EXPECT_EQ(made["scans"][0]["id"], "held");
+  EXPECT_GT(made["scans"][0]["details"]["lowered_samples"], 0);
+  EXPECT_EQ(made["objects"], Json({{{"id", "none"}, {"mm3", 0.0}}, {{"id", "same"}, {"mm3", bone_mm3}}}));
+  EXPECT_EQ(desk_->state()["plan"], before);
+  const Desk::Preview drawn = desk_->preview({{"steps", {held, none}}}, {}, {});
+  ASSERT_EQ(drawn.evaluation->objects.size(), 1U);
+  EXPECT_EQ(drawn.evaluation->objects[0].id, Desk::Preview::moved);
+  EXPECT_TRUE(drawn.evaluation->objects[0].voxel.octree.is_empty());
+  EXPECT_THROW(find_word("try").answer(*desk_, {{"steps", Json::array()}}, {}), std::runtime_error);
 }
 
 TEST_F(DeskTest, ALandmarkFarFromBoneIsNotCalledSnapped) {
