@@ -187,12 +187,12 @@ Desk::Desk(fs::path working_folder)
   folders.open(working_folder_);
 }
 
-void Desk::open(const fs::path& path, const Watched& watched) {
+void Desk::open(const fs::path& path, const Watched& watched, const std::string& series) {
   const voxel::Progress progress{watched.stop, [&](double share) {
                                    if (watched.progress) watched.progress("read " + path.string(), share);
                                  }};
   if (!is_plan(path)) need_readable_samples(folders, path);
-  const fs::path plan = is_plan(path) ? path : plan_of_scan(path, working_folder_, progress);
+  const fs::path plan = is_plan(path) ? path : plan_of_scan(path, working_folder_, progress, series);
   auto document = std::make_unique<Document>(plan, folders);
   folders.open(plan);
   {

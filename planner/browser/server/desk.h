@@ -50,8 +50,9 @@ class Desk {
   ObjectCache cache;
 
   const std::filesystem::path& working_folder() const { return working_folder_; }
-  /// Opens a plan, or a scan with a plan of its own (new_plan.h), and closes the open one.
-  void open(const std::filesystem::path& path, const Watched& watched);
+  /// Opens a plan, or a scan with a plan of its own (new_plan.h), and closes the open one. `series` as in
+  /// voxel::ReadOptions; a plan states its own.
+  void open(const std::filesystem::path& path, const Watched& watched, const std::string& series = {});
 
   /// Closes the document after the current edit has ended, so that its history is complete. Does nothing if
   /// that takes longer than `most`.

@@ -17,6 +17,7 @@
 #include "planner/procedure/template/chain.h"
 #include "planner/procedure/template/procedure.h"
 #include "voxel/filter/tissue.h"
+#include "voxel/scan/read_scene.h"
 #include "voxel/space/error.h"
 #include "voxel/space/write_whole.h"
 
@@ -77,9 +78,35 @@ Json open(Desk& desk, const Json& said, const Watched& watched) {
     const fs::path place = desk.folders.need_within(desk.working_folder() / "head_phantom.nrrd");
     desk.open(phantom_at(place, progress), watched);
   } else {
-    desk.open(desk.folders.need_within(said.at("path").get<std::string>()), watched);
+    desk.open(desk.folders.need_within(said.at("path").get<std::string>()), watched,
+              said.value("series", ""));
   }
   return nullptr;
+}
+
+/// The DICOM series of a folder, for a person to pick one; none of anything else. What is no readable scan is
+/// refused when it is opened.
+Json series(Desk& desk, const Json& said, const Watched&) {
+  const fs::path path = desk.folders.need_within(said.at("path").get<std::string>());
+  Json list = Json::array();
+  if (!fs::is_directory(path)) return {{"series", list}};
+  try {
+    for (const voxel::SeriesEntry& entry : voxel::list_series(path))
+      list.push_back(
+          {{"choice", entry.choice},
+           {"name", entry.description},
+           {"stack", entry.stack},
+           {"number", entry.number},
+           {"modality", entry.modality},
+           {"slices", entry.slices},
+           {"size", {entry.size_px.x, entry.size_px.y}},
+           {"spacing_mm",
+            {entry.spacing_mm.x, entry.spacing_mm.y, entry.slice_mm ? Json(*entry.slice_mm) : Json(nullptr)}},
+           {"study_date", entry.study_date}});
+  } catch (const voxel::Error& error) {
+    if (error.code() != voxel::ErrorCode::Input) throw;
+  }
+  return {{"series", list}};
 }
 
 /// Whether a file is not a scan: a plan's history, or another JSON file.
@@ -323,6 +350,7 @@ const std::vector<Word>& words() {
       {"hello", Lane::Desk, false, hello},
       {"open", Lane::Long, true, open},
       {"list", Lane::Desk, false, list},
+      {"series", Lane::Long, false, series},
       {"recent", Lane::Desk, false, recent},
       {"save", Lane::Desk, false, save},
       {"edit", Lane::Desk, true, change([](Document& document, const Json& said) { document.edit(said); })},

@@ -178,6 +178,36 @@ TEST_F(DeskTest, StepsAreTriedWithoutAChangeOfThePlan) {
   EXPECT_THROW(find_word("try").answer(*desk_, {{"steps", Json::array()}}, {}), std::runtime_error);
 }
 
+TEST_F(DeskTest, AFoldersSeriesArePickedByThePerson) {
+  const fs::path scans = folder_ / "scans";
+  fs::create_directory(scans);
+  EXPECT_EQ(find_word("series").answer(*desk_, {{"path", (folder_ / "ball.nrrd").string()}}, {})["series"],
+            Json::array());
+  EXPECT_EQ(find_word("series").answer(*desk_, {{"path", scans.string()}}, {})["series"], Json::array());
+  for (const int side : {24, 16}) {
+    voxel::Scene ball = tests::ball_scene(5.0, side);
+    ball.meaning = voxel::Meaning::Hounsfield;
+    ball.modality = "CT";
+    voxel::DicomOptions options;
+    options.series_description = "side " + std::to_string(side);
+    voxel::write_dicom_series(ball, scans / std::to_string(side), options);
+  }
+  const Json list = find_word("series").answer(*desk_, {{"path", scans.string()}}, {})["series"];
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[1]["name"], "side 16");
+  EXPECT_EQ(list[1]["slices"], 16);
+  EXPECT_EQ(list[1]["size"], Json({16, 16}));
+  EXPECT_EQ(list[1]["spacing_mm"], Json({1.0, 1.0, 1.0}));
+  const auto opened = [&](const Json& choice) {
+    find_word("open").answer(*desk_, {{"path", scans.string()}, {"series", choice}}, {});
+    return desk_->state();
+  };
+  const Json second = opened(list[1]["choice"]);
+  EXPECT_EQ(second["scans"][0]["dims"], Json({16, 16, 16}));
+  EXPECT_EQ(opened(list[0]["choice"])["scans"][0]["dims"], Json({24, 24, 24}));
+  EXPECT_EQ(opened(list[1]["choice"])["path"], second["path"]) << "its own plan again";
+}
+
 TEST_F(DeskTest, ALandmarkFarFromBoneIsNotCalledSnapped) {
   desk_->open(folder_ / "ball.nrrd", {});
   desk_->evaluate({}, false, {});
