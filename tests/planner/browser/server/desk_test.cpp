@@ -137,8 +137,9 @@ TEST_F(DeskTest, TheLargestPartOfAnOverlapHasAPlace) {
 }
 
 TEST_F(DeskTest, APartIsFoundAtAPointOfItsSurface) {
-  desk_->open(folder_ / "ball.nrrd", {});
-  add({{"id", "moved"}, {"do", "move"}, {"object", "bone"}, {"translate_mm", {30, 0, 0}}});
+  voxel::write_scene(tests::ball_scene(3.0, 24), folder_ / "small.nrrd");
+  desk_->open(folder_ / "small.nrrd", {});
+  add({{"id", "moved"}, {"do", "move"}, {"object", "bone"}, {"translate_mm", {8, 0, 0}}});
   add({{"id", "two"}, {"do", "combine"}, {"expression", "bone | moved"}});
   add({{"id", "one"}, {"do", "parts"}, {"object", "two"}, {"at_mm", {{0, 0, 0}}}});
   desk_->evaluate({}, false, {});
@@ -146,13 +147,13 @@ TEST_F(DeskTest, APartIsFoundAtAPointOfItsSurface) {
     return find_word("part").answer(*desk_, {{"object", id}, {"near_mm", near_mm}}, {});
   };
   const double one_mm3 = part("one", {0, 0, 0})["mm3"];
-  const Json found = part("two", {0, 8.4, 0});
+  const Json found = part("two", {0, 3.4, 0});
   EXPECT_EQ(found["parts"], 2);
   EXPECT_EQ(found["mm3"], one_mm3);
-  EXPECT_EQ(found["whole_mm3"], 2.0 * one_mm3);
+  EXPECT_EQ(found["whole_mm3"], 2.0 * one_mm3) << "moved by whole voxels";
   const glm::dvec3 at(found["at_mm"][0], found["at_mm"][1], found["at_mm"][2]);
-  EXPECT_LT(glm::length(at), 7.5) << "deeper than the surface, so that both kernels have the point within";
-  EXPECT_THROW(part("two", {0, 20, 0}), voxel::Error);
+  EXPECT_LT(glm::length(at), 2.2) << "deeper than the surface, so that both kernels have the point within";
+  EXPECT_THROW(part("two", {0, 9, 0}), voxel::Error);
   EXPECT_THROW(part("two", {1e300, 0, 0}), voxel::Error);
 }
 
