@@ -10,7 +10,7 @@ configure_options=()
 build_packages=(
   ca-certificates cmake esbuild g++ ninja-build pkg-config
   libboost-dev libcgal-dev libcli11-dev libeigen3-dev libexpat1-dev libgdcm-dev libglm-dev libinsighttoolkit5-dev libisal-dev liblz4-dev libjpeg62-turbo-dev
-  libnifti-dev libopenimageio-dev libopenmesh-dev libsqlite3-dev libssl-dev libtbb-dev libtet1.5-dev libzstd-dev nlohmann-json3-dev zlib1g-dev
+  libminizip-dev libnifti-dev libopenimageio-dev libopenmesh-dev libsqlite3-dev libssl-dev libtbb-dev libtet1.5-dev libzstd-dev nlohmann-json3-dev zlib1g-dev
 )
 
 # Installs those of the named packages that are missing; asks for no password where none is.

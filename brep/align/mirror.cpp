@@ -13,6 +13,7 @@
 #include "brep/align/cloud_fit.h"
 #include "brep/align/forward_axis.h"
 #include "brep/align/register_surfaces.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/short_text.h"
 #include "brep/mesh/triangles.h"
 
@@ -84,7 +85,7 @@ Spread spread_of(const Triangles& surface) {
     area += part;
     spread.centre_mm += part * p;
   });
-  if (!(area > 0.0)) throw std::invalid_argument("fit_mirror_plane: the surface has no area");
+  if (!(area > 0.0)) throw InvalidInput("fit_mirror_plane: the surface has no area");
   spread.centre_mm /= area;
   each([&](double part, const glm::dvec3& p) {
     const glm::dvec3 arm = p - spread.centre_mm;
@@ -240,7 +241,7 @@ void tell_rival(const std::vector<Tried>& planes, MirrorFit& found) {
 Triangles mirrored_triangles(Triangles triangles, const MirrorPlane& plane) {
   const double length = glm::length(plane.normal);
   if (!(length > 0.0) || !std::isfinite(length))
-    throw std::invalid_argument("mirrored: the plane's normal has no length");
+    throw InvalidInput("mirrored: the plane's normal has no length");
   const glm::dmat4 image_of = reflection({plane.point_mm, plane.normal / length});
   for (glm::dvec3& p : triangles.points_mm) p = glm::dvec3(image_of * glm::dvec4(p, 1.0));
   for (auto& face : triangles.faces) std::swap(face[1], face[2]);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "brep/align/forward_axis.h"
+#include "brep/mesh/error.h"
 
 namespace octotomy::brep {
 namespace {
@@ -26,7 +27,7 @@ std::vector<Kernel::Point_3> points_of(const Mesh& mesh) {
 
 OrientedBox oriented_box(const Mesh& mesh) {
   const std::vector<Kernel::Point_3> points = points_of(mesh);
-  if (points.empty()) throw std::invalid_argument("oriented_box: there are no triangles for a box");
+  if (points.empty()) throw InvalidInput("oriented_box: there are no triangles for a box");
   std::array<Kernel::Point_3, 8> corners;
   // Uses a fixed seed, because the default generator would continue from the previous call.
   CGAL::oriented_bounding_box(points, corners, CGAL::parameters::use_convex_hull(true).random_seed(1));
@@ -41,7 +42,7 @@ OrientedBox oriented_box(const Mesh& mesh) {
   for (int k = 0; k < 3; ++k) box.edges_mm[k] = glm::length(edges[static_cast<std::size_t>(k)]);
   // A flat box keeps its two axes.
   if (!(box.edges_mm.y > 0.0))
-    throw std::invalid_argument("oriented_box: all points lie in one line, so a box has no axes");
+    throw InvalidInput("oriented_box: all points lie in one line, so a box has no axes");
   box.axes[0] = forward(edges[0] / box.edges_mm.x);
   box.axes[1] = forward(edges[1] / box.edges_mm.y);
   box.axes[2] = glm::normalize(glm::cross(box.axes[0], box.axes[1]));

@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "brep/mesh/error.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -37,11 +39,11 @@ std::map<std::string, Landmark> by_name(const std::vector<Landmark>& set, const 
     const bool finite =
         std::isfinite(mark.p_mm.x) && std::isfinite(mark.p_mm.y) && std::isfinite(mark.p_mm.z);
     if (!finite || !(mark.weight > 0.0) || !std::isfinite(mark.weight))
-      throw std::invalid_argument("register: landmark '" + mark.name + "' of the " + which +
-                                  " set has a point that is not finite or a weight that is not positive");
+      throw InvalidInput("register: landmark '" + mark.name + "' of the " + which +
+                         " set has a point that is not finite or a weight that is not positive");
     if (!named.emplace(mark.name, mark).second)
-      throw std::invalid_argument("register: landmark '" + mark.name + "' occurs twice in the " + which +
-                                  " set: rename or delete one");
+      throw InvalidInput("register: landmark '" + mark.name + "' occurs twice in the " + which +
+                         " set: rename or delete one");
   }
   return named;
 }
@@ -146,8 +148,8 @@ LandmarkFit register_landmarks(const std::vector<Landmark>& moving, const std::v
   for (const Landmark& mark : fixed)
     if (!from.contains(mark.name)) fit.left_out.push_back(mark.name);
   if (pairs.size() < 3)
-    throw std::invalid_argument("register: " + std::to_string(pairs.size()) +
-                                " landmarks have names found in both sets, three are needed: check spelling");
+    throw InvalidInput("register: " + std::to_string(pairs.size()) +
+                       " landmarks have names found in both sets, three are needed: check spelling");
 
   const Pair anchor = anchor_of(pairs, motion);
   for (Pair& pair : pairs) {
@@ -157,7 +159,7 @@ LandmarkFit register_landmarks(const std::vector<Landmark>& moving, const std::v
   const std::vector<Pair> deciding(pairs.begin(),
                                    motion == Motion::three_points ? pairs.begin() + 3 : pairs.end());
   if (on_a_line(deciding, &Pair::from) || on_a_line(deciding, &Pair::to))
-    throw std::invalid_argument(
+    throw InvalidInput(
         "register: the landmarks found in both sets lie on one line, so the rotation about it is "
         "undetermined: add a landmark beside it");
 
@@ -171,7 +173,7 @@ LandmarkFit register_landmarks(const std::vector<Landmark>& moving, const std::v
   }
   if (motion == Motion::similarity) fit.scale = along / spread;
   if (!(fit.scale > 0.0))
-    throw std::invalid_argument(
+    throw InvalidInput(
         "register: no positive scale fits these landmarks: check whether names are interchanged");
   const glm::dmat3 linear = fit.scale * turn;
   fit.fixed_from_moving = glm::dmat4(linear);

@@ -414,7 +414,7 @@ std::vector<glm::dmat4> narrowed(const Cloud& cloud, const Searched& searched, c
 }
 
 void check(const SurfaceFitOptions& options) {
-  const auto refuse = [](const std::string& why) { throw std::invalid_argument("register: " + why); };
+  const auto refuse = [](const std::string& why) { throw InvalidInput("register: " + why); };
   if (!(options.overlap > 0.0 && options.overlap <= 1.0)) refuse("the overlap must be above 0 and at most 1");
   if (options.samples < 100) refuse("at least 100 samples are needed");
   if (options.max_rounds < 1) refuse("there must be at least one round");
@@ -446,7 +446,7 @@ double MotionDoubt::turn_deviation(const glm::dvec3& axis) const {
 Cloud cloud_of(const Mesh& mesh, std::size_t count, const std::string& which) {
   double area = 0.0;
   for (const auto f : mesh.faces()) area += mesh.calc_face_area(f);
-  if (!(area > 0.0)) throw std::invalid_argument("register: the " + which + " surface has no area");
+  if (!(area > 0.0)) throw InvalidInput("register: the " + which + " surface has no area");
   const Triangles triangles = triangles_of(mesh);
   const auto wanted = static_cast<double>(count);
   const SurfaceSamples samples =

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -22,9 +23,13 @@
 #include "brep/boolean/corefine.h"
 #include "brep/boolean/line_agreement.h"
 #include "brep/boolean/near_boolean.h"
+#include "brep/boolean/settle.h"
+#include "brep/mesh/coordinate_order.h"
+#include "brep/mesh/equal_points.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/measure.h"
 #include "brep/mesh/short_text.h"
+#include "brep/mesh/split_fans.h"
 #include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
@@ -44,8 +49,8 @@ struct Names {
 void check_operand(const Solid& solid, const std::string& name) {
   const double volume_mm3 = solid.size().volume_mm3;
   if (!std::isfinite(volume_mm3) || volume_mm3 < 0.0)
-    throw std::invalid_argument("operand " + name + " has volume " + std::to_string(volume_mm3) +
-                                " mm3: its triangles face inward; reverse them first");
+    throw InvalidInput("operand " + name + " has volume " + std::to_string(volume_mm3) +
+                       " mm3: its triangles face inward; reverse them first");
 }
 
 double extent_mm(const Size& a, const Size& b) {
@@ -151,11 +156,54 @@ struct Question {
   const std::stop_token& stop;
 };
 
+/// The union of pieces that share whole triangles with opposite winding, such as both differences and the
+/// intersection of two solids. Its sheets may touch along edges, where corefinement alone has no union. None if
+/// the rest is not closed.
+std::optional<Triangles> union_of_pieces(const std::array<const Triangles*, 3>& pieces) {
+  Triangles all;
+  PointNumbers numbers(all.points_mm);
+  using Face = std::array<std::uint32_t, 3>;
+  const auto from_least = [](Face face) {
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    return face;
+  };
+  std::map<Face, int> times;
+  for (const Triangles* piece : pieces)
+    for (const Face& face : piece->faces) {
+      Face own;
+      for (std::size_t k = 0; k < 3; ++k) own[k] = numbers.number_of(piece->points_mm[face[k]]);
+      const auto reverse = times.find(from_least({own[0], own[2], own[1]}));
+      if (reverse == times.end() || reverse->second == 0)
+        ++times[from_least(own)];
+      else
+        --reverse->second;
+    }
+  for (const auto& [face, count] : times)
+    for (int k = 0; k < count; ++k) all.faces.push_back(face);
+  const SplitFans split = split_fans(all);
+  const Linked joined = linked(split.surface);
+  if (!joined.is_closed() || !split.left_out.empty()) return std::nullopt;
+  return in_coordinate_order(mesh_of(joined));
+}
+
+/// Adds the union, if it is wanted and missing, from the other results.
+void add_union_of_pieces(const Question& question, const Solid& b, Corefined& corefined) {
+  if (!question.wanted[of_union] || corefined.results[of_union] || !corefined.failure.empty()) return;
+  Corefined pieces = corefine(question.a, b, {false, true, true, true}, question.stop);
+  const auto &common = pieces.results[of_intersection], &of_a = pieces.results[of_a_minus_b],
+             &of_b = pieces.results[of_b_minus_a];
+  if (!common || !of_a || !of_b) return;
+  corefined.results[of_union] = union_of_pieces({&*common, &*of_a, &*of_b});
+  if (!corefined.results[of_intersection])
+    corefined.results[of_intersection] = std::move(*pieces.results[of_intersection]);
+}
+
 /// Corefines all triangles.
 Attempt whole_attempt(const Question& question, const Solid& b) {
   Attempt attempt;
   Corefined corefined =
       corefine(question.a, b, with_witnesses(question.wanted, question.a, question.b), question.stop);
+  add_union_of_pieces(question, b, corefined);
   attempt.failure = corefined.failure;
   for (std::size_t r = 0; r < corefined.results.size(); ++r)
     if (corefined.results[r]) attempt.volumes_mm3[r] = size_of(*corefined.results[r]).volume_mm3;
@@ -254,6 +302,22 @@ void tell_flat(Attempt& attempt) {
         (attempt.flat == 1 ? " other diagonal" : " other diagonals") + "; their surfaces are unchanged");
 }
 
+/// Takes out the folds that rounding left, and reports the ones that stay.
+void settle(const Question& question, Attempt& attempt) {
+  for (std::size_t r = 0; r < attempt.results.size(); ++r) {
+    if (!question.wanted[r] || attempt.results[r]->faces.empty()) continue;
+    Settled done =
+        settled(std::move(*attempt.results[r]), {&question.a.triangles(), &question.b.triangles()});
+    attempt.results[r] = std::move(done.surface);
+    if (done.crossing > 0)
+      attempt.findings.push_back(question.names.of(r) + " crosses itself: " + std::to_string(done.crossing) +
+                                 (done.crossing == 1 ? " pair" : " pairs") + " of triangles, first at (" +
+                                 short_text(done.at_mm.x) + ", " + short_text(done.at_mm.y) + ", " +
+                                 short_text(done.at_mm.z) +
+                                 ") mm; repair the result before other verbs take it");
+  }
+}
+
 /// The wanted results, before meshes are made of them.
 struct Answer {
   Results results;
@@ -264,6 +328,7 @@ struct Answer {
 
 Answer answer_of(const Question& question, Attempt attempt) {
   assert(attempt.failure.empty());
+  settle(question, attempt);
   tell_touching(question, attempt);
   tell_films(question, attempt);
   tell_flat(attempt);

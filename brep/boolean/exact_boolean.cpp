@@ -27,7 +27,7 @@ using Rational = Kernel::Exact_kernel::FT;
 
 Surface surface_of(const Solid& solid, const std::string& name) {
   if (volume_mm3(solid) < 0.0)
-    throw std::invalid_argument("operand " + name + "'s triangles face inward; reverse them first");
+    throw InvalidInput("operand " + name + "'s triangles face inward; reverse them first");
   return surface_mesh_of<Kernel::Point_3>(solid.triangles());
 }
 

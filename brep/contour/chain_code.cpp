@@ -65,14 +65,14 @@ std::vector<std::uint8_t> without_corners(const std::vector<std::uint8_t>& steps
 
 void check(const glm::dvec2& spacing_mm) {
   if (!(spacing_mm.x > 0.0) || !(spacing_mm.y > 0.0))
-    throw std::invalid_argument("chain_code: the spacing must be above zero");
+    throw InvalidInput("chain_code: the spacing must be above zero");
 }
 
 }  // namespace
 
 ChainCode chain_code(const Contour& contour, const glm::dvec2& spacing_mm) {
   check(spacing_mm);
-  if (contour.points_mm.empty()) throw std::invalid_argument("chain_code: the contour has no points");
+  if (contour.points_mm.empty()) throw InvalidInput("chain_code: the contour has no points");
   constexpr double furthest = 1 << 30, most_steps = 1 << 24;
   double steps = 0.0;
   glm::dvec2 last = contour.points_mm.front() / spacing_mm;
@@ -100,14 +100,13 @@ Contour contour_of(const ChainCode& code, const glm::dvec2& spacing_mm) {
   glm::ivec2 at = code.start;
   for (std::size_t i = 0; i < code.steps.size(); ++i) {
     if (code.steps[i] > 7)
-      throw std::invalid_argument("chain_code: step " + std::to_string(i) + " is " +
-                                  std::to_string(code.steps[i]) + ", 7 is the last direction");
+      throw InvalidInput("chain_code: step " + std::to_string(i) + " is " + std::to_string(code.steps[i]) +
+                         ", 7 is the last direction");
     at += glm::ivec2(directions[code.steps[i]][0], directions[code.steps[i]][1]);
     contour.points_mm.push_back(glm::dvec2(at) * spacing_mm);
   }
   if (!code.closed) return contour;
-  if (at != code.start)
-    throw std::invalid_argument("chain_code: a closed chain does not end where it starts");
+  if (at != code.start) throw InvalidInput("chain_code: a closed chain does not end where it starts");
   if (contour.points_mm.size() > 1) contour.points_mm.pop_back();
   return contour;
 }

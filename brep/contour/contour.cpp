@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "brep/contour/run_tree.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/morton_tree.h"
 
 namespace octotomy::brep {
@@ -35,7 +36,7 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
 }
 
 void check(const Slice& slice, const FollowOptions& options) {
-  const auto refuse = [](const std::string& why) { throw std::invalid_argument("follow: " + why); };
+  const auto refuse = [](const std::string& why) { throw InvalidInput("follow: " + why); };
   if (slice.samples.size() != std::size_t{slice.width} * slice.height)
     refuse(std::to_string(slice.width) + " x " + std::to_string(slice.height) + " samples were promised, " +
            std::to_string(slice.samples.size()) + " are there");
@@ -211,8 +212,7 @@ std::vector<Contour> follow(const Slice& slice, const FollowOptions& options) {
 
 void need_closed(const Contour& contour, const char* asking) {
   if (!contour.closed)
-    throw std::invalid_argument(std::string(asking) +
-                                ": the contour is open: follow it with its border closed");
+    throw InvalidInput(std::string(asking) + ": the contour is open: follow it with its border closed");
 }
 
 double signed_area_mm2(const Contour& contour) {

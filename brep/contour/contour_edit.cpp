@@ -11,6 +11,7 @@
 #include <string>
 
 #include "brep/contour/run_tree.h"
+#include "brep/mesh/error.h"
 
 namespace octotomy::brep {
 namespace {
@@ -19,20 +20,19 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 void need_number(std::size_t number, std::size_t count, const char* what) {
   if (number >= count)
-    throw std::invalid_argument("contour: there is no " + std::string(what) + " " + std::to_string(number) +
-                                ", it has " + std::to_string(count));
+    throw InvalidInput("contour: there is no " + std::string(what) + " " + std::to_string(number) +
+                       ", it has " + std::to_string(count));
 }
 
 void need_finite(const glm::dvec2& p) {
-  if (!std::isfinite(p.x) || !std::isfinite(p.y))
-    throw std::invalid_argument("contour: a point is not finite");
+  if (!std::isfinite(p.x) || !std::isfinite(p.y)) throw InvalidInput("contour: a point is not finite");
 }
 
 Contour whole(Contour contour) {
   const std::size_t least = contour.closed ? 3 : 2;
   if (contour.points_mm.size() < least)
-    throw std::invalid_argument("contour: " + std::to_string(contour.points_mm.size()) +
-                                " points would be left, " + std::to_string(least) + " are the fewest");
+    throw InvalidInput("contour: " + std::to_string(contour.points_mm.size()) + " points would be left, " +
+                       std::to_string(least) + " are the fewest");
   return contour;
 }
 
@@ -102,19 +102,19 @@ Contour point_deleted(const Contour& contour, std::size_t point) {
 std::pair<Contour, Contour> split(const Contour& contour, std::size_t first, std::size_t second) {
   need_number(first, contour.points_mm.size(), "point");
   need_number(second, contour.points_mm.size(), "point");
-  if (!contour.closed) throw std::invalid_argument("contour: an open one is split at one point");
+  if (!contour.closed) throw InvalidInput("contour: an open one is split at one point");
   return {whole({run(contour, first, second), true}), whole({run(contour, second, first), true})};
 }
 
 std::pair<Contour, Contour> split(const Contour& contour, std::size_t point) {
   need_number(point, contour.points_mm.size(), "point");
-  if (contour.closed) throw std::invalid_argument("contour: a closed one is split between two points");
+  if (contour.closed) throw InvalidInput("contour: a closed one is split between two points");
   const auto at = contour.points_mm.begin() + static_cast<std::ptrdiff_t>(point);
   return {whole({{contour.points_mm.begin(), at + 1}, false}), whole({{at, contour.points_mm.end()}, false})};
 }
 
 Contour joined(const Contour& a, std::size_t piece_of_a, const Contour& b, std::size_t piece_of_b) {
-  if (!a.closed || !b.closed) throw std::invalid_argument("contour: two closed ones are joined by pieces");
+  if (!a.closed || !b.closed) throw InvalidInput("contour: two closed ones are joined by pieces");
   need_number(piece_of_a, piece_count(a), "piece");
   need_number(piece_of_b, piece_count(b), "piece");
   Contour both{run(a, (piece_of_a + 1) % a.points_mm.size(), piece_of_a), true};
@@ -124,7 +124,7 @@ Contour joined(const Contour& a, std::size_t piece_of_a, const Contour& b, std::
 }
 
 Contour joined(const Contour& a, const Contour& b) {
-  if (a.closed || b.closed) throw std::invalid_argument("contour: two open ones are joined end to start");
+  if (a.closed || b.closed) throw InvalidInput("contour: two open ones are joined end to start");
   Contour both = a;
   both.points_mm.insert(both.points_mm.end(), b.points_mm.begin(), b.points_mm.end());
   return whole(std::move(both));

@@ -11,6 +11,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/mesh_point.h"
 
 namespace octotomy::brep {
@@ -117,7 +118,7 @@ class PlaneSection {
 Plane plane_through(const glm::dvec3& point_mm, const glm::dvec3& normal) {
   const double length = glm::length(normal);
   if (!(length > 0.0) || !std::isfinite(length) || !std::isfinite(glm::dot(point_mm, glm::dvec3(1.0))))
-    throw std::invalid_argument("plane_through: a plane needs a finite point and a direction");
+    throw InvalidInput("plane_through: a plane needs a finite point and a direction");
   Plane plane;
   plane.origin_mm = point_mm;
   plane.normal = normal / length;

@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "brep/mesh/error.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -89,13 +91,13 @@ class Circle {
 
 Contour fourier_smooth(const Contour& contour, const FourierOptions& options) {
   need_closed(contour, "fourier_smooth");
-  if (options.harmonics < 1) throw std::invalid_argument("fourier_smooth: keep at least one harmonic");
+  if (options.harmonics < 1) throw InvalidInput("fourier_smooth: keep at least one harmonic");
   if (options.points <= 2 * options.harmonics)
-    throw std::invalid_argument("fourier_smooth: " + std::to_string(options.points) +
-                                " points cannot carry " + std::to_string(options.harmonics) + " harmonics");
+    throw InvalidInput("fourier_smooth: " + std::to_string(options.points) + " points cannot carry " +
+                       std::to_string(options.harmonics) + " harmonics");
   const double length = perimeter_mm(contour);
   if (!(length > 0.0) || !std::isfinite(length))
-    throw std::invalid_argument("fourier_smooth: the contour's length is not above 0 and finite");
+    throw InvalidInput("fourier_smooth: the contour's length is not above 0 and finite");
   const auto& p = contour.points_mm;
 
   struct Piece {

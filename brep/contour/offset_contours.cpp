@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "brep/mesh/error.h"
+
 BOOST_GEOMETRY_REGISTER_POINT_2D(glm::dvec2, double, boost::geometry::cs::cartesian, x, y)
 
 namespace octotomy::brep {
@@ -45,7 +47,7 @@ Polygons polygons_of(const std::vector<Contour>& contours) {
   bg::correct(polygons);
   std::string reason;
   if (!bg::is_valid(polygons, reason))
-    throw std::invalid_argument("contours that cross or touch have no offset: " + reason);
+    throw InvalidInput("contours that cross or touch have no offset: " + reason);
   return polygons;
 }
 
@@ -55,7 +57,7 @@ const std::size_t chords = static_cast<std::size_t>(std::ceil(std::numbers::pi /
 }  // namespace
 
 std::vector<Contour> offset(const std::vector<Contour>& contours, double by_mm) {
-  if (!std::isfinite(by_mm)) throw std::invalid_argument("an offset is by a finite length");
+  if (!std::isfinite(by_mm)) throw InvalidInput("an offset is by a finite length");
   const Polygons polygons = polygons_of(contours);
   Polygons grown;
   if (by_mm == 0.0)

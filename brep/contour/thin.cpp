@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "brep/contour/run_tree.h"
+#include "brep/mesh/error.h"
 
 namespace octotomy::brep {
 namespace {
@@ -118,7 +119,7 @@ class Thinner {
 
 Contour thin(const Contour& contour, double max_distance_mm) {
   if (!(max_distance_mm >= 0.0) || !std::isfinite(max_distance_mm))
-    throw std::invalid_argument("thin: the distance must be 0 or more");
+    throw InvalidInput("thin: the distance must be 0 or more");
   const auto& p = contour.points_mm;
   const std::size_t least = contour.closed ? 3 : 2;
   if (p.size() <= least) return contour;

@@ -29,7 +29,7 @@ std::string name(const Section& section, std::size_t s, std::size_t contour) {
 }
 
 void check(const std::vector<Section>& sections) {
-  const auto refuse = [](const std::string& why) { throw std::invalid_argument("tile_sections: " + why); };
+  const auto refuse = [](const std::string& why) { throw InvalidInput("tile_sections: " + why); };
   for (std::size_t s = 0; s < sections.size(); ++s) {
     if (!std::isfinite(sections[s].z_mm) || (s > 0 && !(sections[s - 1].z_mm < sections[s].z_mm)))
       refuse("section " + std::to_string(s) + " is not higher than the one before it: sort them by height");

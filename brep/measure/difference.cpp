@@ -14,6 +14,7 @@
 #include <tbb/parallel_sort.h>
 #include <utility>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/measure.h"
 #include "brep/mesh/oriented_surface.h"
 #include "brep/mesh/sample_surface.h"
@@ -37,7 +38,7 @@ std::size_t most_samples(const Triangles& triangles) {
 }
 
 void check(const DifferenceOptions& options, double area_a_mm2, double area_b_mm2) {
-  const auto refuse = [](const std::string& why) { throw std::invalid_argument("difference: " + why); };
+  const auto refuse = [](const std::string& why) { throw InvalidInput("difference: " + why); };
   if (!(area_a_mm2 > 0.0)) refuse("the first surface has no area");
   if (!(area_b_mm2 > 0.0)) refuse("the second surface has no area");
   if (options.spacing_mm && !(*options.spacing_mm > 0.0)) refuse("the spacing must be positive");

@@ -5,10 +5,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "brep/mesh/error.h"
+
 namespace octotomy::brep {
 
 Solid free_space(const Solid& solid, double margin_mm) {
-  if (solid.empty()) throw std::invalid_argument("free_space: the solid is empty");
+  if (solid.empty()) throw InvalidInput("free_space: the solid is empty");
   if (!(margin_mm > 0.0)) throw std::invalid_argument("free_space: the margin must be above 0");
   Triangles free = solid.triangles();
   for (auto& face : free.faces) std::swap(face[1], face[2]);

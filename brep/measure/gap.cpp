@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "brep/mesh/distance.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/intersecting_triangles.h"
 #include "brep/mesh/morton_tree.h"
 #include "brep/mesh/triangles.h"
@@ -116,7 +117,7 @@ glm::dvec3 common_point(const Triangles& a, const Triangles& b, const Intersecti
 
 Gap gap(const Triangles& a, const Triangles& b) {
   if (a.faces.empty() || b.faces.empty())
-    throw std::invalid_argument("gap: there is no distance to a surface without triangles");
+    throw InvalidInput("gap: there is no distance to a surface without triangles");
   const IntersectingTriangles meeting = intersecting_triangles(a, b);
   if (!meeting.of_a.empty()) {
     const glm::dvec3 p = common_point(a, b, meeting);

@@ -248,15 +248,14 @@ class Measurement {
 };
 
 void check(const Solid& solid, const LocalThicknessOptions& options) {
-  if (solid.empty())
-    throw std::invalid_argument("local thickness: a surface without triangles has no inside");
+  if (solid.empty()) throw InvalidInput("local thickness: a surface without triangles has no inside");
   if (!(solid.size().volume_mm3 > 0.0))
-    throw std::invalid_argument("local thickness: the surface faces inward, so that it has no inside");
-  if (options.samples < 64) throw std::invalid_argument("local thickness: takes at least 64 samples");
+    throw InvalidInput("local thickness: the surface faces inward, so that it has no inside");
+  if (options.samples < 64) throw InvalidInput("local thickness: takes at least 64 samples");
   if (!(options.least_angle_deg >= 1.0 && options.least_angle_deg <= 120.0))
-    throw std::invalid_argument("local thickness: the least angle of two sheets is from 1 to 120 degrees");
+    throw InvalidInput("local thickness: the least angle of two sheets is from 1 to 120 degrees");
   if (!(options.wall_angle_deg >= 91.0 && options.wall_angle_deg <= 179.0))
-    throw std::invalid_argument("local thickness: a wall's angle is from 91 to 179 degrees");
+    throw InvalidInput("local thickness: a wall's angle is from 91 to 179 degrees");
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "brep/mesh/error.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -29,7 +31,7 @@ std::vector<Overhang> overhangs(const Linked& surface, const OverhangAsked& aske
   if (!(std::abs(glm::length(asked.up) - 1.0) <= direction_rounding))
     throw std::invalid_argument("overhangs: the direction away from the bed is not a unit vector");
   if (!(asked.incline_deg >= 0.0 && asked.incline_deg <= 90.0))
-    throw std::invalid_argument("overhangs: the inclination must be 0 to 90 degrees");
+    throw InvalidInput("overhangs: the inclination must be 0 to 90 degrees");
   const Triangles& triangles = surface.triangles;
   double lowest_mm = std::numeric_limits<double>::infinity();
   for (const auto& face : triangles.faces)

@@ -110,7 +110,7 @@ void need_near(const glm::dvec3& asked_mm, const glm::dvec3& nearest_mm, const T
 }  // namespace
 
 SurfacePath shortest_path(const Mesh& mesh, const glm::dvec3& from_mm, const glm::dvec3& to_mm) {
-  if (mesh.n_faces() == 0) throw std::invalid_argument("shortest_path: the surface has no triangles");
+  if (mesh.n_faces() == 0) throw InvalidInput("shortest_path: the surface has no triangles");
   const Triangles all = triangles_of(mesh);
   const std::vector<Foot> ends = SurfaceTree(all).feet({from_mm, to_mm});
   need_near(from_mm, ends[0].p_mm, all);

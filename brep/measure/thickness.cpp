@@ -19,9 +19,9 @@ namespace octotomy::brep {
 
 std::vector<Thickness> thickness(const Solid& solid, const std::vector<SurfacePoint>& points,
                                  const ThicknessOptions& options) {
-  if (solid.empty()) throw std::invalid_argument("thickness: the solid has no triangles");
+  if (solid.empty()) throw InvalidInput("thickness: the solid has no triangles");
   if (!(options.least_angle_deg >= 1.0 && options.least_angle_deg <= 120.0))
-    throw std::invalid_argument("thickness: the least angle is from 1 to 120 degrees");
+    throw InvalidInput("thickness: the least angle is from 1 to 120 degrees");
   const InscribedBalls inscribed(solid.triangles());
   const double least_cosine = std::cos(options.least_angle_deg * std::numbers::pi / 180.0);
   std::vector<Thickness> thickness(points.size());
@@ -42,9 +42,9 @@ std::vector<Thickness> thickness(const Solid& solid, const std::vector<SurfacePo
     });
     for (std::size_t i = from; i < to; ++i)
       if (!std::isfinite(thickness[i].ray_mm))
-        throw std::invalid_argument("thickness: the ray from point " + std::to_string(i) +
-                                    " leaves without meeting the surface; it is not closed, or the normal "
-                                    "does not point out of it");
+        throw InvalidInput("thickness: the ray from point " + std::to_string(i) +
+                           " leaves without meeting the surface; it is not closed, or the normal "
+                           "does not point out of it");
   }
   return thickness;
 }

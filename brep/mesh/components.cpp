@@ -13,6 +13,7 @@
 
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/equal_points.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/mesh_point.h"
 
 namespace octotomy::brep {
@@ -131,8 +132,8 @@ std::vector<Component> components(const Linked& linked, const std::function<cons
   DisjointSets joined(linked.triangles.faces.size());
   for (std::uint32_t side = 0; side < linked.opposite.size(); ++side) {
     if (linked.opposite[side] == Linked::none)
-      throw std::invalid_argument("the components of open triangles have no volume: triangle " +
-                                  std::to_string(side / 3) + " has a side of its own; close it first");
+      throw InvalidInput("the components of open triangles have no volume: triangle " +
+                         std::to_string(side / 3) + " has a side of its own; close it first");
     if (linked.is_inner_edge(side)) joined.join(side / 3, linked.opposite[side] / 3);
   }
   return components_of(linked.triangles, joined, tree);
@@ -142,8 +143,8 @@ std::vector<Component> components(const Mesh& mesh) {
   DisjointSets joined(mesh.n_faces());
   for (const auto e : mesh.edges()) {
     if (mesh.is_boundary(e))
-      throw std::invalid_argument("the components of an open mesh have no volume: edge " +
-                                  std::to_string(e.idx()) + " has one triangle; close it first");
+      throw InvalidInput("the components of an open mesh have no volume: edge " + std::to_string(e.idx()) +
+                         " has one triangle; close it first");
     const auto h = mesh.halfedge_handle(e, 0);
     joined.join(static_cast<std::uint32_t>(mesh.face_handle(h).idx()),
                 static_cast<std::uint32_t>(mesh.opposite_face_handle(h).idx()));

@@ -17,6 +17,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/for_vectors.h"
 #include "brep/mesh/halving.h"
 #include "brep/mesh/morton_tree.h"
@@ -388,7 +389,7 @@ struct SurfaceTree::Tree {
 
   void check_not_empty() const {
     if (nodes.empty())
-      throw std::invalid_argument(
+      throw InvalidInput(
           "there is no distance to a surface without triangles; check whether it is empty first");
   }
 
@@ -463,6 +464,26 @@ struct SurfaceTree::Tree {
     const Corners t = triangle(number);
     const glm::dvec3 weights = nearest_weights(p, t);
     return {weights.x * t.a + weights.y * t.b + weights.z * t.c, distance_mm, faces[number], weights};
+  }
+
+  /// The side of a triangle on which a point lies: -1 inside, 1 outside; 0 where the point's foot is not
+  /// clearly within the triangle, so that the triangle alone does not decide. Clearly: by more than 2^-30 of
+  /// the largest coordinates, which is above what rounding can turn or cross. The segment to the foot meets no
+  /// other triangle, as this one is the nearest.
+  int side_of(std::uint32_t number, const glm::dvec3& p) const {
+    const Corners t = triangle(number);
+    const glm::dvec3 most =
+        glm::max(glm::abs(p), glm::max(glm::abs(nodes[0].box.low), glm::abs(nodes[0].box.high)));
+    const double clear_mm = 0x1p-30 * (most.x + most.y + most.z);
+    const glm::dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
+    const double length = glm::length(normal), height = glm::dot(normal, p - t.a);
+    if (!(std::abs(height) > clear_mm * length)) return 0;
+    for (const auto& [from, to] : {std::pair(t.a, t.b), std::pair(t.b, t.c), std::pair(t.c, t.a)}) {
+      const glm::dvec3 side = to - from;
+      // Twice the area between the side and the foot, from the side inwards, times the normal's length.
+      if (!(glm::dot(glm::cross(side, p - from), normal) > clear_mm * length * glm::length(side))) return 0;
+    }
+    return height > 0.0 ? 1 : -1;
   }
 
   template <typename Meets>
@@ -643,6 +664,27 @@ void SurfaceTree::visit_feet(const std::vector<glm::dvec3>& points_mm,
   tree_->search(points_mm, [&](std::size_t i, double distance, std::uint32_t triangle) {
     visit(i, tree_->foot_on(triangle, points_mm[i], distance));
   });
+}
+
+std::vector<double> SurfaceTree::signed_distances_mm(const std::vector<glm::dvec3>& points_mm,
+                                                     std::vector<std::uint32_t>& nearest) const {
+  assert(nearest.size() == points_mm.size());
+  std::vector<double> distances(points_mm.size());
+  if (points_mm.empty()) return distances;
+  tree_->check_not_empty();
+  // Blocks are fixed, so that the start of each search does not depend on the threads.
+  constexpr std::size_t block = 256;
+  tbb::parallel_for(std::size_t{0}, (points_mm.size() + block - 1) / block, [&](std::size_t b) {
+    std::uint32_t triangle = 0;
+    for (std::size_t i = b * block; i < std::min((b + 1) * block, points_mm.size()); ++i) {
+      if (nearest[i] != unknown_triangle) triangle = nearest[i];
+      distances[i] = tree_->distance(points_mm[i], triangle);
+      nearest[i] = triangle;
+      const int side = tree_->side_of(triangle, points_mm[i]);
+      if (side < 0 || (side == 0 && is_inside(points_mm[i]))) distances[i] = -distances[i];
+    }
+  });
+  return distances;
 }
 
 std::vector<std::uint8_t> SurfaceTree::inside(const std::vector<glm::dvec3>& points_mm) const {

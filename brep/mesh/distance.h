@@ -73,6 +73,15 @@ class SurfaceTree {
   void visit_feet(const std::vector<glm::dvec3>& points_mm,
                   const std::function<void(std::size_t point, const Foot& foot)>& visit) const;
 
+  /// The distance of each point, negative inside as inside() has it. Where the foot of a point lies clearly
+  /// within a triangle, the point's side of that triangle decides, and no ray is needed. A search starts with
+  /// the triangle that `nearest` has for its point, a number in the tree, and stores the nearest one there;
+  /// it starts with that of the point before where `nearest` has `unknown_triangle`. Preconditions: closed and
+  /// oriented; `nearest` is as long as the points. Throws as distances_mm().
+  std::vector<double> signed_distances_mm(const std::vector<glm::dvec3>& points_mm,
+                                          std::vector<std::uint32_t>& nearest) const;
+  static constexpr std::uint32_t unknown_triangle = 0xFFFFFFFFU;
+
   /// 1 for each point inside, 0 outside, by parity along +x: a ray through an edge or vertex counts once, by
   /// the half-open rule, and exactly, however near the surface the point is; on it, it may be either.
   /// Precondition: closed. Parallel.

@@ -14,8 +14,7 @@ enum class ErrorCode {
   Resource,   ///< memory, disk or time was exhausted
 };
 
-/// The mesh kernel's error: a code and a message that names the place, the cause and what to do next. A
-/// broken precondition is std::invalid_argument instead.
+/// The mesh kernel's error: a code and a message that names the place, the cause and what to do next.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
@@ -28,6 +27,17 @@ class Error : public std::runtime_error {
 /// A stop was requested, so no result was computed. Does not mean that there is no result.
 struct Stopped : Error {
   explicit Stopped(const std::string& message) : Error(ErrorCode::Cancelled, message) {}
+};
+
+/// Refuses a value or data that may come from outside the program: what is wrong and, if it helps, what to do.
+/// A precondition that only the caller can break throws a plain std::invalid_argument.
+struct InvalidInput : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+/// Refuses a size that may come from outside the program, because the result would be too large.
+struct TooLarge : std::length_error {
+  using std::length_error::length_error;
 };
 
 }  // namespace octotomy::brep

@@ -47,7 +47,8 @@ struct Health {
   std::size_t duplicate_faces = 0;       ///< pairs with the same three points
   std::size_t misplaced_shells = 0;      ///< outward shells inside a solid, or inward shells outside of one
   bool intersections_tested = false;
-  /// Pairs of triangles that meet outside a shared corner or side, including duplicates.
+  /// Pairs of triangles that meet outside a shared corner or side, including duplicates. Corners with equal
+  /// coordinates are shared: sheets that touch there do not intersect.
   std::size_t self_intersections = 0;
   std::vector<std::pair<int, int>> crossing;  ///< first pairs of triangles that intersect, at most 100
   bool closed = false;                        ///< there are triangles, and every edge has at least two

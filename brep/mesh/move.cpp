@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/mesh_point.h"
 
 namespace octotomy::brep {
@@ -19,8 +20,8 @@ constexpr double rigid_tolerance() {
 
 void check_rigid(const glm::dmat4& m) {
   const auto refuse = [](const std::string& why) {
-    throw std::invalid_argument("the motion is not rigid: " + why +
-                                "; give a rotation without scale or mirror, then a translation");
+    throw InvalidInput("the motion is not rigid: " + why +
+                       "; give a rotation without scale or mirror, then a translation");
   };
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row)

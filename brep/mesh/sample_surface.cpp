@@ -138,8 +138,8 @@ SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm) {
 
 SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm, std::size_t most_samples) {
   if (!(spacing_mm > 0.0))
-    throw std::invalid_argument("sample_surface: the spacing must be positive, it is " +
-                                std::to_string(spacing_mm) + " mm");
+    throw InvalidInput("sample_surface: the spacing must be positive, it is " + std::to_string(spacing_mm) +
+                       " mm");
   most_samples = std::min(most_samples, most_of_all);
   const auto split_at = [&](std::size_t f) {
     const auto& face = triangles.faces[f];

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 separate the triangles around hubs, points where many meet, from the others; 2 find the pairs that may
 // meet: those of one hub by the arcs that they cover as seen from the hub, all others by their boxes; 3 test
-// each pair by exact predicates, after filters in doubles that exclude most. Invariant: two triangles with a
-// common corner meet elsewhere only in a direction that both cover as seen from that corner.
+// each pair by exact predicates, after filters in doubles that exclude most; 4 where sheets touch along an edge,
+// test whether they also cross there. Points with equal coordinates count as one corner. Invariant: two triangles
+// with a common corner meet elsewhere only in a direction that both cover as seen from that corner.
 #include "brep/mesh/self_intersections.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -12,9 +13,12 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tuple>
 
+#include "brep/mesh/equal_points.h"
 #include "brep/mesh/sure_plane.h"
 
 namespace octotomy::brep {
@@ -133,8 +137,10 @@ class FirstPairs {
     first_.insert(first_.end(), other.first_.begin(), other.first_.end());
     keep_first();
   }
+  /// Puts the first pairs in ascending order.
+  void sort() { keep_first(); }
   std::size_t count() const { return count_; }
-  const std::vector<Pair>& first() const { return first_; }  ///< ascending after merging with other counts
+  const std::vector<Pair>& first() const { return first_; }  ///< ascending after sort()
 
  private:
   void keep_first() {
@@ -260,10 +266,104 @@ void visit_parted_pairs(const Triangles& triangles, const Parted& parted, const 
   });
 }
 
+/// A triangle at an edge from point `from` to `to`, the lower number first.
+struct EdgeUse {
+  std::uint32_t from = 0, to = 0, face = 0, apex = 0;
+  bool is_forward = false;
+};
+
+/// The edges of more than two triangles, as runs of one list.
+std::vector<EdgeUse> uses_of_shared_edges(const Triangles& triangles,
+                                          const std::vector<std::uint8_t>& is_copied,
+                                          const std::vector<std::uint8_t>& degenerate) {
+  std::vector<EdgeUse> uses;
+  for (std::uint32_t f = 0; f < triangles.faces.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& face = triangles.faces[f];
+      const std::uint32_t v = face[k], w = face[(k + 1) % 3];
+      if (is_copied[v] && is_copied[w] && degenerate[f] == 0)
+        uses.push_back({std::min(v, w), std::max(v, w), f, face[(k + 2) % 3], v < w});
+    }
+  std::sort(uses.begin(), uses.end(), [](const EdgeUse& p, const EdgeUse& q) {
+    return std::tie(p.from, p.to, p.face) < std::tie(q.from, q.to, q.face);
+  });
+  return uses;
+}
+
+/// Sorts triangles by their angle around their common edge, exactly.
+void sort_around(const Triangles& triangles, std::span<EdgeUse> uses) {
+  const auto point = [&](std::uint32_t v) {
+    const glm::dvec3& p = triangles.points_mm[v];
+    return Kernel::Point_3(p.x, p.y, p.z);
+  };
+  const Kernel::Point_3 p = point(uses[0].from), q = point(uses[0].to), first = point(uses[0].apex);
+  // 0: at the first triangle's angle; 1: up to half a turn further; 2: half a turn; 3: beyond.
+  const auto quarter = [&](const EdgeUse& use) {
+    const Kernel::Point_3 apex = point(use.apex);
+    const auto side = CGAL::orientation(p, q, first, apex);
+    if (side != CGAL::COPLANAR) return side == CGAL::POSITIVE ? 1 : 3;
+    return CGAL::coplanar_orientation(p, q, first, apex) == CGAL::POSITIVE ? 0 : 2;
+  };
+  std::stable_sort(uses.begin(), uses.end(), [&](const EdgeUse& one, const EdgeUse& other) {
+    const int of_one = quarter(one), of_other = quarter(other);
+    if (of_one != of_other) return of_one < of_other;
+    return of_one % 2 == 1 && CGAL::orientation(p, q, point(one.apex), point(other.apex)) == CGAL::POSITIVE;
+  });
+}
+
+/// Pairs of neighbours around an edge of several sheets which both begin or both end a solid there: one sheet
+/// runs into another one. Sheets that only touch alternate.
+std::vector<FirstPairs::Pair> crossings_at_edges(const Triangles& triangles,
+                                                 const std::vector<std::uint8_t>& is_copied,
+                                                 const std::vector<std::uint8_t>& degenerate) {
+  std::vector<FirstPairs::Pair> pairs;
+  std::vector<EdgeUse> uses = uses_of_shared_edges(triangles, is_copied, degenerate);
+  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+    while (end < uses.size() && uses[end].from == uses[begin].from && uses[end].to == uses[begin].to) ++end;
+    const std::span<EdgeUse> around(uses.data() + begin, end - begin);
+    const auto forward = static_cast<std::size_t>(
+        std::count_if(around.begin(), around.end(), [](auto& use) { return use.is_forward; }));
+    if (around.size() < 4 || 2 * forward != around.size()) continue;
+    sort_around(triangles, around);
+    for (std::size_t i = 0; i < around.size(); ++i) {
+      const EdgeUse &one = around[i], &next = around[(i + 1) % around.size()];
+      if (one.is_forward != next.is_forward) continue;
+      pairs.push_back(std::minmax(one.face, next.face));
+      break;
+    }
+  }
+  return pairs;
+}
+
+/// The surface whose corners with equal coordinates have one number, and 1 for each point that had several.
+struct Joined {
+  Triangles triangles;
+  std::vector<std::uint8_t> is_copied;
+};
+
+/// None if no two points coincide.
+std::optional<Joined> joined_at_equal_points(const Triangles& triangles) {
+  const std::vector<std::uint32_t> first = first_equal_points(triangles.points_mm);
+  Joined joined;
+  bool has_copy = false;
+  for (std::uint32_t v = 0; v < first.size(); ++v) has_copy = has_copy || first[v] != v;
+  if (!has_copy) return std::nullopt;
+  joined.is_copied.resize(first.size(), 0);
+  for (std::uint32_t v = 0; v < first.size(); ++v)
+    if (first[v] != v) joined.is_copied[first[v]] = 1;
+  joined.triangles = triangles;
+  for (auto& face : joined.triangles.faces)
+    for (std::uint32_t& v : face) v = first[v];
+  return joined;
+}
+
 }  // namespace
 
-SelfIntersections self_intersections(const IntersectionSearch& search) {
-  assert(search.degenerate.size() == search.triangles.faces.size());
+SelfIntersections self_intersections(const IntersectionSearch& given) {
+  assert(given.degenerate.size() == given.triangles.faces.size());
+  const std::optional<Joined> joined = joined_at_equal_points(given.triangles);
+  const IntersectionSearch search{joined ? joined->triangles : given.triangles, given.tree, given.degenerate,
+                                  given.most_first};
   tbb::enumerable_thread_specific<FirstPairs> found(FirstPairs{search.most_first});
   const MeetsElsewhere meets_elsewhere(search.triangles);
   const auto test = [&](std::uint32_t f, std::uint32_t g) {
@@ -278,6 +378,11 @@ SelfIntersections self_intersections(const IntersectionSearch& search) {
     visit_parted_pairs(search.triangles, parted, test);
   FirstPairs meeting(search.most_first);
   for (const FirstPairs& part : found) meeting.add(part);
+  if (joined)
+    for (const FirstPairs::Pair& pair :
+         crossings_at_edges(search.triangles, joined->is_copied, search.degenerate))
+      meeting.add(pair);
+  meeting.sort();
   return {meeting.count(), meeting.first()};
 }
 

@@ -18,8 +18,8 @@ namespace octotomy::brep {
 namespace {
 
 [[noreturn]] void refuse_open(std::size_t face) {
-  throw std::invalid_argument("the surface is open: triangle " + std::to_string(face) +
-                              " has no neighbour along a side; close it first");
+  throw InvalidInput("the surface is open: triangle " + std::to_string(face) +
+                     " has no neighbour along a side; close it first");
 }
 
 Linked closed(Linked linked) {

@@ -10,9 +10,11 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <unordered_set>
 #include <utility>
+
+#include "brep/mesh/error.h"
 
 namespace octotomy::brep {
 namespace {
@@ -85,34 +87,48 @@ class Bisection {
     // The first round looks for all middles, each other one for those that the one before added.
     for (std::vector<std::uint64_t> added = close(middles_); !added.empty();) {
       report();
-      added = close(Middles(added.begin(), added.end()));
+      Middles middles;
+      for (const std::uint64_t middle : added) middles.insert(middle, {});
+      added = close(middles);
     }
     keep_passed();
     return std::move(found_);
   }
 
  private:
-  using Middles = std::unordered_set<std::uint64_t, KeyHash>;
+  struct Nothing {};
+  using Middles = KeyTable<Nothing>;
+
+  /// Whether each of these satisfies a condition, in parallel.
+  template <typename Condition>
+  static std::vector<std::uint8_t> where(std::size_t count, const Condition& condition) {
+    std::vector<std::uint8_t> is(count);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) is[i] = condition(i) ? 1 : 0;
+    });
+    return is;
+  }
 
   /// Adds the distances at places that have none yet.
   void learn(const std::vector<std::uint64_t>& keys) {
+    const std::vector<std::uint8_t> is_known =
+        where(keys.size(), [&](std::size_t i) { return found_.distances_mm.contains(keys[i]); });
     std::vector<std::uint64_t> unknown;
     std::vector<glm::dvec3> places;
-    for (const std::uint64_t key : keys)
-      if (found_.distances_mm.try_emplace(key, 0.0).second) {
-        unknown.push_back(key);
-        places.push_back(at(key));
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      if (is_known[i] == 0 && found_.distances_mm.insert(keys[i], 0.0)) {
+        unknown.push_back(keys[i]);
+        places.push_back(at(keys[i]));
       }
     const std::vector<double> distances = distances_at_(places);
-    for (std::size_t i = 0; i < unknown.size(); ++i) found_.distances_mm[unknown[i]] = distances[i];
+    for (std::size_t i = 0; i < unknown.size(); ++i) found_.distances_mm.set(unknown[i], distances[i]);
   }
   double known(std::uint64_t key) const { return found_.distances_mm.at(key); }
 
   void check_count(std::size_t more) const {
     if (found_.simplices.size() + more > most_simplices)
-      throw std::length_error(
-          "the offset surface passes more than 2^22 tetrahedra of a lattice with steps of " +
-          std::to_string(options_.step_mm) + " mm: take larger cells");
+      throw TooLarge("the offset surface passes more than 2^22 tetrahedra of a lattice with steps of " +
+                     std::to_string(options_.step_mm) + " mm: take larger cells");
   }
 
   static glm::dvec3 centre_of(const Simplex& simplex) {
@@ -218,12 +234,22 @@ class Bisection {
         found_.simplices.push_back(level[i]);
         continue;
       }
-      middles_.insert(middle_of(level[i]));
+      middles_.insert(middle_of(level[i]), {});
       const auto [one, other] = halves(level[i]);
       next.push_back(one);
       next.push_back(other);
     }
     return next;
+  }
+
+  /// The tetrahedra of the finest level first, those of one level in their order.
+  static std::vector<Simplex> finest_first(const std::vector<Simplex>& simplices) {
+    std::array<std::size_t, 257> first{};
+    for (const Simplex& simplex : simplices) ++first[256U - simplex.level];
+    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+    std::vector<Simplex> sorted(simplices.size());
+    for (const Simplex& simplex : simplices) sorted[first[255U - simplex.level]++] = simplex;
+    return sorted;
   }
 
   static bool hangs(const Simplex& simplex, const Middles& middles) {
@@ -235,7 +261,7 @@ class Bisection {
 
   /// Bisects a tetrahedron, and its halves in turn, until none has the middle of a neighbour's edge.
   void bisect(const Simplex& simplex, std::vector<Simplex>& closed, std::vector<std::uint64_t>& added) {
-    if (middles_.insert(middle_of(simplex)).second) added.push_back(middle_of(simplex));
+    if (middles_.insert(middle_of(simplex), {})) added.push_back(middle_of(simplex));
     for (const Simplex& half : halves(simplex))
       hangs(half, middles_) ? bisect(half, closed, added) : closed.push_back(half);
   }
@@ -244,25 +270,40 @@ class Bisection {
   /// its own level and coarser ones, so that fine ones come first: few rounds are needed.
   std::vector<std::uint64_t> close(const Middles& middles) {
     check_count(0);
-    std::vector<Simplex> open = std::move(found_.simplices);
-    std::stable_sort(open.begin(), open.end(),
-                     [](const Simplex& a, const Simplex& b) { return a.level > b.level; });
+    const std::vector<Simplex> open = finest_first(found_.simplices);
+    const bool is_of_all = &middles == &middles_;
+    const std::vector<std::uint8_t> is_hanging =
+        where(open.size(), [&](std::size_t i) { return hangs(open[i], middles); });
     std::vector<std::uint64_t> added;
+    Middles added_here;  // the first round looks for these, too
     found_.simplices.clear();
-    found_.simplices.reserve(open.size());
-    for (const Simplex& simplex : open)
-      hangs(simplex, middles) ? bisect(simplex, found_.simplices, added)
-                              : found_.simplices.push_back(simplex);
+    found_.simplices.reserve(open.size() + open.size() / 2);
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const std::size_t before = added.size();
+      if (is_hanging[i] == 0 && !(is_of_all && hangs(open[i], added_here))) {
+        found_.simplices.push_back(open[i]);
+        continue;
+      }
+      bisect(open[i], found_.simplices, added);
+      if (is_of_all)
+        for (std::size_t k = before; k < added.size(); ++k) added_here.insert(added[k], {});
+    }
     learn(added);
     return added;
   }
 
   void keep_passed() {
-    std::erase_if(found_.simplices, [&](const Simplex& simplex) {
-      const auto inside = std::count_if(simplex.corners.begin(), simplex.corners.end(),
+    std::vector<Simplex>& simplices = found_.simplices;
+    const std::vector<std::uint8_t> is_passed = where(simplices.size(), [&](std::size_t i) {
+      const auto& corners = simplices[i].corners;
+      const auto inside = std::count_if(corners.begin(), corners.end(),
                                         [&](std::uint64_t corner) { return known(corner) < 0.0; });
-      return inside == 0 || inside == 4;
+      return inside != 0 && inside != 4;
     });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < simplices.size(); ++i)
+      if (is_passed[i] != 0) simplices[kept++] = simplices[i];
+    simplices.resize(kept);
   }
 
   const BisectionOptions& options_;
@@ -291,8 +332,8 @@ BisectedLattice bisected_lattice(const BisectionOptions& options, const Distance
 }
 
 std::vector<std::array<CutEdge, 3>> triangles_of(const BisectedLattice& lattice) {
-  std::vector<std::array<CutEdge, 3>> triangles;
-  for (const Simplex& simplex : lattice.simplices) {
+  using Triangle = std::array<CutEdge, 3>;
+  const auto add = [&](const Simplex& simplex, std::vector<Triangle>& triangles) {
     std::array<std::uint64_t, 4> in_order = simplex.corners;
     const auto outside = std::partition(in_order.begin(), in_order.end(), [&](std::uint64_t corner) {
       return lattice.distances_mm.at(corner) < 0.0;
@@ -309,8 +350,8 @@ std::vector<std::array<CutEdge, 3>> triangles_of(const BisectedLattice& lattice)
       triangles.push_back({edge_between(a, c), edge_between(a, d), edge_between(b, d)});
       triangles.push_back({edge_between(a, c), edge_between(b, d), edge_between(b, c)});
     }
-  }
-  return triangles;
+  };
+  return appended<Triangle>(lattice.simplices, add);
 }
 
 }  // namespace octotomy::brep

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
-#include <unordered_map>
 #include <vector>
 
+#include "brep/shape/key_table.h"
 #include "brep/shape/kuhn_cells.h"
 
 // A cube of six tetrahedra that are bisected where a surface passes, as finely as its shape needs: places
@@ -42,18 +42,10 @@ struct BisectionOptions {
 /// in steps of the lattice. May be called with many.
 using DistancesAt = std::function<std::vector<double>(const std::vector<glm::dvec3>& places)>;
 
-/// Coordinates fill single bits of a key: they are mixed, or many keys would share a place of a table.
-struct KeyHash {
-  std::size_t operator()(std::uint64_t key) const {
-    key = (key ^ key >> 31) * 0x9E3779B97F4A7C15U;
-    return static_cast<std::size_t>(key ^ key >> 29);
-  }
-};
-
 /// The tetrahedra that the surface passes, and its distances at their corners.
 struct BisectedLattice {
   std::vector<Simplex> simplices;
-  std::unordered_map<std::uint64_t, double, KeyHash> distances_mm;
+  KeyTable<double> distances_mm;
 };
 
 /// Bisects until the surface is within the tolerance of a plane in each tetrahedron, or edges along an axis

@@ -171,7 +171,7 @@ constexpr double lock_reach() {
 }
 
 void check(const DecimateOptions& options) {
-  const auto refuse = [](const std::string& why) { throw std::invalid_argument("decimate: " + why); };
+  const auto refuse = [](const std::string& why) { throw InvalidInput("decimate: " + why); };
   if (!(options.max_error_mm > 0.0)) refuse("the largest error must be positive");
   if (!(options.max_normal_deviation_deg > 0.0 && options.max_normal_deviation_deg <= 90.0))
     refuse("the normals' deviation must be above 0 and at most 90 degrees");
@@ -279,14 +279,20 @@ class Given {
     tree_.emplace(surface_);
   }
 
-  FarPlaces far_places_of(const Mesh& coarse) const {
-    return tree_ ? far_places(surface_, *tree_, triangles_of(coarse), limit_mm_, limit_mm_) : FarPlaces{};
+  FarPlaces far_places_of(const Coarse& coarse) {
+    if (!tree_) return {};
+    std::vector<std::uint32_t> given_of_coarse;
+    given_of_coarse.reserve(coarse.given.size());
+    for (const OpenMesh::VertexHandle vertex : coarse.given)
+      given_of_coarse.push_back(static_cast<std::uint32_t>(vertex.idx()));
+    return far_places(surface_, *tree_, triangles_of(coarse.mesh), given_of_coarse, limit_mm_, near_);
   }
 
  private:
   double limit_mm_ = 0.0;
   Triangles surface_;
   std::optional<SurfaceTree> tree_;
+  NearFaces near_;
 };
 
 }  // namespace
@@ -294,7 +300,7 @@ class Given {
 Mesh decimate(const Mesh& mesh, const DecimateOptions& options) {
   check(options);
   if (mesh.n_faces() == 0) return mesh;
-  const Given given(mesh, options.max_error_mm);
+  Given given(mesh, options.max_error_mm);
   const double mean_mm2 = size_of(triangles_of(mesh)).area_mm2 / static_cast<double>(mesh.n_faces());
   std::vector<bool> locked = border_of(mesh);
   DecimateOptions now = options;
@@ -306,7 +312,7 @@ Mesh decimate(const Mesh& mesh, const DecimateOptions& options) {
     intersections = found.self_intersections;
     std::size_t more = 0;
     if (intersections == 0) {
-      const FarPlaces far = given.far_places_of(coarse.mesh);
+      const FarPlaces far = given.far_places_of(coarse);
       if (far.given_points.empty()) return std::move(coarse.mesh);
       for (const std::uint32_t v : far.given_points) {
         more += !locked[v];

@@ -81,7 +81,7 @@ double mean_side_mm(const Triangles& surface) {
 
 Lattice lattice_about(const Triangles& surface, const EncloseOptions& options) {
   if (options.cell_mm && !(*options.cell_mm > 0.0 && std::isfinite(*options.cell_mm)))
-    throw std::invalid_argument("enclose: the cells have an edge above 0 mm");
+    throw InvalidInput("enclose: the cells have an edge above 0 mm");
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
   for (const auto& face : surface.faces)
     for (const std::uint32_t v : face) {
@@ -317,7 +317,8 @@ std::vector<std::uint64_t> cells_of(const std::vector<Passage>& passages, const 
       throw Error(ErrorCode::Geometry, "the surface passes more than 2^24 cells of " +
                                            short_text(lattice.cell_mm) + " mm: take larger ones, --cell");
     std::vector<std::uint64_t> beyond =
-        appended<std::uint64_t>(fresh, [&](const Place& cell, std::vector<std::uint64_t>& found) {
+        appended<std::uint64_t>(fresh, [&](std::uint64_t key, std::vector<std::uint64_t>& found) {
+          const Place cell = place_of(key);
           add_neighbours(cell, field.about(cell), lattice, found);
         });
     tbb::parallel_sort(beyond.begin(), beyond.end());
@@ -452,7 +453,8 @@ Enclosed enclose(const Triangles& given, const EncloseOptions& options) {
   const std::vector<std::uint64_t> cells = cells_of(passages, lattice, field, options.progress);
   options.progress.at(0.6);
   const auto triangles =
-      appended<EdgeTriangle>(cells, [&](const Place& cell, std::vector<EdgeTriangle>& made) {
+      appended<EdgeTriangle>(cells, [&](std::uint64_t key, std::vector<EdgeTriangle>& made) {
+        const Place cell = place_of(key);
         add_triangles(cell, field.about(cell), made);
       });
   if (triangles.empty())

@@ -47,14 +47,14 @@ inline Place corner_place(int corner) {
 /// linear, because a list that is shifted along an axis stays sorted.
 std::vector<std::uint64_t> points_about(const std::vector<std::uint64_t>& lowest, int width);
 
-/// The items that append(place, items) adds for the positions of these keys, in their order; in parallel.
-template <typename Item, typename Append>
-std::vector<Item> appended(const std::vector<std::uint64_t>& keys, const Append& append) {
+/// The items that append(source, items) adds for these sources, in their order; in parallel.
+template <typename Item, typename Source, typename Append>
+std::vector<Item> appended(const std::vector<Source>& sources, const Append& append) {
   constexpr std::size_t part = 1024;
-  std::vector<std::vector<Item>> parts((keys.size() + part - 1) / part);
+  std::vector<std::vector<Item>> parts((sources.size() + part - 1) / part);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
-    for (std::size_t i = p * part; i < std::min((p + 1) * part, keys.size()); ++i)
-      append(place_of(keys[i]), parts[p]);
+    for (std::size_t i = p * part; i < std::min((p + 1) * part, sources.size()); ++i)
+      append(sources[i], parts[p]);
   });
   std::size_t count = 0;
   for (const std::vector<Item>& items : parts) count += items.size();

@@ -11,10 +11,12 @@
 #include <glm/glm.hpp>
 #include <stdexcept>
 #include <string>
+#include <tbb/parallel_for.h>
 #include <utility>
 #include <vector>
 
 #include "brep/mesh/distance.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/measure.h"
 #include "brep/mesh/sample_surface.h"
 #include "brep/shape/bisected_lattice.h"
@@ -30,13 +32,15 @@ class Field {
       : tree_(tree), has_inside_(has_inside), by_mm_(by_mm) {}
 
   std::vector<double> at(const std::vector<glm::dvec3>& points_mm) const {
-    std::vector<double> values = tree_.distances_mm(points_mm);
-    if (!has_inside_) {
-      for (double& value : values) value -= by_mm_;
-      return values;
-    }
-    const std::vector<std::uint8_t> inside = tree_.inside(points_mm);
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = (inside[i] ? -values[i] : values[i]) - by_mm_;
+    std::vector<std::uint32_t> nearest(points_mm.size(), SurfaceTree::unknown_triangle);
+    return at(points_mm, nearest);
+  }
+  /// The same; each search starts with its triangle in `nearest`, and stores the nearest one there.
+  std::vector<double> at(const std::vector<glm::dvec3>& points_mm,
+                         std::vector<std::uint32_t>& nearest) const {
+    std::vector<double> values =
+        has_inside_ ? tree_.signed_distances_mm(points_mm, nearest) : tree_.distances_mm(points_mm);
+    for (double& value : values) value -= by_mm_;
     return values;
   }
 
@@ -68,9 +72,9 @@ Lattice lattice_about(const Size& size, const OffsetOptions& options) {
   const glm::dvec3 extent = size.high_mm - size.low_mm + 2.0 * margin;
   const double steps = steps_a_cell * std::max({extent.x, extent.y, extent.z}) / options.cell_mm;
   if (!(steps < (1 << (side_bits - 1))))
-    throw std::length_error(
-        "cells of " + std::to_string(options.cell_mm) + " mm are too small for a solid of " +
-        std::to_string(std::max({extent.x, extent.y, extent.z})) + " mm: a side has at most 2^17 of them");
+    throw TooLarge("cells of " + std::to_string(options.cell_mm) + " mm are too small for a solid of " +
+                   std::to_string(std::max({extent.x, extent.y, extent.z})) +
+                   " mm: a side has at most 2^17 of them");
   Lattice lattice{size.low_mm - margin + odd_mm, options.cell_mm / steps_a_cell, 2};
   while (lattice.side < steps) lattice.side *= 2;
   return lattice;
@@ -106,32 +110,34 @@ std::vector<glm::dvec3> points_on(const std::vector<CutEdge>& edges, const Bisec
                                   const Field& field, const Lattice& lattice) {
   std::vector<Root> roots(edges.size());
   std::vector<std::size_t> open(edges.size());
-  for (std::size_t i = 0; i < edges.size(); ++i) {
+  tbb::parallel_for(std::size_t{0}, edges.size(), [&](std::size_t i) {
     roots[i].at_low = bisected.distances_mm.at(edges[i].from);
     roots[i].at_high = bisected.distances_mm.at(edges[i].to);
     roots[i].guess();
     open[i] = i;
-  }
+  });
+  std::vector<std::uint32_t> nearest(edges.size(), SurfaceTree::unknown_triangle);
   const auto place = [&](std::size_t i) {
     const glm::dvec3 from = lattice.at(edges[i].from);
     return from + roots[i].share * (lattice.at(edges[i].to) - from);
   };
   // Twenty-four rounds would do by halving alone, were it ever needed.
   for (int round = 0; round < 24 && !open.empty(); ++round) {
-    std::vector<glm::dvec3> tried_mm;
-    tried_mm.reserve(open.size());
-    for (const std::size_t i : open) tried_mm.push_back(place(i));
-    const std::vector<double> values = field.at(tried_mm);
+    std::vector<glm::dvec3> tried_mm(open.size());
+    tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t k) { tried_mm[k] = place(open[k]); });
+    const std::vector<double> values = field.at(tried_mm, nearest);
     assert(values.size() == open.size());
-    std::vector<std::size_t> still_open;
+    std::size_t still_open = 0;
     for (std::size_t k = 0; k < open.size(); ++k) {
       if (std::abs(values[k]) <= 0x1p-9 * lattice.step_mm) continue;
       Root& root = roots[open[k]];
       root.learn(values[k]);
       root.guess();
-      still_open.push_back(open[k]);
+      nearest[still_open] = nearest[k];
+      open[still_open++] = open[k];
     }
-    open = std::move(still_open);
+    open.resize(still_open);
+    nearest.resize(still_open);
   }
   std::vector<glm::dvec3> points_mm;
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -142,10 +148,10 @@ std::vector<glm::dvec3> points_on(const std::vector<CutEdge>& edges, const Bisec
 }
 
 void check(const Triangles& surface, const OffsetOptions& options) {
-  if (surface.faces.empty()) throw std::invalid_argument("a surface without triangles has no offset");
-  if (!std::isfinite(options.by_mm)) throw std::invalid_argument("an offset is by a finite length");
+  if (surface.faces.empty()) throw InvalidInput("a surface without triangles has no offset");
+  if (!std::isfinite(options.by_mm)) throw InvalidInput("an offset is by a finite length");
   if (!std::isfinite(options.cell_mm) || options.cell_mm <= 0.0)
-    throw std::invalid_argument("an offset's cells have an edge above 0 mm");
+    throw InvalidInput("an offset's cells have an edge above 0 mm");
 }
 
 }  // namespace
@@ -168,9 +174,9 @@ Solid surface_of(const Field& field, const Size& size, const OffsetOptions& opti
   const BisectedLattice bisected = bisected_lattice(
       bisection,
       [&](const std::vector<glm::dvec3>& places) {
-        std::vector<glm::dvec3> points_mm;
-        points_mm.reserve(places.size());
-        for (const glm::dvec3& place : places) points_mm.push_back(lattice.at(place));
+        std::vector<glm::dvec3> points_mm(places.size());
+        tbb::parallel_for(std::size_t{0}, places.size(),
+                          [&](std::size_t i) { points_mm[i] = lattice.at(places[i]); });
         return field.at(points_mm);
       },
       [&] { options.progress.at(0.1); });
@@ -193,7 +199,7 @@ Solid offset(const Solid& solid, const OffsetOptions& options) {
 
 Solid thickened(const Triangles& surface, const OffsetOptions& options) {
   check(surface, options);
-  if (!(options.by_mm > 0.0)) throw std::invalid_argument("a wall is thicker than 0 mm");
+  if (!(options.by_mm > 0.0)) throw InvalidInput("a wall is thicker than 0 mm");
   const SurfaceTree tree(surface);
   return surface_of(Field(tree, false, options.by_mm), size_of(surface), options);
 }

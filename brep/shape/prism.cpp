@@ -20,6 +20,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
@@ -65,10 +66,9 @@ void check_frame(const Prism& prism) {
     throw std::invalid_argument(
         "a prism's look, up and right must be orthonormal with right = look x up; normalise them first");
   if (!std::isfinite(prism.from_mm) || !std::isfinite(prism.to_mm) || !(prism.from_mm < prism.to_mm))
-    throw std::invalid_argument("a prism reaches from " + std::to_string(prism.from_mm) + " to " +
-                                std::to_string(prism.to_mm) +
-                                " mm; the second must be larger and both finite");
-  if (prism.polygons_mm.empty()) throw std::invalid_argument("a prism needs at least one polygon");
+    throw InvalidInput("a prism reaches from " + std::to_string(prism.from_mm) + " to " +
+                       std::to_string(prism.to_mm) + " mm; the second must be larger and both finite");
+  if (prism.polygons_mm.empty()) throw InvalidInput("a prism needs at least one polygon");
 }
 
 /// A polygon's points without those that repeat the previous one.
@@ -76,12 +76,11 @@ std::vector<glm::dvec2> distinct_points(const std::vector<glm::dvec2>& polygon, 
   std::vector<glm::dvec2> points;
   for (const glm::dvec2& p : polygon) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y))
-      throw std::invalid_argument(name_of(number) + " has a point that is not finite");
+      throw InvalidInput(name_of(number) + " has a point that is not finite");
     if (points.empty() || points.back() != p) points.push_back(p);
   }
   while (points.size() > 1 && points.back() == points.front()) points.pop_back();
-  if (points.size() < 3)
-    throw std::invalid_argument(name_of(number) + " has fewer than three distinct points");
+  if (points.size() < 3) throw InvalidInput(name_of(number) + " has fewer than three distinct points");
   return points;
 }
 
@@ -110,13 +109,13 @@ void check_crossings(std::vector<Side> sides) {
       if (sides[j].low_v() > sides[i].high_v() || sides[i].low_v() > sides[j].high_v()) continue;
       if (!collide(sides[i], sides[j])) continue;
       const Side &a = sides[i], &b = sides[j];
-      throw std::invalid_argument(
-          name_of(a.polygon) +
-          (a.polygon == b.polygon ? " crosses or touches itself"
-                                  : " crosses or touches " + name_of(b.polygon)) +
-          ": side " + std::to_string(a.index) + " from (" + std::to_string(a.from.x()) + ", " +
-          std::to_string(a.from.y()) + ") mm meets side " + std::to_string(b.index) + " from (" +
-          std::to_string(b.from.x()) + ", " + std::to_string(b.from.y()) + ") mm; draw them apart");
+      throw InvalidInput(name_of(a.polygon) +
+                         (a.polygon == b.polygon ? " crosses or touches itself"
+                                                 : " crosses or touches " + name_of(b.polygon)) +
+                         ": side " + std::to_string(a.index) + " from (" + std::to_string(a.from.x()) + ", " +
+                         std::to_string(a.from.y()) + ") mm meets side " + std::to_string(b.index) +
+                         " from (" + std::to_string(b.from.x()) + ", " + std::to_string(b.from.y()) +
+                         ") mm; draw them apart");
     }
 }
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/surface_mesh.h"
 #include "brep/mesh/triangles.h"
 
@@ -22,7 +23,7 @@ using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using VertexIndex = SurfaceMesh::Vertex_index;
 
 void check(const Triangles& triangles, const RemeshOptions& options) {
-  const auto refuse = [](const std::string& why) { throw std::invalid_argument("remesh: " + why); };
+  const auto refuse = [](const std::string& why) { throw InvalidInput("remesh: " + why); };
   if (!(options.edge_mm > 0.0)) refuse("the edge length must be positive");
   if (!(options.sharp_angle_deg >= 0.0 && options.sharp_angle_deg <= 180.0))
     refuse("the sharp angle must be between 0 and 180 degrees");

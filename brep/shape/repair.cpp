@@ -579,13 +579,12 @@ class Mender {
 
 void check(const Triangles& surface, const RepairOptions& options) {
   if (options.weld_mm && !(*options.weld_mm >= 0.0 && std::isfinite(*options.weld_mm)))
-    throw std::invalid_argument("repair: the distance to weld over must be 0 mm or more");
+    throw InvalidInput("repair: the distance to weld over must be 0 mm or more");
   if (options.longest_hole_mm && !(*options.longest_hole_mm > 0.0))
-    throw std::invalid_argument("repair: the longest border of a hole must be above 0 mm");
-  if (options.wall_mm && !(*options.wall_mm > 0.0))
-    throw std::invalid_argument("repair: a wall is thicker than 0 mm");
+    throw InvalidInput("repair: the longest border of a hole must be above 0 mm");
+  if (options.wall_mm && !(*options.wall_mm > 0.0)) throw InvalidInput("repair: a wall is thicker than 0 mm");
   if (!(options.max_volume_share > 0.0))
-    throw std::invalid_argument("repair: the largest share of the volume must be above 0");
+    throw InvalidInput("repair: the largest share of the volume must be above 0");
   for (std::size_t f = 0; f < surface.faces.size(); ++f)
     for (const std::uint32_t v : surface.faces[f])
       if (v >= surface.points_mm.size() ||
@@ -654,7 +653,7 @@ std::string wall_way(const Triangles& given, double extent_mm, const RepairOptio
     if (solid.empty()) return {};
     return "--wall " + wall + " makes the surface, where it is a sheet, a wall of " + wall + " mm, " +
            short_text(solid.measures().volume_mm3) + " mm3";
-  } catch (const std::length_error&) {
+  } catch (const TooLarge&) {
     return {};
   }
 }

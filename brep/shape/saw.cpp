@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "brep/mesh/error.h"
 #include "brep/shape/prism.h"
 
 namespace octotomy::brep {
@@ -28,7 +29,7 @@ std::vector<glm::dvec2> moved_aside(const std::vector<glm::dvec2>& line, double 
     // Both sides lie at `side` from the corner's point: m . before = m . after = side.
     const double share = 1.0 + glm::dot(before, after);
     if (!(share > 0.0))
-      throw std::invalid_argument("saw_blade: the line turns back on itself at point " + std::to_string(k));
+      throw InvalidInput("saw_blade: the line turns back on itself at point " + std::to_string(k));
     moved.push_back(line[k] + side * (before + after) / share);
   }
   return moved;
@@ -37,9 +38,9 @@ std::vector<glm::dvec2> moved_aside(const std::vector<glm::dvec2>& line, double 
 }  // namespace
 
 Solid saw_blade(const SawCut& cut) {
-  if (!(glm::length(cut.direction) > 0.0)) throw std::invalid_argument("saw_blade: there is no direction");
+  if (!(glm::length(cut.direction) > 0.0)) throw InvalidInput("saw_blade: there is no direction");
   if (!(cut.depth_mm > 0.0) || !(cut.kerf_mm > 0.0))
-    throw std::invalid_argument("saw_blade: depth and kerf must be positive");
+    throw InvalidInput("saw_blade: depth and kerf must be positive");
   Prism prism;
   prism.look = glm::normalize(cut.direction);
   // Any axis that is not parallel to the direction is suitable.
@@ -55,8 +56,7 @@ Solid saw_blade(const SawCut& cut) {
     prism.from_mm = std::min(prism.from_mm, glm::dot(p, prism.look));
   }
   if (line.size() < 2)
-    throw std::invalid_argument(
-        "saw_blade: the line needs two points that are distinct as seen along the direction");
+    throw InvalidInput("saw_blade: the line needs two points that are distinct as seen along the direction");
   prism.to_mm = prism.from_mm + cut.depth_mm;
 
   std::vector<glm::dvec2> outline = moved_aside(line, -0.5 * cut.kerf_mm);

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "brep/mesh/distance.h"
+#include "brep/mesh/error.h"
 #include "brep/shape/shadow.h"
 
 namespace octotomy::brep {
@@ -119,8 +120,8 @@ void find_times(const Solid& part, const glm::dvec3& direction, Binding& binding
 }  // namespace
 
 Seating seating(const Solid& part, const Solid& object, const SeatingAsked& asked) {
-  if (part.empty() || object.empty()) throw std::invalid_argument("seating needs a part and an object");
-  if (!(asked.resolution_mm > 0.0)) throw std::invalid_argument("the resolution of depths is above 0 mm");
+  if (part.empty() || object.empty()) throw InvalidInput("seating needs a part and an object");
+  if (!(asked.resolution_mm > 0.0)) throw InvalidInput("the resolution of depths is above 0 mm");
   const glm::dvec3 away = -asked.direction;
   // The way begins before the object by more than the object can reach into it.
   const glm::dvec3 extent = part.size().high_mm - part.size().low_mm;

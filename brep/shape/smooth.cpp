@@ -25,7 +25,7 @@ double step_out(double pass_band) {
 }
 
 void check(const SmoothOptions& options) {
-  const auto refuse = [](const std::string& why) { throw std::invalid_argument("smooth: " + why); };
+  const auto refuse = [](const std::string& why) { throw InvalidInput("smooth: " + why); };
   if (options.rounds < 1) refuse("there must be at least one round");
   if (!(options.pass_band > 0.0 && options.pass_band < 1.0)) refuse("the pass band must be between 0 and 1");
   if (!(options.max_volume_share > 0.0)) refuse("the share of volume that may change must be positive");

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 namespace octotomy::brep {
 namespace {
@@ -42,19 +43,19 @@ void spread(const Triangles& surface, std::uint32_t face, double spacing_mm, std
 
 struct Nearest {
   double distance_mm = 0.0;
-  std::uint32_t face = 0;  ///< beyond the limit
+  std::uint32_t face = 0;  ///< the nearest, or one within `enough_mm`
 };
 
 std::vector<Nearest> nearest_of(const SurfaceTree& tree, const std::vector<glm::dvec3>& points,
-                                double limit_mm, double enough_mm) {
+                                double enough_mm) {
   std::vector<Nearest> nearest(points.size());
   // Blocks are fixed, so that the start of each search does not depend on the threads.
   constexpr std::size_t block = 256;
   tbb::parallel_for(std::size_t{0}, (points.size() + block - 1) / block, [&](std::size_t b) {
     std::uint32_t triangle = 0;
     for (std::size_t i = b * block; i < std::min((b + 1) * block, points.size()); ++i) {
-      nearest[i].distance_mm = tree.distance_mm(points[i], triangle, enough_mm);
-      if (nearest[i].distance_mm > limit_mm) nearest[i].face = tree.foot(points[i], triangle).face;
+      const Foot foot = tree.foot(points[i], triangle, enough_mm);
+      nearest[i] = {foot.distance_mm, foot.face};
     }
   });
   return nearest;
@@ -65,16 +66,118 @@ void sort_once(std::vector<std::uint32_t>& numbers) {
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
+using Triple = std::array<std::uint32_t, 3>;
+constexpr Triple no_triple{0xFFFFFFFFU, 0xFFFFFFFFU, 0xFFFFFFFFU};
+
+Triple ascending(Triple triple) {
+  std::sort(triple.begin(), triple.end());
+  return triple;
+}
+
+bool has(const std::vector<Triple>& sorted, const Triple& triple) {
+  return std::binary_search(sorted.begin(), sorted.end(), triple);
+}
+
+/// The triangles of a surface by numbers of their corners, and in order.
+struct Triples {
+  std::vector<Triple> of_face, sorted;
+
+  Triples(const std::vector<std::array<std::uint32_t, 3>>& faces, const std::vector<std::uint32_t>* numbers) {
+    of_face.reserve(faces.size());
+    for (const auto& [a, b, c] : faces)
+      of_face.push_back(numbers == nullptr ? ascending({a, b, c})
+                                           : ascending({(*numbers)[a], (*numbers)[b], (*numbers)[c]}));
+    sorted = of_face;
+    tbb::parallel_sort(sorted.begin(), sorted.end());
+  }
+};
+
+double mean_side_mm(const Triangles& surface, const std::vector<std::array<std::uint32_t, 2>>& sides) {
+  double sum_mm = 0.0;
+  for (const auto& [a, b] : sides) sum_mm += glm::distance(surface.points_mm[a], surface.points_mm[b]);
+  return sum_mm / static_cast<double>(sides.size());
+}
+
 }  // namespace
+
+FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Triangles& coarse,
+                     const std::vector<std::uint32_t>& given_of_coarse, double limit_mm, NearFaces& near) {
+  assert(given_of_coarse.size() == coarse.points_mm.size());
+  FarPlaces far;
+  const Triples now(coarse.faces, &given_of_coarse), before(given.faces, nullptr);
+  const std::vector<std::array<std::uint32_t, 2>> sides = sides_of(given);
+  const double spacing_mm = mean_side_mm(given, sides);
+
+  // From the given surface to the coarse one, except points and sides that are still there.
+  std::vector<std::uint8_t> is_point_of_coarse(given.points_mm.size(), 0);
+  for (const Triple& triple : now.of_face)
+    for (const std::uint32_t v : triple) is_point_of_coarse[v] = 1;
+  Triangles numbered = given;
+  numbered.faces = now.of_face;
+  const std::vector<std::array<std::uint32_t, 2>> coarse_sides = sides_of(numbered);
+  std::vector<std::uint32_t> used;
+  for (const auto& face : given.faces) used.insert(used.end(), face.begin(), face.end());
+  sort_once(used);
+  near.of_sample.resize(used.size() + sides.size(), no_triple);
+  std::vector<glm::dvec3> points;
+  std::vector<std::size_t> samples;
+  for (std::size_t i = 0; i < near.of_sample.size(); ++i) {
+    const bool is_there = i < used.size() ? is_point_of_coarse[used[i]] != 0
+                                          : std::binary_search(coarse_sides.begin(), coarse_sides.end(),
+                                                               sides[i - used.size()]);
+    if (is_there || has(now.sorted, near.of_sample[i])) continue;
+    samples.push_back(i);
+    points.push_back(i < used.size() ? given.points_mm[used[i]]
+                                     : 0.5 * (given.points_mm[sides[i - used.size()][0]] +
+                                              given.points_mm[sides[i - used.size()][1]]));
+  }
+  const std::vector<Nearest> to_coarse = nearest_of(SurfaceTree(coarse), points, limit_mm);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const std::size_t i = samples[k];
+    far.largest_mm = std::max(far.largest_mm, to_coarse[k].distance_mm);
+    near.of_sample[i] = now.of_face[to_coarse[k].face];
+    if (to_coarse[k].distance_mm <= limit_mm) continue;
+    near.of_sample[i] = no_triple;
+    far.coarse_faces.push_back(to_coarse[k].face);
+    if (i < used.size())
+      far.given_points.push_back(used[i]);
+    else
+      far.given_points.insert(far.given_points.end(), sides[i - used.size()].begin(),
+                              sides[i - used.size()].end());
+  }
+
+  // From the coarse surface to the given one, except triangles of the given one and those measured before.
+  points.clear();
+  std::vector<std::uint32_t> face_of;
+  for (std::uint32_t f = 0; f < coarse.faces.size(); ++f)
+    if (!has(before.sorted, now.of_face[f]) && !has(near.coarse, now.of_face[f]))
+      spread(coarse, f, spacing_mm, points, face_of);
+  const std::vector<Nearest> to_given = nearest_of(tree, points, limit_mm);
+  std::vector<std::uint32_t> far_faces;
+  for (std::size_t i = 0; i < to_given.size(); ++i) {
+    far.largest_mm = std::max(far.largest_mm, to_given[i].distance_mm);
+    if (to_given[i].distance_mm <= limit_mm) continue;
+    far_faces.push_back(face_of[i]);
+    const auto& face = given.faces[to_given[i].face];
+    far.given_points.insert(far.given_points.end(), face.begin(), face.end());
+  }
+  sort_once(far_faces);
+  near.coarse.clear();
+  for (std::uint32_t f = 0; f < coarse.faces.size(); ++f)
+    if (!std::binary_search(far_faces.begin(), far_faces.end(), f)) near.coarse.push_back(now.of_face[f]);
+  std::sort(near.coarse.begin(), near.coarse.end());
+  far.coarse_faces.insert(far.coarse_faces.end(), far_faces.begin(), far_faces.end());
+  sort_once(far.given_points);
+  sort_once(far.coarse_faces);
+  return far;
+}
 
 FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Triangles& coarse,
                      double limit_mm, double enough_mm) {
   assert(enough_mm <= limit_mm);
   FarPlaces far;
   const std::vector<std::array<std::uint32_t, 2>> sides = sides_of(given);
-  double sum_mm = 0.0;
-  for (const auto& [a, b] : sides) sum_mm += glm::distance(given.points_mm[a], given.points_mm[b]);
-  const double spacing_mm = sum_mm / static_cast<double>(sides.size());
+  const double spacing_mm = mean_side_mm(given, sides);
 
   // From the given surface to the coarse one.
   std::vector<std::uint32_t> used;
@@ -84,7 +187,7 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
   points.reserve(used.size() + sides.size());
   for (const std::uint32_t v : used) points.push_back(given.points_mm[v]);
   for (const auto& [a, b] : sides) points.push_back(0.5 * (given.points_mm[a] + given.points_mm[b]));
-  const std::vector<Nearest> to_coarse = nearest_of(SurfaceTree(coarse), points, limit_mm, enough_mm);
+  const std::vector<Nearest> to_coarse = nearest_of(SurfaceTree(coarse), points, enough_mm);
   for (std::size_t i = 0; i < to_coarse.size(); ++i) {
     far.largest_mm = std::max(far.largest_mm, to_coarse[i].distance_mm);
     if (to_coarse[i].distance_mm <= limit_mm) continue;
@@ -100,7 +203,7 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
   points.clear();
   std::vector<std::uint32_t> face_of;
   for (std::uint32_t f = 0; f < coarse.faces.size(); ++f) spread(coarse, f, spacing_mm, points, face_of);
-  const std::vector<Nearest> to_given = nearest_of(tree, points, limit_mm, enough_mm);
+  const std::vector<Nearest> to_given = nearest_of(tree, points, enough_mm);
   for (std::size_t i = 0; i < to_given.size(); ++i) {
     far.largest_mm = std::max(far.largest_mm, to_given[i].distance_mm);
     if (to_given[i].distance_mm <= limit_mm) continue;

@@ -14,6 +14,7 @@
 #include "convert/deck/deck_names.h"
 #include "convert/deck/second_order.h"
 #include "voxel/space/disk_need.h"
+#include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
 #include "voxel/space/write_failure.h"
@@ -22,7 +23,7 @@ namespace octotomy::convert {
 namespace {
 
 [[noreturn]] void refuse_to_write(const std::filesystem::path& path, const std::string& why) {
-  throw std::invalid_argument(path.string() + ": " + why);
+  throw voxel::InvalidInput(path.string() + ": " + why);
 }
 
 void check_name(const std::filesystem::path& path, const std::string& what, const std::string& name) {

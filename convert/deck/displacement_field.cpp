@@ -9,16 +9,17 @@
 
 #include "convert/deck/scan_sampler.h"
 #include "convert/tet/element_faces.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::convert {
 namespace {
 
 const Tetrahedra& checked(const Tetrahedra& tetrahedra, std::size_t displacements) {
-  if (tetrahedra.tets.empty()) throw std::invalid_argument("a displacement field needs elements");
+  if (tetrahedra.tets.empty()) throw voxel::InvalidInput("a displacement field needs elements");
   if (displacements != tetrahedra.nodes_mm.size())
-    throw std::invalid_argument("a displacement field needs one displacement for each node, not " +
-                                std::to_string(displacements) + " of " +
-                                std::to_string(tetrahedra.nodes_mm.size()));
+    throw voxel::InvalidInput("a displacement field needs one displacement for each node, not " +
+                              std::to_string(displacements) + " of " +
+                              std::to_string(tetrahedra.nodes_mm.size()));
   return tetrahedra;
 }
 
@@ -31,8 +32,8 @@ double largest_mm(const std::vector<glm::dvec3>& displacement_mm) {
 
 double checked_fade(double fade_mm, const std::vector<glm::dvec3>& displacement_mm) {
   if (!(fade_mm > least_fade_mm(largest_mm(displacement_mm))))
-    throw std::invalid_argument("a displacement of " + std::to_string(largest_mm(displacement_mm)) +
-                                " mm that fades over " + std::to_string(fade_mm) + " mm folds space");
+    throw voxel::InvalidInput("a displacement of " + std::to_string(largest_mm(displacement_mm)) +
+                              " mm that fades over " + std::to_string(fade_mm) + " mm folds space");
   return fade_mm;
 }
 

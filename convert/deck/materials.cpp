@@ -13,6 +13,7 @@
 #include "brep/mesh/distance.h"
 #include "convert/deck/scan_sampler.h"
 #include "convert/tet/element_faces.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::convert {
 namespace {
@@ -109,15 +110,15 @@ std::optional<double> mean_over(const std::array<glm::dvec3, 4>& corners_mm, con
 void check(const Tetrahedra& tetrahedra, const MaterialOptions& options) {
   if (tetrahedra.tets.empty()) throw std::invalid_argument("materials: there are no tetrahedra");
   if (options.bins < 1 || options.bins > 1000)
-    throw std::invalid_argument("materials: bins must be 1 to 1000, not " + std::to_string(options.bins));
+    throw voxel::InvalidInput("materials: bins must be 1 to 1000, not " + std::to_string(options.bins));
   if (!(options.least_mpa > 0.0) || !std::isfinite(options.least_mpa))
-    throw std::invalid_argument("materials: the least Young's modulus must be positive");
+    throw voxel::InvalidInput("materials: the least Young's modulus must be positive");
   if (options.calibration && (!std::isfinite(options.calibration->slope_g_cm3_per_hu) ||
                               !std::isfinite(options.calibration->intercept_g_cm3) ||
                               options.calibration->slope_g_cm3_per_hu <= 0.0))
-    throw std::invalid_argument("materials: a calibration's slope must be positive");
+    throw voxel::InvalidInput("materials: a calibration's slope must be positive");
   if (!(options.surface_depth_mm >= 0.0) || !std::isfinite(options.surface_depth_mm))
-    throw std::invalid_argument("materials: the depth below the surface must be 0 or more");
+    throw voxel::InvalidInput("materials: the depth below the surface must be 0 or more");
 }
 
 /// Groups elements into bins of equal ratio of Young's modulus, which resolve soft elements as well as stiff
@@ -189,7 +190,7 @@ const StiffnessLaw& stiffness_law(const std::string& name) {
     if (law.name == name) return law;
     known += (known.empty() ? "" : ", ") + law.name;
   }
-  throw std::invalid_argument("materials: no law is called '" + name + "'; there are " + known);
+  throw voxel::InvalidInput("materials: no law is called '" + name + "'; there are " + known);
 }
 
 double youngs_modulus_mpa(const StiffnessLaw& law, double rho_g_cm3) {

@@ -13,6 +13,7 @@
 
 #include "convert/surface/surface_extraction.h"
 #include "convert/surface/window_surface.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/octree_node.h"
 #include "voxel/tree/window_bits.h"
 
@@ -249,7 +250,7 @@ class GreySamples {
 
 void check_bounds(double low, double high) {
   if (std::isnan(low) || std::isnan(high))
-    throw std::invalid_argument("isosurface: a bound of the window is not a number");
+    throw voxel::InvalidInput("isosurface: a bound of the window is not a number");
 }
 
 /// Whether any bit of the first is set that the second has not.

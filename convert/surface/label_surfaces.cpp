@@ -462,8 +462,8 @@ void append(const voxel::LabelLayer& layer, const brep::PartedSurface& ranks, br
 brep::PartedSurface label_surfaces(const voxel::Scene& scene, const LabelSurfaceOptions& options) {
   voxel::check(scene);
   if (options.smooth_voxels < 0 || options.smooth_voxels > 4)
-    throw std::invalid_argument("label surfaces: smooth_voxels must be from 0 to 4, not " +
-                                std::to_string(options.smooth_voxels));
+    throw voxel::InvalidInput("label surfaces: smooth_voxels must be from 0 to 4, not " +
+                              std::to_string(options.smooth_voxels));
   if (scene.overlaps.empty() && std::holds_alternative<voxel::Int16Samples>(scene.samples))
     return Extraction(scene, options).run();
   std::set<int> left = options.labels;

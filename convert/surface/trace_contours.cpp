@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 #include <utility>
 
+#include "voxel/space/error.h"
 #include "voxel/space/shared_progress.h"
 
 namespace octotomy::convert {
@@ -27,7 +28,7 @@ std::vector<brep::Section> trace_contours(const voxel::Scene& scene, double low,
                                           const voxel::Progress& progress) {
   voxel::check(scene);
   if (std::isnan(low) || std::isnan(high))
-    throw std::invalid_argument("trace_contours: a bound of the window is not a number");
+    throw voxel::InvalidInput("trace_contours: a bound of the window is not a number");
   const glm::dvec3 spacing = scene.lattice.spacing_mm();
   const auto width = static_cast<std::uint32_t>(scene.lattice.dims.x);
   const auto height = static_cast<std::uint32_t>(scene.lattice.dims.y);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "convert/tet/element_faces.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::convert {
 namespace {
@@ -285,7 +286,7 @@ class Improving {
 
 int improve(Tetrahedra& tetrahedra, const ImproveOptions& options) {
   if (!(options.min_dihedral_deg >= 0.0 && options.min_dihedral_deg <= 60.0))
-    throw std::invalid_argument("improve: the dihedral angle to reach must be 0 to 60 degrees");
+    throw voxel::InvalidInput("improve: the dihedral angle to reach must be 0 to 60 degrees");
   if (!options.surface_play_mm.empty() && options.surface_play_mm.size() != tetrahedra.boundary_nodes.size())
     throw std::invalid_argument(
         "improve: the surface's play must have one value for each of its nodes, or none");

@@ -23,6 +23,7 @@
 #include <unordered_map>
 
 #include "brep/mesh/distance.h"
+#include "voxel/space/error.h"
 #include "voxel/space/rounded.h"
 
 namespace octotomy::convert {
@@ -421,8 +422,8 @@ double cell_of_elements_mm(double volume_mm3, double elements) {
 
 Tetrahedra stuff(const brep::Triangles& surface, const StuffingOptions& options) {
   if (!(options.cell_mm > 0.0) || !std::isfinite(options.cell_mm))
-    throw std::invalid_argument("isosurface stuffing: cells have an edge above 0 mm");
-  if (surface.faces.empty()) throw std::invalid_argument("isosurface stuffing: the surface has no triangles");
+    throw voxel::InvalidInput("isosurface stuffing: cells have an edge above 0 mm");
+  if (surface.faces.empty()) throw voxel::InvalidInput("isosurface stuffing: the surface has no triangles");
   const Lattice lattice = lattice_about(surface, options.cell_mm);
   Tetrahedra made = Stuffing(surface, lattice, options.progress).result();
   made.boundary_nodes = boundary_nodes(made.tets);

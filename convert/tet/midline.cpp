@@ -6,13 +6,13 @@
 #include <stdexcept>
 
 #include "convert/tet/element_faces.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::convert {
 
 std::vector<std::uint32_t> midline_nodes(const Tetrahedra& tetrahedra, const glm::dvec3& point_mm,
                                          const glm::dvec3& normal) {
-  if (!(glm::length(normal) > 0.0))
-    throw std::invalid_argument("midline: the plane's normal has no direction");
+  if (!(glm::length(normal) > 0.0)) throw voxel::InvalidInput("midline: the plane's normal has no direction");
   const auto off = [&](std::uint32_t node) { return glm::dot(normal, tetrahedra.nodes_mm[node] - point_mm); };
   std::vector<std::uint32_t> nodes;
   for (const ElementFace& face : surface_faces(tetrahedra)) {

@@ -310,7 +310,7 @@ Tetrahedra filled(const std::vector<voxel::Octree>& regions, bool tells_regions,
 Tetrahedra tetrahedra_of(const voxel::Octree& octree, BoundaryCells boundary,
                          const voxel::Progress& progress) {
   if (octree.is_empty())
-    throw std::invalid_argument("tetrahedra_of: the octree is empty: there is nothing to fill");
+    throw voxel::InvalidInput("tetrahedra_of: the octree is empty: there is nothing to fill");
   progress.at(0.0);
   return filled({octree}, false, boundary, progress);
 }
@@ -320,9 +320,9 @@ Tetrahedra tetrahedra_of(const std::vector<voxel::Octree>& regions, BoundaryCell
   if (regions.empty()) throw std::invalid_argument("tetrahedra_of: there is no region");
   for (const voxel::Octree& region : regions) {
     if (region.is_empty())
-      throw std::invalid_argument("tetrahedra_of: the octree is empty: there is nothing to fill");
+      throw voxel::InvalidInput("tetrahedra_of: the octree is empty: there is nothing to fill");
     if (!(region.universe() == regions.front().universe()))
-      throw std::invalid_argument("tetrahedra_of: regions are of different universes: evaluate them in one");
+      throw voxel::InvalidInput("tetrahedra_of: regions are of different universes: evaluate them in one");
   }
   progress.at(0.0);
   // A voxel in several regions belongs to the first.

@@ -13,6 +13,7 @@
 #include "convert/tet/improve_tetrahedra.h"
 #include "convert/tet/mesher_process.h"
 #include "convert/tet/tetrahedralise.h"
+#include "voxel/space/error.h"
 #include "voxel/space/rounded.h"
 #include "voxel/tree/slice_bits.h"
 #include "voxel/tree/slice_build.h"
@@ -31,7 +32,7 @@ namespace octotomy::convert {
 namespace {
 
 [[noreturn]] void refuse_regions(const std::string& why) {
-  throw std::invalid_argument("smooth_tetrahedra_of: " + why);
+  throw voxel::InvalidInput("smooth_tetrahedra_of: " + why);
 }
 
 using voxel::rounded;

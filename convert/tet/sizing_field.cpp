@@ -197,9 +197,9 @@ std::vector<glm::dvec3> places_mm(const Refinement& refinement) {
 SizingField::SizingField(const std::vector<Refinement>& finer) {
   for (const Refinement& where : finer) {
     if (!(where.size_mm > 0.0) || !std::isfinite(where.size_mm))
-      throw std::invalid_argument("a refinement's size must be above zero");
+      throw voxel::InvalidInput("a refinement's size must be above zero");
     if (where.points_mm.empty() && where.surface.faces.empty())
-      throw std::invalid_argument("a refinement needs a place: points or a surface with triangles");
+      throw voxel::InvalidInput("a refinement needs a place: points or a surface with triangles");
     Place place{where.points_mm, nullptr, where.size_mm};
     if (!where.surface.faces.empty()) place.surface = std::make_shared<brep::SurfaceTree>(where.surface);
     places_.push_back(std::move(place));

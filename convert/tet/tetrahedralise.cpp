@@ -18,6 +18,7 @@
 #include "convert/tet/mesh3_tetrahedra.h"
 #include "convert/tet/mesher_process.h"
 #include "convert/tet/surface_sizes.h"
+#include "voxel/space/error.h"
 #include "voxel/space/rounded.h"
 
 // 1 The surface becomes points and triangles. Surfaces on which TetGen would abort are refused here.
@@ -42,7 +43,7 @@ using voxel::rounded;
 }
 /// An option is out of its range.
 [[noreturn]] void refuse_option(const std::string& why) {
-  throw std::invalid_argument("tetrahedralise: " + why);
+  throw voxel::InvalidInput("tetrahedralise: " + why);
 }
 
 /// A number in the form of TetGen's switches.

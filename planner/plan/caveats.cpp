@@ -262,7 +262,8 @@ void add_kept_parts(std::vector<verify::OpenPart> kept, const std::vector<verify
 }
 
 void add_part_outside(const voxel::Box& universe_mm, Object& made) {
-  if (made.bound.spacing_mm == glm::dvec3(0.0) || made.is_tool) return;
+  // A mask made of regions alone has no end of its own. An imported mesh has.
+  if (made.is_tool || (made.bound.spacing_mm == glm::dvec3(0.0) && !ends_by_itself(made))) return;
   made.findings.push_back(
       "a part lies outside of the universe (" + plain(universe_mm) +
       ") and is left out of every number and picture: move less, or use a scan with more room");

@@ -6,6 +6,7 @@
 #include "planner/operation/table/field_json.h"
 #include "planner/operation/table/json.h"
 #include "planner/plan/sha256.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -41,7 +42,7 @@ std::set<std::string> needed_for(const Plan& plan, const std::vector<std::string
   std::set<std::string> needed(ids.begin(), ids.end()), known;
   for (const Step& step : plan.steps) known.insert(step.id);
   for (const std::string& id : ids)
-    if (!known.contains(id)) throw std::invalid_argument("the plan has no step called '" + id + "'");
+    if (!known.contains(id)) throw voxel::InvalidInput("the plan has no step called '" + id + "'");
   // Steps use only earlier ones, so one pass from the last to the first finds all.
   for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step)
     if (needed.contains(step->id))

@@ -32,6 +32,7 @@
 #include "planner/plan/dependence.h"
 #include "planner/plan/in_step.h"
 #include "planner/plan/makers.h"
+#include "planner/plan/room.h"
 #include "planner/plan/sha256.h"
 #include "verify/certificate/places.h"
 #include "verify/witness/reshaped_witness.h"
@@ -50,8 +51,7 @@ brep::Prism prism_of(const voxel::Box& box) {
 
 /// Samples beyond the scan get the scan's lowest value: air.
 std::int16_t background_of(const voxel::Scene& scene) {
-  const double low = std::floor(std::min(voxel::range(scene).low, -1024.0));
-  return static_cast<std::int16_t>(std::max(low, -32768.0));
+  return static_cast<std::int16_t>(std::clamp(std::floor(voxel::range(scene).low), -32768.0, -1024.0));
 }
 
 ScanRecord record_of(const std::string& name, const std::filesystem::path& path, const voxel::Scene& scene) {
@@ -72,7 +72,8 @@ ScanRecord record_of(const std::string& name, const std::filesystem::path& path,
 /// One evaluation in progress.
 class Evaluator {
  public:
-  Evaluator(const Plan& plan, const EvaluateOptions& options) : plan_(plan), options_(options) {
+  Evaluator(const Plan& plan, const EvaluateOptions& options, std::optional<voxel::Box> room)
+      : plan_(plan), options_(options), room_(std::move(room)) {
     if (plan.lps_from_head) result_.objects.lps_from_head = *plan.lps_from_head;
     std::vector<std::string> wanted = options.wanted;
     if (wanted.empty())
@@ -172,7 +173,7 @@ class Evaluator {
       std::string sha256;
       if (take_cached_scan(name, source) || take_loaded_scan(name)) continue;
       voxel::Scene scene = read(name, source, sha256);
-      if (result_.scans.empty()) set_universe(scene);
+      if (result_.scans.empty()) set_universe(universe_of(scene, plan_.voxel_mm));
       result_.scans.push_back(record_of(name, source.path, scene));
       result_.scans.back().sha256 = std::move(sha256);
       load(name, std::move(scene));
@@ -222,10 +223,9 @@ class Evaluator {
     return boxes;
   }
 
-  void set_universe(const voxel::Scene& first_scan) { set_universe(universe_of(first_scan, plan_.voxel_mm)); }
-
   void set_universe(const voxel::Universe& universe) {
-    result_.universe = universe;
+    least_universe_ = universe;
+    result_.universe = room_ ? with_room(universe, *room_).value_or(universe) : universe;
     box_ = voxel::bounds(result_.universe.lattice());
     world_ = brep::solid_of(prism_of(box_));
     expressions_ = std::make_unique<verify::MeshExpressions>(world_);
@@ -248,6 +248,9 @@ class Evaluator {
                                 {"path", source.path.string()},
                                 {"series", source.read.series},
                                 {"voxel_mm", plan_.voxel_mm.value_or(0.0)}};
+    if (room_)
+      for (const glm::dvec3& p_mm : {room_->low_mm, room_->high_mm})
+        says["room_mm"].push_back({p_mm.x, p_mm.y, p_mm.z});
     if (source.read.join) says["join"] = true;
     for (const voxel::SliceRange& range : source.read.slices)
       says["slices"].push_back({range.first, range.last});
@@ -283,9 +286,10 @@ class Evaluator {
   }
 
   void take_scan(const std::string& name, const LoadedScan& scan, const ScanRecord& record) {
-    if (result_.scans.empty()) set_universe(scan.scene());
+    if (result_.scans.empty()) set_universe(universe_of(scan.scene(), plan_.voxel_mm));
     result_.scans.push_back(record);
     loaded_.insert_or_assign(name, scan);
+    if (!(scan.grey.universe() == result_.universe)) load(name, scan.scene());
   }
 
   /// The key of everything that all answers depend on besides their own step.
@@ -307,8 +311,10 @@ class Evaluator {
     if (options_.cache == nullptr) return false;
     if (step.action.operation().makes == Makes::Object) {
       const auto known = options_.cache->object(key_of(step));
-      if (known != nullptr) result_.objects.add(*known);
-      return known != nullptr;
+      if (known == nullptr) return false;
+      if (options_.meshes) need_room(result_.objects, *known, least_universe_, room_);
+      result_.objects.add(*known);
+      return true;
     }
     const auto known = options_.cache->scan(keys_.at(step.id));
     if (known == nullptr) return false;
@@ -423,6 +429,7 @@ class Evaluator {
     object.voxel.measures = voxel::measure(object.voxel.octree);
     const MadeOf made_of{step.action, result_.objects, scan_, result_.scans};
     add_caveats(made_of, object);
+    if (options_.meshes) need_room(result_.objects, object, least_universe_, room_);
     add_makers(made_of, !told.empty(), object);
     if (options_.ahead) work_ahead(object);
     if (has_certificate(object) && options_.certify && options_.meshes && !object.is_tool &&
@@ -552,6 +559,8 @@ class Evaluator {
 
   const Plan& plan_;
   const EvaluateOptions& options_;
+  const std::optional<voxel::Box> room_;
+  voxel::Universe least_universe_;  ///< without room
   Evaluation result_;
   double told_ = 0.0;  ///< the fraction that was reported last
   std::map<std::string, LoadedScan> loaded_;
@@ -579,7 +588,13 @@ class Evaluator {
 }  // namespace
 
 Evaluation evaluate(const Plan& plan, const EvaluateOptions& options) {
-  return Evaluator(plan, options).run();
+  for (std::optional<voxel::Box> room;;) {
+    try {
+      return Evaluator(plan, options, room).run();
+    } catch (const NeedsRoom& needs) {
+      room = needs.box_mm;
+    }
+  }
 }
 
 }  // namespace octotomy::planner

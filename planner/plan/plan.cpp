@@ -19,6 +19,7 @@
 #include "planner/plan/migration.h"
 #include "planner/plan/plan_keys.h"
 #include "planner/plan/signature.h"
+#include "voxel/space/error.h"
 #include "voxel/space/regular_file.h"
 
 namespace octotomy::planner {
@@ -34,7 +35,7 @@ int whole_number(const SortedJson& value, const std::string& where) {
 std::vector<voxel::SliceRange> slices_of(const Keys& scan) {
   try {
     return voxel::parse_slices(scan.text("slices"));
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     refuse(scan.at("slices"), error.what());
   }
 }
@@ -45,7 +46,7 @@ std::optional<Value> parsed(const Keys& scan, const char* key, Value (*parse)(co
   if (scan.find(key) == nullptr) return std::nullopt;
   try {
     return parse(scan.text(key));
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     refuse(scan.at(key), error.what());
   }
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "planner/operation/table/number_format.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner::python {
 namespace {
@@ -20,10 +21,10 @@ void check_shape(const Numbers& numbers, const char* what, int rows, int columns
   const std::string shape = rows == 0  ? "(" + std::to_string(columns) + ",)"
                             : rows < 0 ? "(n, " + std::to_string(columns) + ")"
                                        : "(" + std::to_string(rows) + ", " + std::to_string(columns) + ")";
-  if (!fits) throw std::invalid_argument(std::string(what) + " must be an array of the shape " + shape);
+  if (!fits) throw voxel::InvalidInput(std::string(what) + " must be an array of the shape " + shape);
   for (py::ssize_t i = 0; i < numbers.size(); ++i)
     if (!std::isfinite(numbers.data()[i]))
-      throw std::invalid_argument(std::string(what) + " has a number that is not finite");
+      throw voxel::InvalidInput(std::string(what) + " has a number that is not finite");
 }
 
 }  // namespace
@@ -50,9 +51,9 @@ std::vector<glm::dvec3> points_3d_of(const Numbers& numbers, const char* what) {
 
 double number_from(double number, double low, double high, const char* what) {
   if (number >= low && number <= high) return number;
-  if (std::isnan(number)) throw std::invalid_argument(std::string(what) + " is not a number");
-  throw std::invalid_argument(std::string(what) + " is " + plain(number) + ": give " + plain(low) + " to " +
-                              plain(high));
+  if (std::isnan(number)) throw voxel::InvalidInput(std::string(what) + " is not a number");
+  throw voxel::InvalidInput(std::string(what) + " is " + plain(number) + ": give " + plain(low) + " to " +
+                            plain(high));
 }
 
 glm::dmat4 matrix_of(const Numbers& numbers, const char* what) {
@@ -61,7 +62,7 @@ glm::dmat4 matrix_of(const Numbers& numbers, const char* what) {
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column) matrix[column][row] = numbers.at(row, column);
   if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0)
-    throw std::invalid_argument(std::string(what) + " must end in the row 0, 0, 0, 1");
+    throw voxel::InvalidInput(std::string(what) + " must end in the row 0, 0, 0, 1");
   return matrix;
 }
 

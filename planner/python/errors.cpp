@@ -21,6 +21,11 @@ PyObject* new_error(py::module_& module, const char* name, const char* says, con
   return error;
 }
 
+void set_error(const std::exception& error) {
+  PyErr_SetObject(of_fault.at(static_cast<std::size_t>(fault_of(error))),
+                  text_of(message_of(error).c_str()).ptr());
+}
+
 void translate(std::exception_ptr thrown) {
   try {
     std::rethrow_exception(std::move(thrown));
@@ -29,10 +34,10 @@ void translate(std::exception_ptr thrown) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::invalid_argument& error) {
+    if (fault_of(error) != Fault::Input) return set_error(error);
     PyErr_SetObject(PyExc_ValueError, text_of(error.what()).ptr());
   } catch (const std::exception& error) {
-    PyErr_SetObject(of_fault.at(static_cast<std::size_t>(fault_of(error))),
-                    text_of(message_of(error).c_str()).ptr());
+    set_error(error);
   }
 }
 

@@ -18,6 +18,7 @@
 #include "planner/python/arrays.h"
 #include "planner/python/module.h"
 #include "planner/python/waiting.h"
+#include "voxel/space/error.h"
 #include "voxel/space/scene.h"
 
 namespace octotomy::planner::python {
@@ -34,18 +35,18 @@ SharedTriangles triangles_of_arrays(const Numbers& vertices_mm, const Numbers& f
   auto triangles = std::make_shared<Triangles>();
   triangles->points_mm = points_3d_of(vertices_mm, "vertices_mm");
   if (faces.ndim() != 2 || faces.shape(1) != 3)
-    throw std::invalid_argument("triangles must be an array of the shape (n, 3)");
+    throw voxel::InvalidInput("triangles must be an array of the shape (n, 3)");
   const auto count = static_cast<double>(triangles->points_mm.size());
   triangles->faces.resize(static_cast<std::size_t>(faces.shape(0)));
   for (py::ssize_t i = 0; i < faces.shape(0); ++i)
     for (py::ssize_t corner = 0; corner < 3; ++corner) {
       const double point = faces.at(i, corner);
       if (point != std::trunc(point))
-        throw std::invalid_argument("triangle " + std::to_string(i) + " refers to vertex " + plain(point) +
-                                    ": give whole numbers");
+        throw voxel::InvalidInput("triangle " + std::to_string(i) + " refers to vertex " + plain(point) +
+                                  ": give whole numbers");
       if (!(point >= 0.0 && point < count))
-        throw std::invalid_argument("triangle " + std::to_string(i) + " refers to vertex " + plain(point) +
-                                    ", and there are " + plain(count));
+        throw voxel::InvalidInput("triangle " + std::to_string(i) + " refers to vertex " + plain(point) +
+                                  ", and there are " + plain(count));
       triangles->faces[static_cast<std::size_t>(i)][static_cast<std::size_t>(corner)] =
           static_cast<std::uint32_t>(point);
     }

@@ -13,6 +13,7 @@
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/expression.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/octree_file.h"
 #include "voxel/tree/slice_build.h"
 
@@ -27,7 +28,7 @@ using Voxels = py::array_t<bool, py::array::c_style | py::array::forcecast>;
 Octree of_voxels(const Voxels& voxels, const voxel::Universe& universe) {
   const auto side = static_cast<py::ssize_t>(universe.side());
   if (voxels.ndim() != 3 || voxels.shape(0) > side || voxels.shape(1) > side || voxels.shape(2) > side)
-    throw std::invalid_argument("voxels must be an array of the shape (z, y, x) that fits the universe");
+    throw voxel::InvalidInput("voxels must be an array of the shape (z, y, x) that fits the universe");
   const glm::ivec3 dims{voxels.shape(2), voxels.shape(1), voxels.shape(0)};
   const bool* const first = voxels.data();
   return without_lock([&](const std::stop_token&) {
@@ -165,7 +166,7 @@ void add_octrees(py::module_& module) {
       [](const Numbers& normal, double offset_mm) {
         const glm::dvec3 direction = vector_of(normal, "normal");
         const double length = glm::length(direction);
-        if (length == 0.0) throw std::invalid_argument("normal must have a length");
+        if (length == 0.0) throw voxel::InvalidInput("normal must have a length");
         return Expression(voxel::HalfSpace{direction / length, offset_mm / length});
       },
       py::arg("normal"), py::arg("offset_mm"), "The points p with normal . p <= offset_mm, LPS.");

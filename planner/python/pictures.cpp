@@ -8,6 +8,7 @@
 #include "planner/python/arrays.h"
 #include "planner/python/module.h"
 #include "planner/python/waiting.h"
+#include "voxel/space/error.h"
 #include "voxel/view/render.h"
 
 namespace octotomy::planner::python {
@@ -81,7 +82,7 @@ void add_pictures(py::module_& module) {
           "point_mm",
           [](const Picture& picture, int x, int y) -> py::object {
             if (x < 0 || y < 0 || x >= picture.size_px.x || y >= picture.size_px.y)
-              throw std::invalid_argument("the pixel lies outside the picture");
+              throw voxel::InvalidInput("the pixel lies outside the picture");
             const auto point = picture.point_mm({x, y});
             return point ? py::object(array_of(*point)) : py::object(py::none());
           },

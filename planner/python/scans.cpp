@@ -18,6 +18,7 @@
 #include "planner/python/waiting.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/scan/write_scene.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/grey_octree.h"
 
 namespace octotomy::planner::python {
@@ -45,7 +46,7 @@ voxel::Samples<Sample> samples_of(const py::array& array) {
 
 std::shared_ptr<Scene> scene_of(const py::array& array, const Numbers& lps_from_voxel,
                                 const std::string& meaning, const std::string& modality) {
-  if (array.ndim() != 3) throw std::invalid_argument("samples must be an array of the shape (z, y, x)");
+  if (array.ndim() != 3) throw voxel::InvalidInput("samples must be an array of the shape (z, y, x)");
   auto scene = std::make_shared<Scene>();
   scene->lattice.dims = {array.shape(2), array.shape(1), array.shape(0)};
   scene->lattice.lps_from_voxel = matrix_of(lps_from_voxel, "lps_from_voxel");
@@ -54,14 +55,14 @@ std::shared_ptr<Scene> scene_of(const py::array& array, const Numbers& lps_from_
   else if (py::isinstance<py::array_t<float>>(array))
     scene->samples = samples_of<float>(array);
   else
-    throw std::invalid_argument("samples must be of the type int16 or float32: use samples.astype()");
+    throw voxel::InvalidInput("samples must be of the type int16 or float32: use samples.astype()");
   const auto* known = std::find_if(std::begin(meanings), std::end(meanings),
                                    [&](const auto& m) { return m.first == meaning; });
   if (known == std::end(meanings))
-    throw std::invalid_argument("meaning must be 'HU', 'raw' or 'label', not '" + meaning + "'");
+    throw voxel::InvalidInput("meaning must be 'HU', 'raw' or 'label', not '" + meaning + "'");
   scene->meaning = known->second;
   if (has_control(modality))
-    throw std::invalid_argument("modality must have no control characters: give DICOM's two letters");
+    throw voxel::InvalidInput("modality must have no control characters: give DICOM's two letters");
   scene->modality = modality;
   scene->source = "an array";
   voxel::check(*scene);
@@ -100,7 +101,7 @@ void add_scans(py::module_& module) {
   py::class_<voxel::Universe>(module, "Universe", "The cube of 2^depth voxels a side in which octrees live.")
       .def(py::init([](int depth, const Numbers& lps_from_voxel) {
              if (depth < 2 || depth > voxel::Universe::max_depth)
-               throw std::invalid_argument("depth must be 2 to 12");
+               throw voxel::InvalidInput("depth must be 2 to 12");
              return voxel::Universe{depth, matrix_of(lps_from_voxel, "lps_from_voxel")};
            }),
            py::arg("depth"), py::arg("lps_from_voxel"))

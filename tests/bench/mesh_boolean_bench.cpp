@@ -12,6 +12,7 @@
 #include "brep/mesh/distance.h"
 #include "brep/mesh/measure.h"
 #include "brep/shape/decimate.h"
+#include "brep/shape/offset.h"
 #include "convert/surface/isosurface.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/manifold_peer.h"
@@ -114,6 +115,28 @@ void run_decimate(benchmark::State& state, const Decimate& decimate) {
     state.counters["triangles_out"] = static_cast<double>(decimate(mesh, options).n_faces());
 }
 
+brep::OffsetOptions half_a_cell_out() {
+  return {.by_mm = 0.02, .cell_mm = 0.04};
+}
+
+void run_offset(benchmark::State& state, const brep::Triangles& surface) {
+  const brep::Solid solid = brep::solid_of(surface);
+  solid.tree();
+  for (auto _ : state)
+    state.counters["triangles_out"] =
+        static_cast<double>(brep::offset(solid, half_a_cell_out()).triangles().faces.size());
+}
+
+/// The signed distances at the offset's points, once: the least that makes such a surface.
+void run_offset_points(benchmark::State& state, const brep::Triangles& surface) {
+  const brep::Solid solid = brep::solid_of(surface);
+  const std::vector<glm::dvec3> points_mm = brep::offset(solid, half_a_cell_out()).triangles().points_mm;
+  for (auto _ : state) {
+    std::vector<std::uint32_t> nearest(points_mm.size(), brep::SurfaceTree::unknown_triangle);
+    benchmark::DoNotOptimize(solid.tree().signed_distances_mm(points_mm, nearest));
+  }
+}
+
 #if defined(OCTOTOMY_HAS_CGAL)
 void run_cgal(benchmark::State& state, const Pair& pair) {
   const CgalSurface a(pair.a), b(pair.b);
@@ -206,6 +229,12 @@ void register_mesh_boolean() {
   add("mesh_shape/decimate/ball/100k", [](benchmark::State& state) { run_decimate(state, brep::decimate); });
   add("peer/openmesh/mesh_shape/decimate/ball/100k",
       [](benchmark::State& state) { run_decimate(state, brep::plain_decimation); });
+  add("mesh_shape/offset/ball/100k", [](benchmark::State& state) {
+    run_offset(state, ball({0, 0, 0}, 224));
+  });
+  add("reference/distances/mesh_shape/offset/ball/100k", [](benchmark::State& state) {
+    run_offset_points(state, ball({0, 0, 0}, 224));
+  });
   add("mesh_measure/size/500k", [](benchmark::State& state) { run_size(state, ball({0, 0, 0}, 500)); });
 #if defined(OCTOTOMY_HAS_CGAL)
   add("peer/cgal/mesh_measure/size/500k", [](benchmark::State& state) {

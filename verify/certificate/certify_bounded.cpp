@@ -22,6 +22,7 @@
 #include "verify/certificate/difference_bound.h"
 #include "verify/certificate/necks.h"
 #include "verify/certificate/places.h"
+#include "verify/certificate/specks.h"
 #include "verify/certificate/surface_distances.h"
 #include "verify/certificate/topology.h"
 #include "voxel/measure/measure.h"
@@ -92,13 +93,35 @@ void compare_inertia(Certificate& certificate, const Evidence& evidence, const b
            "The inertia tensors differ by up to % in a component"});
 }
 
-/// Compares area and distances; for a resolved object with a witness, on a sample of the surfaces' points.
-/// Any other object is searched for parts thinner than a voxel if its distances exceed their bounds, and the
-/// certificate then states the lost area.
+/// Adds the volume of the parts and cavities that hold no voxel's centre, and raises the detection limit to the
+/// largest of them, because voxels do not show its loss. The witness judges their triangles as all others.
+void add_specks(Certificate& certificate, const Specks& specks) {
+  if (specks.count == 0) return;
+  const double largest_mm3 = specks.largest->volume_mm3;
+  if (certificate.limit) certificate.limit->volume_mm3 = std::max(certificate.limit->volume_mm3, largest_mm3);
+  add_comparison(certificate,
+                 {.quantity = "parts and cavities between voxels' centres",
+                  .unit = "mm3",
+                  .difference = specks.volume_mm3,
+                  .tolerance = certificate.tolerance_mm3,
+                  .formula = "the volume's tolerance; the mesh has " + std::to_string(specks.count) +
+                             ", the largest of " + voxel::rounded(largest_mm3) + " mm3 near " +
+                             voxel::rounded(specks.largest->at_mm) + ", and distances leave them out",
+                  .statement = "The mesh has parts and cavities of % that hold no voxel's centre"},
+                 Verdict::Warn);
+  judge_evidence(certificate);
+}
+
+/// Compares area and distances; for a resolved object with a witness, at first on a sample of the surfaces'
+/// points. If a bound is exceeded, looks for parts thinner than a voxel. A resolved object that differs only
+/// by those is not resolved there, and the certificate states the lost area.
 void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
                       const brep::Solid& solid) {
+  const Specks specks = evidence.witnessed ? specks_of(solid, octree.universe().lattice()) : Specks();
+  add_specks(certificate, specks);
   const bool is_strict = evidence.witnessed && certificate.resolved();
-  SurfaceDistances distances(octree, solid, is_strict);
+  const brep::Triangles& measured = specks.others.faces.empty() ? solid.triangles() : specks.others;
+  SurfaceDistances distances(octree, solid, measured, is_strict);
   certificate.hausdorff_mm = distances.largest_mm();
   certificate.hausdorff95_mm = distances.percentile95_mm();
   if (!certificate.worst) certificate.worst = distances.worst();
@@ -107,18 +130,27 @@ void compare_surfaces(Certificate& certificate, const Evidence& evidence, const 
   Comparison area = area_of(evidence, 0.0);
   const bool loses_area = evidence.witnessed && *area.mesh - *area.voxel > *area.tolerance;
   const std::string lost_share = voxel::rounded(100.0 * (1.0 - *area.voxel / *area.mesh));
-  if (!is_strict &&
-      !(area.difference <= *area.tolerance && distances.percentile95_mm() <= bounds.percentile95_mm &&
-        distances.mean_mm() <= bounds.mean_mm && distances.largest_mm() <= far_mm))
-    area = area_of(evidence, distances.leave_out_thin());
-  // Sheets thinner than a voxel lose much area and little volume, so the verdict is WARN at worst.
-  compare(certificate, evidence, std::move(area), Verdict::Warn);
-  if (loses_area && is_strict)
-    certificate.reasons.push_back("At this voxel size " + lost_share +
-                                  " % of the surface is lost: of walls and gaps that are thinner than a "
-                                  "voxel.");
+  const auto are_within = [&] {
+    return area.difference <= *area.tolerance && distances.percentile95_mm() <= bounds.percentile95_mm &&
+           distances.mean_mm() <= bounds.mean_mm && (is_strict || distances.largest_mm() <= far_mm);
+  };
+  if (!are_within()) {
+    const double thin_mm2 = distances.leave_out_thin();
+    area = area_of(evidence, thin_mm2);
+    if (is_strict && are_within())
+      certificate.unresolved = {std::nullopt, voxel::rounded(100.0 * thin_mm2 / evidence.mesh.area_mm2) +
+                                                  " % of its surface bounds walls and gaps that are thinner "
+                                                  "than a voxel"};
+    else if (is_strict && loses_area)
+      certificate.reasons.push_back("At this voxel size " + lost_share +
+                                    " % of the surface is lost: of walls and gaps that are thinner than a "
+                                    "voxel.");
+  }
   if (loses_area && certificate.unresolved)
     certificate.unresolved->reason += ", and " + lost_share + " % of its surface is lost";
+  if (is_strict && certificate.unresolved) certificate.unresolved->reason += ": take smaller voxels";
+  // Sheets thinner than a voxel lose much area and little volume, so the verdict is WARN at worst.
+  compare(certificate, evidence, std::move(area), Verdict::Warn);
   compare(certificate, evidence,
           {.quantity = "hausdorff95",
            .unit = "mm",

@@ -29,6 +29,7 @@
 #include "voxel/measure/distance_map.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/term_walk.h"
+#include "voxel/space/error.h"
 #include "voxel/space/rounded.h"
 #include "voxel/space/shared_progress.h"
 
@@ -78,8 +79,8 @@ std::vector<voxel::Octree> leaves_of(const Expression& expression) {
     if (!met.term.leaf) return;
     const auto* octree = std::get_if<voxel::Octree>(&*met.term.leaf);
     if (octree == nullptr)
-      throw std::invalid_argument("exact agreement: leaf " + std::to_string(sets.size() + 1) +
-                                  " is no octree; only sets of voxels are the same in both kernels");
+      throw voxel::InvalidInput("exact agreement: leaf " + std::to_string(sets.size() + 1) +
+                                " is no octree; only sets of voxels are the same in both kernels");
     sets.push_back(*octree);
   });
   return sets;
@@ -94,7 +95,7 @@ glm::dmat4 refined_motion(const Term& term, const voxel::Universe& own, int refi
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 3; ++row)
       if (std::abs(voxels[column][row] - whole[column][row]) > whole_within(own.side()))
-        throw std::invalid_argument("exact agreement: a motion is no translation by whole voxels");
+        throw voxel::InvalidInput("exact agreement: a motion is no translation by whole voxels");
   whole[3] = glm::dvec4(by * static_cast<double>(refinement), 1.0);
   return whole;
 }

@@ -19,6 +19,7 @@
 #include "brep/mesh/triangles.h"
 #include "convert/surface/cuberille.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::verify {
 namespace {
@@ -54,7 +55,7 @@ voxel::Octree parted(const voxel::Octree& set) {
 }  // namespace
 
 GeneralPosition general_position(const std::vector<voxel::Octree>& sets, const voxel::Progress& progress) {
-  if (sets.empty()) throw std::invalid_argument("general position: there is no set of voxels");
+  if (sets.empty()) throw voxel::InvalidInput("general position: there is no set of voxels");
   const int depth = sets.front().universe().depth;
   int cell = 2, doublings = 2;
   for (; cell <= static_cast<int>(sets.size()); cell *= 2) ++doublings;
@@ -70,7 +71,7 @@ GeneralPosition general_position(const std::vector<voxel::Octree>& sets, const v
   int shift = 0;
   for (const voxel::Octree& set : sets) {
     if (!(set.universe() == sets.front().universe()))
-      throw std::invalid_argument("general position: the sets are of different universes");
+      throw voxel::InvalidInput("general position: the sets are of different universes");
     progress.at(static_cast<double>(shift) / static_cast<double>(sets.size()));
     ++shift;
     const voxel::Octree cells = parted(set);

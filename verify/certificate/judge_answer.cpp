@@ -11,6 +11,7 @@
 #include "voxel/measure/distance_map.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/error.h"
 #include "voxel/space/rounded.h"
 
 namespace octotomy::verify {
@@ -143,7 +144,7 @@ std::vector<Certificate> judge_mesh(const KernelAnswers& kernels, const brep::Tr
 
 std::vector<Certificate> judge_voxels(const KernelAnswers& kernels, const voxel::Octree& answer) {
   if (!(answer.universe() == kernels.octree.universe()))
-    throw std::invalid_argument("the answer's voxels are not those that the kernels answered in");
+    throw voxel::InvalidInput("the answer's voxels are not those that the kernels answered in");
   const double voxel_mm3 = answer.universe().lattice().voxel_mm3();
   Certificate certificate;
   certificate.tier = Tier::Exact;

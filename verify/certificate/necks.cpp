@@ -2,13 +2,16 @@
 //
 // A neck may be thinner than the spacing of the voxels, and then no path of voxels leads through it. So a
 // part that no voxel connects is followed through the witness's reading, at `fine` points per voxel edge. A
-// point belongs to the path if the reading allows either kernel to have it inside.
+// point belongs to the path if the reading allows either kernel to have it inside. Bone may be thinner than
+// that spacing as well, over the whole length of a path. A part of the mesh that the reading does not connect is
+// connected if one component of the mesh contains voxels of both answers.
 #include "verify/certificate/necks.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <tbb/task_arena.h>
@@ -16,6 +19,8 @@
 #include <utility>
 #include <vector>
 
+#include "brep/mesh/components.h"
+#include "brep/mesh/triangles.h"
 #include "convert/voxel/voxelise.h"
 #include "verify/witness/witness.h"
 #include "voxel/filter/components.h"
@@ -150,6 +155,53 @@ std::optional<glm::dvec3> Necks::neck_by_reading(const glm::ivec3& from) const {
   return std::nullopt;
 }
 
+std::optional<glm::dvec3> Necks::neck_by_mesh(const std::vector<glm::ivec3>& part) const {
+  if (!solid_) return std::nullopt;
+  const voxel::Universe& universe = octree_.universe();
+  const brep::Triangles& triangles = solid_->triangles();
+  const auto voxel_of = [&](std::uint32_t face) {
+    return glm::ivec3(
+        glm::round(universe.lattice().voxel(triangles.points_mm[triangles.faces[face].front()])));
+  };
+  const auto is_beside = [](const glm::ivec3& at, const auto& is_in) {
+    for (int neighbour = 0; neighbour < 27; ++neighbour)
+      if (is_in(beside(at, neighbour))) return true;
+    return false;
+  };
+  const auto is_in_part = [&](const glm::ivec3& at) {
+    return std::binary_search(part.begin(), part.end(), at, before);
+  };
+  for (const brep::Component& component : solid_->components()) {
+    std::vector<std::uint32_t> next;
+    std::copy_if(component.faces.begin(), component.faces.end(), std::back_inserter(next),
+                 [&](std::uint32_t face) { return is_beside(voxel_of(face), is_in_part); });
+    if (next.empty()) continue;
+    const brep::Solid alone = brep::trusted_solid(brep::part_of(solid_->mesh(), component.faces),
+                                                  brep::proof_of_part(solid_->proof()));
+    const voxel::Octree own = convert::voxelise(universe, alone.linked());
+    if (!has(own, part.front())) continue;
+    const voxel::Octree joined =
+        voxel::combine(universe, voxel::Expression(own) & voxel::Expression(*common_));
+    if (joined.is_empty()) return std::nullopt;
+    // Along the surface from the part; the first place beside voxels of both answers is beyond the neck.
+    std::vector<bool> seen(triangles.faces.size(), false);
+    for (const std::uint32_t face : next) seen[face] = true;
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      const std::uint32_t face = next[i];
+      if (is_beside(voxel_of(face), [&](const glm::ivec3& at) { return has(joined, at); }))
+        return triangles.points_mm[triangles.faces[face].front()];
+      for (std::uint32_t side = 3 * face; side < 3 * face + 3; ++side) {
+        const std::uint32_t neighbour = solid_->linked().opposite[side] / 3;
+        if (seen[neighbour]) continue;
+        seen[neighbour] = true;
+        next.push_back(neighbour);
+      }
+    }
+    return universe.lattice().lps_mm(glm::dvec3(part.front()));
+  }
+  return std::nullopt;
+}
+
 bool Necks::is_decided(const glm::dvec3& neck_mm) const {
   const glm::dvec3 voxel_mm = octree_.universe().lattice().spacing_mm();
   const double near_mm = 2.0 * bridge_voxels * std::max({voxel_mm.x, voxel_mm.y, voxel_mm.z});
@@ -176,6 +228,10 @@ std::optional<glm::dvec3> Necks::neck_mm(const std::vector<glm::dvec3>& part_mm)
     if (!is_thin && is_surely_connected(part)) return std::nullopt;
     std::optional<glm::dvec3> neck = neck_by_voxels(*side, part);
     if (!neck && is_thin) neck = neck_by_reading(part.front());
+    if (!neck && is_thin && side == &by_mesh_) {
+      std::sort(part.begin(), part.end(), before);
+      neck = neck_by_mesh(part);
+    }
     return neck && is_decided(*neck) ? std::nullopt : neck;
   });
 }

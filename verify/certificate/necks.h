@@ -39,9 +39,9 @@ class Necks {
   /// Returns the place of the thin neck that connects a part to the voxels of both answers. `part_mm` are the
   /// part's points, LPS millimetres, which one answer alone has. None in four cases: the answers agree at one
   /// of the points; one of the points is connected by a neck that is not thin, along a path whose points both
-  /// kernels must have inside; no path inside the reading
-  /// leads from the first point to the voxels of both answers; or the plan decides about the neck. Cost: at
-  /// the first call a labelling and an erosion of the set.
+  /// kernels must have inside; neither a path inside the reading
+  /// nor a component of the solid connects the first point to the voxels of both answers; or the plan decides
+  /// about the neck. Cost: at the first call a labelling and an erosion of the set.
   std::optional<glm::dvec3> neck_mm(const std::vector<glm::dvec3>& part_mm) const;
 
  private:
@@ -60,6 +60,8 @@ class Necks {
   bool is_surely_connected(const std::vector<glm::ivec3>& part) const;
   std::optional<glm::dvec3> neck_by_voxels(Side& side, const std::vector<glm::ivec3>& part) const;
   std::optional<glm::dvec3> neck_by_reading(const glm::ivec3& from) const;
+  /// None without a solid, and where the part and the voxels of both answers are separate components of it.
+  std::optional<glm::dvec3> neck_by_mesh(const std::vector<glm::ivec3>& part) const;
   bool is_decided(const glm::dvec3& neck_mm) const;
 
   voxel::Octree octree_;

@@ -23,6 +23,7 @@
 #include "verify/question/expression_on_meshes.h"
 #include "voxel/codes/cuberille_faces.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/error.h"
 #include "voxel/space/rounded.h"
 
 namespace octotomy::verify {
@@ -207,7 +208,7 @@ SetsAnswer certified(voxel::Octree octree, const std::string& operation,
 
 SetsAnswer certify_sets(const voxel::Octree& a, brep::Operation operation, const voxel::Octree& b,
                         const voxel::Progress& progress) {
-  if (!(a.universe() == b.universe())) throw std::invalid_argument("both sets of voxels need one universe");
+  if (!(a.universe() == b.universe())) throw voxel::InvalidInput("both sets of voxels need one universe");
   const auto corefine = [&]() -> Corefined {
     brep::BooleanResult result = brep::boolean(cuberille_of(on_units(a), progress), operation,
                                                cuberille_of(on_units(b), progress), progress.stop);
@@ -224,7 +225,7 @@ SetsAnswer certify_sets(std::string_view expression,
   for (const std::string& name : voxel::names_in(expression)) {
     const auto& [found, added] = sets.emplace(name, set(name));
     if (!(found->second.universe() == sets.begin()->second.universe()))
-      throw std::invalid_argument("all sets of voxels need one universe");
+      throw voxel::InvalidInput("all sets of voxels need one universe");
   }
   voxel::Names names;
   names.object = [&](std::string_view name) { return voxel::Expression(sets.find(name)->second); };

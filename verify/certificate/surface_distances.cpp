@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -65,6 +64,7 @@ SurfaceDistances::Directed directed(const std::vector<glm::dvec3>& p_mm, const s
   SurfaceDistances::Directed directed;
   directed.distances_mm.resize(runs);
   directed.areas_mm2.resize(runs);
+  directed.numbers.resize(runs);
   std::atomic<double> largest_mm = 0.0;
   const Farthest farthest = tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, runs, std::max<std::size_t>(1, 256 / run)), Farthest(),
@@ -78,7 +78,11 @@ SurfaceDistances::Directed directed(const std::vector<glm::dvec3>& p_mm, const s
           for (std::size_t i = begin; i < end; ++i) {
             const double mm =
                 measure(p_mm[i], i == chosen ? 0.0 : largest_mm.load(std::memory_order_relaxed));
-            if (i == chosen) directed.distances_mm[r] = mm, directed.areas_mm2[r] = areas_mm2[i];
+            if (i == chosen) {
+              directed.distances_mm[r] = mm;
+              directed.areas_mm2[r] = areas_mm2[i];
+              directed.numbers[r] = static_cast<std::uint32_t>(i);
+            }
             found = Farthest::of(found, {mm, i});
           }
           double known_mm = largest_mm.load(std::memory_order_relaxed);
@@ -115,11 +119,11 @@ void SurfaceDistances::Directed::sum_up() {
     }
 }
 
-SurfaceDistances::SurfaceDistances(const voxel::Octree& octree, const brep::Solid& solid, bool sampled)
+SurfaceDistances::SurfaceDistances(const voxel::Octree& octree, const brep::Solid& solid,
+                                   const brep::Triangles& measured, bool sampled)
     : octree_(octree), solid_(solid) {
   const glm::dvec3 edges_mm = octree.universe().lattice().spacing_mm();
-  samples_ = brep::sample_surface(solid.triangles(),
-                                  spacing_voxels * std::max({edges_mm.x, edges_mm.y, edges_mm.z}));
+  samples_ = brep::sample_surface(measured, spacing_voxels * std::max({edges_mm.x, edges_mm.y, edges_mm.z}));
   const voxel::BoundaryDistance to_voxels(octree);
   from_solid_ = directed(samples_.points_mm, samples_.areas_mm2, sampled, [&] {
     return [&](const glm::dvec3& p_mm, double enough_mm) { return to_voxels(p_mm, enough_mm); };
@@ -155,13 +159,13 @@ WorstPlace SurfaceDistances::worst() const {
 }
 
 double SurfaceDistances::leave_out_thin() {
-  assert(from_solid_.distances_mm.size() == samples_.points_mm.size());
   const glm::dmat3 axes_mm(octree_.universe().lps_from_voxel);
-  const std::size_t count = samples_.points_mm.size();
+  const std::vector<std::uint32_t>& numbers = from_solid_.numbers;
+  const std::size_t count = numbers.size();
   // The width of a voxel along the normal. A slab of this width holds a voxel's centre near each of its points.
   std::vector<double> widths_mm(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const glm::dvec3 along = glm::abs(samples_.normals[i] * axes_mm);
+    const glm::dvec3 along = glm::abs(samples_.normals[numbers[i]] * axes_mm);
     widths_mm[i] = along.x + along.y + along.z;
   }
   // Sheets lie in stacks, and the far end of a voxel may lie in the next sheet or gap: reads the way to it, too.
@@ -172,31 +176,36 @@ double SurfaceDistances::leave_out_thin() {
     left.clear(), within_mm.clear(), beyond_mm.clear();
     for (std::size_t i = 0; i < count; ++i) {
       if (thin[i] != 0) continue;
-      const glm::dvec3 by_mm = share * widths_mm[i] * samples_.normals[i];
+      const glm::dvec3& p_mm = samples_.points_mm[numbers[i]];
+      const glm::dvec3 by_mm = share * widths_mm[i] * samples_.normals[numbers[i]];
       left.push_back(i);
-      within_mm.push_back(samples_.points_mm[i] - by_mm);
-      beyond_mm.push_back(samples_.points_mm[i] + by_mm);
+      within_mm.push_back(p_mm - by_mm);
+      beyond_mm.push_back(p_mm + by_mm);
     }
     const std::vector<std::uint8_t> thick = solid_.tree().inside(within_mm),
                                     closing = solid_.tree().inside(beyond_mm);
     for (std::size_t k = 0; k < left.size(); ++k)
       if (thick[k] == 0 || closing[k] != 0) thin[left[k]] = 1;
   }
-  double thin_mm2 = 0.0;
+  double thin_mm2 = 0.0, measured_mm2 = 0.0;
   Directed kept;
   for (std::size_t i = 0; i < count; ++i) {
+    const double area_mm2 = from_solid_.areas_mm2[i];
+    measured_mm2 += area_mm2;
     if (thin[i] != 0) {
-      thin_mm2 += samples_.areas_mm2[i];
+      thin_mm2 += area_mm2;
       continue;
     }
     const double mm = from_solid_.distances_mm[i];
     kept.distances_mm.push_back(mm);
-    kept.areas_mm2.push_back(samples_.areas_mm2[i]);
-    if (mm > kept.largest_mm) kept.largest_mm = mm, kept.farthest_mm = samples_.points_mm[i];
+    kept.areas_mm2.push_back(area_mm2);
+    kept.numbers.push_back(numbers[i]);
+    if (mm > kept.largest_mm) kept.largest_mm = mm, kept.farthest_mm = samples_.points_mm[numbers[i]];
   }
   kept.sum_up();
   from_solid_ = std::move(kept);
-  return thin_mm2;
+  const double whole_mm2 = std::accumulate(samples_.areas_mm2.begin(), samples_.areas_mm2.end(), 0.0);
+  return measured_mm2 > 0.0 ? thin_mm2 * whole_mm2 / measured_mm2 : 0.0;
 }
 
 }  // namespace octotomy::verify

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
 #include "brep/mesh/sample_surface.h"
 #include "brep/mesh/solid.h"
+#include "brep/mesh/triangles.h"
 #include "verify/certificate/certificate.h"
 #include "voxel/tree/octree.h"
 
@@ -20,8 +22,10 @@ class SurfaceDistances {
   /// Measures every point. With `sampled`, mean and percentile use one random point of each run of
   /// neighbours, at most 32,768 points in each direction; the largest distance always covers all points.
   /// Preconditions: neither object is empty, and the universe's axes are perpendicular. Keeps references to
-  /// both objects. Parallel; same answer on any thread count.
-  SurfaceDistances(const voxel::Octree& octree, const brep::Solid& solid, bool sampled);
+  /// both objects. Parallel; same answer on any thread count. Points lie on `measured`, the solid's triangles
+  /// or some of them.
+  SurfaceDistances(const voxel::Octree& octree, const brep::Solid& solid, const brep::Triangles& measured,
+                   bool sampled);
 
   /// The larger of both directions' means.
   double mean_mm() const;
@@ -32,7 +36,8 @@ class SurfaceDistances {
   WorstPlace worst() const;
 
   /// Removes the points of the solid on sheets and gaps thinner than a voxel, because voxels cannot represent
-  /// those. Returns the removed area in mm2. Precondition: every point was measured.
+  /// those. Returns the area in mm2 of such sheets and gaps, estimated if points were sampled. The largest
+  /// distance then covers the points that mean and percentile use.
   double leave_out_thin();
 
   /// Points of one surface.
@@ -42,7 +47,8 @@ class SurfaceDistances {
   };
   /// Their distances to the other surface.
   struct Directed {
-    std::vector<double> distances_mm, areas_mm2;  ///< of the points that were measured
+    std::vector<double> distances_mm, areas_mm2;  ///< of the points that mean and percentile use
+    std::vector<std::uint32_t> numbers;           ///< of the same points
     double largest_mm = 0.0;
     glm::dvec3 farthest_mm{0.0};
     double mean_mm = 0.0, percentile95_mm = 0.0;

@@ -21,6 +21,7 @@
 #include <tbb/parallel_for.h>
 
 #include "verify/phantom/head_solids.h"
+#include "voxel/space/error.h"
 #include "voxel/space/rounded.h"
 #include "voxel/space/shared_progress.h"
 
@@ -177,7 +178,7 @@ voxel::Lattice scan_lattice(const HeadOptions& options) {
 
 void check_options(const HeadOptions& options) {
   const auto refuse = [](const std::string& what, double value) {
-    throw std::invalid_argument("head phantom: " + what + ", not " + voxel::rounded(value));
+    throw voxel::InvalidInput("head phantom: " + what + ", not " + voxel::rounded(value));
   };
   const double slice_mm = options.slice_mm.value_or(options.voxel_mm);
   if (!(options.voxel_mm > 0.0)) refuse("voxel_mm must be positive", options.voxel_mm);

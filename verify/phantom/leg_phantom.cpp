@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "verify/phantom/chance.h"
+#include "voxel/space/error.h"
 #include "voxel/space/rounded.h"
 #include "voxel/space/shared_progress.h"
 
@@ -83,11 +84,11 @@ class Leg {
 
 void check(const LegOptions& options) {
   if (!(options.voxel_mm >= 0.25 && options.voxel_mm <= 20.0))
-    throw std::invalid_argument("leg phantom: voxel_mm must be from 0.25 to 20, not " +
-                                voxel::rounded(options.voxel_mm));
+    throw voxel::InvalidInput("leg phantom: voxel_mm must be from 0.25 to 20, not " +
+                              voxel::rounded(options.voxel_mm));
   if (!(options.noise_sigma_hu >= 0.0) || !std::isfinite(options.noise_sigma_hu))
-    throw std::invalid_argument("leg phantom: noise_sigma_hu must not be negative, not " +
-                                voxel::rounded(options.noise_sigma_hu));
+    throw voxel::InvalidInput("leg phantom: noise_sigma_hu must not be negative, not " +
+                              voxel::rounded(options.noise_sigma_hu));
 }
 
 voxel::Lattice lattice_of(double voxel_mm) {

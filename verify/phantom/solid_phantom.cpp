@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "voxel/solid/combine.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::verify {
 namespace {
@@ -166,7 +167,7 @@ voxel::Octree chequerboard(const voxel::Universe& universe) {
 /// the centroid is the middle.
 SolidPhantom chequered_sphere(const Place& place) {
   if (place.universe.side() < chequers)
-    throw std::invalid_argument("a chequered sphere takes at least 8 voxels a side, for its 8 cells");
+    throw voxel::InvalidInput("a chequered sphere takes at least 8 voxels a side, for its 8 cells");
   SolidPhantom solid = sphere(place);
   solid.shape = solid.shape & chequerboard(place.universe);
   solid.volume_mm3 *= 0.5;
@@ -239,12 +240,12 @@ const std::vector<BuiltKind>& built_kinds() {
 voxel::Universe universe_of(const SolidPhantomOptions& options) {
   const auto side = static_cast<unsigned>(std::max(options.voxels, 0));
   if (!std::has_single_bit(side) || side < 4 || side > (1U << voxel::Universe::max_depth))
-    throw std::invalid_argument("a universe has 4, 8, 16 ... 4096 voxels a side, not " +
-                                std::to_string(options.voxels));
+    throw voxel::InvalidInput("a universe has 4, 8, 16 ... 4096 voxels a side, not " +
+                              std::to_string(options.voxels));
   voxel::Universe universe{std::countr_zero(side), glm::dmat4(1.0)};
   for (int axis = 0; axis < 3; ++axis) {
     if (!(options.spacing_mm[axis] > 0.0) || !std::isfinite(options.spacing_mm[axis]))
-      throw std::invalid_argument("a voxel's edges are positive lengths in mm");
+      throw voxel::InvalidInput("a voxel's edges are positive lengths in mm");
     universe.lps_from_voxel[axis][axis] = options.spacing_mm[axis];
     universe.lps_from_voxel[3][axis] = -0.5 * (options.voxels - 1) * options.spacing_mm[axis];
   }
@@ -257,9 +258,9 @@ void check_fit(const BuiltKind& kind, const Place& place) {
   for (int axis = 0; axis < 3; ++axis)
     if (place.centre_mm[axis] - reach_mm < bounds.low_mm[axis] ||
         place.centre_mm[axis] + reach_mm > bounds.high_mm[axis])
-      throw std::invalid_argument("a " + std::string(kind.said.name) + " of radius " +
-                                  std::to_string(place.radius_mm) +
-                                  " mm does not fit its universe: make the radius smaller");
+      throw voxel::InvalidInput("a " + std::string(kind.said.name) + " of radius " +
+                                std::to_string(place.radius_mm) +
+                                " mm does not fit its universe: make the radius smaller");
 }
 
 }  // namespace
@@ -277,15 +278,15 @@ SolidPhantom solid_phantom(std::string_view kind, const SolidPhantomOptions& opt
   const auto found = std::find_if(built_kinds().begin(), built_kinds().end(),
                                   [&](const BuiltKind& k) { return k.said.name == kind; });
   if (found == built_kinds().end())
-    throw std::invalid_argument("there is no solid called " + std::string(kind));
+    throw voxel::InvalidInput("there is no solid called " + std::string(kind));
   const voxel::Universe universe = universe_of(options);
   const double radius_voxels = options.radius_voxels.value_or(0.25 * options.voxels);
   if (!(radius_voxels > 0.0) || !std::isfinite(radius_voxels))
-    throw std::invalid_argument("a radius is a positive number of voxels");
+    throw voxel::InvalidInput("a radius is a positive number of voxels");
   if (found->on_lattice && (options.centre_mm != glm::dvec3(0.0) || options.lps_from_axes != glm::dmat3(1.0)))
-    throw std::invalid_argument(std::string(kind) + " is bound to the lattice: it is not turned nor moved");
+    throw voxel::InvalidInput(std::string(kind) + " is bound to the lattice: it is not turned nor moved");
   if (found->reach == 0.0 && options.radius_voxels)
-    throw std::invalid_argument(std::string(kind) + " fills its universe and has no radius");
+    throw voxel::InvalidInput(std::string(kind) + " fills its universe and has no radius");
   const double voxel_mm = std::min({options.spacing_mm.x, options.spacing_mm.y, options.spacing_mm.z});
   const Place place{radius_voxels * voxel_mm, options.centre_mm, options.lps_from_axes, universe};
   check_fit(*found, place);

@@ -15,6 +15,7 @@
 
 #include "brep/boolean/common_faces.h"
 #include "brep/mesh/error.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::verify {
 
@@ -87,8 +88,8 @@ class Parser {
     constexpr std::size_t most_quoted = 200;
     const std::string quoted =
         text_.size() <= most_quoted ? std::string(text_) : std::string(text_.substr(0, most_quoted)) + "...";
-    throw std::invalid_argument("expression '" + quoted + "', position " + std::to_string(at_ + 1) + ": " +
-                                what + " expected");
+    throw voxel::InvalidInput("expression '" + quoted + "', position " + std::to_string(at_ + 1) + ": " +
+                              what + " expected");
   }
 
   /// Largest depth of parentheses: deeper than in any plan, and far from a stack overflow.

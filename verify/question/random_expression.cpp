@@ -10,6 +10,7 @@
 #include "verify/phantom/head_phantom.h"
 #include "verify/phantom/implicit_solid.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/build.h"
 
 namespace octotomy::verify {
@@ -149,9 +150,8 @@ ExpressionTree random_tree(Random& random, const RandomTreeOptions& options) {
 
 RandomSet random_set(Random& random, const voxel::Universe& universe, int side) {
   if (side < 1 || side > std::min(universe.side(), largest_random_side))
-    throw std::invalid_argument("random set: a side of " + std::to_string(side) +
-                                " voxels is not within 1.." +
-                                std::to_string(std::min(universe.side(), largest_random_side)));
+    throw voxel::InvalidInput("random set: a side of " + std::to_string(side) + " voxels is not within 1.." +
+                              std::to_string(std::min(universe.side(), largest_random_side)));
   static constexpr std::array<const char*, 4> solids{"ellipsoid", "box", "ring", "rod"};
   while (true) {
     const int kind = random_int(random, 0, 9);

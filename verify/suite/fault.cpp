@@ -39,6 +39,7 @@
 #include "voxel/solid/combine.h"
 #include "voxel/solid/digitise.h"
 #include "voxel/solid/expression.h"
+#include "voxel/space/error.h"
 #include "voxel/space/scene.h"
 #include "voxel/space/shared_progress.h"
 #include "voxel/tree/octree.h"
@@ -471,8 +472,8 @@ std::vector<FaultTrial> try_faults(const FaultOptions& options) {
   std::vector<Work> work;
   for (const int voxels : options.sizes) {
     if (voxels < 8 || (voxels & (voxels - 1)) != 0)
-      throw std::invalid_argument("faults are tried at powers of two from 8 on, not at " +
-                                  std::to_string(voxels));
+      throw voxel::InvalidInput("faults are tried at powers of two from 8 on, not at " +
+                                std::to_string(voxels));
     for (const char* subject : {"ellipsoid", "ring"}) work.push_back({subject, voxels});
     if (voxels >= resolved_size) work.push_back({"head", voxels});
     if (voxels <= resolved_size) work.push_back({"voxel sets", voxels});
@@ -719,8 +720,8 @@ std::vector<Alteration> altered_block(const ScanToAlter& from, int voxels, int c
     const Alterations alterations(subject);
     if (!alterations.is_empty()) return alterations.drawn(count, chance);
   }
-  throw std::invalid_argument(from.name + ": no part of it has an object from " + std::to_string(from.low) +
-                              " on: alter another scan");
+  throw voxel::InvalidInput(from.name + ": no part of it has an object from " + std::to_string(from.low) +
+                            " on: alter another scan");
 }
 
 }  // namespace

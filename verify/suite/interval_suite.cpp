@@ -16,6 +16,7 @@
 #include "verify/phantom/drawn_solid.h"
 #include "verify/phantom/phantom_scan.h"
 #include "voxel/scan/upright.h"
+#include "voxel/space/error.h"
 #include "voxel/space/shared_progress.h"
 
 namespace octotomy::verify {
@@ -172,7 +173,7 @@ bool is_likely(const IntervalCoverage& row, double least) {
 }
 
 std::vector<IntervalCoverage> drawn_suite(const IntervalSuiteOptions& options) {
-  if (options.solids < 1) throw std::invalid_argument("a suite of intervals takes at least one solid");
+  if (options.solids < 1) throw voxel::InvalidInput("a suite of intervals takes at least one solid");
   std::vector<Errors> all(static_cast<std::size_t>(options.solids));
   const MeasureSizes measure = options.measure ? options.measure : sizes_of;
   voxel::SharedProgress done(options.progress, all.size());
@@ -202,7 +203,7 @@ std::vector<IntervalCoverage> drawn_suite(const IntervalSuiteOptions& options) {
 }
 
 std::vector<IntervalCoverage> interval_suite(const IntervalSuiteOptions& options) {
-  if (options.solids < 1) throw std::invalid_argument("a suite of intervals takes at least one solid");
+  if (options.solids < 1) throw voxel::InvalidInput("a suite of intervals takes at least one solid");
   std::vector<Errors> all(static_cast<std::size_t>(options.solids));
   voxel::SharedProgress done(options.progress, all.size());
   tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {

@@ -29,6 +29,7 @@
 #include "voxel/measure/measure.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/error.h"
 #include "voxel/space/rounded.h"
 
 namespace octotomy::verify {
@@ -254,9 +255,9 @@ class Suite {
  public:
   explicit Suite(const PhantomSuiteOptions& options) : options_(options) {
     if (options.poses < 1 || options.poses > 1000)
-      throw std::invalid_argument("a suite takes 1 to 1000 poses, not " + std::to_string(options.poses));
+      throw voxel::InvalidInput("a suite takes 1 to 1000 poses, not " + std::to_string(options.poses));
     if (std::none_of(kinds().begin(), kinds().end(), [&](const Kind& kind) { return asked(kind); }))
-      throw std::invalid_argument("the suite has no solid called '" + *options.solid + "': try sphere");
+      throw voxel::InvalidInput("the suite has no solid called '" + *options.solid + "': try sphere");
   }
 
   PhantomSuite run() {

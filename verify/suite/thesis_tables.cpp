@@ -213,13 +213,10 @@ std::vector<ThesisEntry> thesis_tables() {
 
 const std::vector<ThesisGap>& thesis_gaps() {
   static const std::vector<ThesisGap> gaps{
-      {"tables 3.1, 3.2, A.1 to A.3, skull", "a patient's scan that was not published"},
       {"tables 3.1 and A.1, chequered sphere", "the rows are not in the text at hand"},
       {"table A.1, sphere", "the row is not in the text at hand; render --count computes it"},
-      {"table 4.1", "codes of a display algorithm's flags; our cuberille has face lists instead"},
-      {"tables 4.2, 7.2, 7.4 to 7.6", "times of two computers of 1989"},
+      {"tables 7.2, 7.4 and 7.6", "times of two computers of 1989"},
       {"table 4.3", "the order of a quadtree's children is any"},
-      {"table 5.2", "bit patterns of a look-up table in an order of its own; table 5.1 has its meaning"},
       {"tables 7.3 and 7.7", "trees of volumes of interest drawn by hand"},
       {"equations 8.9 to 8.12", "definitions of motions without an example in numbers"}};
   return gaps;

@@ -14,6 +14,7 @@
 #include "brep/mesh/distance.h"
 #include "verify/witness/joined_reading.h"
 #include "verify/witness/witness.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::verify {
 namespace {
@@ -127,7 +128,7 @@ std::vector<BladePiece> pieces_of(const DrawnBlade& blade) {
     if (line.empty() || glm::distance(flat, line.back()) > 0.0) line.push_back(flat);
   }
   if (line.size() < 2)
-    throw std::invalid_argument("a blade's line needs two points apart, seen along its direction");
+    throw voxel::InvalidInput("a blade's line needs two points apart, seen along its direction");
   std::vector<glm::dvec3> along;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) along.push_back(glm::normalize(line[i + 1] - line[i]));
   std::vector<BladePiece> pieces(along.size());

@@ -11,6 +11,8 @@
 #include <utility>
 #include <variant>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::verify {
 namespace {
 
@@ -23,13 +25,13 @@ class Grown {
  public:
   Grown(const voxel::Scene& scan, const GrownFrom& from)
       : dims_(scan.lattice.dims), voxel_from_lps_(glm::inverse(scan.lattice.lps_from_voxel)) {
-    if (from.seeds_mm.empty()) throw std::invalid_argument("nothing grows without a seed");
+    if (from.seeds_mm.empty()) throw voxel::InvalidInput("nothing grows without a seed");
     if (from.neighbours != 6 && from.neighbours != 18 && from.neighbours != 26)
-      throw std::invalid_argument("neighbours are 6, 18 or 26");
+      throw voxel::InvalidInput("neighbours are 6, 18 or 26");
     std::vector<glm::ivec3> seeds;
     for (const glm::dvec3& p_mm : from.seeds_mm) {
       const glm::ivec3 seed(glm::floor(place_of(p_mm) + 0.5));
-      if (!has(seed)) throw std::invalid_argument("a seed lies beyond the scan");
+      if (!has(seed)) throw voxel::InvalidInput("a seed lies beyond the scan");
       seeds.push_back(seed);
     }
     std::visit([&](const auto& samples) { grow(samples, scan, from, seeds); }, scan.samples);

@@ -23,6 +23,8 @@
 #include <utility>
 #include <variant>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::verify {
 namespace {
 
@@ -383,8 +385,7 @@ LineReading complement(LineReading a) {
 /// Names and operators of an expression in postfix order.
 std::vector<std::string> postfix(std::string_view text) {
   const auto refuse = [&](std::size_t at, const char* wanted) {
-    throw std::invalid_argument("expression, position " + std::to_string(at + 1) + ": " + wanted +
-                                " expected");
+    throw voxel::InvalidInput("expression, position " + std::to_string(at + 1) + ": " + wanted + " expected");
   };
   const auto strength = [](char symbol) { return std::string_view("|^&-~").find(symbol); };
   std::vector<std::string> out;

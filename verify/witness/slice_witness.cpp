@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::verify {
 namespace {
 
@@ -71,10 +73,10 @@ class SliceWitness {
  public:
   explicit SliceWitness(const DrawnStack& stack)
       : look_(stack.look), up_(stack.up), right_(stack.right), is_interpolated_(stack.is_interpolated) {
-    if (stack.slices.size() < 2) throw std::invalid_argument("a stack of contours needs two slices or more");
+    if (stack.slices.size() < 2) throw voxel::InvalidInput("a stack of contours needs two slices or more");
     for (const DrawnStack::Slice& slice : stack.slices) {
       if (!at_mm_.empty() && !(slice.position_mm > at_mm_.back()))
-        throw std::invalid_argument("the slices of a stack of contours do not ascend");
+        throw voxel::InvalidInput("the slices of a stack of contours do not ascend");
       at_mm_.push_back(slice.position_mm);
       outlines_.emplace_back(slice.polygons_mm);
       if (outlines_.back().empty()) continue;

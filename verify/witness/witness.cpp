@@ -173,6 +173,20 @@ Witness loosened(Witness tight, double by_mm) {
       .with_choices(std::move(choices));
 }
 
+Witness with_voxels_within(Witness tight, double by_mm) {
+  if (!tight) return {};
+  LineReading lines = tight.lines();
+  std::vector<PartChoice> choices = tight.choices();
+  return Witness([tight = std::move(tight), by_mm](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
+           Reading reading = tight(p_mm, slack_mm, asked);
+           if (needs_voxels(asked) && !reading.voxel.near)
+             reading.voxel = tight(p_mm, slack_mm + by_mm, Asked::BothWords).voxel;
+           return reading;
+         })
+      .with_lines(std::move(lines))
+      .with_choices(std::move(choices));
+}
+
 Witness witness_of_expression(std::string_view text,
                               const std::function<Witness(const std::string&)>& lookup) {
   std::vector<std::string> names;

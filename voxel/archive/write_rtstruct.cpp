@@ -13,6 +13,7 @@
 #include "voxel/archive/pixel_outlines.h"
 #include "voxel/scan/character_set.h"
 #include "voxel/scan/dicom_derived.h"
+#include "voxel/space/error.h"
 #include "voxel/space/staged_files.h"
 #include "voxel/tree/slice_bits.h"
 
@@ -67,7 +68,7 @@ std::vector<ContourPlane> planes_of_images(const Universe& universe, const Dicom
   const glm::dvec3 normal = glm::normalize(glm::cross(axes[0], axes[1]));
   // Rounding to single precision turns a direction by less than this.
   if (std::abs(std::abs(glm::dot(normal, source.normal)) - 1.0) > 1e-6)
-    throw std::invalid_argument(
+    throw InvalidInput(
         "planes of voxels are not parallel to the source's images: resample the "
         "object on the lattice of the scan, or draw on the planes of the voxels");
   const double first_mm = glm::dot(glm::dvec3(universe.lps_from_voxel[3]), source.normal);
@@ -251,8 +252,8 @@ class StructureSetWriter {
       }
     }
     if (std::find(is_held.begin(), is_held.end(), true) == is_held.end())
-      throw std::invalid_argument("the object '" + objects_[i].label +
-                                  "' is empty: choose an object with at least one voxel");
+      throw InvalidInput("the object '" + objects_[i].label +
+                         "' is empty: choose an object with at least one voxel");
     if (made.empty())
       throw Error(ErrorCode::Geometry, "the object '" + objects_[i].label +
                                            "' lies on none of the source's images: was it made of another "
@@ -316,12 +317,12 @@ std::vector<ContouredObject> write_rtstruct(Objects objects, const fs::path& pat
   check_dicom_text(options.label, "label");
   check_dicom_text(options.series_description, "series_description");
   if (options.label.empty() || options.series_description.empty())
-    throw std::invalid_argument("a structure set's label and series_description must not be empty");
+    throw InvalidInput("a structure set's label and series_description must not be empty");
   for (const DicomSegment& each : objects) {
     check_dicom_text(each.label, "label");
-    if (each.label.empty()) throw std::invalid_argument("an object's label must not be empty");
+    if (each.label.empty()) throw InvalidInput("an object's label must not be empty");
     if (each.object.universe() != objects.front().object.universe())
-      throw std::invalid_argument("the objects of a file must lie in one universe");
+      throw InvalidInput("the objects of a file must lie in one universe");
   }
   StructureSetWriter writer(objects, options);
   const DicomAttributes file = writer.made();

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "voxel/space/error.h"
 #include "voxel/space/text_cursor.h"
 #include "voxel/tree/logical_build.h"
 #include "voxel/tree/slice_build.h"
@@ -15,9 +16,9 @@ constexpr int max_text_depth = 9;
 void check_room(int depth, int max_depth) {
   check_depth(depth);
   if (depth > max_depth)
-    throw std::length_error("a binary array of depth " + std::to_string(depth) + " has 8^" +
-                            std::to_string(depth) + " voxels: at most depth " + std::to_string(max_depth) +
-                            " is written so, use treecode instead");
+    throw TooLarge("a binary array of depth " + std::to_string(depth) + " has 8^" + std::to_string(depth) +
+                   " voxels: at most depth " + std::to_string(max_depth) +
+                   " is written so, use treecode instead");
 }
 
 std::size_t byte_count(int depth) {
@@ -49,9 +50,9 @@ BinaryArray binary_array(const Octree& octree) {
 Octree octree_of(const BinaryArray& array) {
   check_room(array.universe.depth, BinaryArray::max_depth);
   if (array.bytes.size() != byte_count(array.universe.depth))
-    throw std::invalid_argument("binary array: a universe of depth " + std::to_string(array.universe.depth) +
-                                " takes " + std::to_string(byte_count(array.universe.depth)) +
-                                " bytes, here are " + std::to_string(array.bytes.size()));
+    throw InvalidInput("binary array: a universe of depth " + std::to_string(array.universe.depth) +
+                       " takes " + std::to_string(byte_count(array.universe.depth)) + " bytes, here are " +
+                       std::to_string(array.bytes.size()));
   return octree_of_slices(array.universe, [&](int z, SliceBits& slice) {
     const auto side = static_cast<std::size_t>(slice.side);
     const std::uint64_t row_bits = side < 8 ? (1U << side) - 1 : 0xff;

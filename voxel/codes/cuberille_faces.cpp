@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "voxel/space/error.h"
 #include "voxel/space/text_cursor.h"
 #include "voxel/tree/logical_build.h"
 #include "voxel/tree/slice_build.h"
@@ -20,9 +21,9 @@ std::tuple<int, int, int> x_fastest(const glm::ivec3& voxel) {
 }
 
 [[noreturn]] void refuse(int direction, const glm::ivec3& voxel, const std::string& why) {
-  throw std::invalid_argument("cuberille, " + std::string(names[static_cast<std::size_t>(direction)]) +
-                              " face of voxel (" + std::to_string(voxel.x) + "," + std::to_string(voxel.y) +
-                              "," + std::to_string(voxel.z) + "): " + why);
+  throw InvalidInput("cuberille, " + std::string(names[static_cast<std::size_t>(direction)]) +
+                     " face of voxel (" + std::to_string(voxel.x) + "," + std::to_string(voxel.y) + "," +
+                     std::to_string(voxel.z) + "): " + why);
 }
 
 void check(const CuberilleFaces& faces) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "voxel/codes/octal_code.h"
+#include "voxel/space/error.h"
 #include "voxel/space/text_cursor.h"
 #include "voxel/tree/logical_build.h"
 
@@ -22,9 +23,9 @@ constexpr std::size_t entry_count(int level) {
 void check_room(int depth) {
   check_depth(depth);
   if (depth > ExplicitOctree::max_depth)
-    throw std::length_error("an explicit octree of depth " + std::to_string(depth) + " takes 8^" +
-                            std::to_string(depth) + " entries: at most depth " +
-                            std::to_string(ExplicitOctree::max_depth) + " is made, use treecode instead");
+    throw TooLarge("an explicit octree of depth " + std::to_string(depth) + " takes 8^" +
+                   std::to_string(depth) + " entries: at most depth " +
+                   std::to_string(ExplicitOctree::max_depth) + " is made, use treecode instead");
 }
 
 void fill(const LogicalNode& node, int level, std::size_t entry, std::vector<std::string>& levels) {
@@ -72,8 +73,8 @@ class ExplicitSource {
       if (levels_[level][next_[level]] != absent) refuse(level, next_[level], "its parent has no children");
   }
   [[noreturn]] void refuse(std::size_t level, std::size_t entry, const std::string& why) const {
-    throw std::invalid_argument("explicit octree, level " + std::to_string(level) + ", entry " +
-                                to_string(OctalCode(static_cast<int>(level), entry)) + ": " + why);
+    throw InvalidInput("explicit octree, level " + std::to_string(level) + ", entry " +
+                       to_string(OctalCode(static_cast<int>(level), entry)) + ": " + why);
   }
 
   const std::vector<std::string>& levels_;
@@ -96,14 +97,14 @@ Octree octree_of(const ExplicitOctree& levels) {
   const int depth = levels.universe.depth;
   check_room(depth);
   if (levels.levels.size() != static_cast<std::size_t>(depth) + 1)
-    throw std::invalid_argument("explicit octree: depth " + std::to_string(depth) + " takes " +
-                                std::to_string(depth + 1) + " levels, here are " +
-                                std::to_string(levels.levels.size()));
+    throw InvalidInput("explicit octree: depth " + std::to_string(depth) + " takes " +
+                       std::to_string(depth + 1) + " levels, here are " +
+                       std::to_string(levels.levels.size()));
   for (int level = 0; level <= depth; ++level)
     if (levels.levels[static_cast<std::size_t>(level)].size() != entry_count(level))
-      throw std::invalid_argument("explicit octree, level " + std::to_string(level) + ": takes " +
-                                  std::to_string(entry_count(level)) + " entries, here are " +
-                                  std::to_string(levels.levels[static_cast<std::size_t>(level)].size()));
+      throw InvalidInput("explicit octree, level " + std::to_string(level) + ": takes " +
+                         std::to_string(entry_count(level)) + " entries, here are " +
+                         std::to_string(levels.levels[static_cast<std::size_t>(level)].size()));
   ExplicitSource source(levels);
   Octree octree = LogicalBuild(levels.universe, source).octree();
   source.expect_end();

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <stdexcept>
 
+#include "voxel/space/error.h"
 #include "voxel/space/text_cursor.h"
 #include "voxel/tree/logical_build.h"
 
@@ -43,8 +44,8 @@ class LinearSource {
       refuse(next_ - 1, "is the last of eight full children, which have to be one code of their parent");
   }
   [[noreturn]] void refuse(std::size_t index, const std::string& why) const {
-    throw std::invalid_argument("linear octree, code " + std::to_string(index + 1) + ", " +
-                                to_string(codes_[index]) + ": " + why);
+    throw InvalidInput("linear octree, code " + std::to_string(index + 1) + ", " + to_string(codes_[index]) +
+                       ": " + why);
   }
 
  private:

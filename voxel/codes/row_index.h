@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "voxel/space/error.h"
 #include "voxel/space/text_cursor.h"
 #include "voxel/tree/logical_build.h"
 #include "voxel/tree/octree.h"
@@ -20,7 +21,7 @@ namespace octotomy::voxel {
 
 /// Throws std::invalid_argument that names the code, the place and the reason.
 [[noreturn]] inline void refuse_slice(const char* code, std::size_t slice, const std::string& why) {
-  throw std::invalid_argument(std::string(code) + ", slice " + std::to_string(slice) + why);
+  throw InvalidInput(std::string(code) + ", slice " + std::to_string(slice) + why);
 }
 [[noreturn]] inline void refuse_row(const char* code, std::size_t slice, std::size_t row,
                                     const std::string& why) {
@@ -34,8 +35,8 @@ void check_slices(const char* code, const Index& index, const CheckRow& check_ro
   check_depth(index.universe.depth);
   const auto side = static_cast<std::size_t>(index.universe.side());
   if (index.slices.size() != side)
-    throw std::invalid_argument(std::string(code) + ": has " + std::to_string(index.slices.size()) +
-                                " slices instead of the universe's " + std::to_string(side));
+    throw InvalidInput(std::string(code) + ": has " + std::to_string(index.slices.size()) +
+                       " slices instead of the universe's " + std::to_string(side));
   for (std::size_t z = 0; z < side; ++z) {
     const auto& slice = index.slices[z];
     if (slice.empty()) continue;

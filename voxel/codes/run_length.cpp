@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "voxel/space/error.h"
 #include "voxel/space/text_cursor.h"
 #include "voxel/tree/logical_build.h"
 #include "voxel/tree/slice_build.h"
@@ -18,8 +19,8 @@ void check(const RunLength& code) {
   for (std::size_t i = 0; i < code.runs.size(); ++i) {
     const Run& run = code.runs[i];
     const auto refuse = [&](const std::string& why) {
-      throw std::invalid_argument("run length, run " + std::to_string(i + 1) + ", " +
-                                  std::to_string(run.first) + ":" + std::to_string(run.last) + ": " + why);
+      throw InvalidInput("run length, run " + std::to_string(i + 1) + ", " + std::to_string(run.first) + ":" +
+                         std::to_string(run.last) + ": " + why);
     };
     if (run.last < run.first) refuse("ends before it begins");
     if (run.last >= voxels) refuse("leaves the universe of " + std::to_string(voxels) + " voxels");

@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include "voxel/filter/slice_work.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -48,9 +49,8 @@ Scene crop(const Scene& scene, const VoxelRange& range) {
   check(scene);
   if (range.is_empty() || glm::any(glm::lessThan(range.low, glm::ivec3(0))) ||
       glm::any(glm::greaterThanEqual(range.high, scene.lattice.dims)))
-    throw std::invalid_argument("the part " + text_of(range.low) + " to " + text_of(range.high) +
-                                " is empty or leaves the scan of " + text_of(scene.lattice.dims) +
-                                " samples");
+    throw InvalidInput("the part " + text_of(range.low) + " to " + text_of(range.high) +
+                       " is empty or leaves the scan of " + text_of(scene.lattice.dims) + " samples");
   const glm::ivec3 dims = range.dims();
   Scene part = empty_part(scene, dims, glm::dvec3(range.low));
   std::visit(
@@ -70,9 +70,9 @@ Scene crop(const Scene& scene, const VoxelRange& range) {
 Scene average_down(const Scene& scene, const glm::ivec3& factor, const Progress& progress) {
   check(scene);
   if (glm::any(glm::lessThan(factor, glm::ivec3(1))))
-    throw std::invalid_argument("averaging takes 1 or more samples along each axis, not " + text_of(factor));
+    throw InvalidInput("averaging takes 1 or more samples along each axis, not " + text_of(factor));
   if (scene.meaning == Meaning::Label)
-    throw std::invalid_argument("labels have no mean: a label map cannot be averaged down");
+    throw InvalidInput("labels have no mean: a label map cannot be averaged down");
   const glm::ivec3 from = scene.lattice.dims;
   const glm::ivec3 dims = (from + factor - 1) / factor;
   Scene result = empty_part(scene, dims, 0.5 * glm::dvec3(factor - 1));

@@ -8,6 +8,7 @@
 #include "voxel/filter/measured.h"
 #include "voxel/filter/slice_work.h"
 #include "voxel/filter/smooth.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -87,7 +88,7 @@ Scene marr_hildreth(const Scene& scene, double sigma_mm, const Progress& progres
     // A shear of 2^-20 moves no sample of a 4096-voxel row by a hundredth of a voxel.
     if (std::abs(glm::dot(axes[axis], axes[(axis + 1) % 3])) >
         0x1p-20 * spacing_mm[axis] * spacing_mm[(axis + 1) % 3])
-      throw std::invalid_argument("a Laplacian needs perpendicular axes: resample the sheared scan first");
+      throw InvalidInput("a Laplacian needs perpendicular axes: resample the sheared scan first");
   if (scene.padding)
     return on_measured(scene, [&](const Scene& whole) { return marr_hildreth(whole, sigma_mm, progress); });
   Scene exact{scene.lattice, {}, scene.meaning, scene.modality, scene.source, {}};

@@ -15,6 +15,7 @@
 
 #include "voxel/filter/slice_work.h"
 #include "voxel/measure/distance_map.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -551,10 +552,9 @@ double air_level(const Scene& scene, const Int16Samples& samples) {
 
 Extrusion extrusion_of(const Scene& scene, const ExtrusionOptions& options) {
   check(scene);
-  if (!(options.thick_mm > 0.0)) throw std::invalid_argument("a board's thickness must be above 0 mm");
+  if (!(options.thick_mm > 0.0)) throw InvalidInput("a board's thickness must be above 0 mm");
   const auto* samples = std::get_if<Int16Samples>(&scene.samples);
-  if (samples == nullptr)
-    throw std::invalid_argument(scene.source + ": a support is sought among int16 samples");
+  if (samples == nullptr) throw InvalidInput(scene.source + ": a support is sought among int16 samples");
   const View view = view_of(scene, *samples);
   Extrusion found;
   found.marks.assign(samples->size(), 0);

@@ -11,6 +11,7 @@
 #include "voxel/filter/components.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/filter/slice_work.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/build.h"
 #include "voxel/tree/slice_build.h"
 
@@ -68,9 +69,9 @@ GreyOctree kept_samples(const Octree& octree, const Lattice& lattice, const Int1
 Int16Samples& int16_samples(Scene& scene) {
   auto* const samples = std::get_if<Int16Samples>(&scene.samples);
   if (samples == nullptr)
-    throw std::invalid_argument(scene.source +
-                                ": a headrest can be removed from 16-bit integer samples only, and these are "
-                                "floats");
+    throw InvalidInput(scene.source +
+                       ": a headrest can be removed from 16-bit integer samples only, and these are "
+                       "floats");
   return *samples;
 }
 
@@ -127,8 +128,8 @@ std::uint64_t restore(Scene& scene, const GreyOctree& removed) {
     away = std::max(away, glm::distance(lattice.voxel(there), p));
   }
   if (universe.depth != expected.depth || !(away <= 1e-3))
-    throw std::invalid_argument("the removed voxels are not of " + scene.source +
-                                ": they belong to another scan, or this one was resampled since");
+    throw InvalidInput("the removed voxels are not of " + scene.source +
+                       ": they belong to another scan, or this one was resampled since");
   std::uint64_t count = 0;
   for (int z = 0; z < lattice.dims.z; ++z)
     for (int y = 0; y < lattice.dims.y; ++y)

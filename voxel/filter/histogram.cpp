@@ -68,8 +68,7 @@ Range percentile_range(const Scene& scene) {
 }  // namespace
 
 Histogram histogram(const Scene& scene, int bins) {
-  if (bins < 2)
-    throw std::invalid_argument("a histogram needs at least two bins, not " + std::to_string(bins));
+  if (bins < 2) throw InvalidInput("a histogram needs at least two bins, not " + std::to_string(bins));
   check(scene);
   Range shown = percentile_range(scene);
   if (!(shown.low < shown.high)) shown = range(scene);

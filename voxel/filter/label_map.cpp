@@ -9,6 +9,7 @@
 #include <string>
 
 #include "voxel/filter/slice_work.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/build.h"
 
 namespace octotomy::voxel {
@@ -32,9 +33,8 @@ Universe universe_on(const Lattice& lattice) {
   Universe universe{2, lattice.lps_from_voxel};
   while (universe.depth < Universe::max_depth && universe.side() < longest) ++universe.depth;
   if (universe.side() < longest)
-    throw std::length_error("a scan of " + std::to_string(longest) +
-                            " samples along an axis takes more than " + std::to_string(universe.side()) +
-                            " voxels a side: average the scan down first");
+    throw TooLarge("a scan of " + std::to_string(longest) + " samples along an axis takes more than " +
+                   std::to_string(universe.side()) + " voxels a side: average the scan down first");
   return universe;
 }
 
@@ -72,8 +72,7 @@ Octree chosen_samples(const Lattice& lattice, const Octree& own, const Octree& b
 
 LabelMap label_map(const Lattice& lattice, std::span<const Octree> objects, const Progress& progress) {
   if (objects.size() > 32767)
-    throw std::invalid_argument("a label map holds at most 32767 objects, not " +
-                                std::to_string(objects.size()));
+    throw InvalidInput("a label map holds at most 32767 objects, not " + std::to_string(objects.size()));
   LabelMap map;
   map.scene.lattice = lattice;
   map.scene.meaning = Meaning::Label;
@@ -123,10 +122,10 @@ std::vector<Label> labels(const Scene& scene) {
           if (scene.padding && value == *scene.padding) continue;
           const std::optional<int> number = label_of(value);
           if (!number)
-            throw std::invalid_argument(scene.source + ": holds " + std::to_string(value) +
-                                        ", which is no label: labels are whole numbers from 0 to " +
-                                        std::to_string(most_label) +
-                                        (value > most_label ? ": give its labels smaller numbers" : ""));
+            throw InvalidInput(scene.source + ": holds " + std::to_string(value) +
+                               ", which is no label: labels are whole numbers from 0 to " +
+                               std::to_string(most_label) +
+                               (value > most_label ? ": give its labels smaller numbers" : ""));
           if (last == found.end() || last->first != *number)
             last = found.emplace(*number, Label{*number}).first;
           ++last->second.samples;
@@ -217,8 +216,8 @@ Octree octree_of_label(const Universe& universe, const Scene& scene, int label) 
 std::vector<LabelLayer> label_layers(const Scene& scene) {
   const std::vector<Label> all = labels(scene);
   if (all.size() > 32767)
-    throw std::length_error(scene.source + ": holds " + std::to_string(all.size()) +
-                            " labels, more than 32767: choose some of them");
+    throw TooLarge(scene.source + ": holds " + std::to_string(all.size()) +
+                   " labels, more than 32767: choose some of them");
   const auto overlap = [&](int a, int b) {
     return std::any_of(scene.overlaps.begin(), scene.overlaps.end(), [&](const auto& each) {
       return std::count(each.second.begin(), each.second.end(), a) > 0 &&

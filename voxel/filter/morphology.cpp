@@ -21,8 +21,7 @@ namespace {
 
 void check_radius(double radius_mm) {
   if (!std::isfinite(radius_mm) || radius_mm < 0.0)
-    throw std::invalid_argument("a radius must be at least 0 mm and finite, not " +
-                                std::to_string(radius_mm));
+    throw InvalidInput("a radius must be at least 0 mm and finite, not " + std::to_string(radius_mm));
 }
 
 // The limit on squared distances. It includes voxels on the ball's surface although their squares may be

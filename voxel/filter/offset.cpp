@@ -23,6 +23,7 @@
 
 #include "voxel/filter/surface_crossings.h"
 #include "voxel/measure/distance_map.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/octree_node.h"
 
 namespace octotomy::voxel {
@@ -190,7 +191,7 @@ void fill(const Depths& depths, const glm::ivec3& block, int side, GreyBrick& br
 
 Window offset(const Octree& octree, const Expression& solid, double by_mm, const Progress& progress) {
   if (!std::isfinite(by_mm) || by_mm == 0.0)
-    throw std::invalid_argument("an offset is by a finite length other than 0 mm");
+    throw InvalidInput("an offset is by a finite length other than 0 mm");
   const Universe& universe = octree.universe();
   const Depths depths(octree, solid, by_mm);
   progress.at(0.4);

@@ -4,13 +4,15 @@
 #include <stdexcept>
 #include <string>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::voxel {
 
 std::vector<double> otsu_thresholds(const Histogram& histogram, int classes) {
   const std::size_t bins = histogram.counts.size();
   if (classes < 2 || classes > 8 || static_cast<std::size_t>(classes) > bins)
-    throw std::invalid_argument("Otsu's thresholds divide samples into 2 to 8 classes, not " +
-                                std::to_string(classes));
+    throw InvalidInput("Otsu's thresholds divide samples into 2 to 8 classes, not " +
+                       std::to_string(classes));
   // Sums over the bins before each bin: of samples, and of samples times their bin.
   std::vector<double> count(bins + 1, 0.0), total(bins + 1, 0.0);
   for (std::size_t bin = 0; bin < bins; ++bin) {

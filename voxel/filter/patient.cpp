@@ -462,7 +462,7 @@ void check_options(const PatientOptions& options) {
   const auto is_length = [](double value) { return std::isfinite(value) && value >= 0.0; };
   if (!std::isfinite(options.threshold) || !is_length(options.detach_mm) || !is_length(options.near_mm) ||
       !is_length(options.rim_mm) || !is_length(options.board_mm) || options.board_mm == 0.0)
-    throw std::invalid_argument("a headrest's threshold must be finite, its lengths finite and not negative");
+    throw InvalidInput("a headrest's threshold must be finite, its lengths finite and not negative");
 }
 
 }  // namespace
@@ -472,9 +472,9 @@ PatientParts patient_parts(const Scene& scene, const PatientOptions& options) {
   check_options(options);
   const auto* samples = std::get_if<Int16Samples>(&scene.samples);
   if (samples == nullptr)
-    throw std::invalid_argument(scene.source +
-                                ": a headrest can be removed from 16-bit integer samples only, and these are "
-                                "floats");
+    throw InvalidInput(scene.source +
+                       ": a headrest can be removed from 16-bit integer samples only, and these are "
+                       "floats");
   options.progress.at(0.0);
   return Parter(scene, *samples, options).run();
 }

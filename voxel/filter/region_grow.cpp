@@ -7,27 +7,28 @@
 #include <string>
 
 #include "voxel/solid/combine.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::voxel {
 
 Octree grow_region(const GreyOctree& grey, const GrowOptions& options) {
-  if (options.seeds.empty()) throw std::invalid_argument("a region needs at least one seed");
+  if (options.seeds.empty()) throw InvalidInput("a region needs at least one seed");
   if (!std::isfinite(options.tolerance) || options.tolerance < 0.0)
-    throw std::invalid_argument("a region's tolerance must be at least zero, not " +
-                                std::to_string(options.tolerance));
+    throw InvalidInput("a region's tolerance must be at least zero, not " +
+                       std::to_string(options.tolerance));
   const int side = grey.universe().side();
   double low = grey.sample(options.seeds.front());
   double high = low;
   for (const glm::ivec3& seed : options.seeds) {
     if (glm::any(glm::lessThan(seed, glm::ivec3(0))) ||
         glm::any(glm::greaterThanEqual(seed, glm::ivec3(side))))
-      throw std::invalid_argument("the seed " + std::to_string(seed.x) + " " + std::to_string(seed.y) + " " +
-                                  std::to_string(seed.z) + " is outside the universe of " +
-                                  std::to_string(side) + " voxels a side");
+      throw InvalidInput("the seed " + std::to_string(seed.x) + " " + std::to_string(seed.y) + " " +
+                         std::to_string(seed.z) + " is outside the universe of " + std::to_string(side) +
+                         " voxels a side");
     if (!grey.scan().contains(seed))
-      throw std::invalid_argument("the seed " + std::to_string(seed.x) + " " + std::to_string(seed.y) + " " +
-                                  std::to_string(seed.z) +
-                                  " lies beyond the scan or on padding, where nothing was measured");
+      throw InvalidInput("the seed " + std::to_string(seed.x) + " " + std::to_string(seed.y) + " " +
+                         std::to_string(seed.z) +
+                         " lies beyond the scan or on padding, where nothing was measured");
     low = std::min(low, static_cast<double>(grey.sample(seed)));
     high = std::max(high, static_cast<double>(grey.sample(seed)));
   }

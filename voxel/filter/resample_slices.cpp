@@ -11,6 +11,7 @@
 
 #include "voxel/filter/slice_work.h"
 #include "voxel/measure/distance_map.h"
+#include "voxel/space/error.h"
 #include "voxel/space/memory_need.h"
 #include "voxel/tree/interpolate.h"
 
@@ -113,14 +114,13 @@ std::vector<float> slice_distances(const Scene& scene, int k, const ShapeOptions
 
 Lattice with_slice_spacing(const Lattice& lattice, double spacing_mm) {
   if (!(spacing_mm > 0.0) || !std::isfinite(spacing_mm))
-    throw std::invalid_argument("the spacing of slices must be positive, not " + std::to_string(spacing_mm) +
-                                " mm");
+    throw InvalidInput("the spacing of slices must be positive, not " + std::to_string(spacing_mm) + " mm");
   const double from_mm = lattice.spacing_mm().z;
   const double steps = (lattice.dims.z - 1) * (from_mm / spacing_mm);
   constexpr int most_slices = 1 << 16;
   if (steps >= most_slices)
-    throw std::invalid_argument("slices " + std::to_string(spacing_mm) + " mm apart would be more than " +
-                                std::to_string(most_slices) + ": choose a wider spacing");
+    throw InvalidInput("slices " + std::to_string(spacing_mm) + " mm apart would be more than " +
+                       std::to_string(most_slices) + ": choose a wider spacing");
   // As in place_of(), rounding must not lose the last slice.
   const double rounding = 8.0 * std::numeric_limits<double>::epsilon() * (1.0 + steps);
   Lattice result = lattice;
@@ -132,7 +132,7 @@ Lattice with_slice_spacing(const Lattice& lattice, double spacing_mm) {
 Scene resample_slices(const Scene& scene, double spacing_mm, SliceKernel kernel, const Progress& progress) {
   check(scene);
   if (scene.meaning == Meaning::Label && kernel != SliceKernel::Nearest)
-    throw std::invalid_argument("labels cannot be mixed: resample a label map by the nearest slice");
+    throw InvalidInput("labels cannot be mixed: resample a label map by the nearest slice");
   Scene result = empty_scene_like(scene, with_slice_spacing(scene.lattice, spacing_mm));
   need_memory(scene.source, result.lattice.sample_count(),
               std::holds_alternative<FloatSamples>(scene.samples) ? sizeof(float) : sizeof(std::int16_t));

@@ -23,6 +23,7 @@
 
 #include "voxel/filter/surface_crossings.h"
 #include "voxel/solid/membership.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/octree_node.h"
 
 namespace octotomy::voxel {
@@ -72,8 +73,7 @@ class FirstDepths {
       far_end_mm_ = std::max(far_end_mm_, at.z);
     }
     const glm::dvec2 centre(of_voxel(glm::dvec3(0.0)));
-    origin_ =
-        centre + (glm::floor((low - centre) / pitch_mm_) - double(margin)) * pitch_mm_;
+    origin_ = centre + (glm::floor((low - centre) / pitch_mm_) - double(margin)) * pitch_mm_;
     dims_ = glm::ivec2(glm::ceil((high - origin_) / pitch_mm_)) + 1 + margin;
     depths_ = std::vector<std::atomic<float>>(static_cast<std::size_t>(dims_.x) *
                                               static_cast<std::size_t>(dims_.y));
@@ -306,7 +306,7 @@ void check_unit(const glm::dvec3& direction) {
 }
 
 void check_voxels(const Octree& octree) {
-  if (octree.is_empty()) throw std::invalid_argument("an object without voxels has no shadow");
+  if (octree.is_empty()) throw InvalidInput("an object without voxels has no shadow");
 }
 
 FirstDepths first_depths(const SurfaceCrossings& crossings, const Universe& universe, const Expression& solid,

@@ -11,6 +11,7 @@
 
 #include "voxel/filter/slice_work.h"
 #include "voxel/solid/polygon.h"
+#include "voxel/space/error.h"
 
 // A contour is a closed walk over links. A link is a pair of an inside sample and one of its four neighbours
 // that is outside. At each link the two samples and the two ahead of them, a 2 by 2 neighbourhood, decide the
@@ -43,10 +44,9 @@ class Follower {
   Follower(const Scene& scene, int k, double threshold)
       : size_(scene.lattice.dims.x, scene.lattice.dims.y), threshold_(threshold) {
     if (k < 0 || k >= scene.lattice.dims.z)
-      throw std::invalid_argument("there is no slice " + std::to_string(k) + " of " +
-                                  std::to_string(scene.lattice.dims.z));
-    if (!std::isfinite(threshold))
-      throw std::invalid_argument("a contour's threshold must be a finite number");
+      throw InvalidInput("there is no slice " + std::to_string(k) + " of " +
+                         std::to_string(scene.lattice.dims.z));
+    if (!std::isfinite(threshold)) throw InvalidInput("a contour's threshold must be a finite number");
     const std::size_t area = static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y);
     values_.resize(area);
     std::visit(
@@ -124,7 +124,7 @@ int slice_axis(const Lattice& lattice) {
   const double least = std::cos(0.1 * std::numbers::pi / 180.0);
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(normal[axis]) >= least) return axis;
-  throw std::invalid_argument(
+  throw InvalidInput(
       "regions need slices across one of the patient's axes, and these slices are oblique: resample the scan "
       "along the patient's axes first");
 }

@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 #include <type_traits>
 
+#include "voxel/space/error.h"
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 
@@ -32,7 +33,7 @@ inline std::size_t slice_size(const Lattice& lattice) {
 /// message.
 inline void check_values(const Scene& scene, const std::string& refusal) {
   check(scene);
-  if (scene.meaning == Meaning::Label) throw std::invalid_argument("labels have no order: " + refusal);
+  if (scene.meaning == Meaning::Label) throw InvalidInput("labels have no order: " + refusal);
 }
 
 /// A copy of a scene on another lattice, without samples and holes.

@@ -20,6 +20,7 @@
 
 #include "voxel/filter/measured.h"
 #include "voxel/filter/slice_work.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -102,7 +103,7 @@ Scene filtered(const Scene& scene, int reach, const Progress& progress, const Ne
 }
 
 [[noreturn]] void refuse(const std::string& what) {
-  throw std::invalid_argument(what);
+  throw InvalidInput(what);
 }
 
 }  // namespace

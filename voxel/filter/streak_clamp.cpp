@@ -10,6 +10,7 @@
 
 #include "voxel/filter/slice_work.h"
 #include "voxel/measure/distance_map.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -55,7 +56,7 @@ StreakClamp clamp_streaks(const Scene& scene, const StreakOptions& options) {
   check(scene);
   if (!(options.low < options.high) || !std::isfinite(options.low) || !std::isfinite(options.high) ||
       !std::isfinite(options.metal) || !(options.reach_mm >= 0.0) || !std::isfinite(options.reach_mm))
-    throw std::invalid_argument(
+    throw InvalidInput(
         "a clamp of streaks needs finite numbers, low below high, and a reach of at least 0 mm");
   StreakClamp result{scene};
   const int slices = scene.lattice.dims.z;

@@ -9,6 +9,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::voxel {
 namespace {
 
@@ -112,7 +114,7 @@ BoundaryDistance::BoundaryDistance(const Octree& octree)
   for (int a = 0; a < 3; ++a)
     if (const int b = (a + 1) % 3;
         std::abs(glm::dot(axes[a], axes[b])) > 1e-9 * spacing_mm_[a] * spacing_mm_[b])
-      throw std::invalid_argument("boundary distance: the universe's axes are not perpendicular");
+      throw InvalidInput("boundary distance: the universe's axes are not perpendicular");
 }
 
 double BoundaryDistance::operator()(const glm::dvec3& p_mm, double enough_mm) const {

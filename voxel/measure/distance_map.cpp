@@ -11,6 +11,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "voxel/space/error.h"
 #include "voxel/tree/build.h"
 #include "voxel/tree/octree_node.h"
 #include "voxel/tree/slice_bits.h"
@@ -77,7 +78,7 @@ glm::dvec3 orthogonal_spacing_mm(const Universe& universe) {
     // A shear of 2^-20 moves the end of the longest universe, 4096 voxels, by less than a hundredth of a
     // voxel.
     if (std::abs(glm::dot(edges[axis], edges[next])) > 0x1p-20 * spacing_mm[axis] * spacing_mm[next])
-      throw std::invalid_argument(
+      throw InvalidInput(
           "distances need a universe whose axes are at right angles: resample the sheared scan first");
   }
   return spacing_mm;

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "voxel/measure/distance_map.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/voxel_boundary.h"
 
 namespace octotomy::voxel {
@@ -207,7 +208,7 @@ LatticeBall ball_about(const glm::ivec3& centre, const Pyramid& pyramid, double 
   return ball;
 }
 
-/// Every voxel, or about so many of them by a multiplicative hash of their number.
+/// Every voxel, or about the given number of them, chosen by a multiplicative hash of their number.
 std::vector<glm::ivec3> some_of(const std::vector<glm::ivec3>& voxels, std::size_t wanted) {
   if (voxels.size() <= wanted) return voxels;
   const double share = static_cast<double>(wanted) / static_cast<double>(voxels.size());
@@ -303,9 +304,9 @@ void summarise(std::vector<double> values, double longest_edge_mm, VoxelThicknes
 }
 
 void check(const LocalThicknessOptions& options) {
-  if (options.samples < 64) throw std::invalid_argument("local thickness: takes at least 64 samples");
+  if (options.samples < 64) throw InvalidInput("local thickness: takes at least 64 samples");
   if (!(options.wall_angle_deg >= 91.0 && options.wall_angle_deg <= 179.0))
-    throw std::invalid_argument("local thickness: a wall's angle is from 91 to 179 degrees");
+    throw InvalidInput("local thickness: a wall's angle is from 91 to 179 degrees");
 }
 
 }  // namespace
@@ -318,8 +319,7 @@ VoxelThickness local_thickness(const Octree& octree, const LocalThicknessOptions
   const VoxelRange range = grown(own, 1);
   constexpr std::size_t most_fine = std::size_t{1} << 26, most = std::size_t{1} << 28;
   if (count_of(range.dims()) > most)
-    throw std::length_error(
-        "local thickness: the object's extent has more than 2^28 voxels: take larger ones");
+    throw TooLarge("local thickness: the object's extent has more than 2^28 voxels: take larger ones");
   const int finer = count_of(2 * range.dims()) <= most_fine ? 2 : 1;
   options.progress.at(0.0);
   const Pyramid pyramid(octree, range, finer);

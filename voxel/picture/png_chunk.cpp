@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <zlib.h>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::voxel {
 namespace {
 
@@ -35,19 +37,19 @@ std::string png_chunk(const std::string& letters, std::string_view data) {
 }
 
 std::vector<PngChunk> png_chunks(std::string_view bytes) {
-  if (!bytes.starts_with(png_signature)) throw std::invalid_argument("is no PNG picture");
+  if (!bytes.starts_with(png_signature)) throw InvalidInput("is no PNG picture");
   std::vector<PngChunk> chunks;
   for (std::size_t at = png_signature.size(); at < bytes.size();) {
     const std::size_t left = bytes.size() - at;
     if (left < around_data || left - around_data < big_endian_at(bytes, at))
-      throw std::invalid_argument("is a PNG picture that ends within a chunk");
+      throw InvalidInput("is a PNG picture that ends within a chunk");
     const std::size_t length = big_endian_at(bytes, at);
     chunks.push_back({bytes.substr(at + 4, 4), bytes.substr(at + 8, length)});
     if (chunks.back().letters == "IEND") break;
     at += around_data + length;
   }
   if (chunks.empty() || chunks.front().letters != "IHDR" || chunks.front().data.size() != 13)
-    throw std::invalid_argument("is a PNG picture that does not begin with its size");
+    throw InvalidInput("is a PNG picture that does not begin with its size");
   return chunks;
 }
 

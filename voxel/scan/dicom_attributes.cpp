@@ -40,8 +40,8 @@ std::string dicom_decimals(const glm::dvec3& p) {
 
 void check_dicom_text(const std::string& text, const char* name) {
   if (text.size() > 64 || text.find('\\') != std::string::npos)
-    throw std::invalid_argument(std::string(name) + " '" + text +
-                                "' must have at most 64 characters and no backslash");
+    throw InvalidInput(std::string(name) + " '" + text +
+                       "' must have at most 64 characters and no backslash");
 }
 
 void DicomDigest::add(const void* bytes, std::size_t count) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // octotomy_dicom_codec: decompresses the DICOM frames that it receives over the socket at its standard input,
-// until the socket closes. voxel/scan/dicom_codec.cpp starts it; users never do.
+// until the socket closes. voxel/scan/dicom_codec.cpp starts it; users never do. A frame that makes a codec run code of
+// the frame's own reaches no network, no program and no file outside of the process's own folder.
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "voxel/scan/dicom_codec_wire.h"
+#include "voxel/space/confine.h"
 
 namespace {
 
@@ -98,6 +100,10 @@ int main(int count, char** arguments) {
   gdcm::Trace::ErrorOff();
   // One of GDCM's codecs uses temporary files and does not remove them when it fails.
   if (count != 2 || setenv("TMPDIR", arguments[1], 1) != 0) return 1;
+#ifndef OCTOTOMY_SANITIZED  // a sanitizer traces the process
+  // Without a kernel that can, the limits above and the process's own address space remain.
+  static_cast<void>(octotomy::voxel::confine(arguments[1]));
+#endif
   while (answer_next()) {
   }
   std::error_code ignored;

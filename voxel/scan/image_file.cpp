@@ -12,6 +12,7 @@
 #include "voxel/scan/image_file_oiio.h"
 #include "voxel/scan/picture_header.h"
 #include "voxel/scan/portable_map.h"
+#include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/helper_file.h"
 #include "voxel/space/quiet_errors.h"
@@ -78,7 +79,7 @@ std::vector<StoredImage> read_images(const fs::path& path) {
     header = read_picture_header(picture_header_bytes(path), most_bytes);
     if (header.format == "pnm" && header.largest_sample > largest_of_library)
       return {read_portable_map(file_bytes(path), most_bytes)};
-  } catch (const std::invalid_argument& error) {
+  } catch (const InvalidInput& error) {
     refuse(path, error.what());
   }
   std::vector<StoredImage> images;

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "voxel/picture/png_chunk.h"
+#include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {
@@ -26,7 +27,7 @@ constexpr std::string_view jp2_begin = "\0\0\0\x0cjP  "sv;
 constexpr std::size_t longest_header = 1 << 16;
 
 [[noreturn]] void refuse_claim() {
-  throw std::invalid_argument("is a picture that claims more than the file can hold");
+  throw InvalidInput("is a picture that claims more than the file can hold");
 }
 
 std::uint32_t big_endian_pair_at(std::string_view bytes, std::size_t at) {
@@ -43,9 +44,8 @@ std::uint32_t little_endian_at(std::string_view bytes, std::size_t at) {
 std::uint32_t read_codestream(std::string_view bytes, std::size_t most_bytes) {
   constexpr std::size_t header_bytes = 43, depth_at = 42;  // with the first channel's depth
   if (!bytes.starts_with(codestream_begin))
-    throw std::invalid_argument("is a JPEG 2000 picture that does not begin with its size");
-  if (bytes.size() < header_bytes)
-    throw std::invalid_argument("is a JPEG 2000 picture that ends in its header");
+    throw InvalidInput("is a JPEG 2000 picture that does not begin with its size");
+  if (bytes.size() < header_bytes) throw InvalidInput("is a JPEG 2000 picture that ends in its header");
   const auto number = [&](std::size_t at) { return static_cast<double>(big_endian_at(bytes, at)); };
   const double channels = big_endian_pair_at(bytes, 40);
   // OpenJPEG's opj_tcp_t and opj_tccp_t, a tile's and its channels' parameters, rounded up.
@@ -55,7 +55,7 @@ std::uint32_t read_codestream(std::string_view bytes, std::size_t most_bytes) {
     const double end = number(8 + axis), begin = number(16 + axis);
     const double tile = number(24 + axis), first_tile = number(32 + axis);
     if (!(begin < end && tile > 0 && first_tile <= begin))
-      throw std::invalid_argument("is a JPEG 2000 picture without pixels");
+      throw InvalidInput("is a JPEG 2000 picture without pixels");
     samples *= end - begin;
     tiles *= std::ceil((end - first_tile) / tile);
   }
@@ -63,7 +63,7 @@ std::uint32_t read_codestream(std::string_view bytes, std::size_t most_bytes) {
   if (4 * samples > most || tiles * (tile_bytes + tile_channel_bytes * channels) > most) refuse_claim();
   const auto depth = static_cast<std::uint8_t>(bytes[depth_at]);
   if ((depth & 0x80) != 0)
-    throw std::invalid_argument(
+    throw InvalidInput(
         "is a JPEG 2000 picture of signed samples, which would be read as unsigned: write "
         "it as TIFF");
   return depth < 16 ? (2u << depth) - 1 : 0;
@@ -82,7 +82,7 @@ std::string_view codestream_of(std::string_view bytes) {
     if (length < header || length > bytes.size() - at) break;
     at += length;
   }
-  throw std::invalid_argument("is a JPEG 2000 picture without a codestream");
+  throw InvalidInput("is a JPEG 2000 picture without a codestream");
 }
 
 /// The first frame's header. Markers are FF and a byte that is neither 00 nor FF; most have a length that
@@ -113,11 +113,11 @@ void check_bitmap(std::string_view bytes) {
   constexpr std::array<std::uint32_t, 6> known{12, 40, 52, 56, 108, 124};
   const std::uint32_t size = bytes.size() >= size_at + 4 ? little_endian_at(bytes, size_at) : 0;
   if (std::find(known.begin(), known.end(), size) == known.end())
-    throw std::invalid_argument("is a BMP picture with a header of an unknown size");
+    throw InvalidInput("is a BMP picture with a header of an unknown size");
   const bool has_packing = size != known.front() && bytes.size() >= packing_at + 4;
   const std::uint32_t packing = has_packing ? little_endian_at(bytes, packing_at) : 0;
   if (packing == 1 || packing == 2)
-    throw std::invalid_argument(
+    throw InvalidInput(
         "is a run-length-encoded BMP picture, which would be read wrongly: save it uncompressed");
 }
 
@@ -131,12 +131,11 @@ std::uint32_t read_pnm(std::string_view bytes) {
       at = bytes[at] == '#' ? std::min(bytes.find('\n', at), bytes.size()) : at + 1;
     const auto [end, error] = std::from_chars(bytes.data() + at, bytes.data() + bytes.size(), number);
     if (error != std::errc())
-      throw std::invalid_argument(
-          "is a PNM picture that does not begin with its size and its largest sample");
+      throw InvalidInput("is a PNM picture that does not begin with its size and its largest sample");
     at = static_cast<std::size_t>(end - bytes.data());
   }
   if (number < 1 || number > 65535)
-    throw std::invalid_argument("is a PNM picture whose largest sample is not from 1 to 65535");
+    throw InvalidInput("is a PNM picture whose largest sample is not from 1 to 65535");
   return number;
 }
 
@@ -169,7 +168,7 @@ PictureHeader read_picture_header(std::string_view bytes, std::size_t most_bytes
   if (begins("\x76\x2f\x31\x01"sv)) return {"openexr"};
   if (begins("P2") || begins("P3") || begins("P5") || begins("P6")) return {"pnm", read_pnm(bytes)};
   if (begins("P1") || begins("P4") || begins("PF") || begins("Pf")) return {"pnm"};
-  throw std::invalid_argument(
+  throw InvalidInput(
       "is not a picture in a known format: give PNG, TIFF, JPEG, WebP, BMP, PGM, EXR or JPEG 2000");
 }
 

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::voxel {
 namespace {
 
@@ -23,7 +25,7 @@ std::uint32_t number_at(std::string_view bytes, std::size_t& at) {
     at = bytes[at] == '#' ? std::min(bytes.find('\n', at), bytes.size()) : at + 1;
   std::uint32_t number = 0;
   const auto [end, error] = std::from_chars(bytes.data() + at, bytes.data() + bytes.size(), number);
-  if (error != std::errc()) throw std::invalid_argument("is a PNM picture whose samples end early");
+  if (error != std::errc()) throw InvalidInput("is a PNM picture whose samples end early");
   at = static_cast<std::size_t>(end - bytes.data());
   return number;
 }
@@ -42,9 +44,9 @@ StoredImage read_portable_map(std::string_view bytes, std::size_t most_bytes) {
   const double samples = static_cast<double>(width) * height * static_cast<double>(channels);
   const double left = at < bytes.size() ? static_cast<double>(bytes.size() - at) : 0.0;
   if (width < 1 || height < 1 || 2.0 * samples > static_cast<double>(most_bytes))
-    throw std::invalid_argument("is a PNM picture of a size that its file cannot hold");
+    throw InvalidInput("is a PNM picture of a size that its file cannot hold");
   if (2.0 * samples > left + (is_text ? 1.0 : 0.0))
-    throw std::invalid_argument("is a PNM picture whose samples end early");
+    throw InvalidInput("is a PNM picture whose samples end early");
   StoredImage image;
   image.width = static_cast<int>(width);
   image.height = static_cast<int>(height);
@@ -61,10 +63,10 @@ StoredImage read_portable_map(std::string_view bytes, std::size_t most_bytes) {
         at += 2;
       }
       if (pixel[channel] > largest)
-        throw std::invalid_argument("is a PNM picture with a sample of " + std::to_string(pixel[channel]) +
-                                    ", above the largest that its header states, " + std::to_string(largest) +
-                                    ": is the file damaged?");
-      if (pixel[channel] != pixel[0]) throw std::invalid_argument("is a colour image; a scan is grey");
+        throw InvalidInput("is a PNM picture with a sample of " + std::to_string(pixel[channel]) +
+                           ", above the largest that its header states, " + std::to_string(largest) +
+                           ": is the file damaged?");
+      if (pixel[channel] != pixel[0]) throw InvalidInput("is a colour image; a scan is grey");
     }
     const auto sample = static_cast<std::uint16_t>(pixel[0]);
     std::memcpy(&image.bytes[i], &sample, sizeof sample);

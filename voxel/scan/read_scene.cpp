@@ -12,6 +12,7 @@
 #include "voxel/scan/read_raw.h"
 #include "voxel/scan/read_volume.h"
 #include "voxel/scan/size_audit.h"
+#include "voxel/space/error.h"
 #include "voxel/space/regular_file.h"
 
 namespace octotomy::voxel {
@@ -22,18 +23,17 @@ namespace fs = std::filesystem;
 /// Refuses options that override the frame, unit or spacing: DICOM states all of them.
 void need_no_override(const fs::path& path, const ReadOptions& options) {
   if (options.frame || options.unit)
-    throw std::invalid_argument(
-        path.string() +
-        ": DICOM states its patient frame (LPS) and its unit of length (mm): leave --frame "
-        "and --unit out");
+    throw InvalidInput(path.string() +
+                       ": DICOM states its patient frame (LPS) and its unit of length (mm): leave --frame "
+                       "and --unit out");
   if (options.spacing_mm)
-    throw std::invalid_argument(path.string() + ": DICOM states its spacing: leave --spacing out");
+    throw InvalidInput(path.string() + ": DICOM states its spacing: leave --spacing out");
 }
 
 /// Refuses options that choose a series: a single file or stack has none to choose from.
 void need_no_series(const fs::path& path, const ReadOptions& options) {
   if (!options.series.empty() || options.join || !options.slices.empty())
-    throw std::invalid_argument(
+    throw InvalidInput(
         path.string() +
         ": is no DICOM series: leave --series, --join and --slices out, or give the folder of the series");
 }
@@ -41,9 +41,9 @@ void need_no_series(const fs::path& path, const ReadOptions& options) {
 Scene read_volume_file(const fs::path& path, VolumeFormat format, const ReadOptions& options) {
   need_no_series(path, options);
   if (options.spacing_mm)
-    throw std::invalid_argument(path.string() +
-                                ": its header states the spacing: leave --spacing out, or correct the "
-                                "header; --unit names another unit of length");
+    throw InvalidInput(path.string() +
+                       ": its header states the spacing: leave --spacing out, or correct the "
+                       "header; --unit names another unit of length");
   return read_volume(path, format, options);
 }
 
@@ -116,9 +116,9 @@ std::vector<SliceRange> parse_slices(const std::string& text) {
     int value = 0;
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
     if (error != std::errc() || end != part.data() + part.size() || value < 1)
-      throw std::invalid_argument("'" + text +
-                                  "' names no images: give FROM:TO counted from 1, for example "
-                                  "1:40 or 1:40,45:60");
+      throw InvalidInput("'" + text +
+                         "' names no images: give FROM:TO counted from 1, for example "
+                         "1:40 or 1:40,45:60");
     return value;
   };
   for (std::size_t at = 0; at <= text.size();) {
@@ -127,7 +127,7 @@ std::vector<SliceRange> parse_slices(const std::string& text) {
     const std::size_t colon = part.find(':');
     const int first = number(part.substr(0, colon));
     const int last = colon == std::string_view::npos ? first : number(part.substr(colon + 1));
-    if (last < first) throw std::invalid_argument("'" + text + "' ends before it begins: swap FROM and TO");
+    if (last < first) throw InvalidInput("'" + text + "' ends before it begins: swap FROM and TO");
     slices.push_back({first, last});
     at = end + 1;
   }
@@ -146,7 +146,7 @@ Scene read_scene(const fs::path& path, const ReadOptions& options) {
   for (Finding& finding : scene.audit) finding.detail = on_one_line(finding.detail);
   try {
     check(scene);
-  } catch (const std::invalid_argument& flaw) {
+  } catch (const InvalidInput& flaw) {
     refuse(path, std::string("the header's geometry is unusable: ") + flaw.what());
   }
   need_near_places(path, scene.lattice);

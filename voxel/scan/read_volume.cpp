@@ -14,6 +14,7 @@
 #include "voxel/scan/label_names.h"
 #include "voxel/scan/label_overlaps.h"
 #include "voxel/scan/neighbour_audit.h"
+#include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
 #include "voxel/space/printed.h"
@@ -36,7 +37,7 @@ bool passes_check(const Scene& scene) {
   try {
     check(scene);
     return true;
-  } catch (const std::invalid_argument&) {
+  } catch (const InvalidInput&) {
     return false;  // read_scene() reports it after the samples have been checked
   }
 }

@@ -11,6 +11,7 @@
 #include "voxel/scan/dicom_derived.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/space/disk_need.h"
+#include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
 
@@ -54,7 +55,7 @@ Rescale rescale_of(const Scene& scene) {
                   [&](float value) { return is_padding(value) || is_exact(value); }))
     return {};
   if (!std::all_of(samples.begin(), samples.end(), [](float value) { return std::isfinite(value); }))
-    throw std::invalid_argument("a sample is not finite: DICOM stores numbers only");
+    throw InvalidInput("a sample is not finite: DICOM stores numbers only");
   const Range values = range(scene);
   // One step is reserved at either end for the rounding of the intercept.
   double slope = std::exp2(std::ceil(std::log2(std::max(values.high - values.low, 1e-6) / 65533.0)));
@@ -87,10 +88,9 @@ class SeriesWriter {
     along_column_ = glm::dvec3(lps_from_voxel[1]) / spacing_mm_.y;
     // The rounding of single precision is allowed; ImageOrientationPatient keeps 13 decimals or more.
     if (std::abs(glm::dot(along_row_, along_column_)) > 1e-6)
-      throw std::invalid_argument(
-          "a DICOM slice's rows and columns must be perpendicular: resample the scene");
+      throw InvalidInput("a DICOM slice's rows and columns must be perpendicular: resample the scene");
     if (scene.lattice.dims.x > 65535 || scene.lattice.dims.y > 65535)
-      throw std::invalid_argument("a DICOM slice has at most 65535 rows and columns");
+      throw InvalidInput("a DICOM slice has at most 65535 rows and columns");
     step_mm_ = std::abs(glm::dot(glm::dvec3(lps_from_voxel[2]), glm::cross(along_row_, along_column_)));
     digest_.add(&lps_from_voxel, sizeof lps_from_voxel);
     digest_.add(&scene.lattice.dims, sizeof scene.lattice.dims);

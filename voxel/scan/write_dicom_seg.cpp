@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // 1 find each segment's planes that hold a voxel and the rectangle around all; 2 pack their pixels, one bit
-// each (of fractions a byte), and describe each plane as a frame; 3 describe the segments, the dimensions
+// each (of fractions a byte, of label maps the object's number), and describe each plane as a frame; 3 describe the segments, the dimensions
 // (segment and position) and the origin.
 #include "voxel/scan/write_dicom_seg.h"
 
@@ -13,6 +13,7 @@
 
 #include "voxel/scan/character_set.h"
 #include "voxel/scan/dicom_derived.h"
+#include "voxel/space/error.h"
 #include "voxel/space/staged_files.h"
 #include "voxel/tree/slice_bits.h"
 
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 using Items = std::vector<DicomAttributes>;
 
 constexpr const char* segmentation_storage = "1.2.840.10008.5.1.4.1.1.66.4";
+constexpr const char* label_map_storage = "1.2.840.10008.5.1.4.1.1.66.7";
 /// The fraction of a wholly filled pixel.
 constexpr std::uint16_t most_fraction = 255;
 
@@ -69,7 +71,7 @@ void add_planes(Segments segments, std::size_t segment, const Progress& progress
     digest.add(slice.words.data(), slice.words.size() * sizeof slice.words[0]);
   }
   if (extent.planes.size() == before)
-    throw std::invalid_argument("the object is empty: choose an object with at least one voxel");
+    throw InvalidInput("the object is empty: choose an object with at least one voxel");
 }
 
 /// The same of the planes of a segment's fractions.
@@ -93,8 +95,8 @@ void add_planes(const Lattice& lattice, const DicomFractions& segment, std::size
     digest.add(plane, static_cast<std::size_t>(fraction - plane));
   }
   if (extent.planes.size() == before)
-    throw std::invalid_argument("the fractions of '" + segment.label +
-                                "' are all zero: choose an object that fills a part of a voxel");
+    throw InvalidInput("the fractions of '" + segment.label +
+                       "' are all zero: choose an object that fills a part of a voxel");
 }
 
 /// The number of bytes of the frames' pixels. Throws Error, Geometry, if it is beyond DICOM's limit.
@@ -125,6 +127,44 @@ std::string packed_pixels(Segments segments, const Extent& extent, const Progres
   return pixels;
 }
 
+/// Keeps one of the planes at each height, which every object of a label map shares.
+void share_planes(Extent& extent) {
+  std::vector<Plane>& planes = extent.planes;
+  std::sort(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) { return a.z < b.z; });
+  planes.erase(
+      std::unique(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) { return a.z == b.z; }),
+      planes.end());
+}
+
+/// The frames' pixels: the number of the object that holds each, 0 for none; two bytes each for more than 255
+/// objects.
+template <typename Number>
+std::string label_pixels(Segments segments, const Extent& extent, const Progress& progress) {
+  std::string pixels(pixel_bytes(extent, 8 * sizeof(Number)), '\0');
+  auto* const numbers = reinterpret_cast<Number*>(pixels.data());
+  const glm::ivec2 size = extent.size_px();
+  SliceBits slice;
+  for (std::size_t i = 0; i < extent.planes.size(); ++i) {
+    progress.at(0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(extent.planes.size()));
+    Number* const frame = numbers + i * static_cast<std::size_t>(size.x) * size.y;
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+      read_slice(segments[k].object, extent.planes[i].z, slice);
+      for (int y = extent.low.y; y <= extent.high.y; ++y)
+        for (int x = extent.low.x; x <= extent.high.x; ++x) {
+          if (((slice.row(y)[x / 64] >> (x % 64)) & 1) == 0) continue;
+          Number& number = frame[static_cast<std::size_t>(y - extent.low.y) * size.x + (x - extent.low.x)];
+          if (number != 0)
+            throw Error(ErrorCode::Geometry,
+                        "'" + segments[number - 1U].label + "' and '" + segments[k].label +
+                            "' share voxels, and a label map has one object at each: write a "
+                            "binary segmentation");
+          number = static_cast<Number>(k + 1);
+        }
+    }
+  }
+  return pixels;
+}
+
 /// The frames' pixels, a byte each.
 std::string fraction_pixels(const Lattice& lattice, std::span<const DicomFractions> segments,
                             const Extent& extent) {
@@ -149,7 +189,14 @@ struct Content {
   DicomDigest digest = {};
   Extent extent = {};
   std::string pixels = {};
-  bool is_fractional = false;
+  enum class Kind { Binary, Fractional, LabelMap } kind = Kind::Binary;
+
+  bool is_label_map() const { return kind == Kind::LabelMap; }
+  /// Bits of a pixel.
+  std::uint16_t bits() const {
+    if (kind == Kind::Binary) return 1;
+    return is_label_map() && labels.size() > 255 ? 16 : 8;
+  }
 };
 
 /// One item with one or more attributes, as most sequences of a segmentation have.
@@ -163,8 +210,12 @@ Items item(Fill fill) {
 void put_segments(DicomAttributes& file, const Content& content, const std::string& label) {
   // The object's anatomy is unknown. SNOMED's "Tissue" applies to every object.
   const Items tissue{dicom_code("85756007", "SCT", "Tissue")};
-  file.put(0x00620001, "CS", content.is_fractional ? "FRACTIONAL" : "BINARY");
-  if (content.is_fractional) {
+  file.put(0x00620001, "CS",
+           content.is_label_map()                      ? "LABELMAP"
+           : content.kind == Content::Kind::Fractional ? "FRACTIONAL"
+                                                       : "BINARY");
+  if (content.is_label_map()) file.put(0x00620013, "CS", "NO");  // segments do not overlap
+  if (content.kind == Content::Kind::Fractional) {
     file.put_short(0x0062000e, most_fraction);
     file.put(0x00620010, "CS", "OCCUPANCY");
   }
@@ -184,7 +235,7 @@ void put_segments(DicomAttributes& file, const Content& content, const std::stri
   file.put(0x00700084, "PN", "Octotomy^Planner");
 }
 
-void put_dimensions(DicomAttributes& file, const std::string& uid) {
+void put_dimensions(DicomAttributes& file, const std::string& uid, bool is_label_map) {
   const auto dimension = [&](DicomTag attribute, DicomTag group, const char* label) {
     DicomAttributes index;
     index.put(0x00209164, "UI", uid);
@@ -195,8 +246,11 @@ void put_dimensions(DicomAttributes& file, const std::string& uid) {
   };
   file.put_sequence(0x00209221,
                     item([&](DicomAttributes& organization) { organization.put(0x00209164, "UI", uid); }));
-  file.put_sequence(0x00209222, {dimension(0x0062000b, 0x0062000a, "Segment"),
-                                 dimension(0x00200032, 0x00209113, "Position")});
+  const DicomAttributes position = dimension(0x00200032, 0x00209113, "Position");
+  if (is_label_map)
+    file.put_sequence(0x00209222, {position});
+  else
+    file.put_sequence(0x00209222, {dimension(0x0062000b, 0x0062000a, "Segment"), position});
 }
 
 void put_shared_groups(DicomAttributes& file, const glm::dmat3& axes, const glm::dvec3& edge_mm) {
@@ -214,10 +268,10 @@ void put_shared_groups(DicomAttributes& file, const glm::dmat3& axes, const glm:
   file.put_sequence(0x52009229, {shared});
 }
 
-/// The functional groups of one frame: its segment and its place among the planes that have frames, both
-/// counted from 1.
-DicomAttributes frame_groups(std::uint16_t segment, std::uint32_t place, const glm::dvec3& first_mm,
-                             const std::vector<DicomSource::Image>& images) {
+/// The functional groups of one frame: its segment (of a label map, none) and its place among the planes that have
+/// frames, both counted from 1.
+DicomAttributes frame_groups(std::optional<std::uint16_t> segment, std::uint32_t place,
+                             const glm::dvec3& first_mm, const std::vector<DicomSource::Image>& images) {
   DicomAttributes frame;
   if (!images.empty())
     frame.put_sequence(0x00089124, item([&](DicomAttributes& derivation) {
@@ -228,19 +282,24 @@ DicomAttributes frame_groups(std::uint16_t segment, std::uint32_t place, const g
   frame.put_sequence(0x00209111, item([&](DicomAttributes& content) {
                        content.put(0x00209056, "SH", "1");
                        content.put_longs(0x00209057, {place});
-                       content.put_longs(0x00209157, {segment, place});
+                       if (segment)
+                         content.put_longs(0x00209157, {*segment, place});
+                       else
+                         content.put_longs(0x00209157, {place});
                      }));
   frame.put_sequence(0x00209113, item([&](DicomAttributes& position) {
                        position.put(0x00200032, "DS", dicom_decimals(first_mm));
                      }));
-  frame.put_sequence(0x0062000a,
-                     item([&](DicomAttributes& identified) { identified.put_short(0x0062000b, segment); }));
+  if (segment)
+    frame.put_sequence(
+        0x0062000a, item([&](DicomAttributes& identified) { identified.put_short(0x0062000b, *segment); }));
   return frame;
 }
 
 /// The frames, and the images that any frame refers to.
-void put_frames(DicomAttributes& file, const Lattice& lattice, const Extent& extent,
-                const std::optional<DicomSource>& source) {
+void put_frames(DicomAttributes& file, const Content& content, const std::optional<DicomSource>& source) {
+  const Lattice& lattice = content.lattice;
+  const Extent& extent = content.extent;
   Items frames;
   std::vector<DicomSource::Image> referenced;
   std::set<std::string> known;
@@ -252,7 +311,9 @@ void put_frames(DicomAttributes& file, const Lattice& lattice, const Extent& ext
     for (const DicomSource::Image& image : images)
       if (known.insert(image.instance_uid).second) referenced.push_back(image);
     const auto place = std::distance(places.begin(), places.find(z)) + 1;
-    frames.push_back(frame_groups(static_cast<std::uint16_t>(segment + 1), static_cast<std::uint32_t>(place),
+    std::optional<std::uint16_t> number;
+    if (!content.is_label_map()) number = static_cast<std::uint16_t>(segment + 1);
+    frames.push_back(frame_groups(number, static_cast<std::uint32_t>(place),
                                   lattice.lps_mm(glm::dvec3(extent.low, z)), images));
   }
   file.put_sequence(0x52009230, frames);
@@ -260,9 +321,11 @@ void put_frames(DicomAttributes& file, const Lattice& lattice, const Extent& ext
   if (source) put_referenced_series(file, source->series_uid, referenced);
 }
 
-void put_image(DicomAttributes& file, const glm::ivec2& size_px, std::uint16_t bits) {
+void put_image(DicomAttributes& file, const Content& content) {
+  const glm::ivec2 size_px = content.extent.size_px();
+  const std::uint16_t bits = content.bits();
   file.put(0x00080008, "CS", "DERIVED\\PRIMARY");
-  file.put(0x00080016, "UI", segmentation_storage);
+  file.put(0x00080016, "UI", content.is_label_map() ? label_map_storage : segmentation_storage);
   file.put(0x00080023, "DA", "20000101");
   file.put(0x00080033, "TM", "000000");
   file.put(0x00080060, "CS", "SEG");
@@ -278,6 +341,7 @@ void put_image(DicomAttributes& file, const glm::ivec2& size_px, std::uint16_t b
   file.put_short(0x00280101, bits);
   file.put_short(0x00280102, static_cast<std::uint16_t>(bits - 1));
   file.put_short(0x00280103, 0);
+  if (content.is_label_map()) file.put_short(0x00280120, 0);  // pixels of no object
   file.put(0x00282110, "CS", "00");
 }
 
@@ -290,7 +354,7 @@ glm::dmat3 perpendicular_axes(const Lattice& lattice) {
   // this.
   for (int i = 0; i < 3; ++i)
     if (std::abs(glm::dot(axes[i], axes[(i + 1) % 3])) > 1e-6)
-      throw std::invalid_argument(
+      throw InvalidInput(
           "a segmentation's rows, columns and planes must be perpendicular: resample the object");
   return axes;
 }
@@ -303,13 +367,13 @@ DicomAttributes segmentation(Content content, const DicomSegOptions& options) {
   DicomOptions study{.series_description = options.series_description, .source = options.source};
   if (study.source) study.patient_name.clear();
   put_study(file, study, content.digest, in_utf8);
-  put_image(file, content.extent.size_px(), content.is_fractional ? 8 : 1);
+  put_image(file, content);
   file.put(0x00080018, "UI", content.digest.uid("segmentation"));
   put_segments(file, content, options.label);
-  put_dimensions(file, content.digest.uid("dimensions"));
+  put_dimensions(file, content.digest.uid("dimensions"), content.is_label_map());
   put_shared_groups(file, axes, content.lattice.spacing_mm());
-  put_frames(file, content.lattice, content.extent, options.source);
-  file.put(0x7fe00010, "OB", std::move(content.pixels));
+  put_frames(file, content, options.source);
+  file.put(0x7fe00010, content.bits() == 16 ? "OW" : "OB", std::move(content.pixels));
   return file;
 }
 
@@ -332,14 +396,23 @@ Content content_of(Segments segments, const DicomSegOptions& options) {
     add_planes(segments, i, options.progress, content.extent, content.digest);
     content.labels.push_back(segments[i].label);
   }
-  content.pixels = packed_pixels(segments, content.extent, options.progress);
+  if (options.kind == DicomSegKind::Binary) {
+    content.pixels = packed_pixels(segments, content.extent, options.progress);
+    return content;
+  }
+  content.kind = Content::Kind::LabelMap;
+  content.digest.add("label map");
+  share_planes(content.extent);
+  content.pixels = content.bits() == 16
+                       ? label_pixels<std::uint16_t>(segments, content.extent, options.progress)
+                       : label_pixels<std::uint8_t>(segments, content.extent, options.progress);
   return content;
 }
 
 Content content_of(const Lattice& lattice, std::span<const DicomFractions> segments,
                    const DicomSegOptions& options) {
   Content content = content_on(lattice, options);
-  content.is_fractional = true;
+  content.kind = Content::Kind::Fractional;
   content.digest.add("fractions");
   for (const DicomFractions& each : segments) {
     options.progress.at(0.0);
@@ -353,17 +426,16 @@ Content content_of(const Lattice& lattice, std::span<const DicomFractions> segme
 
 void check_texts(const DicomSegOptions& options, std::size_t segment_count) {
   if (segment_count == 0 || segment_count > 65535)
-    throw std::invalid_argument("a segmentation has 1 to 65535 segments, not " +
-                                std::to_string(segment_count));
+    throw InvalidInput("a segmentation has 1 to 65535 segments, not " + std::to_string(segment_count));
   check_dicom_text(options.label, "label");
   check_dicom_text(options.series_description, "series_description");
   if (options.label.empty() || options.series_description.empty())
-    throw std::invalid_argument("a segmentation's label and series_description must not be empty");
+    throw InvalidInput("a segmentation's label and series_description must not be empty");
 }
 
 void check_segment_label(const std::string& label) {
   check_dicom_text(label, "label");
-  if (label.empty()) throw std::invalid_argument("a segment's label must not be empty");
+  if (label.empty()) throw InvalidInput("a segment's label must not be empty");
 }
 
 void write_staged(const DicomAttributes& file, const fs::path& path) {
@@ -384,7 +456,7 @@ void write_dicom_seg(Segments segments, const fs::path& path, const DicomSegOpti
   for (const DicomSegment& each : segments) {
     check_segment_label(each.label);
     if (each.object.universe() != segments.front().object.universe())
-      throw std::invalid_argument("the segments of a file must lie in one universe");
+      throw InvalidInput("the segments of a file must lie in one universe");
   }
   write_staged(segmentation(content_of(segments, options), options), path);
 }

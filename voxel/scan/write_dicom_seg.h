@@ -14,7 +14,14 @@
 
 namespace octotomy::voxel {
 
+/// How the voxels of several objects are stored.
+enum class DicomSegKind {
+  Binary,  ///< a frame of bits for each object and plane: objects may share voxels, and every reader knows it
+  LabelMap  ///< a frame of the objects' numbers for each plane (Supplement 243): for many objects, which share nothing
+};
+
 struct DicomSegOptions {
+  DicomSegKind kind = DicomSegKind::Binary;
   std::string label = "Object";  ///< label of the file, and of the segment of a single object: 1 to 64
                                  ///< characters
   std::string series_description = "Octotomy";  ///< 1 to 64 characters
@@ -42,9 +49,10 @@ void write_dicom_seg(const Octree& object, const std::filesystem::path& path,
                      const DicomSegOptions& options = {});
 
 /// The same for several named objects of one universe: segment i + 1 is segments[i], each with frames of its
-/// own, cropped to the rectangle around all. On universe_on() of a scan's lattice each frame lies on a slice
-/// of the scan. Also throws std::invalid_argument for no segments, more than 65535 segments, or different
-/// universes.
+/// own, cropped to the rectangle around all; of a label map, one frame for each plane that holds a voxel of any
+/// object. On universe_on() of a scan's lattice each frame lies on a slice of the scan. Also throws
+/// std::invalid_argument for no segments, more than 65535 segments, or different universes; Error, Geometry, with
+/// both names, if objects of a label map share voxels.
 void write_dicom_seg(std::span<const DicomSegment> segments, const std::filesystem::path& path,
                      const DicomSegOptions& options = {});
 

@@ -10,6 +10,7 @@
 
 #include "voxel/solid/combine.h"
 #include "voxel/solid/grey_owner.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/octree_node.h"
 
 // Passes: 1 compute the expression's voxels as an octree; 2 collect its leaves by brick; 3 fill the bricks'
@@ -56,9 +57,8 @@ GreyOctree combine_grey(const Universe& universe, const Expression& expression, 
   const double step = windows.empty() ? 1.0 : windows.front().grey.step();
   for (const Window& window : windows)
     if (window.grey.step() != step)
-      throw std::invalid_argument("grey octrees whose samples count in steps of " + std::to_string(step) +
-                                  " and " + std::to_string(window.grey.step()) +
-                                  " cannot be one: make both of whole numbers");
+      throw InvalidInput("grey octrees whose samples count in steps of " + std::to_string(step) + " and " +
+                         std::to_string(window.grey.step()) + " cannot be one: make both of whole numbers");
   const std::int16_t background = rounded(options.background / step);
   const std::int16_t filled = rounded(options.filled / step);
   const auto sample = [&](const glm::ivec3& voxel) {

@@ -11,6 +11,7 @@
 
 #include "voxel/solid/combine.h"
 #include "voxel/solid/term_walk.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -88,7 +89,7 @@ Bounds combined(Kind kind, const Bounds& a, const Bounds& b) {
 ShareBracket combined(Kind kind, const ShareBracket& a, const ShareBracket& b) {
   const Universe& universe = a.inside.universe();
   if (!(universe == b.inside.universe()))
-    throw std::invalid_argument("shares combine in one universe: digitise the operands in the same voxels");
+    throw InvalidInput("shares combine in one universe: digitise the operands in the same voxels");
   using E = Expression;
   const E ia(a.inside), ta(a.touching), ib(b.inside), tb(b.touching);
   const auto make = [&](const E& inside, const E& touching) {
@@ -136,12 +137,11 @@ ShareBracket combine_shares(const Expression& expression, const std::vector<Shar
       expression,
       [&](const Term& term) {
         if (const auto found = shares.find(&term); found != shares.end()) return *found->second;
-        throw std::invalid_argument(
-            "a part of the expression has no shares: digitise every operand as partial");
+        throw InvalidInput("a part of the expression has no shares: digitise every operand as partial");
       },
       [](const Term& term, const ShareBracket& part) {
         if (term.kind == Kind::Moved)
-          throw std::invalid_argument(
+          throw InvalidInput(
               "shares do not turn with a lattice: move the solid, then digitise it as partial");
         return complement(part);
       },

@@ -10,6 +10,7 @@
 
 #include "voxel/solid/combine.h"
 #include "voxel/solid/target_expression.h"
+#include "voxel/space/error.h"
 
 // The walk of combine() decides blocks by their cubes, whole voxels included. Leaves that it leaves undecided
 // are decided here:
@@ -63,8 +64,7 @@ TargetExpression target_of(const Universe& universe, const Expression& solid) {
   TargetExpression target(postfix_of(solid, universe), universe);
   for (const PostfixExpression::Operand& operand : target.postfix().operands)
     if (std::holds_alternative<Window>(*operand.leaf))
-      throw std::invalid_argument(
-          "a window of samples has no shape within a voxel: combine() it, then digitise");
+      throw InvalidInput("a window of samples has no shape within a voxel: combine() it, then digitise");
   return target;
 }
 

@@ -10,6 +10,7 @@
 #include <unordered_set>
 
 #include "voxel/solid/term_walk.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -84,7 +85,7 @@ class Parser {
   Value named(std::size_t start, const Lookup& lookup) {
     try {
       return lookup();
-    } catch (const std::invalid_argument& refusal) {
+    } catch (const InvalidInput& refusal) {
       at_ = start;
       fail(refusal.what());
     }
@@ -115,8 +116,8 @@ class Parser {
     const bool whole = text_.size() <= most_quoted;
     const std::size_t from = whole ? 0 : std::max(at_, most_quoted / 2) - most_quoted / 2;
     const std::string quoted(text_.substr(from, most_quoted));
-    throw std::invalid_argument("expression \"" + (whole ? quoted : "..." + quoted + "...") +
-                                "\", character " + std::to_string(at_ + 1) + ": " + reason);
+    throw InvalidInput("expression \"" + (whole ? quoted : "..." + quoted + "...") + "\", character " +
+                       std::to_string(at_ + 1) + ": " + reason);
   }
 
   std::string_view text_;
@@ -181,19 +182,18 @@ Expression operator~(const Expression& a) {
 
 Expression moved(const Expression& a, const glm::dmat4& moved_from_still) {
   if (!is_affine_isometry(moved_from_still) || glm::determinant(glm::dmat3(moved_from_still)) < 0.0)
-    throw std::invalid_argument("a motion must be rigid: a rotation and a translation");
+    throw InvalidInput("a motion must be rigid: a rotation and a translation");
   return carried(a, moved_from_still);
 }
 
 Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still) {
   if (!is_affine_isometry(mirrored_from_still) || glm::determinant(glm::dmat3(mirrored_from_still)) > 0.0)
-    throw std::invalid_argument("a reflection must keep lengths and turn left to right");
+    throw InvalidInput("a reflection must keep lengths and turn left to right");
   return carried(a, mirrored_from_still);
 }
 
 Expression carried(const Expression& a, const glm::dmat4& carried_from_still) {
-  if (!is_affine_isometry(carried_from_still))
-    throw std::invalid_argument("a motion or reflection must keep lengths");
+  if (!is_affine_isometry(carried_from_still)) throw InvalidInput("a motion or reflection must keep lengths");
   auto term = std::make_shared<Expression::Term>();
   term->kind = Expression::Kind::Moved;
   term->left = a.term_;
@@ -204,11 +204,10 @@ Expression carried(const Expression& a, const glm::dmat4& carried_from_still) {
 glm::dmat4 moved_from_still(const Motion& motion) {
   const double sum =
       motion.degrees + glm::dot(motion.translate_mm + motion.axis + motion.about_mm, glm::dvec3(1.0));
-  if (!std::isfinite(sum)) throw std::invalid_argument("a motion's numbers must be finite");
+  if (!std::isfinite(sum)) throw InvalidInput("a motion's numbers must be finite");
   glm::dmat4 translated = glm::translate(glm::dmat4(1.0), motion.translate_mm);
   if (motion.degrees == 0.0) return translated;
-  if (!(glm::length(motion.axis) > 0.0))
-    throw std::invalid_argument("a rotation needs an axis that is not (0, 0, 0)");
+  if (!(glm::length(motion.axis) > 0.0)) throw InvalidInput("a rotation needs an axis that is not (0, 0, 0)");
   const glm::dmat4 to_point = glm::translate(glm::dmat4(1.0), motion.about_mm);
   const glm::dmat4 from_point = glm::translate(glm::dmat4(1.0), -motion.about_mm);
   const glm::dmat4 turned =
@@ -220,7 +219,7 @@ Expression parse_expression(std::string_view text, const Names& names) {
   return parse<Expression>(
       text, [&](std::string_view name) { return names.object(name); },
       [&](const Expression& still, std::string_view name) {
-        if (!names.motion) throw std::invalid_argument("there are no motions to move by here");
+        if (!names.motion) throw InvalidInput("there are no motions to move by here");
         return moved(still, names.motion(name));
       },
       [](char symbol, const Expression& a, const Expression& b) {

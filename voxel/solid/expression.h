@@ -107,7 +107,7 @@ struct Motion {
 /// Throws std::invalid_argument if a number is not finite or the axis has no length.
 glm::dmat4 moved_from_still(const Motion& motion);
 
-/// Look-ups for the names in an expression's text. Each throws std::invalid_argument for an unknown name.
+/// Look-ups for the names in an expression's text. Each throws InvalidInput for an unknown name.
 struct Names {
   std::function<Expression(std::string_view name)> object;
   std::function<glm::dmat4(std::string_view name)> motion;  ///< may be empty: `move` is then an error

@@ -6,11 +6,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::voxel {
 namespace {
 
 void need(bool holds, const std::string& message) {
-  if (!holds) throw std::invalid_argument(message);
+  if (!holds) throw InvalidInput(message);
 }
 
 bool finite(const glm::dvec3& v) {

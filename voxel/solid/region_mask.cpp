@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "voxel/solid/polygon.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -24,21 +25,20 @@ double covered_area(const std::vector<glm::dvec2>& polygon) {
 }  // namespace
 
 void check(const RegionMask& mask) {
-  if (mask.regions.empty()) throw std::invalid_argument("a mask needs at least one region drawn in a view");
+  if (mask.regions.empty()) throw InvalidInput("a mask needs at least one region drawn in a view");
   for (std::size_t r = 0; r < mask.regions.size(); ++r) {
     const std::string where = "region " + std::to_string(r + 1) + " of the mask";
-    if (mask.regions[r].polygons_mm.empty()) throw std::invalid_argument(where + " has no polygon");
+    if (mask.regions[r].polygons_mm.empty()) throw InvalidInput(where + " has no polygon");
     for (std::size_t p = 0; p < mask.regions[r].polygons_mm.size(); ++p) {
       const std::vector<glm::dvec2>& polygon = mask.regions[r].polygons_mm[p];
       const std::string which = "polygon " + std::to_string(p + 1) + " of " + where;
       if (polygon.size() < 3)
-        throw std::invalid_argument(which + " has " + std::to_string(polygon.size()) +
-                                    " points: draw at least three");
+        throw InvalidInput(which + " has " + std::to_string(polygon.size()) + " points: draw at least three");
       for (const glm::dvec2& point : polygon)
         if (!std::isfinite(point.x) || !std::isfinite(point.y))
-          throw std::invalid_argument(which + " has a coordinate that is not a finite number");
+          throw InvalidInput(which + " has a coordinate that is not a finite number");
       // The signed areas of a self-crossing polygon's loops may cancel although it encloses both.
-      if (covered_area(polygon) == 0.0) throw std::invalid_argument(which + " encloses no area");
+      if (covered_area(polygon) == 0.0) throw InvalidInput(which + " encloses no area");
     }
   }
 }

@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::voxel {
 namespace {
 
@@ -29,20 +31,20 @@ glm::dvec2 mitre(const glm::dvec2& before, const glm::dvec2& after, double half_
   const double square = glm::dot(sum, sum);
   // A zero sum, up to the rounding of unit vectors, means that the pieces run in opposite directions.
   if (!(square > 64.0 * std::numeric_limits<double>::epsilon()))
-    throw std::invalid_argument("the saw's line turns back on itself: leave out the point where it does");
+    throw InvalidInput("the saw's line turns back on itself: leave out the point where it does");
   return sum * (2.0 * half_kerf_mm / square);
 }
 
 }  // namespace
 
 RegionMask saw_blade_sides(const SawLine& saw) {
-  if (!(glm::length(saw.direction) > 0.0)) throw std::invalid_argument("the saw has no direction");
+  if (!(glm::length(saw.direction) > 0.0)) throw InvalidInput("the saw has no direction");
   const View view = view_along(saw.direction);
   std::vector<glm::dvec2> line;
   for (const glm::dvec3& p_mm : saw.line_mm)
     if (const glm::dvec2 q = view.project(p_mm); line.empty() || q != line.back()) line.push_back(q);
   if (line.size() < 2)
-    throw std::invalid_argument("the saw's line needs two points that lie apart as seen along its direction");
+    throw InvalidInput("the saw's line needs two points that lie apart as seen along its direction");
   const auto normal = [&](std::size_t piece) {
     const glm::dvec2 along = glm::normalize(line[piece + 1] - line[piece]);
     return glm::dvec2(along.y, -along.x);

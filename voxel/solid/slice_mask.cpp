@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "voxel/solid/region_mask.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -17,25 +18,24 @@ constexpr double outside_mm = std::numeric_limits<double>::infinity();
 }  // namespace
 
 void check(const SliceMask& mask) {
-  if (mask.slices.size() < 2)
-    throw std::invalid_argument("a mask from slices needs regions on at least two of them");
+  if (mask.slices.size() < 2) throw InvalidInput("a mask from slices needs regions on at least two of them");
   bool drawn = false;
   for (std::size_t i = 0; i < mask.slices.size(); ++i) {
     const SliceMask::Slice& slice = mask.slices[i];
     const std::string where = "slice " + std::to_string(i + 1) + " of the mask";
     if (!std::isfinite(slice.position_mm))
-      throw std::invalid_argument(where + ": its position is not a finite number");
+      throw InvalidInput(where + ": its position is not a finite number");
     if (i > 0 && !(slice.position_mm > mask.slices[i - 1].position_mm))
-      throw std::invalid_argument(where + " does not lie beyond the one before it: sort them by position");
+      throw InvalidInput(where + " does not lie beyond the one before it: sort them by position");
     if (slice.polygons_mm.empty()) continue;
     drawn = true;
     try {
       check(RegionMask{{{mask.view, slice.polygons_mm}}});
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(where + ": " + error.what());
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(where + ": " + error.what());
     }
   }
-  if (!drawn) throw std::invalid_argument("no slice of the mask has a polygon");
+  if (!drawn) throw InvalidInput("no slice of the mask has a polygon");
 }
 
 SliceDistance::SliceDistance(const SliceMask& mask) : mask_(&mask) {

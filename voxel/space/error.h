@@ -15,8 +15,7 @@ enum class ErrorCode {
   Resource,   ///< memory, disk or time ran out, or a child process failed
 };
 
-/// The voxel kernel's error: a code and a message that names the place, the cause and what to do next. A
-/// broken precondition throws std::invalid_argument instead.
+/// The voxel kernel's error: a code and a message that names the place, the cause and what to do next.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
@@ -29,6 +28,18 @@ class Error : public std::runtime_error {
 /// A stop token was set.
 struct Stopped : Error {
   explicit Stopped(const std::string& message) : Error(ErrorCode::Cancelled, message) {}
+};
+
+/// A function refuses a value or data that may come from outside the program; the message says what is wrong
+/// and, if it helps, what to do. A plain std::invalid_argument is a mistake of the caller instead: it broke a
+/// precondition that no outside value can break.
+struct InvalidInput : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+/// A function refuses a size that may come from outside the program, because its result would be too large.
+struct TooLarge : std::length_error {
+  using std::length_error::length_error;
 };
 
 /// The code of a failed system call: Resource if memory, the disk or one of their limits is exhausted,

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::voxel {
 namespace {
 
@@ -67,8 +69,7 @@ Lattice Universe::lattice() const {
 
 Universe universe_around(const Box& box, double voxel_mm) {
   if (!std::isfinite(voxel_mm) || voxel_mm <= 0.0)
-    throw std::invalid_argument("a universe's voxels need a positive edge, not " + std::to_string(voxel_mm) +
-                                " mm");
+    throw InvalidInput("a universe's voxels need a positive edge, not " + std::to_string(voxel_mm) + " mm");
   const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
   const double longest_mm = std::max(extent_mm.x, std::max(extent_mm.y, extent_mm.z));
   // An extent of a whole number of voxels, up to rounding, must not need another level.
@@ -77,9 +78,9 @@ Universe universe_around(const Box& box, double voxel_mm) {
   universe.depth = 2;
   while (universe.depth < Universe::max_depth && universe.side() < voxels) ++universe.depth;
   if (!(universe.side() >= voxels))
-    throw std::length_error("a box of " + std::to_string(longest_mm) + " mm takes more than " +
-                            std::to_string(universe.side()) + " voxels of " + std::to_string(voxel_mm) +
-                            " mm a side: choose larger voxels");
+    throw TooLarge("a box of " + std::to_string(longest_mm) + " mm takes more than " +
+                   std::to_string(universe.side()) + " voxels of " + std::to_string(voxel_mm) +
+                   " mm a side: choose larger voxels");
   const glm::dvec3 centre_mm = (box.low_mm + box.high_mm) * 0.5;
   const double first_mm = -0.5 * (universe.side() - 1) * voxel_mm;
   universe.lps_from_voxel =

@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::voxel {
 
 Range range(const Scene& scene) {
@@ -57,23 +59,23 @@ std::optional<SliceRange> slices_inside(const Lattice& lattice, const Hole& hole
 void check(const Scene& scene) {
   const Lattice& lattice = scene.lattice;
   if (lattice.dims.x < 1 || lattice.dims.y < 1 || lattice.dims.z < 1)
-    throw std::invalid_argument(scene.source + ": the scene has no samples");
+    throw InvalidInput(scene.source + ": the scene has no samples");
   const std::size_t held = std::visit([](const auto& samples) { return samples.size(); }, scene.samples);
   if (held != lattice.sample_count())
-    throw std::invalid_argument(scene.source + ": " + std::to_string(held) +
-                                " samples where the lattice has " + std::to_string(lattice.sample_count()));
+    throw InvalidInput(scene.source + ": " + std::to_string(held) + " samples where the lattice has " +
+                       std::to_string(lattice.sample_count()));
   const double volume = lattice.voxel_mm3();
   if (!std::isfinite(volume) || volume <= 0.0)
-    throw std::invalid_argument(scene.source + ": the lattice's axes span no volume");
+    throw InvalidInput(scene.source + ": the lattice's axes span no volume");
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row)
       if (!std::isfinite(lattice.lps_from_voxel[column][row]))
-        throw std::invalid_argument(scene.source + ": the lattice's position is not finite");
+        throw InvalidInput(scene.source + ": the lattice's position is not finite");
   const glm::dvec3 spacing_mm = lattice.spacing_mm();  // checked too, because its squares overflow before the
                                                        // steps do
   if (!std::isfinite(spacing_mm.x + spacing_mm.y + spacing_mm.z) ||
       !glm::all(glm::greaterThan(spacing_mm, glm::dvec3(0.0))))
-    throw std::invalid_argument(scene.source + ": the lattice's spacing is no length in millimetres");
+    throw InvalidInput(scene.source + ": the lattice's spacing is no length in millimetres");
 }
 
 double interpolate(const Scene& scene, const glm::dvec3& p_voxel) {

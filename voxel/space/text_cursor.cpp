@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::voxel {
 namespace {
 
@@ -60,8 +62,7 @@ void TextCursor::expect_end() {
 }
 
 void TextCursor::refuse_at(std::size_t position, const std::string& why) const {
-  throw std::invalid_argument(std::string(what_) + ", character " + std::to_string(position + 1) + ": " +
-                              why);
+  throw InvalidInput(std::string(what_) + ", character " + std::to_string(position + 1) + ": " + why);
 }
 
 void TextCursor::refuse_unexpected(const std::string& expected) const {

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <utility>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::voxel {
 namespace {
 
@@ -46,10 +48,9 @@ View parse_view(const std::string& text) {
   const double elevation_deg = has_comma ? std::strtod(second, &end) : 0.0;
   if (!has_comma || end == second || *end != '\0' || !std::isfinite(azimuth_deg) ||
       !std::isfinite(elevation_deg) || std::abs(elevation_deg) > 90.0)
-    throw std::invalid_argument(
-        "no view '" + text +
-        "': use anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees "
-        "with EL from -90 to 90, for example 30,15");
+    throw InvalidInput("no view '" + text +
+                       "': use anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees "
+                       "with EL from -90 to 90, for example 30,15");
   const double azimuth = azimuth_deg * std::numbers::pi / 180.0;
   const double elevation = elevation_deg * std::numbers::pi / 180.0;
   const double level = std::cos(elevation);

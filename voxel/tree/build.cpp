@@ -10,6 +10,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "voxel/space/error.h"
 #include "voxel/tree/octree_node.h"
 #include "voxel/tree/window_bits.h"
 
@@ -110,11 +111,10 @@ Block block_of_box(int height, const glm::ivec3& origin, const glm::ivec3& low, 
 void check_fits(const Universe& universe, const Scene& scene) {
   check(scene);
   if (scene.lattice.lps_from_voxel != universe.lps_from_voxel)
-    throw std::invalid_argument(scene.source +
-                                ": the scan's voxels are not the universe's: resample it first");
+    throw InvalidInput(scene.source + ": the scan's voxels are not the universe's: resample it first");
   if (glm::any(glm::greaterThan(scene.lattice.dims, glm::ivec3(universe.side()))))
-    throw std::invalid_argument(scene.source + ": the scan is larger than the universe of " +
-                                std::to_string(universe.side()) + " voxels a side");
+    throw InvalidInput(scene.source + ": the scan is larger than the universe of " +
+                       std::to_string(universe.side()) + " voxels a side");
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 #include <vector>
 
+#include "voxel/space/error.h"
 #include "voxel/tree/build.h"
 #include "voxel/tree/grey_octree_build.h"
 #include "voxel/tree/octree_node.h"
@@ -147,7 +148,7 @@ GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t backgrou
                                  const std::function<void(std::size_t number, GreyBrick& brick)>& fill,
                                  std::optional<Octree> scan, double step) {
   if (scan && !(scan->universe() == universe))
-    throw std::invalid_argument("the scan's voxels are of another universe than its bricks");
+    throw InvalidInput("the scan's voxels are of another universe than its bricks");
   auto storage = std::make_shared<GreyOctree::Storage>(universe, background, blocks.size());
   storage->step = step;
   GreyOctree::Level& bottom = storage->bottom();
@@ -155,9 +156,9 @@ GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t backgrou
     const glm::ivec3& block = blocks[i];
     if (glm::any(glm::lessThan(block, glm::ivec3(0))) ||
         glm::any(glm::greaterThanEqual(block, glm::ivec3(bottom.side))))
-      throw std::invalid_argument("a brick lies outside the universe");
+      throw InvalidInput("a brick lies outside the universe");
     std::uint32_t& brick = storage->brick_of_block[bottom.index(block)];
-    if (brick != 0) throw std::invalid_argument("two bricks have the same place");
+    if (brick != 0) throw InvalidInput("two bricks have the same place");
     brick = static_cast<std::uint32_t>(i + 1);
   }
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {

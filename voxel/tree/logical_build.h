@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "voxel/space/error.h"
 #include "voxel/tree/logical_node.h"
 #include "voxel/tree/octant_order.h"
 
@@ -15,8 +16,8 @@ namespace octotomy::voxel {
 /// Throws std::invalid_argument if no universe has this depth.
 inline void check_depth(int depth) {
   if (depth < 2 || depth > Universe::max_depth)
-    throw std::invalid_argument("a universe has a depth of 2 to " + std::to_string(Universe::max_depth) +
-                                ", not " + std::to_string(depth));
+    throw InvalidInput("a universe has a depth of 2 to " + std::to_string(Universe::max_depth) + ", not " +
+                       std::to_string(depth));
 }
 
 /// Builds an octree from the statuses of its nodes in preorder. `source.open(level)` returns the next node's

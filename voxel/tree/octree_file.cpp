@@ -204,8 +204,8 @@ std::vector<Piece> pieces_of(const OctreeFile& file) {
   const auto* grey = std::get_if<GreyOctree>(&file.tree);
   cut("UNIV", universe_bytes(universe(file), grey != nullptr ? grey->background() : std::int16_t{0}), pieces);
   if (file.name.size() > largest_raw)
-    throw std::invalid_argument("an octree file's name of " + std::to_string(file.name.size()) +
-                                " bytes is too long: use at most 2^20");
+    throw InvalidInput("an octree file's name of " + std::to_string(file.name.size()) +
+                       " bytes is too long: use at most 2^20");
   cut("NAME", bytes_of(file.name), pieces);
   cut("META", bytes_of(file.metadata), pieces);
   if (const auto* octree = std::get_if<Octree>(&file.tree)) cut("TREE", packed_treecode(*octree), pieces);
@@ -405,7 +405,7 @@ class Reader {
       check(partial);
       expect_end();
       return partial;
-    } catch (const std::invalid_argument& error) {
+    } catch (const InvalidInput& error) {
       refuse(error.what());
     }
   }

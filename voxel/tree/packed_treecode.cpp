@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "voxel/space/error.h"
 #include "voxel/tree/logical_build.h"
 
 namespace octotomy::voxel {
@@ -85,7 +86,7 @@ class Decoder {
     if (position_ != code_.size()) refuse("the code goes on after the last node");
   }
   [[noreturn]] void refuse(const std::string& why) const {
-    throw std::invalid_argument("treecode, byte " + std::to_string(position_) + ": " + why);
+    throw InvalidInput("treecode, byte " + std::to_string(position_) + ": " + why);
   }
 
   Block block(int height) {

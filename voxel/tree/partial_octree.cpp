@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "voxel/space/error.h"
 #include "voxel/tree/level_tally.h"
 #include "voxel/tree/octant_order.h"
 #include "voxel/tree/octree_node.h"
@@ -143,13 +144,13 @@ void collect_shares(BlockRef inside, BlockRef touching, int height, const glm::i
 
 void check(const PartialOctree& partial) {
   if (partial.inside.universe() != partial.touching.universe())
-    throw std::invalid_argument("a partial octree's inside and touching voxels are of different universes");
+    throw InvalidInput("a partial octree's inside and touching voxels are of different universes");
   if (!is_subset(partial.inside.root(), partial.touching.root(), partial.inside.root_height()))
-    throw std::invalid_argument("a partial octree has a voxel inside that is not among those touching");
+    throw InvalidInput("a partial octree has a voxel inside that is not among those touching");
   const std::uint64_t boundary = partial.touching.voxel_count() - partial.inside.voxel_count();
   if (partial.fractions.size() != boundary)
-    throw std::invalid_argument("a partial octree of " + std::to_string(boundary) + " boundary voxels has " +
-                                std::to_string(partial.fractions.size()) + " fractions");
+    throw InvalidInput("a partial octree of " + std::to_string(boundary) + " boundary voxels has " +
+                       std::to_string(partial.fractions.size()) + " fractions");
 }
 
 std::vector<LevelCount> level_counts(const PartialOctree& partial) {

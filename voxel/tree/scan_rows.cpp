@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "voxel/space/error.h"
 #include "voxel/space/vector_clones.h"
 
 namespace octotomy::voxel {
@@ -107,8 +108,8 @@ std::int16_t ScanRows::rounded(double value) const {
   const double nearest = std::floor(value / step_ + 0.5);
   if (!(nearest >= std::numeric_limits<std::int16_t>::min() &&
         nearest <= std::numeric_limits<std::int16_t>::max()))
-    throw std::invalid_argument(scene_.source + ": the sample " + std::to_string(value) +
-                                " does not fit into 16 bits: rescale the scan first");
+    throw InvalidInput(scene_.source + ": the sample " + std::to_string(value) +
+                       " does not fit into 16 bits: rescale the scan first");
   return static_cast<std::int16_t>(nearest);
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "voxel/measure/grey_level_counts.h"
 #include "voxel/view/axis_walk.h"
 #include "voxel/view/counted_walk.h"
 
@@ -85,6 +86,31 @@ class NodeTracer {
   const AxisFrame& frame_;
   Counter& counter_;
   ColumnDepths& columns_;
+};
+
+/// A node of a grey octree that knows its samples only if they are all equal.
+class PlainGreyNode {
+ public:
+  PlainGreyNode() = default;
+  PlainGreyNode(const GreyOctree& grey, Window16 window, const glm::ivec3& origin, int side_log2)
+      : grey_(&grey), window_(window), origin_(origin), side_log2_(side_log2) {
+    const MinMax range = range_of_node(grey, origin, side_log2);
+    status_ = range.low == range.high ? window_status(range, window.low, window.high) : Status::Partial;
+  }
+
+  Status status() const { return status_; }
+  int side_log2() const { return side_log2_; }
+  PlainGreyNode child(int number) const {
+    const glm::ivec3 octant(number & 1, (number >> 1) & 1, number >> 2);
+    return {*grey_, window_, origin_ + (octant << (side_log2_ - 1)), side_log2_ - 1};
+  }
+
+ private:
+  const GreyOctree* grey_ = nullptr;
+  Window16 window_;
+  glm::ivec3 origin_{0};
+  int side_log2_ = 0;
+  Status status_ = Status::Empty;
 };
 
 /// The rays of a general view through one octree.
@@ -181,6 +207,18 @@ ColumnMap quadtree_trace(const std::vector<DrawnObject>& objects, const AxisView
                         NodeTracer<Root, std::decay_t<decltype(counter)>>(frame, counter, columns)
                             .trace(Ancestors<Root>(root), 0, 0, 0, 0);
                       });
+}
+
+Visits visits_without_ranges(const GreyOctree& grey, Window16 window, const AxisView& axes) {
+  const AxisFrame frame(axes, grey.universe().depth);
+  ColumnDepths columns(frame.column_count(), -1);
+  VisitCounter counter(level_counts(grey), frame.column_count());
+  const PlainGreyNode root(grey, window, glm::ivec3(0), grey.universe().depth);
+  counter.direct(0, root.status(), glm::ivec3(0));
+  counter.quadtree(1, 0);
+  NodeTracer<PlainGreyNode, VisitCounter>(frame, counter, columns)
+      .trace(Ancestors<PlainGreyNode>(root), 0, 0, 0, 0);
+  return counter.visits();
 }
 
 void count_rays(const std::vector<DrawnObject>& objects, const ImagePlane& plane, Visits& visits) {

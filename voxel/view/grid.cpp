@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "voxel/space/error.h"
 #include "voxel/view/lettering.h"
 #include "voxel/view/pixel_index.h"
 
@@ -67,13 +68,12 @@ bool is_labelled(const Line& line, const Grid& grid, int every) {
 void check(const Grid& grid, const glm::ivec2& size_px) {
   const double apart_px = grid.spacing_mm / grid.pixel_mm;
   if (!(apart_px >= nearest_lines_px))
-    throw std::invalid_argument("a grid of " + text_of(grid.spacing_mm) + " mm has lines " +
-                                text_of(std::round(10.0 * apart_px) / 10.0) +
-                                " pixels apart: choose at least " +
-                                text_of(std::ceil(nearest_lines_px * grid.pixel_mm)) + " mm");
+    throw InvalidInput("a grid of " + text_of(grid.spacing_mm) + " mm has lines " +
+                       text_of(std::round(10.0 * apart_px) / 10.0) + " pixels apart: choose at least " +
+                       text_of(std::ceil(nearest_lines_px * grid.pixel_mm)) + " mm");
   if (lines_of(size_px, grid, 0).empty() && lines_of(size_px, grid, 1).empty())
-    throw std::invalid_argument("a grid of " + text_of(grid.spacing_mm) +
-                                " mm has no line in this picture: choose a smaller one");
+    throw InvalidInput("a grid of " + text_of(grid.spacing_mm) +
+                       " mm has no line in this picture: choose a smaller one");
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::voxel {
 
 SightLine sight_line(const ImagePlane& plane, const glm::dvec2& p_px) {
@@ -31,7 +33,7 @@ SpaceMark mark_between(const SightLine& a, const SightLine& b) {
   const double square = glm::dot(normal, normal);
   constexpr double least_sine = 0.1;
   if (!(square >= least_sine * least_sine))
-    throw std::invalid_argument(
+    throw InvalidInput(
         "the two views have almost the same direction, so that marks in them do not fix the depth of a "
         "point: "
         "mark in views at least 6 degrees apart, best at right angles");

@@ -10,6 +10,7 @@
 #include <string>
 #include <tbb/parallel_for.h>
 
+#include "voxel/space/error.h"
 #include "voxel/space/progress.h"
 #include "voxel/space/rounded.h"
 
@@ -18,8 +19,7 @@ namespace {
 
 void need_pixel(double pixel_mm) {
   if (!(pixel_mm > 0.0) || !std::isfinite(pixel_mm))
-    throw std::invalid_argument("the edge of a picture's pixels must be positive, not " + rounded(pixel_mm) +
-                                " mm");
+    throw InvalidInput("the edge of a picture's pixels must be positive, not " + rounded(pixel_mm) + " mm");
 }
 
 // The number of pixels that cover a length. Subtracts a bound on the rounding of lengths (sums of a few
@@ -29,10 +29,10 @@ int pixels(double length_mm, double pixel_mm) {
   const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + exact) * most_sheet_px;
   // Written so that NaN, which infinite lengths produce, is refused too.
   if (!(std::ceil(exact - rounding) <= most_sheet_px))
-    throw std::invalid_argument(
-        "a picture of " + (std::isfinite(length_mm) ? rounded(length_mm) + " mm" : "points that far apart") +
-        " takes more than " + std::to_string(most_sheet_px) + " pixels of " + rounded(pixel_mm) +
-        " mm: choose larger pixels");
+    throw InvalidInput("a picture of " +
+                       (std::isfinite(length_mm) ? rounded(length_mm) + " mm" : "points that far apart") +
+                       " takes more than " + std::to_string(most_sheet_px) + " pixels of " +
+                       rounded(pixel_mm) + " mm: choose larger pixels");
   return static_cast<int>(std::max(1.0, std::ceil(exact - rounding)));
 }
 
@@ -75,10 +75,9 @@ Rectangle cut_rectangle(const Lattice& lattice, const View& view, double positio
     }
   }
   if (!(lowest <= 0.0 && highest >= 0.0))
-    throw std::invalid_argument("the plane at " + std::to_string(position_mm) +
-                                " mm misses the scan, which reaches from " +
-                                std::to_string(lowest + position_mm) + " to " +
-                                std::to_string(highest + position_mm) + " mm along its normal");
+    throw InvalidInput("the plane at " + std::to_string(position_mm) +
+                       " mm misses the scan, which reaches from " + std::to_string(lowest + position_mm) +
+                       " to " + std::to_string(highest + position_mm) + " mm along its normal");
   return rectangle;
 }
 
@@ -158,7 +157,7 @@ SheetSamples empty_samples(const Sheet& sheet) {
 
 Sheet plane_sheet(const Lattice& lattice, const View& view, double position_mm, double pixel_mm) {
   need_pixel(pixel_mm);
-  if (!std::isfinite(position_mm)) throw std::invalid_argument("a slice's position must be a finite number");
+  if (!std::isfinite(position_mm)) throw InvalidInput("a slice's position must be a finite number");
   const Rectangle rectangle = cut_rectangle(lattice, view, position_mm);
   const glm::dvec2 extent_mm = rectangle.high - rectangle.low;
   Sheet sheet;
@@ -176,11 +175,11 @@ Sheet plane_sheet(const Lattice& lattice, const View& view, double position_mm, 
 Sheet curved_sheet(const CurveOptions& options) {
   need_pixel(options.pixel_mm);
   if (!(options.height_mm > 0.0) || !std::isfinite(options.height_mm))
-    throw std::invalid_argument("the height of a curved slice must be positive, not " +
-                                rounded(options.height_mm) + " mm");
+    throw InvalidInput("the height of a curved slice must be positive, not " + rounded(options.height_mm) +
+                       " mm");
   const double up_length = glm::length(options.up);
   if (!(up_length > 0.0) || !std::isfinite(up_length))
-    throw std::invalid_argument("the up vector of a curved slice must be finite and not zero");
+    throw InvalidInput("the up vector of a curved slice must be finite and not zero");
   const glm::dvec3 up = options.up / up_length;
   std::vector<glm::dvec3> flat;   // the points, projected along up
   std::vector<double> length_mm;  // length of the polyline up to each point
@@ -188,7 +187,7 @@ Sheet curved_sheet(const CurveOptions& options) {
   double highest = -lowest;
   for (const glm::dvec3& point : options.points_mm) {
     const double height = glm::dot(point, up);
-    if (!std::isfinite(height)) throw std::invalid_argument("a curve's points must be finite numbers");
+    if (!std::isfinite(height)) throw InvalidInput("a curve's points must be finite numbers");
     lowest = std::min(lowest, height);
     highest = std::max(highest, height);
     flat.push_back(point - up * height);
@@ -196,7 +195,7 @@ Sheet curved_sheet(const CurveOptions& options) {
                                          : length_mm.back() + glm::distance(flat.back(), flat.end()[-2]));
   }
   if (flat.size() < 2 || !(length_mm.back() > 0.0))
-    throw std::invalid_argument(
+    throw InvalidInput(
         "a curved slice needs at least two points that differ in a direction other than its up");
   Sheet sheet;
   sheet.down = -up;

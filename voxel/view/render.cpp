@@ -10,6 +10,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
+#include "voxel/space/error.h"
 #include "voxel/view/layer.h"
 #include "voxel/view/pixel_index.h"
 
@@ -17,14 +18,14 @@ namespace octotomy::voxel {
 namespace {
 
 void check(const std::vector<DrawnObject>& objects, const RenderOptions& options) {
-  if (objects.empty()) throw std::invalid_argument("nothing to draw: give at least one object");
+  if (objects.empty()) throw InvalidInput("nothing to draw: give at least one object");
   if (objects.size() > std::numeric_limits<std::int16_t>::max())
-    throw std::invalid_argument("cannot draw " + std::to_string(objects.size()) +
-                                " objects in one picture: at most 32767");
+    throw InvalidInput("cannot draw " + std::to_string(objects.size()) +
+                       " objects in one picture: at most 32767");
   for (const DrawnObject& object : objects) {
     if (object.octree.universe() != objects.front().octree.universe())
-      throw std::invalid_argument("object '" + object.name + "' is of another universe than '" +
-                                  objects.front().name + "': combine it into that universe first");
+      throw InvalidInput("object '" + object.name + "' is of another universe than '" + objects.front().name +
+                         "': combine it into that universe first");
     if (object.scalar && object.scalar->universe != object.octree.universe())
       throw std::invalid_argument("the scalar that colours object '" + object.name +
                                   "' is of another universe than the object: make it for the same");
@@ -36,20 +37,20 @@ void check(const std::vector<DrawnObject>& objects, const RenderOptions& options
     throw std::invalid_argument(
         "the samples for cut faces are of another universe than the objects: build them for the same");
   if (options.cut_tones && !(options.cut_tones->white > options.cut_tones->black))
-    throw std::invalid_argument("white must be a larger sample than black on cut faces");
+    throw InvalidInput("white must be a larger sample than black on cut faces");
   if (options.size_px.x < 1 || options.size_px.y < 1)
-    throw std::invalid_argument("a picture of " + std::to_string(options.size_px.x) + " x " +
-                                std::to_string(options.size_px.y) + " pixels: both must be positive");
+    throw InvalidInput("a picture of " + std::to_string(options.size_px.x) + " x " +
+                       std::to_string(options.size_px.y) + " pixels: both must be positive");
   if (options.width_mm && !(std::isfinite(*options.width_mm) && *options.width_mm > 0.0))
-    throw std::invalid_argument("a picture " + std::to_string(*options.width_mm) +
-                                " mm wide: the width must be positive");
+    throw InvalidInput("a picture " + std::to_string(*options.width_mm) +
+                       " mm wide: the width must be positive");
   if (!is_frame(options.view))
     throw std::invalid_argument("a view's directions must be unit vectors, perpendicular to each other");
   if (options.eye_mm && !(std::isfinite(*options.eye_mm) && *options.eye_mm > 0.0))
-    throw std::invalid_argument("an eye " + std::to_string(*options.eye_mm) +
-                                " mm away: the distance must be positive");
+    throw InvalidInput("an eye " + std::to_string(*options.eye_mm) +
+                       " mm away: the distance must be positive");
   if (options.centre_mm && !(std::isfinite(options.centre_mm->x) && std::isfinite(options.centre_mm->y)))
-    throw std::invalid_argument("the picture's centre is not finite");
+    throw InvalidInput("the picture's centre is not finite");
 }
 
 /// Blends a translucent object over the pixels at which it is nearer than the opaque surface.
@@ -141,11 +142,11 @@ Picture blank_picture(const std::vector<DrawnObject>& objects, const RenderOptio
   picture.view = options.view;
   picture.algorithm = options.algorithm.value_or(axes ? Algorithm::NodeTrace : Algorithm::RayCast);
   if (plane.eye && (picture.algorithm != Algorithm::RayCast || options.count))
-    throw std::invalid_argument(
+    throw InvalidInput(
         "a picture from an eye at a finite distance needs ray casting and no count of visits: choose ray "
         "casting or an orthographic picture");
   if (picture.algorithm == Algorithm::NodeTrace && !axes)
-    throw std::invalid_argument(
+    throw InvalidInput(
         "node tracing needs a view along the universe's axes: use one of the six named views of an upright "
         "universe, or ray casting");
   if (options.count) picture.visits.emplace();

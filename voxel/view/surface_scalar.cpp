@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "voxel/space/error.h"
 #include "voxel/view/lab.h"
 
 namespace octotomy::voxel {
@@ -32,12 +33,12 @@ double SurfaceScalar::at(const glm::dvec3& p_voxel) const {
 
 SurfaceScalar distance_to(const Octree& other, const Octree& object, double most_mm) {
   if (!(std::isfinite(most_mm) && most_mm > 0.0))
-    throw std::invalid_argument("the range of distances must be positive, in mm");
+    throw InvalidInput("the range of distances must be positive, in mm");
   if (other.universe() != object.universe())
-    throw std::invalid_argument(
+    throw InvalidInput(
         "the two objects are of different universes: combine one into the other's universe first");
   if (other.is_empty() || object.is_empty())
-    throw std::invalid_argument("an empty object has no surface: give objects with at least one voxel");
+    throw InvalidInput("an empty object has no surface: give objects with at least one voxel");
   // Adds one voxel, because the surface extends beyond the outermost centres.
   const VoxelRange range = grown(range_of(object), 1);
   return {other.universe(), range, signed_distances_mm(other, range), most_mm};

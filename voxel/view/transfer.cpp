@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "voxel/space/error.h"
 #include "voxel/view/tone.h"
 
 namespace octotomy::voxel {
@@ -58,9 +59,7 @@ TransferTable::Entry entry_at(const TransferFunction& transfer, double sample) {
 }  // namespace
 
 void check(const TransferFunction& transfer) {
-  const auto fail = [](const std::string& what) {
-    throw std::invalid_argument("the transfer function " + what);
-  };
+  const auto fail = [](const std::string& what) { throw InvalidInput("the transfer function " + what); };
   if (transfer.points.size() < 2) fail("has fewer than two points");
   if (!(std::isfinite(transfer.surface_per_mm) && transfer.surface_per_mm > 0.0))
     fail("has a surface_per_mm that is not positive and finite");
@@ -88,8 +87,8 @@ TransferFunction preset_transfer(const std::string& name) {
     if (name == each) return transfer;
     known.append(known.empty() ? "" : ", ").append(each);
   }
-  throw std::invalid_argument("there is no transfer function '" + name + "': choose one of " + known +
-                              ", or give a JSON file");
+  throw InvalidInput("there is no transfer function '" + name + "': choose one of " + known +
+                     ", or give a JSON file");
 }
 
 std::vector<std::string> preset_transfers() {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {
@@ -110,14 +111,14 @@ std::optional<LengthUnit> length_unit(std::string_view word) {
 
 PatientFrame parse_frame(const std::string& text) {
   if (const std::optional<PatientFrame> frame = patient_frame(text)) return *frame;
-  throw std::invalid_argument("'" + text +
-                              "' is not a patient frame: give the directions of the three axes, for example "
-                              "RAS, LPS or LAS");
+  throw InvalidInput("'" + text +
+                     "' is not a patient frame: give the directions of the three axes, for example "
+                     "RAS, LPS or LAS");
 }
 
 LengthUnit parse_unit(const std::string& text) {
   if (const std::optional<LengthUnit> unit = length_unit(text)) return *unit;
-  throw std::invalid_argument("'" + text + "' is not a unit of length: give mm, cm, m, um or inch");
+  throw InvalidInput("'" + text + "' is not a unit of length: give mm, cm, m, um or inch");
 }
 
 std::string sides_of_origin(const glm::dmat3& axes) {

@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <zlib.h>
 
+#include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/printed.h"
 #include "voxel/space/write_failure.h"
@@ -302,8 +303,7 @@ void write_volume(const Scene& scene, const fs::path& path, VolumeFormat format)
       return write_nrrd(scene, path);
     case VolumeFormat::Meta:
       if (!is_perpendicular(scene.lattice))
-        throw std::invalid_argument(
-            "MetaImage cannot store axes that are not perpendicular; write .nrrd or .nii.gz");
+        throw InvalidInput("MetaImage cannot store axes that are not perpendicular; write .nrrd or .nii.gz");
       return write_meta(scene, path);
   }
 }

@@ -15,6 +15,7 @@
 #include "planner/operation/table/number_format.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/scan/write_dicom_seg.h"
+#include "voxel/space/file_text.h"
 #include "voxel/scan/write_scene.h"
 
 namespace octotomy::planner::cli {
@@ -43,6 +44,10 @@ void need_used(const ConvertText& text, bool writes_dicom, bool writes_segments)
     throw std::runtime_error("--other-identity needs --source: give it, or leave both out");
 }
 
+voxel::DicomSegKind kind_of(const ConvertText& text) {
+  return text.as == "labelmap" ? voxel::DicomSegKind::LabelMap : voxel::DicomSegKind::Binary;
+}
+
 int convert_octree(const Program& program, const ConvertText& text) {
   if (text.out.extension() != ".dcm")
     throw std::runtime_error(
@@ -61,6 +66,7 @@ int convert_octree(const Program& program, const ConvertText& text) {
   voxel::DicomSegOptions options;
   options.label = object.label;
   options.series_description = "Octotomy, segmented";
+  options.kind = kind_of(text);
   options.progress.stop = program.stop.get_token();
   {
     const Stopwatch watch(timings, "source");
@@ -104,6 +110,7 @@ int convert_labels(const Program& program, const ConvertText& text) {
   voxel::DicomSegOptions options;
   options.label = text.label.empty() ? "Objects" : text.label;
   options.series_description = "Octotomy, segmented";
+  options.kind = kind_of(text);
   options.progress.stop = program.stop.get_token();
   options.source = source_of(program, text, false, scene.identity, findings);
   if (!options.source) warn("no --source: the segmentation gets a study of its own and refers to no images");
@@ -125,7 +132,8 @@ int convert_labels(const Program& program, const ConvertText& text) {
 std::optional<int> convert_as(const Program& program, const ConvertText& text) {
   if (text.planes != "images" && text.as != "structures")
     throw std::runtime_error("--planes is of --as structures, which is not written: leave it out");
-  if (text.as.empty() && !is_mesh(text.in)) return std::nullopt;
+  const bool is_report = voxel::extension_of(text.in) == ".pdf";
+  if (text.as.empty() && !is_mesh(text.in) && !is_report) return std::nullopt;
   need_extension(text.out, {".dcm"}, "such a DICOM object is");
   if (text.dicom)
     throw std::runtime_error(text.out.string() +
@@ -133,9 +141,13 @@ std::optional<int> convert_as(const Program& program, const ConvertText& text) {
   if (text.other_identity && text.source.empty())
     throw std::runtime_error("--other-identity needs --source: give it, or leave both out");
   need_folder_of(text.out);
+  if (is_report && !text.as.empty())
+    throw std::runtime_error(text.in.string() + ": is a PDF, which has one form in DICOM: leave --as out");
+  if (is_report) return convert_report(program, text);
   if (text.as == "structures") return convert_structures(program, text);
   if (text.as == "fractions") return convert_fractions(program, text);
-  if (is_mesh(text.in) && text.as != "segmentation") return convert_model(program, text);
+  if (is_mesh(text.in) && text.as != "segmentation" && text.as != "labelmap")
+    return convert_model(program, text);
   if (is_mesh(text.in))
     throw std::runtime_error(text.in.string() +
                              ": a surface has no voxels: octotomy voxelise makes an .octree of it, or --as "
@@ -208,35 +220,37 @@ int convert(const Program& program, const ConvertText& text) {
 
 void add_convert(Program& program) {
   const auto text = std::make_shared<ConvertText>();
-  CLI::App& verb =
-      program.verb("convert",
-                   "Writes a scan in another format, resampled to a regular lattice if necessary; an octree "
-                   "or a label map as a DICOM segmentation or structure set; a surface as a DICOM document",
-                   "octotomy convert dicom_folder -o head.nii.gz\n"
-                   "  octotomy convert 'slices/*.tif' --spacing 0.5,0.5,1 -o head.nrrd\n"
-                   "  octotomy convert head.raw --raw 512x512x300 int16 --spacing 0.5,0.5,1 -o head.nrrd\n"
-                   "  octotomy convert skull.octree -o skull.dcm --source dicom_folder --label Skull\n"
-                   "  octotomy convert organs.nii.gz -o organs.dcm --source dicom_folder\n"
-                   "  octotomy convert skull.octree -o rt.dcm --as structures --source dicom_folder\n"
-                   "  octotomy convert skull.stl -o share.dcm --as fractions --source dicom_folder\n"
-                   "  octotomy convert skull.stl -o model.dcm --source dicom_folder",
-                   [&program, text] { return convert(program, *text); });
-  verb.add_option(
-          "scan", text->in,
-          "A DICOM folder or file, NIfTI, NRRD, MetaImage, images, a raw file, an .octree, or a surface")
+  CLI::App& verb = program.verb(
+      "convert",
+      "Writes a scan in another format, resampled to a regular lattice if necessary; an octree "
+      "or a label map as a DICOM segmentation or structure set; a surface or a PDF as a DICOM document",
+      "octotomy convert dicom_folder -o head.nii.gz\n"
+      "  octotomy convert 'slices/*.tif' --spacing 0.5,0.5,1 -o head.nrrd\n"
+      "  octotomy convert head.raw --raw 512x512x300 int16 --spacing 0.5,0.5,1 -o head.nrrd\n"
+      "  octotomy convert skull.octree -o skull.dcm --source dicom_folder --label Skull\n"
+      "  octotomy convert organs.nii.gz -o organs.dcm --source dicom_folder\n"
+      "  octotomy convert skull.octree -o rt.dcm --as structures --source dicom_folder\n"
+      "  octotomy convert skull.stl -o share.dcm --as fractions --source dicom_folder\n"
+      "  octotomy convert skull.stl -o model.dcm --source dicom_folder\n"
+      "  octotomy convert report/report.pdf -o report.dcm --source dicom_folder",
+      [&program, text] { return convert(program, *text); });
+  verb.add_option("scan", text->in,
+                  "A DICOM folder or file, NIfTI, NRRD, MetaImage, images, a raw file, an .octree, a "
+                  "surface, or a PDF")
       ->required()
       ->check(scan_path());
-  verb.add_option(
-          "-o,--out", text->out,
-          "A .nrrd, .nii.gz or .mha file, or a folder for DICOM; of an .octree, a label map or a surface a "
-          ".dcm")
+  verb.add_option("-o,--out", text->out,
+                  "A .nrrd, .nii.gz or .mha file, or a folder for DICOM; of an .octree, a label map, a "
+                  "surface or a PDF "
+                  "a .dcm")
       ->required();
   verb.add_option(
           "--as", text->as,
-          "The kind of .dcm: segmentation (default), structures (contours on the images of --source), "
+          "The kind of .dcm: segmentation (default), labelmap (a segmentation of numbers, for objects that "
+          "share no voxel and readers of 2025 or later), structures (contours on the images of --source), "
           "fractions (the share of each voxel that is filled), or, of a "
           "surface, stl or obj (default: its own)")
-      ->check(CLI::IsMember({"segmentation", "structures", "fractions", "stl", "obj"}));
+      ->check(CLI::IsMember({"segmentation", "labelmap", "structures", "fractions", "stl", "obj"}));
   verb.add_option("--planes", text->planes,
                   "Planes of the contours of --as structures: the images' (default) or the voxels'")
       ->check(CLI::IsMember({"images", "voxels"}));

@@ -13,7 +13,7 @@
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/number_format.h"
 #include "voxel/archive/occupancy.h"
-#include "voxel/archive/write_dicom_model.h"
+#include "voxel/archive/write_dicom_document.h"
 #include "voxel/archive/write_rtstruct.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/measure/measure.h"
@@ -383,6 +383,39 @@ int convert_fractions(const Program& program, const ConvertText& text) {
   return done;
 }
 
+int convert_report(const Program& program, const ConvertText& text) {
+  const std::string bytes = voxel::file_bytes(text.in);
+  if (!bytes.starts_with("%PDF-") ||
+      bytes.find("%%EOF", bytes.size() - std::min<std::size_t>(bytes.size(), 2048)) == std::string::npos)
+    throw std::runtime_error(
+        text.in.string() +
+        ": is no whole PDF: it has to begin with %PDF- and to end with %%EOF; octotomy run "
+        "--pdf writes one");
+  Timings timings;
+  std::vector<std::string> findings;
+  voxel::DicomDocumentOptions options;
+  options.label = label_of(text);
+  options.series_description = "Octotomy, report";
+  {
+    const Stopwatch watch(timings, "source");
+    options.source = source_of(program, text, false, {}, findings);
+  }
+  if (!options.source) warn("no --source: the report gets a study of its own and names no patient");
+  {
+    const Stopwatch watch(timings, "write");
+    voxel::write_dicom_document(bytes, voxel::DocumentFormat::Pdf, text.out, options);
+  }
+  Json json = answer(timings);
+  json["kind"] = "DICOM encapsulated PDF";
+  json["path"] = text.out.string();
+  json["label"] = options.label;
+  json["bytes"] = bytes.size();
+  json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
+  tell(findings, json);
+  program.say(json, lines({{"written", text.out.string()}, {"report", options.label}}));
+  return done;
+}
+
 int convert_model(const Program& program, const ConvertText& text) {
   Timings timings;
   std::vector<std::string> findings;
@@ -397,7 +430,7 @@ int convert_model(const Program& program, const ConvertText& text) {
     for (const std::string& line : warnings_of(mesh.audit))
       findings.push_back(text.in.string() + ": " + line);
   const bool is_obj = text.as == "obj" || (text.as.empty() && voxel::extension_of(text.in) == ".obj");
-  voxel::DicomModelOptions options;
+  voxel::DicomDocumentOptions options;
   options.label = label_of(text);
   options.series_description = "Octotomy, surface";
   options.source = source_around(program, text, {}, triangles.points_mm, "surface", timings, findings);
@@ -407,8 +440,9 @@ int convert_model(const Program& program, const ConvertText& text) {
     const voxel::StagedFiles staging(text.out.parent_path());
     const fs::path file = staging.folder() / (is_obj ? "model.obj" : "model.stl");
     brep::write_mesh(triangles, file);
-    voxel::write_dicom_model(voxel::file_bytes(file),
-                             is_obj ? voxel::ModelFormat::Obj : voxel::ModelFormat::Stl, text.out, options);
+    voxel::write_dicom_document(voxel::file_bytes(file),
+                                is_obj ? voxel::DocumentFormat::Obj : voxel::DocumentFormat::Stl, text.out,
+                                options);
   }
   Json json = answer(timings);
   json["kind"] = is_obj ? "DICOM encapsulated OBJ" : "DICOM encapsulated STL";

@@ -63,5 +63,7 @@ int convert_structures(const Program& program, const ConvertText& text);
 int convert_fractions(const Program& program, const ConvertText& text);
 /// Writes an STL or OBJ file as an encapsulated DICOM document.
 int convert_model(const Program& program, const ConvertText& text);
+/// Writes a PDF as an encapsulated DICOM document.
+int convert_report(const Program& program, const ConvertText& text);
 
 }  // namespace octotomy::planner::cli

@@ -227,8 +227,8 @@ int parse_and_run(int count, char** arguments) {
       "Example:\n"
       "  octotomy phantom head -o head.nrrd\n"
       "  octotomy run planner/le_fort_i.plan.json --scan ct=head.nrrd -o report\n"
-      "Exit status: 0 done, 1 the kernels disagree or verify lacks evidence, 2 wrong usage or bad input, 3 "
-      "out of time, memory or disk, 70 a mistake in the program.");
+      "Exit status: 0 done, 1 a FAIL verdict (kernels that disagree, a check that fails) or verify lacks "
+      "evidence, 2 wrong usage or bad input, 3 out of time, memory or disk, 70 a mistake in the program.");
   cli::add_manual(app);
   Program program(app, {arguments + std::min(1, count), arguments + count});
   cli::add_look(program);
@@ -243,6 +243,8 @@ int parse_and_run(int count, char** arguments) {
   cli::add_cohort(program);
   cli::add_cephalometry(program);
   cli::add_outcome(program);
+  cli::add_pack(program);
+  cli::add_scene(program);
   cli::add_serve(program);
   cli::group_verbs(app);
   try {

@@ -45,6 +45,8 @@ constexpr std::array verb_table{
     GroupedVerb{planning, "plan"},
     GroupedVerb{planning, "schema"},
     GroupedVerb{planning, "outcome"},
+    GroupedVerb{planning, "pack"},
+    GroupedVerb{planning, "scene"},
     GroupedVerb{scans, "prepare"},
     GroupedVerb{scans, "segment"},
     GroupedVerb{scans, "convert"},

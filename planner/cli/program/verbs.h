@@ -21,6 +21,8 @@ void add_mark(Program& program);
 void add_cohort(Program& program);
 void add_cephalometry(Program& program);
 void add_outcome(Program& program);
+void add_pack(Program& program);
+void add_scene(Program& program);
 void add_serve(Program& program);
 
 }  // namespace octotomy::planner::cli

@@ -9,6 +9,7 @@
 #include "convert/tet/mesher_process.h"
 #include "planner/cli/suite/suites.h"
 #include "planner/operation/table/fault.h"
+#include "planner/result/pack/library_versions.h"
 #include "voxel/scan/dicom_codec.h"
 #include "voxel/scan/image_file.h"
 #include "voxel/space/helper_file.h"
@@ -139,7 +140,12 @@ SuiteAnswer run_self(Program& program, const VerifyText&) {
     rows.emplace_back(
         part.file, trouble.empty() ? std::string("same build, works: ") + part.does : "NOT FIT: " + trouble);
   }
-  answer.more = {{"build", build}, {"parts", told}};
+  const Json libraries = library_versions();
+  std::string listed;
+  for (const auto& [name, version] : libraries.items())
+    listed += (listed.empty() ? "" : ", ") + name + " " + version.get<std::string>();
+  rows.emplace_back("libraries", listed);
+  answer.more = {{"build", build}, {"parts", told}, {"libraries", libraries}};
   answer.text = lines(rows);
   return answer;
 }

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "planner/cli/suite/suites.h"
+#include "verify/suite/representation_study.h"
 #include "verify/suite/thesis_tables.h"
 
 namespace octotomy::planner::cli {
@@ -15,7 +16,13 @@ SuiteAnswer run_thesis(Program&, const VerifyText&) {
     const Stopwatch watch(answer.timings, "thesis");
     entries = verify::thesis_tables();
   }
-  Json tables = Json::array(), gaps = Json::array();
+  verify::RepresentationStudy study;
+  {
+    const Stopwatch watch(answer.timings, "study");
+    study = verify::representation_study();
+  }
+  entries.insert(entries.end(), study.entries.begin(), study.entries.end());
+  Json tables = Json::array(), beside = Json::array(), gaps = Json::array();
   std::vector<std::string> order;
   std::map<std::string, std::pair<int, int>> agreeing;  // of entries
   std::vector<std::pair<std::string, std::string>> differing;
@@ -39,18 +46,25 @@ SuiteAnswer run_thesis(Program&, const VerifyText&) {
     rows.emplace_back(where, std::to_string(agreeing[where].first) + " of " +
                                  std::to_string(agreeing[where].second) + " as printed");
   rows.insert(rows.end(), differing.begin(), differing.end());
+  for (const verify::ThesisComparison& one : study.beside) {
+    beside.push_back(
+        {{"where", one.where}, {"item", one.item}, {"printed", one.printed}, {"ours", one.ours}});
+    rows.emplace_back(one.where, one.item + ": printed " + one.printed + "; ours " + one.ours);
+  }
   for (const verify::ThesisGap& gap : verify::thesis_gaps()) {
     gaps.push_back({{"where", gap.where}, {"why", gap.why}});
     rows.emplace_back(gap.where, "not recomputed: " + gap.why);
   }
-  answer.more = {{"tables", tables}, {"not_recomputed", gaps}};
+  answer.more = {{"tables", tables}, {"beside", beside}, {"not_recomputed", gaps}};
   answer.text = lines(rows);
   return answer;
 }
 
 CLI::Option* add_thesis(CLI::App& verb, VerifyText& text) {
-  return verb.add_flag("--thesis", text.thesis,
-                       "A suite: compares the thesis's tables and worked examples with computed ones");
+  return verb.add_flag(
+      "--thesis", text.thesis,
+      "A suite: compares the thesis's tables and worked examples with computed ones; what depends on "
+      "its patient's scan stands beside the same of the head phantom");
 }
 
 }  // namespace

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "planner/cli/suite/suite.h"
 #include "planner/cli/suite/suites.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/result/pack/pack.h"
+#include "planner/result/pack/pack_check.h"
 #include "planner/result/report/result_folder.h"
 #include "planner/result/report/verification.h"
+#include "voxel/space/unfinished_folder.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -43,6 +48,44 @@ SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
   return answer;
 }
 
+/// Replays a pack and compares every value and entry with the packed ones.
+SuiteAnswer verify_pack(Program& program, const VerifyText& text, const std::filesystem::path& path) {
+  const PackContents packed = read_pack(path);
+  Result result;
+  result.plan = plan_of(program, text, parse_plan(packed.plan, path.parent_path()));
+  EvaluateOptions options = evaluate_options(program);
+  options.ahead = true;
+  options.keep_scans = true;
+  result.evaluation = evaluated(program, result.plan, options);
+  result.pictures = plan_pictures(result.plan, result.evaluation);
+  SuiteAnswer answer;
+  answer.timings = result.evaluation.timings;
+  answer.counts = verdict_counts(result.evaluation);
+  const voxel::UnfinishedFolder work(std::filesystem::temp_directory_path(), "octotomy-replay-");
+  write_pack(result, work.path() / "replayed.zip", {program.stop.get_token(), program.progress()});
+  const PackContents replayed = read_pack(work.path() / "replayed.zip");
+  const PackComparison comparison = compare_packs(packed, replayed);
+  answer.certificates = replayed.result["certificates"];
+  answer.more["pack"] = to_json(comparison);
+  answer.more["pack"]["packed_by"] = packed.manifest["octotomy"];
+  answer.held = comparison.different_values.empty();
+  std::vector<std::pair<std::string, std::string>> rows{
+      {"values", grouped(static_cast<double>(comparison.values), 0) + ", of which " +
+                     grouped(static_cast<double>(comparison.different_values.size()), 0) + " differ"},
+      {"entries", grouped(static_cast<double>(comparison.entries), 0) + ", of which " +
+                      grouped(static_cast<double>(comparison.different_entries.size()), 0) + " differ"}};
+  constexpr std::size_t most_printed = 10;
+  for (std::size_t i = 0; i < std::min(most_printed, comparison.different_values.size()); ++i) {
+    const DifferentValue& value = comparison.different_values[i];
+    rows.emplace_back("  " + value.where, "packed " + (value.packed.empty() ? "without" : value.packed) +
+                                              ", replayed " +
+                                              (value.replayed.empty() ? "without" : value.replayed));
+  }
+  answer.text = verdict_text(result.evaluation) + lines(rows);
+  if (!answer.held) warn("the replay differs from the packed result");
+  return answer;
+}
+
 /// Runs the suite selected by its option, or verifies the plan.
 SuiteAnswer chosen(Program& program, VerifyText& text, const std::vector<CLI::Option*>& named) {
   const Suite* suite = nullptr;
@@ -63,6 +106,8 @@ SuiteAnswer chosen(Program& program, VerifyText& text, const std::vector<CLI::Op
   if (text.answer) throw CLI::ValidationError("--answer", "for A OP B only");
   if (holds_questions(text.subject.front())) return verify_questions(program, text);
   if (text.operand_voxel_mm) throw CLI::ValidationError("--voxel", "for A OP B with a mesh only");
+  if (std::filesystem::path(text.subject.front()).extension() == ".zip")
+    return verify_pack(program, text, text.subject.front());
   text.plan = text.subject.front();
   return verify_plan(program, text);
 }
@@ -110,10 +155,12 @@ void add_verify_verbs(Program& program) {
       [&program, text, named] { return verify(program, *text, *named); });
   verb.add_option(
           "subject", text->subject,
-          "A .plan.json; or A OP B: meshes, label maps or octrees of any program, and union, intersection "
-          "or difference; or a folder or .json file of such questions with their results")
+          "A .plan.json; or a .zip of octotomy pack, which is replayed and compared; or A OP B: meshes, "
+          "label "
+          "maps or octrees of any program, and union, intersection or difference; or a folder or .json file "
+          "of such questions with their results")
       ->expected(1, 3)
-      ->type_name("PLAN | A OP B | FOLDER");
+      ->type_name("PLAN | ZIP | A OP B | FOLDER");
   add_plan_options(verb, *text);
   add_operand_options(verb, *text);
   verb.add_flag("--accept-unresolved", text->accept_unresolved,

@@ -15,7 +15,9 @@ int say(const Program& program, const FileAnswer& made, const Timings& timings) 
   json.update(made.json);
   program.say(json,
               made.rows.empty() ? octree_text(json["path"].get<std::string>(), json) : lines(made.rows));
-  const bool failed = std::any_of(made.findings.begin(), made.findings.end(),
+  const auto verdict = made.json.find("verdict");
+  const bool failed = (verdict != made.json.end() && *verdict == "FAIL") ||
+                      std::any_of(made.findings.begin(), made.findings.end(),
                                   [](const std::string& finding) { return finding.starts_with("FAIL "); });
   return failed ? disagreement : done;
 }

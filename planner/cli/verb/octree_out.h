@@ -8,7 +8,7 @@
 namespace octotomy::planner::cli {
 
 /// Prints an answer to standard output and its findings to standard error. Without rows, prints the rows of
-/// an octree.
+/// an octree. Returns the exit status: `disagreement` where the answer's `verdict` or a finding is a FAIL.
 int say(const Program& program, const FileAnswer& made, const Timings& timings);
 
 /// Runs `info` for an .octree file.

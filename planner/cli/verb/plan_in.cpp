@@ -22,7 +22,10 @@ void add_plan_options(CLI::App& verb, PlanIn& text) {
 }
 
 Plan plan_of(const Program& program, const PlanIn& text) {
-  Plan plan = read_plan(text.plan);
+  return plan_of(program, text, read_plan(text.plan));
+}
+
+Plan plan_of(const Program& program, const PlanIn& text, Plan plan) {
   std::vector<std::string> names;
   for (const auto& [name, unused] : plan.scans) names.push_back(name);
   for (const std::string& scan : text.scans) {

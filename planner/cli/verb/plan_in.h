@@ -27,6 +27,8 @@ void add_plan_options(CLI::App& verb, PlanIn& text);
 /// Reads the plan and replaces its scans' paths by those of NAME=PATH, which are relative to the working
 /// folder. Throws as read_plan() does, and std::runtime_error if --scan names no scan of the plan.
 Plan plan_of(const Program& program, const PlanIn& text);
+/// The same for a plan that was already read.
+Plan plan_of(const Program& program, const PlanIn& text, Plan plan);
 
 /// Options with the program's progress and stop, and with certificates.
 EvaluateOptions evaluate_options(Program& program);

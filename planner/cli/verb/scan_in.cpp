@@ -7,6 +7,7 @@
 
 #include "planner/cli/verb/numbers.h"
 #include "planner/operation/file/file_kind.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -22,7 +23,7 @@ glm::dvec3 spacing_of(const std::string& text) {
 std::vector<voxel::SliceRange> slices_of(const std::string& text) {
   try {
     return voxel::parse_slices(text);
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     throw CLI::ValidationError("--slices", error.what());
   }
 }
@@ -33,7 +34,7 @@ std::optional<Value> parsed(const char* option, const std::string& text, Value (
   if (text.empty()) return std::nullopt;
   try {
     return parse(text);
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     throw CLI::ValidationError(option, error.what());
   }
 }

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "brep/align/register_landmarks.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -18,7 +19,7 @@ glm::dmat3 least_turn(const glm::dvec3& from, const glm::dvec3& to) {
   const double sine = glm::length(axis), cosine = glm::dot(from, to);
   if (sine > 0.0) return glm::dmat3(glm::rotate(glm::dmat4(1.0), std::atan2(sine, cosine), axis / sine));
   if (cosine > 0.0) return glm::dmat3(1.0);
-  throw std::invalid_argument(
+  throw voxel::InvalidInput(
       "the direction between the two points is wanted the other way round, which leaves the turn open: add a "
       "third point");
 }
@@ -26,8 +27,8 @@ glm::dmat3 least_turn(const glm::dvec3& from, const glm::dvec3& to) {
 glm::dmat4 motion_of_two(const WantedPoint& a, const WantedPoint& b, PointFit fit) {
   const glm::dvec3 from = b.from_mm - a.from_mm, to = b.to_mm - a.to_mm;
   if (glm::length(from) == 0.0 || glm::length(to) == 0.0)
-    throw std::invalid_argument("'" + a.name + "' and '" + b.name +
-                                "' are, or come to, one place: choose two that are apart");
+    throw voxel::InvalidInput("'" + a.name + "' and '" + b.name +
+                              "' are, or come to, one place: choose two that are apart");
   const glm::dmat3 turn = least_turn(glm::normalize(from), glm::normalize(to));
   const double share = fit == PointFit::Best ? 0.5 : 0.0;  // of the way to the second point
   glm::dmat4 motion(turn);
@@ -49,7 +50,7 @@ glm::dmat4 motion_of_many(const std::vector<WantedPoint>& points, PointFit fit) 
 }  // namespace
 
 PointMotion motion_of_points(const std::vector<WantedPoint>& points, PointFit fit) {
-  if (points.empty()) throw std::invalid_argument("no point is given: add one");
+  if (points.empty()) throw voxel::InvalidInput("no point is given: add one");
   PointMotion found;
   if (points.size() == 1)
     found.moved_from_still[3] = glm::dvec4(points[0].to_mm - points[0].from_mm, 1.0);

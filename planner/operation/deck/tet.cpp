@@ -382,7 +382,7 @@ Operation tet_operation() {
       .takes(field("max_volume_mm3", &Tet::max_volume_mm3, "Largest tetrahedron.").greater_than(0.0))
       .verb_takes(
           field("finer", &Tet::finer,
-                "WHERE=MM: elements with sides of about so many mm at a point x,y,z, a landmark or along "
+                "WHERE=MM: elements with sides of about MM millimetres at a point x,y,z, a landmark or along "
                 "a mesh file's surface, growing from there; deep inside only with --size; repeated.")
               .repeated())
       .verb_takes(
@@ -396,7 +396,7 @@ Operation tet_operation() {
               .repeated()
               .called("fix"))
       .verb_takes(
-          field("moved", &Tet::moved, "NAME=DX,DY,DZ: a set of nodes that moves by so many mm; repeated.")
+          field("moved", &Tet::moved, "NAME=DX,DY,DZ: a set of nodes that moves by DX, DY, DZ mm; repeated.")
               .repeated()
               .called("move"))
       .verb_takes(field("landmarks", &Tet::landmarks,

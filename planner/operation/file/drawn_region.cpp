@@ -17,6 +17,7 @@
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
 #include "voxel/solid/polygon.h"
+#include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::planner {
@@ -191,7 +192,7 @@ DrawnRegion of_markups(const voxel::View& view, const fs::path& path) {
 void check_drawn(const DrawnRegion& drawn, const std::string& where) {
   try {
     voxel::check(voxel::RegionMask{{drawn.region}});
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     refuse(where, error.what());
   }
 }
@@ -211,7 +212,7 @@ DrawnRegion read_drawn_region(const std::string& text) {
     path = text.substr(colon + 1);
     try {
       view = voxel::parse_view(text.substr(0, colon));
-    } catch (const std::invalid_argument& error) {
+    } catch (const voxel::InvalidInput& error) {
       refuse("--region", error.what());
     }
   } else if (!is_drawing) {

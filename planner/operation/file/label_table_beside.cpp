@@ -10,6 +10,7 @@
 
 #include "planner/operation/file/label_table.h"
 #include "voxel/scan/label_names.h"
+#include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::planner {
@@ -196,7 +197,7 @@ LabelTable names_of_labels(const voxel::Scene& scene, const fs::path& file) {
   std::set<int> occurring;
   try {
     for (const voxel::Label& label : voxel::labels(scene)) occurring.insert(label.number);
-  } catch (const std::invalid_argument&) {  // samples between labels
+  } catch (const voxel::InvalidInput&) {  // samples between labels
     return {};
   }
   return label_table_of(file, occurring);

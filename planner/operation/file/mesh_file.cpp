@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
 #include <tbb/parallel_for.h>
 #include <utility>
 
@@ -31,10 +32,24 @@ brep::Linked joined(const std::filesystem::path& path, std::vector<std::string>&
   }
 }
 
+/// The solid of triangles whose sheets share points or sides, which files write as one point or one side: each
+/// sheet gets its own, and the surface stays as it is. None if that is not all that is wrong.
+std::optional<brep::Solid> solid_of_sheets(const brep::Triangles& triangles) {
+  try {
+    const brep::SplitFans split = brep::split_fans(triangles);
+    if (split.surface.points_mm.size() == triangles.points_mm.size() || !split.left_out.empty())
+      return std::nullopt;
+    return brep::solid_of(split.surface);
+  } catch (const brep::Error&) {
+    return std::nullopt;
+  }
+}
+
 brep::Solid solid_in(const std::filesystem::path& path, const brep::Triangles& triangles) {
   try {
     return brep::solid_of(triangles);
   } catch (const brep::Error& error) {
+    if (const std::optional<brep::Solid> solid = solid_of_sheets(triangles)) return *solid;
     throw brep::Error(error.code(), path.string() + ": " + error.what() +
                                         "; mend it first: octotomy repair " + path.filename().string() +
                                         " --solid -o solid.ply");

@@ -11,6 +11,7 @@
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
 #include "voxel/picture/png_chunk.h"
+#include "voxel/space/error.h"
 #include "voxel/space/regular_file.h"
 
 namespace octotomy::planner {
@@ -69,7 +70,7 @@ PictureFrame read_frame(std::string_view png, const std::string& where) {
   voxel::PngText found;
   try {
     found = voxel::png_text(png, keyword);
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     refuse(where, error.what());
   }
   if (!found.text)

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "planner/operation/file/contour_findings.h"
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/nearest_name.h"
@@ -537,6 +538,7 @@ DrawnSlices read_slices(const std::filesystem::path& path, const SlicesOptions& 
     add_contour_findings(drawn.mask, path.string(), drawn.findings);
     return drawn;
   } catch (const std::invalid_argument& error) {
+    if (fault_of(error) != Fault::Input) throw;
     refuse(path.string(), error.what());
   }
 }

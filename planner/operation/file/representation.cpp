@@ -13,6 +13,7 @@
 #include "voxel/codes/marginal_index.h"
 #include "voxel/codes/run_length.h"
 #include "voxel/codes/segment_index.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/packed_treecode.h"
 #include "voxel/tree/treecode.h"
 
@@ -93,8 +94,8 @@ constexpr std::array<Codec, 10> codecs{{
 const Codec& codec(std::string_view name) {
   for (const Codec& known : codecs)
     if (known.name == name) return known;
-  throw std::invalid_argument("there is no representation '" + std::string(name) + "'" +
-                              suggestion(name, representation_names()));
+  throw voxel::InvalidInput("there is no representation '" + std::string(name) + "'" +
+                            suggestion(name, representation_names()));
 }
 
 }  // namespace

@@ -11,11 +11,13 @@
 #include "brep/contour/fourier_smooth.h"
 #include "brep/contour/offset_contours.h"
 #include "brep/contour/thin.h"
+#include "brep/mesh/error.h"
 #include "convert/surface/trace_contours.h"
 #include "planner/operation/file/picture_frame.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/json_file.h"
 #include "voxel/filter/slice_contour.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -202,7 +204,7 @@ voxel::SliceMask slice_contours(const voxel::Scene& scene, double low, double hi
   voxel::SliceMask mask;
   try {
     mask.view = voxel::parse_view(voxel::contour_view(scene.lattice));
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     throw std::runtime_error(std::string(error.what()) +
                              ": straighten the scan first, for example with octotomy prepare");
   }
@@ -242,7 +244,7 @@ voxel::SliceMask refined(const voxel::SliceMask& mask, const Refinement& refinem
         contours.push_back({refined_at(polygon, refinement, slice, findings)});
     try {
       if (refinement.offset_mm != 0.0) contours = brep::offset(contours, refinement.offset_mm);
-    } catch (const std::invalid_argument& error) {
+    } catch (const brep::InvalidInput& error) {
       throw std::runtime_error(place_of(slice) + ": " + error.what());
     }
     slice.polygons_mm.clear();
@@ -269,7 +271,7 @@ voxel::SliceMask edited(const voxel::SliceMask& mask, const std::filesystem::pat
     if (!list[i].is_object()) refuse(where, "must be an object");
     try {
       Edit(list[i], where, slices).make();
-    } catch (const std::invalid_argument& error) {
+    } catch (const brep::InvalidInput& error) {
       refuse(where, error.what());
     }
   }

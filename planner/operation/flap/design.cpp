@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::planner {
 namespace {
 
@@ -35,7 +37,7 @@ double tilt_deg(const glm::dvec2& slope) {
 /// The component of a vector perpendicular to a unit vector, normalised.
 glm::dvec3 square_to(const glm::dvec3& unit, const glm::dvec3& vector, const std::string& refusal) {
   const glm::dvec3 rest = vector - unit * glm::dot(unit, vector);
-  if (!(glm::length(rest) > 1e-3 * glm::length(vector))) throw std::invalid_argument(refusal);
+  if (!(glm::length(rest) > 1e-3 * glm::length(vector))) throw voxel::InvalidInput(refusal);
   return glm::normalize(rest);
 }
 
@@ -48,15 +50,15 @@ glm::dvec3 carried(const glm::dvec3& vector, const glm::dvec3& from, const glm::
 }
 
 void check(const FlapPlan& plan) {
-  if (plan.curve_mm.size() < 2) throw std::invalid_argument("the curve needs two corners or more");
+  if (plan.curve_mm.size() < 2) throw voxel::InvalidInput("the curve needs two corners or more");
   if (!plan.stumps_mm.empty() && plan.stumps_mm.size() != 2)
-    throw std::invalid_argument("stumps are two points, behind the first and behind the last corner");
+    throw voxel::InvalidInput("stumps are two points, behind the first and behind the last corner");
   for (std::size_t i = 0; i + 1 < plan.curve_mm.size(); ++i)
     if (!(glm::distance(plan.curve_mm[i], plan.curve_mm[i + 1]) > 1e-3))
-      throw std::invalid_argument("corners " + std::to_string(i + 1) + " and " + std::to_string(i + 2) +
-                                  " of the curve are one point");
+      throw voxel::InvalidInput("corners " + std::to_string(i + 1) + " and " + std::to_string(i + 2) +
+                                " of the curve are one point");
   if (!(plan.kerf_mm >= 0.0 && plan.reach_mm > 0.0 && plan.start_mm >= 0.0))
-    throw std::invalid_argument("kerf and start must not be negative, and the reach must be above 0");
+    throw voxel::InvalidInput("kerf and start must not be negative, and the reach must be above 0");
 }
 
 std::vector<glm::dvec3> directions_of(const FlapPlan& plan) {
@@ -76,12 +78,12 @@ std::vector<FlapPlane> cuts_of(const FlapPlan& plan, const std::vector<glm::dvec
       const glm::dvec3 stump =
           k == 0 ? plan.curve_mm[0] - plan.stumps_mm[0] : plan.stumps_mm[1] - plan.curve_mm[last];
       if (!(glm::length(stump) > 1e-3))
-        throw std::invalid_argument("a stump's point is the corner: give one behind it");
+        throw voxel::InvalidInput("a stump's point is the corner: give one behind it");
       (k == 0 ? before : after) = glm::normalize(stump);
     }
     if (!(glm::dot(before, after) > -0.5))
-      throw std::invalid_argument("the curve turns by 120° or more at corner " + std::to_string(k + 1) +
-                                  ": check the order of its corners");
+      throw voxel::InvalidInput("the curve turns by 120° or more at corner " + std::to_string(k + 1) +
+                                ": check the order of its corners");
     cuts.push_back({plan.curve_mm[k], glm::normalize(before + after)});
   }
   return cuts;
@@ -103,9 +105,9 @@ FlapSegment segment_between(const FlapPlane& start, const FlapPlane& end, const 
   made.start_tilt_deg = tilt_deg(start_slope);
   made.end_tilt_deg = tilt_deg(end_slope);
   if (!(made.shortest_mm > 0.0))
-    throw std::invalid_argument("segment " + std::to_string(number) + " is " + said(made.length_mm) +
-                                " mm long, and its cuts cross within the bone: take corners further apart, "
-                                "fewer segments, or a smaller 'reach_mm'");
+    throw voxel::InvalidInput("segment " + std::to_string(number) + " is " + said(made.length_mm) +
+                              " mm long, and its cuts cross within the bone: take corners further apart, "
+                              "fewer segments, or a smaller 'reach_mm'");
   return made;
 }
 
@@ -119,7 +121,7 @@ std::vector<FlapSegment> flap_segments(const FlapPlan& plan) {
   check(plan);
   const double corner_mm = flap_corner_mm(plan.reach_mm);
   const glm::dvec3 axis_mm = plan.donor_to_mm - plan.donor_from_mm;
-  if (!(glm::length(axis_mm) > 1e-3)) throw std::invalid_argument("the donor's two points are one");
+  if (!(glm::length(axis_mm) > 1e-3)) throw voxel::InvalidInput("the donor's two points are one");
   const glm::dvec3 axis = glm::normalize(axis_mm);
   const glm::dvec3 face = square_to(axis, plan.donor_face_mm - plan.donor_from_mm,
                                     "the point on the donor's face lies on its axis");
@@ -157,7 +159,7 @@ std::vector<FlapSegment> flap_segments(const FlapPlan& plan) {
   }
   const double missing_mm = segments.back().donor_end_mm - glm::length(axis_mm);
   if (missing_mm > 0.0)
-    throw std::invalid_argument(
+    throw voxel::InvalidInput(
         "the donor is " + said(glm::length(axis_mm)) + " mm long, and the flap takes " + said(missing_mm) +
         " mm more: start nearer to its first point, or take donor points further apart");
   return segments;

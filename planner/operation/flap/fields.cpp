@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::planner {
 
 FlapPlan plan_of(const FlapFields& fields) {
@@ -37,7 +39,7 @@ void check_flap(const FlapFields& fields, const Place& place) {
   need_still("face", {fields.face});
   try {
     segments_of(fields);
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     place.refuse(error.what());
   }
 }

@@ -7,6 +7,7 @@
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "verify/witness/witness.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -74,7 +75,7 @@ void check(const FlapSpace& space, const Place& place) {
   wide.donor[1].p_mm = wide.donor[0].p_mm + 1e4 * (wide.donor[1].p_mm - wide.donor[0].p_mm);
   try {
     segments_of(wide);
-  } catch (const std::invalid_argument&) {
+  } catch (const voxel::InvalidInput&) {
     place.at("aside_mm")
         .refuse("is so wide that the sides of the resection cross: take less than " + plain(space.aside_mm) +
                 " mm");

@@ -15,6 +15,7 @@
 #include "planner/operation/table/same_patient.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 #include "voxel/volume/volume_header.h"
 
@@ -61,7 +62,7 @@ Side side_of(const fs::path& path, const FileBench& bench, std::vector<std::stri
     for (const voxel::Label& label : labels) side.samples[label.number] = label.samples;
     for (const std::string& finding : findings_of_labels(labels))
       findings.push_back(path.string() + ": " + finding);
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     throw std::runtime_error(path.string() + ": is no label map: " + error.what());
   }
   if (side.samples.empty())

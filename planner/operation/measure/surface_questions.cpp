@@ -90,6 +90,14 @@ double angle_deg(const std::vector<glm::dvec3>& points_mm) {
 
 }  // namespace
 
+Json point_answers(const SurfaceQuestions& questions) {
+  Json json = Json::object();
+  if (!questions.distance.empty())
+    json["distance_mm"] = glm::distance(questions.distance[0], questions.distance[1]);
+  if (!questions.angle.empty()) json["angle_deg"] = angle_deg(questions.angle);
+  return json;
+}
+
 Json surface_answers(const SurfaceQuestions& questions, const brep::Solid& solid,
                      const voxel::Progress& progress, Timings& timings, AtVertices& shown) {
   Json json;
@@ -99,9 +107,7 @@ Json surface_answers(const SurfaceQuestions& questions, const brep::Solid& solid
   };
   put("oriented_box", [&] { return box_json(solid); });
   if (!questions.section.empty()) put("section", [&] { return section_json(questions, solid); });
-  if (!questions.distance.empty())
-    json["distance_mm"] = glm::distance(questions.distance[0], questions.distance[1]);
-  if (!questions.angle.empty()) json["angle_deg"] = angle_deg(questions.angle);
+  json.update(point_answers(questions));
   if (!questions.along.empty()) put("along", [&] { return along_json(questions, solid); });
   if (questions.to != nullptr) put("gap", [&] { return gap_json(solid, *questions.to); });
   if (questions.curvature) put("curvature", [&] { return curvature_json(solid, shown); });

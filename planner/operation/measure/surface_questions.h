@@ -27,6 +27,10 @@ struct AtVertices {
   std::vector<double> values;
 };
 
+/// The answers that need no surface: the distance and the angle, as far as they were requested. Throws
+/// std::runtime_error if a leg of the angle has no length.
+Json point_answers(const SurfaceQuestions& questions);
+
 /// Computes the measures, each under its own key and timed. Sets `shown` to the last of thickness and
 /// curvature. Throws std::runtime_error if a leg of an angle has no length.
 Json surface_answers(const SurfaceQuestions& questions, const brep::Solid& solid,

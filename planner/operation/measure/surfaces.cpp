@@ -18,6 +18,7 @@
 #include "planner/operation/table/record.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/space/disk_need.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -50,7 +51,7 @@ template <typename Work>
 auto of_label_map(const voxel::Scene& scene, const Work& work) {
   try {
     return work();
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     throw std::runtime_error(scene.source + ": is no label map: " + error.what());
   }
 }

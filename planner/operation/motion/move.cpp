@@ -13,10 +13,12 @@
 #include "planner/operation/anatomy/head_directions.h"
 #include "planner/operation/anatomy/motion_of_points.h"
 #include "planner/operation/object/trace.h"
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/solid/expression.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -79,7 +81,7 @@ glm::dmat3 directions_of(const Move& move, const MarkPlaces& places) {
   const glm::dvec3 front = places.mark_mm(move.along[0]) - 0.5 * (right + left);
   const glm::dvec3 up = glm::cross(front, left - right);
   if (!(glm::length(up) > 1e-3 * glm::length(front) * glm::length(left - right)))
-    throw std::invalid_argument("'along' has its three points on one line, through which no plane is fixed");
+    throw voxel::InvalidInput("'along' has its three points on one line, through which no plane is fixed");
   const glm::dvec3 forward = glm::normalize(front);
   return {glm::cross(glm::normalize(up), forward), -forward, glm::normalize(up)};
 }
@@ -204,6 +206,7 @@ void check(const Move& move, const Place& place) {
   try {
     motion_of(move, places_of(none));
   } catch (const std::invalid_argument& error) {
+    if (fault_of(error) != Fault::Input) throw;
     (move.points.empty() ? place : place.at("points")).refuse(error.what());
   }
 }

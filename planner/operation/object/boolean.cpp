@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "brep/boolean/exact_boolean.h"
+#include "brep/mesh/error.h"
 #include "planner/operation/object/combine.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/number_format.h"
@@ -112,7 +113,13 @@ void triangles(const Boolean& asked, const MeshBench& bench, MeshSide& made) {
     result = brep::boolean(operands, asked.kind(), bench.progress.stop);
   // An empty result may be due to rounding: a body thinner than the rounding of points vanishes.
   if (!asked.exact && result.solid.empty() && operands.size() == 2 && boxes_meet(operands[0], operands[1])) {
-    proof = proven(bench, operands[0], asked.kind(), operands[1], result);
+    try {
+      proof = proven(bench, operands[0], asked.kind(), operands[1], result);
+    } catch (const brep::Error& error) {
+      // Exact numbers see gaps and overlaps between faces that coincide but for rounding; these are no solids.
+      if (error.code() != brep::ErrorCode::Geometry) throw;
+      result.findings.emplace_back("empty, but for what is thinner than the rounding of points");
+    }
     if (!result.solid.empty() && is_film(result.solid)) result.solid = brep::Solid();
     if (!result.solid.empty())
       result.findings.push_back("thinner than the rounding of points, so made with exact numbers: " +

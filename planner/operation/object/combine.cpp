@@ -8,6 +8,7 @@
 #include "verify/witness/witness.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/expression.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -143,7 +144,7 @@ void check_expression(const std::string& expression, const Place& place) {
   };
   try {
     voxel::parse_expression(expression, names);
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     place.refuse(error.what());
   }
 }

@@ -141,7 +141,7 @@ Operation contours_operation() {
       .takes(field("thin_mm", &Contours::thin_mm, "Takes out points within this of a straight piece.")
                  .from(0.0)
                  .to(1e6))
-      .takes(field("harmonics", &Contours::harmonics, "Smooths each by so many Fourier harmonics.")
+      .takes(field("harmonics", &Contours::harmonics, "Number of Fourier harmonics that smooth each contour.")
                  .from(1)
                  .to(10000))
       .takes(field("by_mm", &Contours::by_mm, "Moves them out by this; in where it is below zero.")

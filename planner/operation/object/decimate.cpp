@@ -118,7 +118,7 @@ Operation decimate_operation() {
                    "Largest distance of either surface from the other. Default: 0.1, or a 200th of the "
                    "object's extent where that is less.")
                  .greater_than(0.0))
-      .takes(field("faces", &Decimate::faces, "Ends at so many triangles.").from(4).to(100000000))
+      .takes(field("faces", &Decimate::faces, "Number of triangles to end at.").from(4).to(100000000))
       .takes(field("max_normal_deviation_deg", &Decimate::max_normal_deviation_deg,
                    "Largest turn of a triangle at one collapse.")
                  .greater_than(0.0)

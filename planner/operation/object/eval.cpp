@@ -17,6 +17,7 @@
 #include "voxel/solid/combine_grey.h"
 #include "voxel/solid/combine_shares.h"
 #include "voxel/solid/expression.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -93,12 +94,12 @@ void check(const Eval& asked, const Place& place) {
                                                [&](std::string_view name) {
                                                  const auto found = motions.find(std::string(name));
                                                  if (found == motions.end())
-                                                   throw std::invalid_argument("no motion is called '" +
-                                                                               std::string(name) +
-                                                                               "': add it to 'motions'");
+                                                   throw voxel::InvalidInput("no motion is called '" +
+                                                                             std::string(name) +
+                                                                             "': add it to 'motions'");
                                                  return parse_motion(found->first, found->second);
                                                }});
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     at.refuse(error.what());
   }
 }
@@ -205,18 +206,18 @@ FileAnswer on_files(const Eval& asked, const FileBench& bench) {
   const voxel::Names names{[&](std::string_view name) {
                              const auto found = operands.find(std::string(name));
                              if (found == operands.end())
-                               throw std::invalid_argument("nothing is called '" + std::string(name) + "'" +
-                                                           suggestion(name, known) + ": bind it with --let " +
-                                                           std::string(name) + "=FILE");
+                               throw voxel::InvalidInput("nothing is called '" + std::string(name) + "'" +
+                                                         suggestion(name, known) + ": bind it with --let " +
+                                                         std::string(name) + "=FILE");
                              return found->second.expression;
                            },
                            [&](std::string_view name) {
                              const auto found = motions.find(std::string(name));
                              if (found == motions.end())
-                               throw std::invalid_argument("no motion is called '" + std::string(name) + "'" +
-                                                           suggestion(name, names_of(motions)) +
-                                                           ": bind it with --motion " + std::string(name) +
-                                                           "=X,Y,Z");
+                               throw voxel::InvalidInput("no motion is called '" + std::string(name) + "'" +
+                                                         suggestion(name, names_of(motions)) +
+                                                         ": bind it with --motion " + std::string(name) +
+                                                         "=X,Y,Z");
                              return parse_motion(found->first, found->second);
                            }};
   const voxel::Expression expression = voxel::parse_expression(asked.expression, names);

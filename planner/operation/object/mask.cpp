@@ -8,12 +8,14 @@
 #include "planner/operation/file/region_file.h"
 #include "planner/operation/object/mask_file.h"
 #include "planner/operation/object/trace.h"
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "planner/operation/table/same_patient.h"
 #include "verify/witness/slice_witness.h"
 #include "verify/witness/witness.h"
 #include "voxel/solid/region_mask.h"
+#include "voxel/space/error.h"
 #include "voxel/space/view.h"
 
 namespace octotomy::planner {
@@ -58,7 +60,7 @@ void check(const Mask& mask, const Place& place) {
   for (const Mask::Region& region : mask.regions) try {
       voxel::parse_view(region.view);
       ++index;
-    } catch (const std::invalid_argument& error) {
+    } catch (const voxel::InvalidInput& error) {
       place.at("regions[" + std::to_string(index) + "]").at("view").refuse(error.what());
     }
   try {
@@ -66,6 +68,7 @@ void check(const Mask& mask, const Place& place) {
     for (const Mask::Region& region : mask.regions)
       brep::solid_of(prism_of(region, glm::dvec3(0.0), glm::dvec3(1.0)));
   } catch (const std::invalid_argument& error) {
+    if (fault_of(error) != Fault::Input) throw;
     place.at("regions").refuse(error.what());
   }
 }

@@ -31,6 +31,7 @@
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/partial_volume.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/grey_octree_build.h"
 #include "voxel/tree/octree_file.h"
 
@@ -284,7 +285,7 @@ void add_partial_volume(const voxel::Window& window, Timings& timings, Json& jso
   try {
     json["volume_partial_mm3"] = voxel::partial_volume_mm3(window);
     json["volume_partial_estimator"] = "trilinear interpolant of the samples";
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     json["findings"].push_back(std::string("volume_partial_mm3: ") + error.what());
   }
 }
@@ -491,10 +492,25 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   return said(std::move(whole));
 }
 
+/// The distance of two points and the angle of three, which need no file.
+FileAnswer measure_points(const Measure& asked) {
+  Json json{{"kind", "points"}};
+  json.update(point_answers({.distance = asked.distance, .angle = asked.angle}));
+  std::vector<std::pair<std::string, std::string>> rows = surface_rows(json);
+  return {std::move(json), std::move(rows)};
+}
+
 }  // namespace
 
 FileAnswer measure_file(const Measure& asked, const FileBench& bench) {
-  if (!asked.object) throw std::runtime_error("file is required: a scan, an octree or a mesh");
+  if (!asked.object) {
+    const bool needs_file = asked.to || !asked.section.empty() || !asked.along.empty() || asked.thickness ||
+                            asked.curvature || asked.window || asked.voxel_mm || !asked.out.empty();
+    if (needs_file || (asked.distance.empty() && asked.angle.empty()))
+      throw std::runtime_error(
+          "file is required: a scan, an octree or a mesh; only --distance and --angle need none");
+    return measure_points(asked);
+  }
   const std::filesystem::path file = asked.object->name;
   if (!asked.out.empty()) need_scalars_of(asked);
   const bool has_walls = is_mesh(file) || is_octree(file);

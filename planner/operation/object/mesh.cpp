@@ -219,7 +219,7 @@ Operation mesh_operation() {
                  .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "cuberille"; },
                                   "is of a cuberille: add 'surface' cuberille"))
       .takes(field("smooth", &Meshed::smooth, "Takes noise off the surface and keeps its volume."))
-      .takes(field("faces", &Meshed::faces, "Decimates to so many triangles.").from(4).to(100000000))
+      .takes(field("faces", &Meshed::faces, "Number of triangles to decimate to.").from(4).to(100000000))
       .takes(field("path", &Meshed::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.")
                  .required()
                  .called("out"))

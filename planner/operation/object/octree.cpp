@@ -16,6 +16,7 @@
 #include "planner/operation/table/plan_universe.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/expression.h"
+#include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/regular_file.h"
 #include "voxel/space/write_whole.h"
@@ -67,7 +68,7 @@ voxel::OctreeFile from_representation(const Build& asked, Timings& timings) {
   const Stopwatch watch(timings, "octree");
   try {
     return {octree_of_representation(universe, asked.from, content), asked.in().stem().string(), ""};
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     throw std::runtime_error(asked.file.name + ": " + error.what());
   }
 }

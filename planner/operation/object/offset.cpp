@@ -110,7 +110,7 @@ LevelSet level_set(const brep::Solid& solid, const brep::OffsetOptions& options,
     finer.cell_mm *= 0.5;
     try {
       found = {brep::offset(solid, finer), finer};
-    } catch (const std::length_error&) {
+    } catch (const brep::TooLarge&) {
       return found;  // as fine as the lattice goes; the half-width says how fine that is
     }
     coarse_mm3 = mm3;

@@ -339,7 +339,7 @@ Operation parts_operation() {
                          "Keeps the connected parts of an object that are large enough or hold a point.",
                          Makes::Object)
       .takes(field("object", &Parts::object, "The object.").required().positional("solid"))
-      .takes(field("largest", &Parts::largest, "Keep this many of the largest parts.").from(1).to(1000000))
+      .takes(field("largest", &Parts::largest, "Number of the largest parts to keep.").from(1).to(1000000))
       .takes(field("at_least_mm3", &Parts::at_least_mm3, "Keep the parts of at least this volume.")
                  .greater_than(0.0))
       .takes(field("at_mm", &Parts::at_mm, "Keep the parts that hold these points, LPS, or landmarks.")

@@ -103,6 +103,19 @@ Json told(const Mended& made, const brep::RepairEffect& effect, const brep::Know
           {"largest_distance_at_mm", to_json(effect.largest_at_mm)}};
 }
 
+/// Reports sheets that were taken out as shells without content, if they were more than a little of the surface.
+void add_lost_sheets(const Mended& made, const brep::RepairEffect& effect,
+                     std::vector<std::string>& findings) {
+  constexpr double little = 0.05;
+  const auto films = std::count_if(made.repaired.changes.begin(), made.repaired.changes.end(),
+                                   [](const brep::Change& change) { return change.step == "films"; });
+  const double lost_share = 1.0 - effect.area_after_mm2 / std::max(effect.area_before_mm2, 1e-300);
+  if (films == 0 || lost_share < little) return;
+  findings.push_back("WARN films: shells that enclose nothing were taken out, " + std::to_string(films) +
+                     " triangles; the surface lost " + three_figures(100.0 * lost_share) +
+                     " % of its area; octotomy repair --solid --wall MM keeps sheets as walls");
+}
+
 std::string definition(const Repair& repair, const Objects&) {
   return repair.path.filename().string() + ", mended";
 }
@@ -114,8 +127,10 @@ void triangles(const Repair& repair, const MeshBench& bench, MeshSide& made) {
     throw std::runtime_error(repair.path.string() + ": is still not a solid: " + health.findings.front() +
                              "; ask for more to be mended");
   constexpr brep::KnownSolids solids{.before = false, .after = true};
-  made.details =
-      told(mended_mesh, brep::repair_effect(mended_mesh.read, mended_mesh.repaired.surface, solids), solids);
+  const brep::RepairEffect effect =
+      brep::repair_effect(mended_mesh.read, mended_mesh.repaired.surface, solids);
+  made.details = told(mended_mesh, effect, solids);
+  add_lost_sheets(mended_mesh, effect, made.findings);
   made.whole = brep::trusted_solid(mended_mesh.repaired.surface, brep::Proof::Construction);
   made.lineage = "triangles of " + repair.path.filename().string() + ", mended";
 }
@@ -168,6 +183,7 @@ FileAnswer on_files(const Repair& repair, const FileBench& bench) {
       timed("effect", [&] { return brep::repair_effect(read, repaired.surface, solids); });
   FileAnswer answer;
   for (const brep::Change& left : repaired.left) answer.findings.push_back(left.step + ": " + left.what);
+  add_lost_sheets(made, effect, answer.findings);
   if (!after.solid() && solids.after)
     answer.findings.push_back("the surface is a solid, but as " + repair.out.extension().string() +
                               " has it, rounded, it is none: write .ply, .off or .vtp");

@@ -4,6 +4,7 @@
 
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/components.h"
+#include "brep/mesh/error.h"
 #include "planner/operation/object/trace.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
@@ -28,7 +29,7 @@ brep::SawCut cut_of(const Saw& saw) {
 void check(const Saw& saw, const Place& place) {
   try {
     brep::saw_blade(cut_of(saw));
-  } catch (const std::invalid_argument& error) {
+  } catch (const brep::InvalidInput& error) {
     place.refuse(error.what());
   }
 }

@@ -33,6 +33,7 @@
 #include "voxel/filter/tissue.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/grey_owner.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -74,7 +75,7 @@ std::vector<glm::ivec3> seed_voxels(const Segment& segment, const voxel::Univers
 std::vector<voxel::Label> labels_or_none(const voxel::Scene& scene) {
   try {
     return voxel::labels(scene);
-  } catch (const std::invalid_argument&) {
+  } catch (const voxel::InvalidInput&) {
     return {};
   }
 }
@@ -505,7 +506,8 @@ Operation segment_operation() {
                  .for_example("\"bone\"")
                  .in_plans_only())
       .takes(field("otsu", &Segment::otsu,
-                   "Parts the samples into so many classes of least variance; the object is one of them.")
+                   "Number of classes of least variance into which the samples are parted; the object is one "
+                   "of them.")
                  .from(2)
                  .to(8))
       .takes(field("class", &Segment::otsu_class, "The class, from 1, the darkest. Default: the brightest.")
@@ -542,7 +544,7 @@ Operation segment_operation() {
                  .repeated()
                  .called("seed"))
       .takes(field("largest", &Segment::largest, "Keeps the largest part."))
-      .takes(field("components", &Segment::components, "Keeps so many of the largest parts.")
+      .takes(field("components", &Segment::components, "Number of the largest parts to keep.")
                  .from(1)
                  .to(1000000))
       .takes(field("at_least_mm3", &Segment::at_least_mm3, "Keeps the parts of at least this volume.")

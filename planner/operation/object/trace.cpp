@@ -135,12 +135,41 @@ void inherit(const Object& operand, Object& made) {
   if (from.scan_box_mm) to.scan_box_mm = from.scan_box_mm;
 }
 
+namespace {
+
+/// Whether an expression has whole voxels as a leaf.
+bool has_whole_voxels(const voxel::Expression& symbol) {
+  std::vector<const voxel::Expression::Term*> left{&symbol.term()};
+  while (!left.empty()) {
+    const voxel::Expression::Term& term = *left.back();
+    left.pop_back();
+    if (term.leaf && std::holds_alternative<voxel::Octree>(*term.leaf)) return true;
+    for (const auto* operand : {term.left.get(), term.right.get()})
+      if (operand != nullptr) left.push_back(operand);
+  }
+  return false;
+}
+
+/// The witness of a moved object. A smoothed or decimated surface has voxels only as it was digitised. A motion
+/// reads the nearest one of these, whose centre is up to half a voxel's diagonal away.
+verify::Witness witness_of_moved(const Object& still, const glm::dmat4& moved_from_still) {
+  verify::Witness moved = verify::carried(still.witness, moved_from_still);
+  // A chain of motions reads the first object's voxels once.
+  const bool is_digitised = !still.bound.reshaped.empty() && !still.moved && still.voxel.symbol &&
+                            has_whole_voxels(*still.voxel.symbol);
+  if (!is_digitised) return moved;
+  const glm::dvec3 voxel_mm = still.voxel.octree.universe().lattice().spacing_mm();
+  return verify::with_voxels_within(std::move(moved), 0.5 * glm::length(voxel_mm));
+}
+
+}  // namespace
+
 void carry(const std::string& object, const glm::dmat4& moved_from_still, const BoundBench& bench,
            Object& made) {
   const Object& still = bench.objects.at(object);
   made.moved = Object::Moved{still.id, moved_from_still};
   made.image = image_of(still, moved_from_still, bench, made);
-  made.witness = verify::carried(still.witness, moved_from_still);
+  made.witness = witness_of_moved(still, moved_from_still);
   made.walls = still.walls;
   for (CutWall& wall : made.walls) wall.moved_from_still = moved_from_still * wall.moved_from_still;
   made.shown = still.shown;

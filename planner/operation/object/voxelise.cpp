@@ -21,6 +21,7 @@
 #include "planner/operation/table/operation.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/scan/write_scene.h"
+#include "voxel/space/error.h"
 #include "voxel/volume/volume_header.h"
 
 namespace octotomy::planner {
@@ -115,7 +116,7 @@ voxel::Universe universe_of(const FileBench& bench, const Voxelise& asked,
   if (bench.step != nullptr && !asked.voxel_mm) return bench.step->universe;
   try {
     return voxel::universe_around(box_of(subjects), asked.voxel_mm.value_or(1.0));
-  } catch (const std::length_error& error) {
+  } catch (const voxel::TooLarge& error) {
     throw std::runtime_error(subjects.front().path.string() + ": " + error.what() +
                              ": is its unit millimetres? Give larger voxels by --voxel");
   }

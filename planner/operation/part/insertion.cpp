@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "planner/operation/table/number_format.h"
+#include "voxel/space/error.h"
 #include "voxel/space/view.h"
 
 namespace octotomy::planner {
@@ -21,7 +22,7 @@ void check(const Insertion& insertion, const Place& place) {
         "from whose side the part is put on");
   if (insertion.seen_from) try {
       voxel::parse_view(*insertion.seen_from);
-    } catch (const std::invalid_argument& error) {
+    } catch (const voxel::InvalidInput& error) {
       place.at("seen_from").refuse(error.what());
     }
 }

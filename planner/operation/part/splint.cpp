@@ -18,6 +18,7 @@
 #include <stdexcept>
 
 #include "brep/boolean/boolean.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/flat_triangles.h"
 #include "brep/mesh/health.h"
 #include "brep/shape/offset.h"
@@ -149,7 +150,7 @@ Splint settle(const Splint& asked, const SettleBench& bench) {
   slab.high_mm = middle_mm + reach_mm;
   try {
     static_cast<void>(slab.solid());
-  } catch (const std::invalid_argument&) {
+  } catch (const brep::InvalidInput&) {
     throw std::runtime_error("a band of " + three_figures(asked.width_mm) +
                              " mm about the arch's points crosses itself: take a smaller 'width_mm', or "
                              "points in their order along the arch");

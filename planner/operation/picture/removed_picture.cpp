@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "voxel/space/error.h"
+
 namespace octotomy::planner {
 namespace {
 
@@ -72,7 +74,7 @@ RemovedPicture removed_picture(const voxel::Scene& before, const voxel::Scene& a
   const auto* const was = std::get_if<voxel::Int16Samples>(&before.samples);
   const auto* const is = std::get_if<voxel::Int16Samples>(&after.samples);
   if (was == nullptr || is == nullptr || !(before.lattice == after.lattice))
-    throw std::invalid_argument(before.source + ": only int16 samples of one lattice can be compared");
+    throw voxel::InvalidInput(before.source + ": only int16 samples of one lattice can be compared");
   return Drawing(before.lattice, *was, *is).run();
 }
 

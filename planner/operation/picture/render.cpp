@@ -508,7 +508,7 @@ Operation render_operation() {
                  .read_if<Render>([](const Render& render) { return render.annotate; },
                                   "is of annotated pictures: add 'annotate'"))
       .takes(field("grid_mm", &Render::grid_mm,
-                   "Draws lines at multiples of so many millimetres; a margin that is added at the right and "
+                   "Draws lines at multiples of this distance, mm; a margin that is added at the right and "
                    "below tells their places in the view.")
                  .from(0.1)
                  .to(1000.0)

@@ -572,7 +572,7 @@ Operation slice_operation() {
                  .read_if<Slice>(cuts_samples, no_samples))
       .takes(field("plain", &Slice::plain, "No letters and no scale bar."))
       .takes(field("grid_mm", &Slice::grid_mm,
-                   "Draws lines at multiples of so many millimetres; a margin that is added at the right and "
+                   "Draws lines at multiples of this distance, mm; a margin that is added at the right and "
                    "below tells their places in the view that looks at the plane.")
                  .from(0.1)
                  .to(1000.0)

@@ -6,6 +6,7 @@
 #include "planner/operation/picture/colour.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/json_file.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -40,7 +41,7 @@ voxel::TransferFunction read_transfer(const std::filesystem::path& path) {
         transfer_point(point, source + ": points[" + std::to_string(transfer.points.size()) + "]"));
   try {
     voxel::check(transfer);
-  } catch (const std::invalid_argument& error) {
+  } catch (const voxel::InvalidInput& error) {
     refuse(source, error.what());
   }
   return transfer;

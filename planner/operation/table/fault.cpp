@@ -32,8 +32,9 @@ Fault fault_of(const std::exception& error) {
   if (const auto* of_system = as<std::system_error>(error))
     return fault_of_code(voxel::code_of_errno(of_system->code().value()));
   const bool is_refusal = as<std::runtime_error>(error) != nullptr ||
-                          as<std::invalid_argument>(error) != nullptr ||
-                          as<std::length_error>(error) != nullptr;
+                          as<voxel::InvalidInput>(error) != nullptr ||
+                          as<brep::InvalidInput>(error) != nullptr || as<voxel::TooLarge>(error) != nullptr ||
+                          as<brep::TooLarge>(error) != nullptr;
   return is_refusal ? Fault::Input : Fault::Internal;
 }
 

@@ -23,9 +23,9 @@ struct InternalError : std::logic_error {
 };
 
 /// The kernels' errors by their codes, failed system calls by their numbers, and std::bad_alloc as Resource.
-/// The planner refuses by std::runtime_error, a kernel by std::invalid_argument: both are Input, and so is
-/// std::length_error. Everything else is Internal: other std::logic_error, std::out_of_range of map::at(),
-/// std::bad_cast, errors of JSON access in the program.
+/// The planner refuses by std::runtime_error, a kernel by its InvalidInput or TooLarge: these are Input.
+/// Everything else is Internal: std::logic_error and any plain kind of it, such as std::invalid_argument of a
+/// broken precondition and std::out_of_range of map::at(); std::bad_cast; errors of JSON access in the program.
 Fault fault_of(const std::exception& error);
 
 /// "input", "geometry", "cancelled", "resource" or "internal".

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "planner/operation/table/number_format.h"
+#include "voxel/space/error.h"
 #include "voxel/space/memory_need.h"
 
 namespace octotomy::planner {
@@ -66,7 +67,7 @@ voxel::Universe universe_of(const std::vector<voxel::Box>& meshes, std::optional
     all = {glm::min(all.low_mm, box.low_mm), glm::max(all.high_mm, box.high_mm)};
     mesh_mm = std::max(mesh_mm, longest_side_mm(box));
   }
-  if (!(mesh_mm > 0.0)) throw std::invalid_argument("universe_of: the meshes have no extent");
+  if (!(mesh_mm > 0.0)) throw voxel::InvalidInput("universe_of: the meshes have no extent");
   all = {all.low_mm - 0.5 * mesh_mm, all.high_mm + 0.5 * mesh_mm};
   return voxel::universe_around(
       all, voxel_mm.value_or(std::max(mesh_mm / mesh_voxels, longest_side_mm(all) / most_a_side)));

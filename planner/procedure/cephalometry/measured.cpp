@@ -15,6 +15,7 @@
 #include "planner/procedure/cephalometry/cephalometry_table.h"
 #include "verify/interval/size_interval.h"
 #include "verify/phantom/chance.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -71,9 +72,8 @@ class Ruler {
   glm::dvec3 line(std::size_t from, std::size_t to) const {
     const glm::dvec3 line = points_[to] - points_[from];
     if (!(glm::length(line) > shortest_line_mm))
-      throw std::invalid_argument(measure_.name + ": " + measure_.points[from] + " and " +
-                                  measure_.points[to] +
-                                  " lie in one point, so that no line goes through them");
+      throw voxel::InvalidInput(measure_.name + ": " + measure_.points[from] + " and " + measure_.points[to] +
+                                " lie in one point, so that no line goes through them");
     return line;
   }
   static double angle(const glm::dvec3& a, const glm::dvec3& b) {

@@ -165,6 +165,25 @@ TEST(SurfaceTree, ASegmentIsAskedAboutAllTrianglesThatItMeetsAndFewOthers) {
   }
 }
 
+TEST(SurfaceTree, SignedDistancesAreDistancesWithTheSignOfRaysWhereverASearchStarts) {
+  // A box has edges and corners, where no one triangle decides; the ball within is a cavity.
+  const Triangles surface = shapes::together(shapes::box({-4, -5, -6}, {4, 5, 6}),
+                                             shapes::inside_out(shapes::sphere({0.1, 0.2, 0.3}, 3.0, 3)));
+  const SurfaceTree tree(surface);
+  std::vector<glm::dvec3> points = random_points(20000, 8.0, 7);
+  for (const glm::dvec3& p : surface.points_mm) points.insert(points.end(), {p, 1.1 * p, p + 1e-9});
+  const std::vector<double> distances = tree.distances_mm(points);
+  const std::vector<std::uint8_t> inside = tree.inside(points);
+  std::vector<std::uint32_t> nearest(points.size(), SurfaceTree::unknown_triangle);
+  for (int round = 0; round < 2; ++round) {
+    const std::vector<double> found = tree.signed_distances_mm(points, nearest);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      ASSERT_EQ(found[i], inside[i] != 0 ? -distances[i] : distances[i]) << i;
+    std::reverse(nearest.begin(), nearest.end());
+  }
+  EXPECT_GT(std::count(inside.begin(), inside.end(), 1), 1000);
+}
+
 TEST(SurfaceTree, ThreadsDoNotChangeTheBits) {
   const SurfaceTree tree(shapes::sphere({0, 0, 0}, 1, 4));
   const auto points = random_points(2000, 1.5, 3);

@@ -107,10 +107,14 @@ TEST(SelfIntersections, TrianglesAboutHubsMeetAsEachPairSays) {
   std::size_t meeting = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
     std::mt19937 random(seed);
-    // Few places, so that triangles are coplanar, equal, without area and of both hubs at times.
+    // Few places, so that triangles are coplanar, equal, without area and of both hubs at times. No two points
+    // are at one place, as they would count as one corner.
     std::uniform_int_distribution<int> place(-3, 3), number(0, 39), hub(0, 4);
     Triangles t;
-    for (int k = 0; k < 40; ++k) t.points_mm.emplace_back(place(random), place(random), place(random));
+    while (t.points_mm.size() < 40) {
+      const glm::dvec3 p(place(random), place(random), place(random));
+      if (std::find(t.points_mm.begin(), t.points_mm.end(), p) == t.points_mm.end()) t.points_mm.push_back(p);
+    }
     const auto any = [&] { return static_cast<std::uint32_t>(number(random)); };
     for (int k = 0; k < 220; ++k) {
       const int of = hub(random);
@@ -149,13 +153,45 @@ TEST(SelfIntersections, TheFirstAreKeptOfMany) {
 
 TEST(SelfIntersections, ThreadsDoNotChangeTheAnswer) {
   Triangles t = shapes::together(fan(300), fan(200));
-  for (std::size_t v = 302; v < t.points_mm.size(); ++v) t.points_mm[v].z = t.points_mm[v].x / 4;
+  for (std::size_t v = 302; v < t.points_mm.size(); ++v) t.points_mm[v].z = t.points_mm[v].x / 4 + 1000;
   const SelfIntersections many = found(t, 100);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const SelfIntersections single = found(t, 100);
   EXPECT_GT(many.count, 100u);
   EXPECT_EQ(many.count, single.count);
   EXPECT_EQ(many.first, single.first);
+}
+
+TEST(SelfIntersections, BoxesThatTouchAtACornerOrAlongASideHaveNone) {
+  const Triangles box = shapes::box({0, 0, 0}, {2, 2, 2});
+  for (const glm::dvec3& low : {glm::dvec3(2, 2, 2), glm::dvec3(2, 2, 0), glm::dvec3(-2, 2, 0)})
+    EXPECT_EQ(found(shapes::together(box, shapes::box(low, low + 2.0))).count, 0u) << low.x << low.y << low.z;
+}
+
+TEST(SelfIntersections, ACornerOrASideInTheMiddleOfATriangleIsFound) {
+  const Triangles box = shapes::box({0, 0, 0}, {4, 4, 4});
+  EXPECT_GT(found(shapes::together(box, shapes::box({4, 4, 1}, {6, 6, 3}))).count, 0u);
+  EXPECT_GT(found(shapes::together(box, shapes::box({4, 4, 4}, {3, 3, 3}))).count, 0u);
+}
+
+/// Two pyramids upon each other about a common triangle, with apexes on the z axis.
+Triangles two_pyramids(double low, double high) {
+  return {{{4, 0, 0}, {-2, 3, 0}, {-2, -3, 0}, {0, 0, low}, {0, 0, high}},
+          {{0, 1, 4}, {1, 2, 4}, {2, 0, 4}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}}};
+}
+
+TEST(SelfIntersections, SolidsThatShareOnlySidesAndOverlapMeetOnceASide) {
+  ASSERT_EQ(found(two_pyramids(-2, 2)).count, 0u);
+  // The upper half of the second lies within the first one's, its lower half outside.
+  EXPECT_EQ(found(shapes::together(two_pyramids(-1, 3), two_pyramids(-2, 2))).count, 3u);
+  // Within the first one as a whole it is a shell in a solid, which has alternating sides only if it is turned.
+  EXPECT_EQ(found(shapes::together(two_pyramids(-3, 3), two_pyramids(-2, 2))).count, 3u);
+  EXPECT_EQ(found(shapes::together(two_pyramids(-3, 3), shapes::inside_out(two_pyramids(-2, 2)))).count, 0u);
+}
+
+TEST(SelfIntersections, SidesThatLieOnEachOtherAreFound) {
+  const Triangles box = shapes::box({0, 0, 0}, {2, 2, 2});
+  EXPECT_GT(found(shapes::together(box, shapes::box({2, 0, 0}, {4, 2, 2}))).count, 0u);
 }
 
 }  // namespace

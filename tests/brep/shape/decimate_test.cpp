@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/shape/decimate.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -96,6 +97,39 @@ TEST(Decimate, ASearchForFarPlacesThatMayEndEarlyFindsTheSame) {
   EXPECT_EQ(early.largest_mm, whole.largest_mm);
   EXPECT_EQ(early.given_points, whole.given_points);
   EXPECT_EQ(early.coarse_faces, whole.coarse_faces);
+}
+
+TEST(Decimate, WhatIsStillThereIsNotMeasuredAgainAndTheSameIsFound) {
+  const Triangles fine = shapes::torus(20.0, 6.0, 120, 60);
+  const SurfaceTree tree(fine);
+  const auto coarse_at = [&](double error_mm) {
+    DecimateOptions options;
+    options.max_error_mm = error_mm;
+    return triangles_of(plain_decimation(mesh_of(fine), options));
+  };
+  const auto fine_points_of = [&](const Triangles& coarse) {
+    std::vector<std::uint32_t> numbers;
+    for (const glm::dvec3& p : coarse.points_mm)
+      numbers.push_back(static_cast<std::uint32_t>(
+          std::find(fine.points_mm.begin(), fine.points_mm.end(), p) - fine.points_mm.begin()));
+    return numbers;
+  };
+  // From coarse to fine and back: triangles go and come.
+  const std::vector<Triangles> rounds = {coarse_at(0.5), coarse_at(0.1), coarse_at(0.02), coarse_at(0.1),
+                                         fine};
+  const double limit_mm = 0.5 * far_places(fine, tree, rounds.front(), 1.0).largest_mm;
+  NearFaces near;
+  int were_far = 0;
+  for (const Triangles& coarse : rounds) {
+    const FarPlaces anew = far_places(fine, tree, coarse, limit_mm, limit_mm),
+                    found = far_places(fine, tree, coarse, fine_points_of(coarse), limit_mm, near);
+    EXPECT_EQ(found.given_points, anew.given_points);
+    EXPECT_EQ(found.coarse_faces, anew.coarse_faces);
+    EXPECT_EQ(found.largest_mm > limit_mm, anew.largest_mm > limit_mm);
+    were_far += anew.given_points.empty() ? 0 : 1;
+  }
+  EXPECT_GT(were_far, 0);
+  EXPECT_LT(were_far, 5);
 }
 
 TEST(Decimate, FarPlacesAreMeasuredBothWays) {

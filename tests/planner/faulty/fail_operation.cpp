@@ -7,7 +7,9 @@
 #include <system_error>
 #include <vector>
 
+#include "brep/mesh/error.h"
 #include "planner/operation/table/operation.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -21,7 +23,11 @@ struct Fail {
 void fail_in(const std::string& part, const Fail& fail) {
   if (fail.in != part) return;
   if (fail.by == "logic_error") throw std::logic_error("the test broke '" + part + "'");
+  if (fail.by == "precondition") throw std::invalid_argument("the test broke '" + part + "'");
   if (fail.by == "map") static_cast<void>(std::map<int, int>{}.at(1));
+  if (fail.by == "length") std::vector<int>().reserve(std::vector<int>().max_size() + 1);
+  if (fail.by == "input") throw voxel::InvalidInput("the test refused '" + part + "'");
+  if (fail.by == "too_large") throw brep::TooLarge("the test refused '" + part + "'");
   if (fail.by == "full_disk")
     throw std::system_error(std::make_error_code(std::errc::no_space_on_device), "the test's disk");
 }
@@ -57,7 +63,8 @@ Operation fail_operation() {
   return Describe<Fail>("fail", "Breaks as a mistake in the program does.", Makes::Object)
       .takes(field("object", &Fail::object, "The object.").required().positional("solid"))
       .takes(field("in", &Fail::in, "The function that breaks.").one_of({"check", "voxel", "mesh", "bound"}))
-      .takes(field("by", &Fail::by, "What it throws.").one_of({"logic_error", "map", "full_disk"}))
+      .takes(field("by", &Fail::by, "What it throws.")
+                 .one_of({"logic_error", "precondition", "map", "length", "input", "too_large", "full_disk"}))
       .example(R"({"id": "broken", "do": "fail", "object": "skull", "in": "mesh"})")
       .on_files("octotomy fail skull.stl --in mesh -o broken.stl")
       .check(check)

@@ -62,17 +62,31 @@ class Faulty(unittest.TestCase):
                 self.assertEqual(ended.returncode, INTERNAL, ended.stderr)
                 self.assert_reported(ended.stderr, "run", "step 'broken'", f"the test broke '{part}'")
                 self.assertFalse((self.folder / "out").exists())
-        ended = run("run", self.plan(**{"in": "voxel", "by": "map"}), "-o", self.folder / "out")
-        self.assertEqual(ended.returncode, INTERNAL, ended.stderr)
-        self.assert_reported(ended.stderr, "step 'broken'", "map::at")
+        for by, said in (("map", "map::at"), ("length", "vector::reserve"), ("precondition", "the test broke 'mesh'")):
+            with self.subTest(by=by):
+                ended = run("run", self.plan(**{"in": "mesh", "by": by}), "-o", self.folder / "out")
+                self.assertEqual(ended.returncode, INTERNAL, ended.stderr)
+                self.assert_reported(ended.stderr, "step 'broken'", said)
+
+    def test_what_a_kernel_refuses_is_bad_input_and_no_mistake(self):
+        for part in ("check", "voxel", "mesh", "bound"):
+            for by in ("input", "too_large"):
+                with self.subTest(part=part, by=by):
+                    ended = run("run", self.plan(**{"in": part, "by": by}), "-o", self.folder / "out")
+                    self.assertEqual(ended.returncode, 2, ended.stderr)
+                    self.assertIn(f"the test refused '{part}'", ended.stderr)
+                    if part != "check":  # an operation's check() names the place itself
+                        self.assertIn("step 'broken': ", ended.stderr)
+                    self.assertNotIn("please report it", ended.stderr)
 
     def test_a_verb_names_itself(self):
         made = run("mesh", "ball.octree", "-o", "ball.stl", cwd=self.folder)
         self.assertEqual(made.returncode, 0, made.stderr)
-        ended = run("fail", "ball.stl", "--in", "mesh", "-o", "broken.stl", cwd=self.folder)
-        self.assertEqual(ended.returncode, INTERNAL, ended.stderr)
-        self.assert_reported(ended.stderr, "fail, ", "the test broke 'mesh'")
-        self.assertFalse((self.folder / "broken.stl").exists())
+        for by in ("logic_error", "precondition"):
+            ended = run("fail", "ball.stl", "--in", "mesh", "--by", by, "-o", "broken.stl", cwd=self.folder)
+            self.assertEqual(ended.returncode, INTERNAL, ended.stderr)
+            self.assert_reported(ended.stderr, "fail, ", "the test broke 'mesh'")
+            self.assertFalse((self.folder / "broken.stl").exists())
 
     def test_a_full_disk_in_a_step_is_no_mistake_and_no_bad_input(self):
         ended = run("run", self.plan(**{"in": "voxel", "by": "full_disk"}), "-o", self.folder / "out")
@@ -84,9 +98,9 @@ class Faulty(unittest.TestCase):
         subject = self.folder / "in" / "sub-1"
         subject.mkdir(parents=True)
         (self.folder / "ball.nrrd").rename(subject / "ct.nrrd")
-        for engine in ([], ["--participant-label", "1"]):
+        for by in ("precondition", "logic_error"):
             ended = run("cohort", self.folder / "in", self.folder / "out", "participant", "--plan",
-                        self.plan(**{"in": "voxel"}), "--again", "--json", *engine)
+                        self.plan(**{"in": "voxel", "by": by}), "--again", "--json", "--participant-label", "1")
             self.assertEqual(ended.returncode, INTERNAL, ended.stderr)
             said = json.loads(ended.stdout)["subjects"][0]
             self.assertEqual((said["state"], said["fault"]), ("failed", "internal"))
@@ -96,12 +110,13 @@ class Faulty(unittest.TestCase):
         self.assert_reported(kept["reason"], "step 'broken'")
 
     def test_the_servers_page_is_told_of_the_step(self):
-        server = Server(PROGRAM, self.folder, self.plan(**{"in": "voxel"}))
-        self.addCleanup(server.kill)
-        window = Window(server)
-        self.addCleanup(window.close)
-        said = json.dumps(window.ask("evaluate"))
-        self.assert_reported(said, "the test broke 'voxel'")
+        for by in ("logic_error", "precondition"):
+            server = Server(PROGRAM, self.folder, self.plan(**{"in": "voxel", "by": by}))
+            self.addCleanup(server.kill)
+            window = Window(server)
+            self.addCleanup(window.close)
+            said = json.dumps(window.ask("evaluate"))
+            self.assert_reported(said, "the test broke 'voxel'")
 
     @unittest.skipIf(octotomy is None, "the Python package is not built")
     def test_python_has_an_exception_of_its_own(self):
@@ -109,6 +124,10 @@ class Faulty(unittest.TestCase):
             plan = octotomy.Plan.read(self.plan(**{"in": part}))
             with self.assertRaisesRegex(octotomy.InternalError, f"step 'broken': the test broke '{part}'; please report"):
                 plan.run()
+        with self.assertRaisesRegex(octotomy.InternalError, "step 'broken': the test broke 'voxel'; please report"):
+            octotomy.Plan.read(self.plan(**{"in": "voxel", "by": "precondition"})).run()
+        with self.assertRaisesRegex(octotomy.InputError, "step 'broken': the test refused 'voxel'"):
+            octotomy.Plan.read(self.plan(**{"in": "voxel", "by": "input"})).run()
         with self.assertRaisesRegex(octotomy.ResourceError, "step 'broken': .*make room on the disk"):
             octotomy.Plan.read(self.plan(**{"in": "voxel", "by": "full_disk"})).run()
         self.assertFalse(issubclass(octotomy.InternalError, ValueError))

@@ -143,6 +143,66 @@ TEST_F(Witnessed, APartThatTheMeshHasSeveralTimesFails) {
     EXPECT_EQ(certified(octree(), with_small_part(times)).verdict, Verdict::Fail) << times;
 }
 
+/// A ball and, far away from it, 64 single bright samples between the centres of voxels of two samples a side.
+class Speckled : public Witnessed {
+ protected:
+  Speckled() {
+    voxel::Scene scene = *two_balls(-1000.0);
+    auto& samples = std::get<voxel::Int16Samples>(scene.samples);
+    for (int z = 0; z < 64; ++z)
+      for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+          std::int16_t& sample = samples[static_cast<std::size_t>((z * 64 + y) * 64 + x)];
+          if (x > 42 || y > 42 || z > 42) sample = -1000;
+          const auto is_bright = [](int i) { return i > 45 && i % 4 == 1; };
+          if (is_bright(x) && is_bright(y) && is_bright(z)) sample = 3000;
+        }
+    scan_ = std::make_shared<const voxel::Scene>(std::move(scene));
+    universe_.depth = 5;
+    universe_.lps_from_voxel = glm::dmat4(2.0);
+    universe_.lps_from_voxel[3] = {0.0, 0.0, 0.0, 1.0};
+    inputs_.witness = witness_of_window(scan_, 0.0, endless, universe_);
+  }
+  static const Comparison& comparison(const Certificate& certificate, const std::string& quantity) {
+    return *std::find_if(certificate.comparisons.begin(), certificate.comparisons.end(),
+                         [&](const Comparison& each) { return each.quantity == quantity; });
+  }
+};
+
+TEST_F(Speckled, PartsBetweenCentresAreStatedAndLeftOutOfDistances) {
+  const Certificate right = certified(octree(), mesh());
+  EXPECT_EQ(right.verdict, Verdict::Pass) << (right.reasons.empty() ? "" : right.reasons.front());
+  EXPECT_TRUE(right.resolved());
+  const Comparison& specks = comparison(right, "parts and cavities between voxels' centres");
+  EXPECT_NE(specks.formula.find("the mesh has 64"), std::string::npos) << specks.formula;
+  // Each is an octahedron whose corners lie three quarters of a sample from its middle.
+  const double one_mm3 = 4.0 / 3.0 * std::pow(0.75, 3.0);
+  EXPECT_NEAR(specks.difference, 64.0 * one_mm3, 1e-3);
+  EXPECT_GE(right.limit->volume_mm3, one_mm3);
+  EXPECT_LT(*right.hausdorff_mm, 3.0);
+}
+
+TEST_F(Speckled, APartBetweenCentresThatTheScanLacksIsNoPass) {
+  const Certificate right = certified(octree(), mesh());
+  // The last part of the mesh is moved between two others, or is there twice.
+  const brep::Solid solid = brep::trusted_solid(mesh(), brep::Proof::Construction);
+  const brep::Component& part = solid.components().back();
+  ASSERT_LT(part.volume_mm3, 1.0);
+  for (const glm::dvec3& by_mm : {glm::dvec3(2.0, 0.0, 0.0), glm::dvec3(0.0)}) {
+    brep::Triangles planted = mesh();
+    const auto first = static_cast<std::uint32_t>(planted.points_mm.size());
+    for (const glm::dvec3& p_mm : mesh().points_mm) planted.points_mm.push_back(p_mm + by_mm);
+    for (const std::uint32_t face : part.faces) {
+      planted.faces.push_back(mesh().faces[face]);
+      for (std::uint32_t& corner : planted.faces.back()) corner += first;
+    }
+    const Certificate wrong = certified(octree(), planted);
+    EXPECT_NE(comparison(wrong, "parts and cavities between voxels' centres").formula.find("the mesh has 65"),
+              std::string::npos);
+    EXPECT_NE(wrong.verdict, Verdict::Pass) << by_mm.x;
+  }
+}
+
 TEST_F(Witnessed, ACapAtTheScansBorderThatIsShiftedFails) {
   // The whole scan is inside, so that the surface is its border.
   inputs_.witness = witness_of_window(scan_, -2000.0, endless, universe_);

@@ -409,8 +409,8 @@ class LumpOnAThread : public testing::Test {
   }
 
   voxel::Universe universe_;
-  const voxel::Box body_{glm::dvec3(8.5), glm::dvec3(20.5)}, thread_{{20.1, 12.1, 12.1}, {25.1, 12.4, 12.4}},
-      lump_{{24.5, 9.5, 9.5}, {30.5, 19.5, 19.5}};
+  voxel::Box thread_{{20.1, 12.1, 12.1}, {25.1, 12.4, 12.4}};
+  const voxel::Box body_{glm::dvec3(8.5), glm::dvec3(20.5)}, lump_{{24.5, 9.5, 9.5}, {30.5, 19.5, 19.5}};
   const brep::Solid body_mesh_ = brep::solid_of(brep::Prism{
       {0, 0, -1}, {0, 1, 0}, {1, 0, 0}, {{{8.5, 8.5}, {20.5, 8.5}, {20.5, 20.5}, {8.5, 20.5}}}, -20.5, -8.5});
 };
@@ -441,6 +441,33 @@ TEST_F(LumpOnAThread, StaysOpenInWhatIsCutFromTheChosenPartsAndMoved) {
   // Of the body, on which the choices agree, nothing is open.
   const Places lost = judged(Expression(body_), brep::Solid(), witness_of_parts(whole(true), chosen()));
   EXPECT_GT(lost.voxel_count, 1000U);
+}
+
+// The thread passes between the points at which the reading is followed, a quarter of a voxel apart.
+TEST_F(LumpOnAThread, IsABridgeWhereTheMeshAloneShowsTheThread) {
+  thread_ = {{20.1, 12.05, 12.05}, {25.1, 12.2, 12.2}};
+  const auto prism = [](const voxel::Box& box) {
+    const glm::dvec3 &a = box.low_mm, &b = box.high_mm;
+    return brep::solid_of(brep::Prism{
+        {0, 0, -1}, {0, 1, 0}, {1, 0, 0}, {{{a.x, a.y}, {b.x, a.y}, {b.x, b.y}, {a.x, b.y}}}, -b.z, -a.z});
+  };
+  const auto with = [](const brep::Solid& a, const brep::Solid& b) {
+    return brep::boolean(a, brep::Operation::Union, b).solid;
+  };
+  const brep::Solid apart = with(body_mesh_, prism(lump_)), joined = with(apart, prism(thread_));
+  ASSERT_EQ(joined.components().size(), 1U);
+  const voxel::Octree body = voxel::combine(universe_, Expression(body_));
+  const auto judged_with = [&](const brep::Solid& mesh) {
+    return judged(Expression(body_), mesh, witness_of_parts(whole(true), {body, mesh}));
+  };
+  const Places held = judged_with(joined);
+  EXPECT_EQ(held.voxel_count, 0U);
+  ASSERT_EQ(held.open.size(), 1U);
+  EXPECT_EQ(held.open.front().bridge.volume_mm3, 600.0);
+  EXPECT_LT(glm::distance(held.open.front().bridge.at_mm, glm::dvec3(20.5, 12.0, 12.0)), 2.0);
+  const Places loose = judged_with(apart);
+  EXPECT_EQ(loose.voxel_count, 600U);
+  EXPECT_TRUE(loose.open.empty());
 }
 
 TEST_F(LumpOnAThread, IsAnErrorWhereThePlanHasDecided) {

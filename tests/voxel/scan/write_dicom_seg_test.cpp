@@ -130,6 +130,54 @@ TEST(WriteDicomSeg, FractionsComeBackAsTheyWereWritten) {
   }
 }
 
+TEST(WriteDicomSeg, ALabelMapHasOneFrameAPlaneAndComesBackByNumbers) {
+  const auto index = [](std::uint64_t x, std::uint64_t y, std::uint64_t z) { return x + 8 * (y + 8 * z); };
+  const Universe universe = universe_of_depth(3);
+  const std::vector<DicomSegment> segments{
+      {"low",
+       octree_of(RunLength{universe, {{index(2, 1, 1), index(3, 1, 1)}, {index(2, 2, 3), index(2, 2, 3)}}})},
+      {"high", octree_of(RunLength{universe, {{index(4, 2, 3), index(4, 2, 3)}}})}};
+  const tests::ScratchFolder folder;
+  write_dicom_seg(segments, folder / "x.dcm", {.kind = DicomSegKind::LabelMap});
+  std::ifstream in(folder / "x.dcm", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const DicomFile file(bytes, bytes.size());
+  EXPECT_EQ(file.text(0x00080016), "1.2.840.10008.5.1.4.1.1.66.7");
+  EXPECT_EQ(file.text(0x00620001), "LABELMAP");
+  ASSERT_EQ(file.items(0x52009230).size(), 2u);
+  EXPECT_TRUE(file.items(0x52009230).front().items(0x0062000a).empty())
+      << "frames of label maps have no segment";
+  const auto pixels = bytes.substr(file.raw_pixels()->at, 12);
+  EXPECT_EQ(pixels, std::string({1, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2}));
+  const Scene scene = read_scene(folder / "x.dcm");
+  EXPECT_EQ(std::get<Int16Samples>(scene.samples),
+            (Int16Samples{1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2}));
+}
+
+TEST(WriteDicomSeg, ALabelMapOfMoreThan255ObjectsHasTwoBytesAPixelAndOneOfSharedVoxelsIsRefused) {
+  const Universe universe = universe_of_depth(4);
+  std::vector<DicomSegment> segments;
+  for (std::uint64_t i = 0; i < 300; ++i)
+    segments.push_back({std::to_string(i), octree_of(RunLength{universe, {{i, i}}})});
+  const tests::ScratchFolder folder;
+  write_dicom_seg(segments, folder / "x.dcm", {.kind = DicomSegKind::LabelMap});
+  const Scene scene = read_scene(folder / "x.dcm");
+  EXPECT_EQ(range(scene).high, 300.0);
+  std::visit(
+      [](const auto& samples) {
+        EXPECT_EQ(samples.size() - std::count(samples.begin(), samples.end(), 0), 300U);
+      },
+      scene.samples);
+  segments[7].object = segments[8].object;
+  try {
+    write_dicom_seg(segments, folder / "y.dcm", {.kind = DicomSegKind::LabelMap});
+    ADD_FAILURE() << "two objects at one voxel";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("'7' and '8'"), std::string::npos) << error.what();
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "y.dcm"));
+}
+
 TEST(WriteDicomSeg, RefusesFractionsThatFitNoLatticeOrAreAllZero) {
   const tests::ScratchFolder folder;
   const Lattice lattice = axis_aligned_lattice({2, 2, 2}, {1, 1, 1}, {0, 0, 0});

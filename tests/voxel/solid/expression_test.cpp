@@ -21,10 +21,10 @@ Names names() {
     if (name == "a") return Sphere{{-4, 0, 0}, 7};
     if (name == "b") return Sphere{{4, 0, 0}, 7};
     if (name == "c") return Box{{-9, -3, -3}, {9, 12, 3}};
-    throw std::invalid_argument("nothing is called '" + std::string(name) + "'");
+    throw InvalidInput("nothing is called '" + std::string(name) + "'");
   };
   result.motion = [](std::string_view name) {
-    if (name != "up") throw std::invalid_argument("no motion is called '" + std::string(name) + "'");
+    if (name != "up") throw InvalidInput("no motion is called '" + std::string(name) + "'");
     Motion motion;
     motion.translate_mm = {0, 0, 5};
     return moved_from_still(motion);

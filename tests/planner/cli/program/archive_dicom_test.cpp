@@ -179,6 +179,25 @@ TEST_F(ArchiveDicom, IsHeldToTheStandard) {
     EXPECT_EQ(errors_of(file), "") << file;
 }
 
+TEST_F(ArchiveDicom, ALabelMapKeepsTheNumbersOfObjectsAndAReportItsPages) {
+  const std::string source = source_series(0.0);
+  octotomy("segment " + source + " --window 0: -o a.nii.gz");
+  octotomy("convert a.nii.gz -o map.dcm --as labelmap --source " + source);
+  EXPECT_EQ(octotomy("compare a.nii.gz map.dcm")["labels"][0]["dice"], 1.0);
+  std::ofstream(folder_ / "report.pdf") << "%PDF-1.4\nA page.\n%%EOF\n";
+  const SortedJson report = octotomy("convert report.pdf -o report.dcm --label Plan --source " + source);
+  EXPECT_EQ(report["kind"], "DICOM encapsulated PDF");
+  EXPECT_EQ(errors_of("report.dcm"), "");
+  std::ofstream(folder_ / "cut.pdf") << "%PDF-1.4\nA pa";
+  for (const char* line : {"cut.pdf -o x.dcm", "report.pdf -o x.dcm --as stl", "report.pdf -o x.nrrd",
+                           "a.nii.gz -o x.nrrd --as labelmap"}) {
+    const tests::CommandAnswer refused = program(std::string("convert ") + line);
+    EXPECT_EQ(refused.status, 2) << line;
+    EXPECT_EQ(std::count(refused.errors.begin(), refused.errors.end(), '\n'), 1) << refused.errors;
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "x.dcm") || fs::exists(folder_ / "x.nrrd"));
+}
+
 TEST_F(ArchiveDicom, WordsThatDoNotFitAreRefusedWithTheWayOut) {
   const std::string source = source_series(0.0);
   octotomy("segment " + source + " --window 0: -o a.nii.gz");

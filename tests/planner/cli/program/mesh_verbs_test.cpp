@@ -61,7 +61,8 @@ TEST_F(MeshVerbs, AnOffsetByNothingIsRefusedBeforeTheMeshIsRead) {
 
 TEST_F(MeshVerbs, AShadowGoesAlongTheTypedDirectionToTheObjectsFarEnd) {
   brep::write_mesh(brep::mesh_of(brep::shapes::box({-2, -3, -5}, {2, 3, 5})), folder_ / "box.off");
-  // The silhouette's area times half the depth, and half the box: it is its own mirror image about its middle.
+  // The silhouette's area times half the depth, and half the box: it is its own mirror image about its
+  // middle.
   const double silhouette_mm2 = 0.6 * 4 * 10 + 0.8 * 4 * 6, half_depth_mm = 0.5 * (0.6 * 6 + 0.8 * 10);
   const double truth_mm3 = silhouette_mm2 * half_depth_mm + 0.5 * 240.0;
   for (const char* direction : {"0,0.6,0.8", "0,-3,-4"}) {
@@ -130,6 +131,14 @@ TEST_F(MeshVerbs, AMeshIsAskedForSectionsWaysAnglesWallsAndCurvature) {
   EXPECT_NE(run("measure " + at("ball.off") + " --curvature").out.find("curvature"), std::string::npos);
   expect_refused(run("measure " + at("ball.nrrd") + " --window 0: --thickness"), "mesh");
   expect_refused(run("measure " + at("ball.off") + " --angle 0,0,0 0,0,0 1,0,0"), "--angle");
+  // Typed points need no file. An option that would change nothing is refused.
+  const SortedJson typed =
+      SortedJson::parse(run("measure --distance 1,2,3 4,6,15 --angle 1,0,0 0,0,0 1,1,0 --json").out);
+  EXPECT_DOUBLE_EQ(typed["distance_mm"], 13.0);
+  EXPECT_NEAR(typed["angle_deg"].get<double>(), 45.0, 1e-12);
+  expect_refused(run("measure --angle 0,0,0 0,0,0 1,0,0"), "--angle");
+  expect_refused(run("measure --distance 1,2,3 4,6,15 --voxel 2"), "file is required");
+  expect_refused(run("measure"), "file is required");
   expect_refused(run("measure " + at("ball.off") + " -o " + at("p.vtp")), "--thickness");
 }
 

@@ -39,8 +39,10 @@ class PrintVerbs : public tests::CommandLine {
     const CommandAnswer answer =
         run("printable " + at(name) + (options.find("--voxel") == std::string::npos ? " --voxel 0.5" : "") +
             " --json " + options);
-    EXPECT_EQ(answer.status, 0) << answer.errors;
-    return SortedJson::parse(answer.out);
+    const SortedJson json = SortedJson::parse(answer.out);
+    // A FAIL is a whole answer, and the status names it to scripts.
+    EXPECT_EQ(answer.status, json.at("verdict") == "FAIL" ? 1 : 0) << answer.out << answer.errors;
+    return json;
   }
 
   static const SortedJson& line(const SortedJson& answer, const std::string& check) {
@@ -82,6 +84,16 @@ TEST_F(PrintVerbs, AThinWallFailsAtItsPlace) {
   EXPECT_NE(answer["findings"][0].get<std::string>().find("the smallest wall is 0.400 mm at ("),
             std::string::npos);
   EXPECT_EQ(line(printable("fin.ply", "--least-wall 0.3"), "wall")["verdict"], "PASS");
+}
+
+TEST_F(PrintVerbs, AFailEndsWithStatusOneAndAWarnWithStatusZero) {
+  write_swept("plate.ply", {box(0, 0, 30, 1.2)});
+  write_swept("slot.ply", {{{0, 0}, {20, 0}, {20, 10}, {10.3, 10}, {10.3, 5}, {10, 5}, {10, 10}, {0, 10}}});
+  const auto status = [&](const std::string& words) { return run("printable " + words).status; };
+  EXPECT_EQ(status(at("plate.ply") + " --voxel 0.5"), 0);
+  EXPECT_EQ(status(at("plate.ply") + " --voxel 0.5 --least-wall 2"), 1);
+  EXPECT_EQ(printable("slot.ply")["verdict"], "WARN");
+  EXPECT_EQ(status(at("slot.ply") + " --voxel 0.5"), 0);
 }
 
 TEST_F(PrintVerbs, ASlotIsAGapAndTwoPiecesFail) {

@@ -134,19 +134,16 @@ TEST(MovedSize, OfALabelIsTheStillOnesThroughMotionsAndMirrors) {
                                {"ball", "turned", "twin", "again", "home", "out"});
   // 4 pi 12^2.
   EXPECT_NEAR(all[0].at("area").at("value").get<double>(), 1809.6, 0.02 * 1809.6);
-  for (std::size_t i = 1; i < 5; ++i) {
+  for (std::size_t i = 1; i < all.size(); ++i) {
     for (const char* key : {"volume", "area"})
       EXPECT_EQ(all[i].at(key), all[0].at(key)) << all[i].at("id") << " " << key;
     // What was counted after the motion is told as it is: the centre moved, and some voxels came or went.
     EXPECT_NE(all[i].at("centroid_mm"), all[0].at("centroid_mm")) << all[i].at("id");
   }
   EXPECT_NE(all[1].at("volume_mm3"), all[0].at("volume_mm3")) << "the motion moved whole voxels";
-  // A part of it lies outside of the universe and is no part of its size.
-  EXPECT_LT(all[5].at("volume").at("value").get<double>(),
-            0.9 * all[0].at("volume").at("value").get<double>());
 }
 
-TEST(MovedSize, OfAWindowThatLeavesTheUniverseIsNotTheWholeWindows) {
+TEST(MovedSize, OfAWindowThatLeavesTheScanIsTheWholeWindows) {
   const auto [whole, twin, gone] = [] {
     const ScratchFolder folder;
     const Plan plan = ball_plan(folder, R"(
@@ -159,8 +156,7 @@ TEST(MovedSize, OfAWindowThatLeavesTheUniverseIsNotTheWholeWindows) {
     return std::array<Json, 3>{all[0], all[1], all[2]};
   }();
   expect_same_size(twin, whole);
-  const double half_mm3 = 0.5 * ball_mm3(ball_radius_mm);
-  EXPECT_NEAR(gone.at("volume").at("value").get<double>(), half_mm3, 0.02 * half_mm3);
+  expect_same_size(gone, whole);
 }
 
 TEST(MovedSize, OfPiecesMovedApartIsTheSumAndNoSurerThanTheLeastSureOfThem) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/archive/write_dicom_model.h"
+#include "voxel/archive/write_dicom_document.h"
 
 #include <gtest/gtest.h>
 #include <stdexcept>
@@ -13,9 +13,9 @@ namespace {
 
 using tests::ScratchFolder;
 
-TEST(WriteDicomModel, HoldsTheFileByteForByteInMillimetres) {
+TEST(WriteDicomDocument, HoldsTheFileByteForByteInMillimetres) {
   const ScratchFolder folder;
-  DicomModelOptions options;
+  DicomDocumentOptions options;
   options.source.emplace();
   options.source->series_uid = "1.2.3";
   options.source->attributes[0x00100020] = {"LO", "A17"};
@@ -23,11 +23,11 @@ TEST(WriteDicomModel, HoldsTheFileByteForByteInMillimetres) {
   for (const char* uid : {"1.2.3.1", "1.2.3.1", "1.2.3.2"})
     options.source->images.push_back({"1.2.840.10008.5.1.4.1.1.2", uid, 0.0});
   const std::string stl("solid a\nendsolid\0\x01", 18);
-  for (const ModelFormat format : {ModelFormat::Stl, ModelFormat::Obj}) {
-    const bool is_stl = format == ModelFormat::Stl;
+  for (const DocumentFormat format : {DocumentFormat::Stl, DocumentFormat::Obj}) {
+    const bool is_stl = format == DocumentFormat::Stl;
     // An odd length is padded, and its own length stated.
     const std::string model = is_stl ? stl : stl + "\n";
-    write_dicom_model(model, format, folder / "x.dcm", options);
+    write_dicom_document(model, format, folder / "x.dcm", options);
     const std::string bytes = tests::bytes_of(folder / "x.dcm");
     const DicomFile file(bytes, bytes.size());
     EXPECT_EQ(file.text(0x00080016),
@@ -44,13 +44,36 @@ TEST(WriteDicomModel, HoldsTheFileByteForByteInMillimetres) {
   }
 }
 
-TEST(WriteDicomModel, EqualContentIsWrittenAsEqualBytes) {
+TEST(WriteDicomDocument, APdfIsOfThePatientAndInNoFrame) {
   const ScratchFolder folder;
-  write_dicom_model("solid", ModelFormat::Stl, folder / "x.dcm");
-  write_dicom_model("solid", ModelFormat::Stl, folder / "y.dcm");
+  DicomDocumentOptions options{.label = "Plan"};
+  options.source.emplace();
+  options.source->series_uid = "1.2.3";
+  options.source->attributes[0x00100020] = {"LO", "A17"};
+  options.source->attributes[0x00200052] = {"UI", "1.2.5"};
+  options.source->images.push_back({"1.2.840.10008.5.1.4.1.1.2", "1.2.3.1", 0.0});
+  const std::string pdf = "%PDF-1.4 %%EOF";
+  write_dicom_document(pdf, DocumentFormat::Pdf, folder / "x.dcm", options);
+  const std::string bytes = tests::bytes_of(folder / "x.dcm");
+  const DicomFile file(bytes, bytes.size());
+  EXPECT_EQ(file.text(0x00080016), "1.2.840.10008.5.1.4.1.1.104.1");
+  EXPECT_EQ(file.text(0x00420012), "application/pdf");
+  EXPECT_EQ(file.text(0x00080060), "DOC");
+  EXPECT_EQ(file.text(0x00280301), "YES");
+  EXPECT_EQ(file.text(0x00100020), "A17");
+  EXPECT_EQ(file.text(0x00200052), "");
+  EXPECT_TRUE(file.items(0x004008ea).empty());
+  EXPECT_EQ(file.items(0x00420013).size(), 1U);
+  EXPECT_NE(bytes.find(pdf), std::string::npos);
+}
+
+TEST(WriteDicomDocument, EqualContentIsWrittenAsEqualBytes) {
+  const ScratchFolder folder;
+  write_dicom_document("solid", DocumentFormat::Stl, folder / "x.dcm");
+  write_dicom_document("solid", DocumentFormat::Stl, folder / "y.dcm");
   EXPECT_TRUE(tests::bytes_of(folder / "x.dcm") == tests::bytes_of(folder / "y.dcm"));
-  EXPECT_THROW(write_dicom_model("", ModelFormat::Stl, folder / "z.dcm"), std::invalid_argument);
-  EXPECT_THROW(write_dicom_model("solid", ModelFormat::Stl, folder / "z.dcm", {.label = ""}),
+  EXPECT_THROW(write_dicom_document("", DocumentFormat::Stl, folder / "z.dcm"), std::invalid_argument);
+  EXPECT_THROW(write_dicom_document("solid", DocumentFormat::Stl, folder / "z.dcm", {.label = ""}),
                std::invalid_argument);
   EXPECT_FALSE(std::filesystem::exists(folder / "z.dcm"));
 }

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "brep/mesh/triangles.h"
+
+namespace octotomy::brep {
+
+struct Settled {
+  Triangles surface;
+  std::size_t crossing = 0;  ///< pairs of triangles beside new points that still intersect
+  glm::dvec3 at_mm{0.0};     ///< a corner of the first of them
+};
+
+/// The surface that a Boolean made, without the folds that rounding its points left. A new point lies within a
+/// rounding of the planes that meet there, but where these are nearly parallel it may lie far from where they
+/// meet, along them: small triangles are then turned over and intersect their neighbours. Where triangles
+/// beside new points intersect or have no area, sides of thin triangles are contracted and their long sides
+/// exchanged for the other diagonal, each only if the surface moves by at most 2^6 roundings of the largest
+/// coordinate along its normal. Thin is 2^4 roundings, then up to 2^34 (as far as a shift, see boolean.h) until
+/// no triangles intersect. Otherwise the surface is returned unchanged, to the last bit. Points of the operands
+/// are kept in preference to new ones. The same result on any number of threads. Precondition: mesh_of()
+/// accepts the triangles. Cost: n log n of the operands' points in their common box and of the triangles beside
+/// new points, linear in all.
+Settled settled(Triangles surface, const std::array<const Triangles*, 2>& operands);
+
+}  // namespace octotomy::brep

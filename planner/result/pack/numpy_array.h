@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace octotomy::planner {
+
+/// The bytes of a .npy file (NumPy's format 1.0): rows of `columns` numbers, little-endian. Precondition: the
+/// values fill whole rows.
+std::string numpy_array(const std::vector<double>& values, std::size_t columns);
+std::string numpy_array(const std::vector<std::int32_t>& values, std::size_t columns);
+
+}  // namespace octotomy::planner

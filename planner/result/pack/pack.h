@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "planner/result/report/report.h"
+
+namespace octotomy::planner {
+
+/// The format of packs; it changes where a checker of earlier ones would misread them.
+inline constexpr int pack_format = 1;
+
+/// Writes a result as one zip archive that somebody else can check without this program: equal results make
+/// equal archives, so times are left out. Entries:
+/// - plan.plan.json: the plan's text as it was read;
+/// - result/: the files of write_result_files();
+/// - witness/NUMBER/NAME.npy: witness_arrays() of each object;
+/// - NOTICE.txt: licences, and what the archive does not contain;
+/// - manifest.json, last: every other entry with its length and SHA-256; the objects with their entries; the scans
+///   with their lattice and SHA-256; the versions of the program and its libraries.
+/// The scans' samples are not in it, except for the cells of witness_arrays(). Precondition: the evaluation has
+/// stored its scans (EvaluateOptions::keep_scans), and a pdf is not wanted. Returns the manifest. Throws as
+/// write_result_files(), and voxel::Error (Resource) if the disk is full; then `path` is as before.
+nlohmann::ordered_json write_pack(Result& result, const std::filesystem::path& path,
+                                  const ExportOptions& options = {});
+
+}  // namespace octotomy::planner

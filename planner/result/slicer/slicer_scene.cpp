@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/result/slicer/slicer_scene.h"
+
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <vector>
+
+#include "brep/io/write_mesh.h"
+#include "planner/operation/table/json_file.h"
+#include "planner/result/pack/zip_writer.h"
+#include "planner/result/slicer/scene_nodes.h"
+#include "voxel/archive/write_segmentation.h"
+#include "voxel/scan/write_scene.h"
+#include "voxel/space/error.h"
+#include "voxel/space/staged_files.h"
+#include "voxel/space/unfinished_folder.h"
+#include "voxel/space/write_whole.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Colours that people with any type of colour vision distinguish (Okabe and Ito 2008), repeated.
+glm::vec3 colour_of(std::size_t index) {
+  constexpr std::array<glm::vec3, 7> colours{{{0.90f, 0.87f, 0.79f},
+                                              {0.90f, 0.62f, 0.00f},
+                                              {0.34f, 0.71f, 0.91f},
+                                              {0.00f, 0.62f, 0.45f},
+                                              {0.94f, 0.89f, 0.26f},
+                                              {0.84f, 0.37f, 0.00f},
+                                              {0.80f, 0.47f, 0.65f}}};
+  return colours[index % colours.size()];
+}
+
+/// A file name for an object or scan: letters, digits, '_' and '-' stay. Different names stay different.
+class FileNames {
+ public:
+  std::string of(const std::string& name, const std::string& extension) {
+    std::string plain;
+    for (const char c : name)
+      plain += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' ? c : '_';
+    std::string file = plain + extension;
+    for (int i = 2; !taken_.insert(file).second; ++i) file = plain + "_" + std::to_string(i) + extension;
+    return file;
+  }
+
+ private:
+  std::set<std::string> taken_;
+};
+
+/// The shortest text that reads back to the same number.
+std::string exact(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+/// The text of an ITK transform file. ITK's transforms map from the fixed to the moving image, which is from the
+/// place after the motion to the one before.
+std::string itk_transform(const glm::dmat4& after_from_before) {
+  const glm::dmat4 before_from_after = glm::inverse(after_from_before);
+  std::string text =
+      "#Insight Transform File V1.0\n#Transform 0\nTransform: AffineTransform_double_3_3\nParameters:";
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) text += " " + exact(before_from_after[column][row]);
+  for (int row = 0; row < 3; ++row) text += " " + exact(before_from_after[3][row]);
+  return text + "\nFixedParameters: 0 0 0\n";
+}
+
+Json markups_of(const std::vector<NamedPoint>& landmarks) {
+  Json points = Json::array();
+  for (const NamedPoint& landmark : landmarks)
+    points.push_back({{"id", std::to_string(points.size() + 1)},
+                      {"label", landmark.name},
+                      {"position", {landmark.p_mm.x, landmark.p_mm.y, landmark.p_mm.z}},
+                      {"selected", true},
+                      {"locked", false},
+                      {"visibility", true},
+                      {"positionStatus", "defined"}});
+  return {{"@schema",
+           "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
+           "markups-schema-v1.0.3.json#"},
+          {"markups",
+           {{{"type", "Fiducial"},
+             {"coordinateSystem", "LPS"},
+             {"coordinateUnits", "mm"},
+             {"labelFormat", "%N-%d"},
+             {"controlPoints", points}}}}};
+}
+
+/// Writes the files of a scene into a folder.
+class SceneFolder {
+ public:
+  SceneFolder(const Plan& plan, const Evaluation& evaluation, fs::path folder, const std::stop_token& stop)
+      : plan_(plan), evaluation_(evaluation), folder_(std::move(folder)), stop_(stop) {
+    fs::create_directory(folder_ / "Data");
+  }
+
+  Json write() {
+    for (const ScanRecord& scan : evaluation_.scans) write_scan(scan.name);
+    write_segments();
+    for (std::size_t i = 0; i < evaluation_.objects.size(); ++i) write_model(evaluation_.objects[i], i);
+    if (!plan_.landmarks.empty()) {
+      voxel::write_file(folder_ / "Data/landmarks.mrk.json",
+                        json_text(markups_of(plan_.landmarks), 1) + "\n");
+      nodes_.add_markups("landmarks", "landmarks.mrk.json");
+      for (const NamedPoint& landmark : plan_.landmarks) written_["landmarks"].push_back(landmark.name);
+    }
+    voxel::write_file(folder_ / "scene.mrml", nodes_.text());
+    return written_;
+  }
+
+ private:
+  void need_no_stop() const {
+    if (stop_.stop_requested()) throw Stopped("stopped before the scene was written");
+  }
+
+  void write_scan(const std::string& name) {
+    const auto found = evaluation_.loaded.find(name);
+    if (found == evaluation_.loaded.end()) return;
+    need_no_stop();
+    const std::string file = names_.of(name, ".nrrd");
+    voxel::write_scene(found->second->scene(), folder_ / "Data" / file);
+    nodes_.add_volume(name, file);
+    written_["scans"].push_back(name);
+  }
+
+  void write_segments() {
+    std::vector<voxel::WrittenSegment> segments;
+    for (std::size_t i = 0; i < evaluation_.objects.size(); ++i) {
+      const Object& object = evaluation_.objects[i];
+      if (object.is_tool || object.voxel.octree.is_empty()) continue;
+      segments.push_back({object.id, colour_of(i), object.voxel.octree});
+      written_["segments"].push_back(object.id);
+    }
+    if (segments.empty()) return;
+    need_no_stop();
+    voxel::write_segmentation(segments, folder_ / "Data/objects.seg.nrrd");
+    nodes_.add_segmentation("objects", "objects.seg.nrrd");
+  }
+
+  void write_model(const Object& object, std::size_t index) {
+    if (object.is_tool || !object.mesh.whole || object.mesh.whole->empty()) return;
+    need_no_stop();
+    const Object* still = object.image ? &evaluation_.object(object.image->object) : nullptr;
+    const bool is_moved =
+        still != nullptr && still->mesh.whole && glm::determinant(object.image->image_from_object) > 0.0;
+    const std::string file = names_.of(object.id, ".vtp");
+    brep::write_mesh((is_moved ? still : &object)->mesh.whole->triangles(), folder_ / "Data" / file);
+    std::string transform;
+    if (is_moved) {
+      const std::string motion = names_.of(object.id + "_motion", ".tfm");
+      voxel::write_file(folder_ / "Data" / motion, itk_transform(object.image->image_from_object));
+      transform = nodes_.add_transform(object.id + " motion", motion);
+      written_["transforms"].push_back(object.id);
+    }
+    nodes_.add_model(object.id, file, colour_of(index), transform);
+    written_["models"].push_back(object.id);
+  }
+
+  const Plan& plan_;
+  const Evaluation& evaluation_;
+  fs::path folder_;
+  std::stop_token stop_;
+  FileNames names_;
+  SceneNodes nodes_;
+  Json written_{{"scans", Json::array()},
+                {"segments", Json::array()},
+                {"models", Json::array()},
+                {"transforms", Json::array()},
+                {"landmarks", Json::array()}};
+};
+
+/// Writes a folder as a zip archive whose entries lie in one folder of the archive's name.
+void write_bundle(const fs::path& folder, const fs::path& path) {
+  std::set<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files.insert(entry.path());
+  voxel::StagedOutputs staged;
+  ZipWriter zip(staged.beside(path));
+  for (const fs::path& file : files) {
+    std::ifstream in(file, std::ios::binary);
+    zip.add((path.stem() / file.lexically_relative(folder)).generic_string(),
+            std::string{std::istreambuf_iterator<char>(in), {}});
+  }
+  zip.close();
+  staged.commit();
+}
+
+}  // namespace
+
+Json write_slicer_scene(const Plan& plan, const Evaluation& evaluation, const fs::path& path,
+                        const std::stop_token& stop) {
+  const fs::path place = voxel::place_of(path);
+  const bool is_bundle = place.extension() == ".mrb";
+  if (!is_bundle && fs::exists(place) && !fs::is_empty(place))
+    throw voxel::Error(
+        voxel::ErrorCode::Input,
+        path.string() + ": has files in it: choose a new folder for the scene, or a name that ends in .mrb");
+  voxel::UnfinishedFolder work(place.parent_path(), ".octotomy-scene-");
+  Json written = SceneFolder(plan, evaluation, work.path(), stop).write();
+  if (is_bundle) {
+    write_bundle(work.path(), place);
+  } else {
+    const fs::path made = work.keep();
+    fs::permissions(made, fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec |
+                              fs::perms::others_read | fs::perms::others_exec);
+    fs::rename(made, place);
+  }
+  return written;
+}
+
+}  // namespace octotomy::planner

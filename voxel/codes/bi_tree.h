@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "voxel/tree/octree.h"
+
+namespace octotomy::voxel {
+
+/// The symmetric bi-tree (thesis 3.3, after Srihari): each inhomogeneous node is halved along one axis,
+/// chosen so that the whole tree has the fewest nodes. Nodes in preorder: E, F, or the axis x, y or z, which
+/// the nodes of the low and the high half follow.
+struct BiTree {
+  /// Above this depth the search holds more than a gigabyte.
+  static constexpr int max_depth = 7;
+
+  Universe universe;
+  std::string nodes;
+};
+
+/// The least bi-tree; among equal axes, the first. Throws std::length_error for universes deeper than
+/// max_depth. Cost: every box of halved edges is searched once, (2^(depth + 1) - 1)^3 of them, 6 bytes each.
+BiTree bi_tree(const Octree& octree);
+/// Throws std::invalid_argument with the position of the node that is missing, too many, halves an edge of
+/// one voxel, or has two halves that are both Full or both Empty.
+Octree octree_of(const BiTree& tree);
+
+/// The nodes as one word, for example `zxEFE`.
+std::string text(const BiTree& tree);
+/// The inverse of text(); octree_of() checks the nodes.
+BiTree parse_bi_tree(const Universe& universe, std::string_view text);
+
+}  // namespace octotomy::voxel

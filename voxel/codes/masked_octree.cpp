@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/codes/masked_octree.h"
+
+#include <array>
+#include <cassert>
+
+#include "voxel/tree/level_tally.h"
+#include "voxel/tree/logical_build.h"
+
+// The masks are found in one walk that carries, with each node, the six nodes of its size beside it. A
+// homogeneous node stands for its virtual children, so a neighbour of the same size always exists.
+
+namespace octotomy::voxel {
+namespace {
+
+using Neighbours = std::array<LogicalNode, direction_count>;
+
+int axis_of(int direction) {
+  return direction / 2;
+}
+bool is_forward(int direction) {
+  return direction % 2 == 0;
+}
+
+/// Whether all voxels of the node's layer at a face are in the object.
+bool is_layer_full(const LogicalNode& node, int axis, bool at_high_face) {
+  if (node.status() != Status::Partial) return node.status() == Status::Full;
+  for (int k = 0; k < 8; ++k)
+    if ((((k >> axis) & 1) != 0) == at_high_face && !is_layer_full(node.child(k), axis, at_high_face))
+      return false;
+  return true;
+}
+
+class MaskWalk {
+ public:
+  explicit MaskWalk(std::vector<MaskedNode>& nodes) : nodes_(nodes) {}
+
+  void walk(const LogicalNode& node, const Neighbours& beside) {
+    const std::size_t number = nodes_.size();
+    nodes_.push_back({node.status(), covered(beside), 1});
+    if (node.status() != Status::Partial) return;
+    for (int k = 0; k < 8; ++k) {
+      Neighbours around;
+      for (int direction = 0; direction < direction_count; ++direction) {
+        const int across = k ^ (1 << axis_of(direction));
+        const bool is_sibling = (((k >> axis_of(direction)) & 1) == 0) == is_forward(direction);
+        const auto i = static_cast<std::size_t>(direction);
+        around[i] = is_sibling ? node.child(across) : beside[i].child(across);
+      }
+      walk(node.child(k), around);
+    }
+    nodes_[number].size = static_cast<std::uint32_t>(nodes_.size() - number);
+  }
+
+ private:
+  static FaceSet covered(const Neighbours& beside) {
+    FaceSet faces = 0;
+    for (int direction = 0; direction < direction_count; ++direction)
+      if (is_layer_full(beside[static_cast<std::size_t>(direction)], axis_of(direction),
+                        !is_forward(direction)))
+        faces = static_cast<FaceSet>(faces | face_bit(static_cast<Direction>(direction)));
+    return faces;
+  }
+
+  std::vector<MaskedNode>& nodes_;
+};
+
+class MaskedSource {
+ public:
+  explicit MaskedSource(const std::vector<MaskedNode>& nodes) : node_(nodes.begin()) {}
+  Status open(int /*level*/) { return (node_++)->status; }
+  void close(bool /*homogeneous*/) {}
+
+ private:
+  std::vector<MaskedNode>::const_iterator node_;
+};
+
+class Painter {
+ public:
+  Painter(const MaskedOctree& masked, FaceSet seen, bool is_masked)
+      : masked_(masked), seen_(seen), is_masked_(is_masked), tally_(masked.universe.depth) {}
+
+  void visit(std::size_t number, int side_log2) {
+    const MaskedNode& node = masked_.nodes[number];
+    tally_.count(side_log2, node.status == Status::Full, node.status == Status::Empty);
+    const auto shown = static_cast<FaceSet>(is_masked_ ? seen_ & ~node.covered : seen_);
+    if (node.status == Status::Empty || shown == 0) return;
+    if (node.status == Status::Full) {
+      drawn_faces_ += static_cast<std::uint64_t>(std::popcount(shown));
+      return;
+    }
+    std::size_t child = number + 1;
+    for (int k = 0; k < 8; ++k, child += masked_.nodes[child].size) visit(child, side_log2 - 1);
+  }
+  MaskedDrawing drawing() const { return {tally_.levels(), drawn_faces_}; }
+
+ private:
+  const MaskedOctree& masked_;
+  FaceSet seen_;
+  bool is_masked_;
+  LevelTally tally_;
+  std::uint64_t drawn_faces_ = 0;
+};
+
+/// The steps to the 18 neighbours in the order of neighbour_code().
+constexpr std::array<std::array<int, 3>, 18> steps{{{-1, 0, 0},
+                                                    {1, 0, 0},
+                                                    {0, -1, 0},
+                                                    {0, 1, 0},
+                                                    {0, 0, -1},
+                                                    {0, 0, 1},
+                                                    {-1, 0, 1},
+                                                    {1, 0, 1},
+                                                    {0, -1, 1},
+                                                    {0, 1, 1},
+                                                    {-1, 0, -1},
+                                                    {1, 0, -1},
+                                                    {0, -1, -1},
+                                                    {0, 1, -1},
+                                                    {-1, -1, 0},
+                                                    {1, -1, 0},
+                                                    {-1, 1, 0},
+                                                    {1, 1, 0}}};
+
+constexpr std::uint32_t neighbour_bit(std::size_t i) {
+  return std::uint32_t{1} << (steps.size() - 1 - i);
+}
+
+}  // namespace
+
+MaskedOctree masked_octree(const Octree& octree) {
+  MaskedOctree masked{octree.universe(), {}};
+  Neighbours outside;
+  const Octree nothing = Octree::empty(octree.universe());
+  outside.fill(LogicalNode::root(nothing));
+  MaskWalk(masked.nodes).walk(LogicalNode::root(octree), outside);
+  return masked;
+}
+
+Octree octree_of(const MaskedOctree& masked) {
+  MaskedSource source(masked.nodes);
+  return LogicalBuild(masked.universe, source).octree();
+}
+
+FaceSet view_code(int octant) {
+  assert(octant >= 0 && octant < 8);
+  FaceSet faces = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool is_high = ((octant >> axis) & 1) != 0;
+    faces = static_cast<FaceSet>(faces | face_bit(static_cast<Direction>(2 * axis + (is_high ? 0 : 1))));
+  }
+  return faces;
+}
+
+std::string face_text(FaceSet faces) {
+  std::string result;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {1, 0}) {
+      const bool is_in = (faces & face_bit(static_cast<Direction>(2 * axis + side))) != 0;
+      result.append(result.empty() ? "" : " ").append(is_in ? "F" : "E");
+    }
+  return result;
+}
+
+MaskedDrawing draw_back_to_front(const MaskedOctree& masked, FaceSet seen, bool is_masked) {
+  Painter painter(masked, seen, is_masked);
+  painter.visit(0, masked.universe.depth);
+  return painter.drawing();
+}
+
+std::uint32_t neighbour_code(const Octree& octree, const glm::ivec3& voxel) {
+  std::uint32_t code = 0;
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    if (octree.contains(voxel + glm::ivec3(steps[i][0], steps[i][1], steps[i][2]))) code |= neighbour_bit(i);
+  return code;
+}
+
+std::uint32_t neighbour_mask(Direction face) {
+  const int number = static_cast<int>(face);
+  const auto axis = static_cast<std::size_t>(axis_of(number));
+  const int outward = is_forward(number) ? 1 : -1;
+  // The four face neighbours beside the face, and the four edge neighbours in front of them.
+  std::uint32_t mask = 0;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const int length = std::abs(steps[i][0]) + std::abs(steps[i][1]) + std::abs(steps[i][2]);
+    if (steps[i][axis] == (length == 1 ? 0 : outward)) mask |= neighbour_bit(i);
+  }
+  return mask;
+}
+
+}  // namespace octotomy::voxel
