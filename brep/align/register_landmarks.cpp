@@ -97,8 +97,8 @@ glm::dmat3 frame_of(const std::vector<Pair>& pairs, glm::dvec3 Pair::*which) {
 }
 
 /// The points that the motion makes coincide: the weighted centres of both sets, or the first pair.
-Pair anchor_of(const std::vector<Pair>& pairs, Motion motion) {
-  if (motion == Motion::three_points) return pairs.front();
+Pair anchor_of(const std::vector<Pair>& pairs, MotionModel motion) {
+  if (motion == MotionModel::three_points) return pairs.front();
   Pair anchor{glm::dvec3(0.0), glm::dvec3(0.0), 0.0};
   for (const Pair& pair : pairs) {
     anchor.weight += pair.weight;
@@ -132,7 +132,7 @@ glm::dmat3 best_turn(const std::vector<Pair>& pairs) {
 }  // namespace
 
 LandmarkFit register_landmarks(const std::vector<Landmark>& moving, const std::vector<Landmark>& fixed,
-                               Motion motion) {
+                               MotionModel motion) {
   const auto from = by_name(moving, "moving"), to = by_name(fixed, "fixed");
   LandmarkFit fit;
   std::vector<Pair> pairs;
@@ -157,13 +157,13 @@ LandmarkFit register_landmarks(const std::vector<Landmark>& moving, const std::v
     pair.to -= anchor.to;
   }
   const std::vector<Pair> deciding(pairs.begin(),
-                                   motion == Motion::three_points ? pairs.begin() + 3 : pairs.end());
+                                   motion == MotionModel::three_points ? pairs.begin() + 3 : pairs.end());
   if (on_a_line(deciding, &Pair::from) || on_a_line(deciding, &Pair::to))
     throw InvalidInput(
         "register: the landmarks found in both sets lie on one line, so the rotation about it is "
         "undetermined: add a landmark beside it");
 
-  const glm::dmat3 turn = motion == Motion::three_points
+  const glm::dmat3 turn = motion == MotionModel::three_points
                               ? frame_of(pairs, &Pair::to) * glm::transpose(frame_of(pairs, &Pair::from))
                               : best_turn(pairs);
   double along = 0.0, spread = 0.0;
@@ -171,7 +171,7 @@ LandmarkFit register_landmarks(const std::vector<Landmark>& moving, const std::v
     along += pair.weight * glm::dot(pair.to, turn * pair.from);
     spread += pair.weight * glm::dot(pair.from, pair.from);
   }
-  if (motion == Motion::similarity) fit.scale = along / spread;
+  if (motion == MotionModel::similarity) fit.scale = along / spread;
   if (!(fit.scale > 0.0))
     throw InvalidInput(
         "register: no positive scale fits these landmarks: check whether names are interchanged");

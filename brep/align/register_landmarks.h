@@ -23,7 +23,7 @@ struct LandmarkFit {
   std::vector<double> residuals_mm;   ///< of each of `paired`
 };
 
-enum class Motion {
+enum class MotionModel {
   rigid,
   similarity,    ///< rigid, and one scale
   three_points,  ///< rigid: makes the first pair coincide, then aligns the direction to the second, then the
@@ -38,6 +38,6 @@ enum class Motion {
 /// Horn, "Closed-form solution of absolute orientation using unit quaternions", JOSA A 4, 1987; three points:
 /// Ong 1992, 8.3.
 LandmarkFit register_landmarks(const std::vector<Landmark>& moving, const std::vector<Landmark>& fixed,
-                               Motion motion = Motion::rigid);
+                               MotionModel motion = MotionModel::rigid);
 
 }  // namespace octotomy::brep

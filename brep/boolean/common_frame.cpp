@@ -198,7 +198,7 @@ double on_plane(double coordinate, const std::vector<double>& offsets, double to
 
 /// Whether no two different points have come to one place.
 bool are_apart(const std::vector<glm::dvec3>& given, const std::vector<glm::dvec3>& turned) {
-  std::map<CommonFrame::Place, glm::dvec3> at;
+  std::map<CommonFrame::PointKey, glm::dvec3> at;
   for (std::size_t i = 0; i < turned.size(); ++i) {
     const auto [known, is_new] = at.try_emplace({turned[i].x, turned[i].y, turned[i].z}, given[i]);
     if (!is_new && known->second != given[i]) return false;

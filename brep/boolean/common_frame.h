@@ -20,11 +20,11 @@ struct CommonFrame {
   /// nearer than that become one.
   Triangles moved_back(const Triangles& triangles) const;
 
-  using Place = std::array<double, 3>;
+  using PointKey = std::array<double, 3>;
   glm::dmat3 lps_from_frame{1.0};
   glm::dvec3 origin_mm{0.0};
   double kept_mm = 0.0;  ///< what the last places of turned points leave open
-  std::map<Place, glm::dvec3> given_mm;
+  std::map<PointKey, glm::dvec3> given_mm;
 };
 
 /// The frame of two solids that have faces on a common plane but for the rounding of their points: of doubles,

@@ -33,11 +33,11 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 /// probe.
 constexpr std::size_t probes_worth_a_tree = 64;
 
-using Place = std::array<double, 3>;
+using PointKey = std::array<double, 3>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
-using EdgePlace = std::pair<Place, Place>;
+using EdgePlace = std::pair<PointKey, PointKey>;
 
-Place place_of(const glm::dvec3& p) {
+PointKey place_of(const glm::dvec3& p) {
   return {p.x, p.y, p.z};
 }
 
@@ -47,7 +47,8 @@ Edge edge_of(std::uint32_t v, std::uint32_t w) {
 
 /// The position of an edge, and its points in the order of their coordinates.
 std::pair<EdgePlace, Edge> placed(const Triangles& triangles, const Edge& edge) {
-  const Place p = place_of(triangles.points_mm[edge.first]), q = place_of(triangles.points_mm[edge.second]);
+  const PointKey p = place_of(triangles.points_mm[edge.first]),
+                 q = place_of(triangles.points_mm[edge.second]);
   if (q < p) return {{q, p}, {edge.second, edge.first}};
   return {{p, q}, edge};
 }

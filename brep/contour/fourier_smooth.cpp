@@ -100,11 +100,11 @@ Contour fourier_smooth(const Contour& contour, const FourierOptions& options) {
     throw InvalidInput("fourier_smooth: the contour's length is not above 0 and finite");
   const auto& p = contour.points_mm;
 
-  struct Piece {
+  struct EdgeSpan {
     double turn;  ///< where it begins
     Complex direction;
   };
-  std::vector<Piece> pieces;
+  std::vector<EdgeSpan> pieces;
   Complex mean = 0.0;
   double along = 0.0;
   for (std::size_t a = 0; a < p.size(); ++a) {

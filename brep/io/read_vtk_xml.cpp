@@ -85,7 +85,7 @@ class XmlReader {
       throw Error(ErrorCode::Input,
                   "the data set is neither PolyData nor UnstructuredGrid; export a surface");
     for (const XmlElement& field : fields_) take_field(field);
-    for (const Piece& piece : pieces_) add(piece);
+    for (const PieceElement& piece : pieces_) add(piece);
     // Processes the cells of all pieces of a grid at once, because faces between two pieces are not on the
     // surface.
     if (is_grid_) add_grid_surface(grid_, types_, made_);
@@ -93,7 +93,7 @@ class XmlReader {
   }
 
  private:
-  struct Piece {
+  struct PieceElement {
     XmlElement points;
     std::map<std::string_view, XmlElement> polys, strips, cells;
   };
@@ -161,7 +161,7 @@ class XmlReader {
       made_.says.add_unit(text, "unit " + text + " in the field");
   }
 
-  void add(const Piece& piece) {
+  void add(const PieceElement& piece) {
     if (piece.points.name.empty()) return;
     Triangles& triangles = made_.triangles;
     const std::vector<double> numbers = numbers_of<double>(piece.points);
@@ -179,7 +179,7 @@ class XmlReader {
     for (const auto& corners : cells_of(piece.strips, first)) splitter.add_strip(corners);
   }
 
-  void add_cells(const Piece& piece, long long first) {
+  void add_cells(const PieceElement& piece, long long first) {
     CellCorners cells = cells_of(piece.cells, first);
     std::move(cells.begin(), cells.end(), std::back_inserter(grid_));
     if (!piece.cells.contains("types")) return;
@@ -330,7 +330,7 @@ class XmlReader {
   Packing packing_ = Packing::None;
   std::endian order_ = std::endian::little;
   std::vector<XmlElement> fields_;
-  std::vector<Piece> pieces_;
+  std::vector<PieceElement> pieces_;
   CellCorners grid_;
   std::vector<long long> types_;
   MeshContent made_;

@@ -27,26 +27,26 @@ glm::dvec3 doubled_area(const std::array<glm::dvec3, 3>& corners) {
 
 }  // namespace
 
-std::vector<Overhang> overhangs(const Linked& surface, const OverhangAsked& asked) {
-  if (!(std::abs(glm::length(asked.up) - 1.0) <= direction_rounding))
+std::vector<Overhang> overhangs(const Linked& surface, const OverhangOptions& options) {
+  if (!(std::abs(glm::length(options.up) - 1.0) <= direction_rounding))
     throw std::invalid_argument("overhangs: the direction away from the bed is not a unit vector");
-  if (!(asked.incline_deg >= 0.0 && asked.incline_deg <= 90.0))
+  if (!(options.incline_deg >= 0.0 && options.incline_deg <= 90.0))
     throw InvalidInput("overhangs: the inclination must be 0 to 90 degrees");
   const Triangles& triangles = surface.triangles;
   double lowest_mm = std::numeric_limits<double>::infinity();
   for (const auto& face : triangles.faces)
     for (const std::uint32_t corner : face)
-      lowest_mm = std::min(lowest_mm, glm::dot(asked.up, triangles.points_mm[corner]));
-  const double least_cosine = std::cos(glm::radians(asked.incline_deg)) + direction_rounding;
+      lowest_mm = std::min(lowest_mm, glm::dot(options.up, triangles.points_mm[corner]));
+  const double least_cosine = std::cos(glm::radians(options.incline_deg)) + direction_rounding;
 
   std::vector<char> hangs(triangles.faces.size(), 0);
   for (std::size_t face = 0; face < hangs.size(); ++face) {
     const std::array<glm::dvec3, 3> corners = corners_mm(triangles, face);
     const glm::dvec3 across = doubled_area(corners);
     const double length = glm::length(across);
-    if (!(length > 0.0) || !(-glm::dot(asked.up, across) > least_cosine * length)) continue;
+    if (!(length > 0.0) || !(-glm::dot(options.up, across) > least_cosine * length)) continue;
     hangs[face] = std::any_of(corners.begin(), corners.end(), [&](const glm::dvec3& p_mm) {
-      return glm::dot(asked.up, p_mm) > lowest_mm + asked.resting_mm;
+      return glm::dot(options.up, p_mm) > lowest_mm + options.resting_mm;
     });
   }
 

@@ -13,18 +13,18 @@ namespace octotomy::brep {
 
 namespace {
 
-using Place = std::array<double, 3>;
+using PointKey = std::array<double, 3>;
 
-Place place_of(const Triangles& triangles, std::uint32_t v) {
+PointKey place_of(const Triangles& triangles, std::uint32_t v) {
   const glm::dvec3& p = triangles.points_mm[v];
   return {p.x, p.y, p.z};
 }
 
 /// For each vertex that coincides with another: the positions of its neighbours, in order. Read from the
 /// faces, because a walk around a vertex may never end in a mesh that a Boolean left invalid.
-std::unordered_map<std::uint32_t, std::vector<Place>> rings_of_shared(
+std::unordered_map<std::uint32_t, std::vector<PointKey>> rings_of_shared(
     const Triangles& triangles, const std::vector<std::uint32_t>& order) {
-  std::unordered_map<std::uint32_t, std::vector<Place>> rings;
+  std::unordered_map<std::uint32_t, std::vector<PointKey>> rings;
   for (std::size_t i = 1; i < order.size(); ++i)
     if (place_of(triangles, order[i - 1]) == place_of(triangles, order[i]))
       for (const std::uint32_t v : {order[i - 1], order[i]}) rings[v];

@@ -31,7 +31,7 @@ glm::dvec3 at(std::uint64_t key) {
 /// Keys are sums of coordinates times powers of two: the middle has half the sum where that has no
 /// remainders.
 bool has_middle(std::uint64_t a, std::uint64_t b) {
-  return glm::all(glm::equal((place_of(a) + place_of(b)) & 1, Place(0)));
+  return glm::all(glm::equal((place_of(a) + place_of(b)) & 1, LatticePoint(0)));
 }
 std::uint64_t middle_of(std::uint64_t a, std::uint64_t b) {
   return key_of((place_of(a) + place_of(b)) / 2);
@@ -62,7 +62,7 @@ std::vector<Simplex> whole_cube(int side) {
   for (const auto& order : {std::array{0, 1, 2}, std::array{0, 2, 1}, std::array{1, 0, 2},
                             std::array{1, 2, 0}, std::array{2, 0, 1}, std::array{2, 1, 0}}) {
     Simplex simplex;
-    Place corner(0);
+    LatticePoint corner(0);
     simplex.corners[0] = key_of(corner);
     for (std::size_t i = 0; i < 3; ++i) {
       corner[order[i]] = side;

@@ -60,14 +60,14 @@ Triangles sound_triangles(const Triangles& surface) {
 struct Lattice {
   glm::dvec3 origin_mm{0.0};
   double cell_mm = 1.0;
-  Place cells{0};
+  LatticePoint cells{0};
 
-  glm::dvec3 at(const Place& p) const { return origin_mm + cell_mm * glm::dvec3(p); }
-  bool has_cell(const Place& p) const {
-    return glm::all(glm::greaterThanEqual(p, Place(0))) && glm::all(glm::lessThan(p, cells));
+  glm::dvec3 at(const LatticePoint& p) const { return origin_mm + cell_mm * glm::dvec3(p); }
+  bool has_cell(const LatticePoint& p) const {
+    return glm::all(glm::greaterThanEqual(p, LatticePoint(0))) && glm::all(glm::lessThan(p, cells));
   }
-  bool is_border(const Place& p) const {
-    return glm::any(glm::lessThanEqual(p, Place(0))) || glm::any(glm::greaterThanEqual(p, cells));
+  bool is_border(const LatticePoint& p) const {
+    return glm::any(glm::lessThanEqual(p, LatticePoint(0))) || glm::any(glm::greaterThanEqual(p, cells));
   }
 };
 
@@ -101,7 +101,7 @@ Lattice lattice_about(const Triangles& surface, const EncloseOptions& options) {
   if (!(std::max({cells.x, cells.y, cells.z}) < (1 << side_bits) - 2))
     throw Error(ErrorCode::Geometry, "cells of " + short_text(lattice.cell_mm) + " mm are too small for " +
                                          short_text(extent) + " mm: a side has at most 2^20 of them");
-  lattice.cells = Place(cells);
+  lattice.cells = LatticePoint(cells);
   return lattice;
 }
 
@@ -120,8 +120,8 @@ class Crossed {
   Crossed(const Triangles& surface, std::uint32_t f, const Lattice& lattice) {
     for (std::size_t k = 0; k < 3; ++k)
       p_[k] = (surface.points_mm[surface.faces[f][k]] - lattice.origin_mm) / lattice.cell_mm;
-    low_ = Place(glm::floor(glm::min(p_[0], glm::min(p_[1], p_[2])) - slack));
-    high_ = Place(glm::floor(glm::max(p_[0], glm::max(p_[1], p_[2])) + slack));
+    low_ = LatticePoint(glm::floor(glm::min(p_[0], glm::min(p_[1], p_[2])) - slack));
+    high_ = LatticePoint(glm::floor(glm::max(p_[0], glm::max(p_[1], p_[2])) + slack));
     normal_ = glm::cross(p_[1] - p_[0], p_[2] - p_[0]);
     const glm::dvec3 size = glm::abs(normal_);
     reach_ = 0.5 * (size.x + size.y + size.z) * (1.0 + slack);
@@ -134,7 +134,7 @@ class Crossed {
   void each_cell(const Visit& visit) const {
     // Iterates over columns along the steepest axis, in which the triangle passes only a few cells.
     const int u = (steep_ + 1) % 3, v = (steep_ + 2) % 3;
-    Place cell{0};
+    LatticePoint cell{0};
     for (cell[v] = low_[v]; cell[v] <= high_[v]; ++cell[v]) {
       const auto [from, to] = row(u, v, cell[v]);
       for (cell[u] = from; cell[u] <= to; ++cell[u]) {
@@ -181,7 +181,7 @@ class Crossed {
   }
 
   /// The range of cells of a column near the plane, plus one at each end for rounding.
-  std::pair<int, int> column(Place cell) const {
+  std::pair<int, int> column(LatticePoint cell) const {
     if (normal_[steep_] == 0.0) return {low_[steep_], high_[steep_]};
     cell[steep_] = 0;
     const double middle = -glm::dot(normal_, glm::dvec3(cell) + 0.5 - p_[0]) / normal_[steep_];
@@ -191,7 +191,7 @@ class Crossed {
   }
 
   std::array<glm::dvec3, 3> p_;
-  Place low_{0}, high_{0};
+  LatticePoint low_{0}, high_{0};
   glm::dvec3 normal_{0.0};
   double reach_ = 0.0;
   int steep_ = 0;
@@ -215,7 +215,7 @@ std::vector<Passage> passages_of(const Triangles& surface, const Lattice& lattic
     if (sum > most_passages || crossed.least_cells() > static_cast<double>(most_passages))
       cells = most_passages + 1;
     else
-      crossed.each_cell([&](const Place&) { ++cells; });
+      crossed.each_cell([&](const LatticePoint&) { ++cells; });
     begin[f + 1] = cells;
     sum += cells;
   });
@@ -226,7 +226,9 @@ std::vector<Passage> passages_of(const Triangles& surface, const Lattice& lattic
   std::vector<Passage> passages(begin.back());
   each_face([&](std::uint32_t f) {
     std::size_t at = begin[f];
-    Crossed(surface, f, lattice).each_cell([&](const Place& cell) { passages[at++] = {key_of(cell), f}; });
+    Crossed(surface, f, lattice).each_cell([&](const LatticePoint& cell) {
+      passages[at++] = {key_of(cell), f};
+    });
   });
   tbb::parallel_sort(passages.begin(), passages.end());
   return passages;
@@ -266,13 +268,13 @@ class Field {
     values_ = std::move(all);
   }
 
-  double at(const Place& p) const {
+  double at(const LatticePoint& p) const {
     const auto found = std::lower_bound(keys_.begin(), keys_.end(), key_of(p));
     assert(found != keys_.end() && *found == key_of(p));
     return values_[static_cast<std::size_t>(found - keys_.begin())];
   }
 
-  std::array<double, 8> about(const Place& cell) const {
+  std::array<double, 8> about(const LatticePoint& cell) const {
     std::array<double, 8> values{};
     for (int k = 0; k < 8; ++k) values[static_cast<std::size_t>(k)] = at(cell + corner_place(k));
     return values;
@@ -288,7 +290,7 @@ class Field {
 };
 
 /// Cells beyond the sides of a cell that the surface passes.
-void add_neighbours(const Place& cell, const std::array<double, 8>& values, const Lattice& lattice,
+void add_neighbours(const LatticePoint& cell, const std::array<double, 8>& values, const Lattice& lattice,
                     std::vector<std::uint64_t>& cells) {
   for (int axis = 0; axis < 3; ++axis)
     for (const int end : {0, 1}) {
@@ -296,7 +298,7 @@ void add_neighbours(const Place& cell, const std::array<double, 8>& values, cons
       for (int k = 0; k < 8; ++k)
         if ((k >> axis & 1) == end) inside += values[static_cast<std::size_t>(k)] < 0.0;
       if (inside == 0 || inside == 4) continue;
-      Place beyond = cell;
+      LatticePoint beyond = cell;
       beyond[axis] += end == 1 ? 1 : -1;
       if (lattice.has_cell(beyond)) cells.push_back(key_of(beyond));
     }
@@ -318,7 +320,7 @@ std::vector<std::uint64_t> cells_of(const std::vector<Passage>& passages, const 
                                            short_text(lattice.cell_mm) + " mm: take larger ones, --cell");
     std::vector<std::uint64_t> beyond =
         appended<std::uint64_t>(fresh, [&](std::uint64_t key, std::vector<std::uint64_t>& found) {
-          const Place cell = place_of(key);
+          const LatticePoint cell = place_of(key);
           add_neighbours(cell, field.about(cell), lattice, found);
         });
     tbb::parallel_sort(beyond.begin(), beyond.end());
@@ -351,7 +353,7 @@ EdgePoints points_on(const std::vector<LatticeEdge>& edges, const std::vector<Pa
   // Edges run from inside to outside; the crossing nearest to the outside end is on the surface.
   std::vector<double> share(edges.size(), -1.0), at_from(edges.size()), at_to(edges.size());
   const auto ends = [&](std::size_t i) {
-    const Place from = place_of(edges[i].from());
+    const LatticePoint from = place_of(edges[i].from());
     return std::pair(from, from + corner_place(edges[i].along()));
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, edges.size(), 512), [&](const auto& range) {
@@ -454,7 +456,7 @@ Enclosed enclose(const Triangles& given, const EncloseOptions& options) {
   options.progress.at(0.6);
   const auto triangles =
       appended<EdgeTriangle>(cells, [&](std::uint64_t key, std::vector<EdgeTriangle>& made) {
-        const Place cell = place_of(key);
+        const LatticePoint cell = place_of(key);
         add_triangles(cell, field.about(cell), made);
       });
   if (triangles.empty())

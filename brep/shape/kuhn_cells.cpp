@@ -14,7 +14,7 @@ using Tetrahedron = std::array<int, 4>;
 constexpr std::array<Tetrahedron, 6> tetrahedra = {
     {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
 
-LatticeEdge edge_between(const Place& cell, int p, int q) {
+LatticeEdge edge_between(const LatticePoint& cell, int p, int q) {
   assert(((p & q) == p || (p & q) == q) && p != q);
   const int low = p & q;  // equals p or q, because the tetrahedra's edges only ascend
   return {cell + corner_place(low), (p | q) ^ low};
@@ -38,7 +38,7 @@ std::vector<std::uint64_t> points_about(const std::vector<std::uint64_t>& lowest
   return points;
 }
 
-void add_triangles(const Place& cell, const std::array<double, 8>& values,
+void add_triangles(const LatticePoint& cell, const std::array<double, 8>& values,
                    std::vector<EdgeTriangle>& triangles) {
   for (const Tetrahedron& t : tetrahedra) {
     // Moves the inside corners first by an even permutation, so that the tetrahedron stays positively

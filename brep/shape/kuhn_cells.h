@@ -18,7 +18,7 @@
 // corners stay inside their edges.
 namespace octotomy::brep {
 
-using Place = glm::ivec3;
+using LatticePoint = glm::ivec3;
 constexpr int side_bits = 20;  ///< bits of each coordinate, 0 .. 2^20 - 1
 
 /// Least distance of a point from an end of its edge, as a share of the edge: nearer points could coincide
@@ -26,19 +26,20 @@ constexpr int side_bits = 20;  ///< bits of each coordinate, 0 .. 2^20 - 1
 constexpr double nearest_end = 0x1p-10;
 
 /// A lattice position as a number that sorts by z, y, x.
-inline std::uint64_t key_of(const Place& p) {
-  assert(glm::all(glm::greaterThanEqual(p, Place(0))) && glm::all(glm::lessThan(p, Place(1 << side_bits))));
+inline std::uint64_t key_of(const LatticePoint& p) {
+  assert(glm::all(glm::greaterThanEqual(p, LatticePoint(0))) &&
+         glm::all(glm::lessThan(p, LatticePoint(1 << side_bits))));
   return (static_cast<std::uint64_t>(p.z) << 2 * side_bits) | (static_cast<std::uint64_t>(p.y) << side_bits) |
          static_cast<std::uint64_t>(p.x);
 }
-inline Place place_of(std::uint64_t key) {
+inline LatticePoint place_of(std::uint64_t key) {
   constexpr std::uint64_t mask = (std::uint64_t{1} << side_bits) - 1;
   return {static_cast<int>(key & mask), static_cast<int>(key >> side_bits & mask),
           static_cast<int>(key >> 2 * side_bits)};
 }
 
 /// The offset of a cell's corner, or of an edge from its lower to its upper end. Bit 0 is x.
-inline Place corner_place(int corner) {
+inline LatticePoint corner_place(int corner) {
   assert(corner >= 0 && corner < 8);
   return {corner & 1, corner >> 1 & 1, corner >> 2 & 1};
 }
@@ -73,7 +74,8 @@ class LatticeEdge {
  public:
   LatticeEdge() = default;
   /// `along` is the corner, of the cell whose lowest corner is `from`, at which the edge ends.
-  LatticeEdge(const Place& from, int along) : packed_(key_of(from) << 3 | static_cast<std::uint64_t>(along)) {
+  LatticeEdge(const LatticePoint& from, int along)
+      : packed_(key_of(from) << 3 | static_cast<std::uint64_t>(along)) {
     assert(along > 0 && along < 8);
   }
   std::uint64_t from() const { return packed_ >> 3; }  ///< key of its lower end
@@ -88,7 +90,7 @@ class LatticeEdge {
 using EdgeTriangle = std::array<LatticeEdge, 3>;
 
 /// Appends the triangles of the surface in the cell with this lower corner. Values below 0 are inside.
-void add_triangles(const Place& cell, const std::array<double, 8>& values,
+void add_triangles(const LatticePoint& cell, const std::array<double, 8>& values,
                    std::vector<EdgeTriangle>& triangles);
 
 /// The edges of triangles, each once, ascending.

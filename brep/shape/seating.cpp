@@ -24,23 +24,23 @@
 namespace octotomy::brep {
 namespace {
 
-using Piece = std::array<glm::dvec3, 3>;
+using TrianglePoints = std::array<glm::dvec3, 3>;
 
-glm::dvec3 middle_of(const Piece& piece) {
+glm::dvec3 middle_of(const TrianglePoints& piece) {
   return (piece[0] + piece[1] + piece[2]) / 3.0;
 }
-double reach_of(const Piece& piece) {
+double reach_of(const TrianglePoints& piece) {
   const glm::dvec3 middle = middle_of(piece);
   return std::max(
       {glm::distance(middle, piece[0]), glm::distance(middle, piece[1]), glm::distance(middle, piece[2])});
 }
 
 /// The object's triangles that lie at least in part within the box of a space.
-std::vector<Piece> pieces_near(const Solid& object, const Size& space) {
-  std::vector<Piece> pieces;
+std::vector<TrianglePoints> pieces_near(const Solid& object, const Size& space) {
+  std::vector<TrianglePoints> pieces;
   const Triangles& triangles = object.triangles();
   for (const auto& [a, b, c] : triangles.faces) {
-    const Piece piece{triangles.points_mm[a], triangles.points_mm[b], triangles.points_mm[c]};
+    const TrianglePoints piece{triangles.points_mm[a], triangles.points_mm[b], triangles.points_mm[c]};
     const glm::dvec3 low = glm::min(glm::min(piece[0], piece[1]), piece[2]),
                      high = glm::max(glm::max(piece[0], piece[1]), piece[2]);
     if (glm::all(glm::lessThanEqual(low, space.high_mm)) &&
@@ -51,7 +51,7 @@ std::vector<Piece> pieces_near(const Solid& object, const Size& space) {
 }
 
 /// The largest depth that a piece can have, from its middle's depth and the triangle nearest to the middle.
-double most_depth(const Piece& piece, double depth_mm, const std::array<std::uint32_t, 3>& nearest,
+double most_depth(const TrianglePoints& piece, double depth_mm, const std::array<std::uint32_t, 3>& nearest,
                   const Triangles& space) {
   double to_nearest = 0.0;
   const glm::dvec3 &a = space.points_mm[nearest[0]], &b = space.points_mm[nearest[1]],
@@ -61,29 +61,31 @@ double most_depth(const Piece& piece, double depth_mm, const std::array<std::uin
   return std::min(depth_mm + reach_of(piece), to_nearest);
 }
 
-std::optional<Binding> deepest(const Solid& object, const Solid& space, const SeatingAsked& asked) {
+std::optional<Binding> deepest(const Solid& object, const Solid& space, const SeatingOptions& options) {
   std::optional<Binding> found;
-  std::vector<Piece> pieces = pieces_near(object, space.size());
+  std::vector<TrianglePoints> pieces = pieces_near(object, space.size());
   while (!pieces.empty()) {
-    asked.progress.at(0.5);
+    options.progress.at(0.5);
     std::vector<glm::dvec3> middles;
     middles.reserve(pieces.size());
-    for (const Piece& piece : pieces) middles.push_back(middle_of(piece));
+    for (const TrianglePoints& piece : pieces) middles.push_back(middle_of(piece));
     const std::vector<Foot> feet = space.tree().feet(middles);
     const std::vector<std::uint8_t> inside = space.tree().inside(middles);
     std::vector<double> depths;
     for (std::size_t i = 0; i < pieces.size(); ++i)
       depths.push_back(inside[i] != 0 ? feet[i].distance_mm : -feet[i].distance_mm);
     for (std::size_t i = 0; i < pieces.size(); ++i)
-      if (depths[i] > (found ? found->depth_mm : asked.resolution_mm)) found = {middles[i], depths[i], 0, 0};
-    const double least = found ? found->depth_mm + asked.resolution_mm : 2.0 * asked.resolution_mm;
-    std::vector<Piece> halves;
+      if (depths[i] > (found ? found->depth_mm : options.resolution_mm))
+        found = {middles[i], depths[i], 0, 0};
+    const double least = found ? found->depth_mm + options.resolution_mm : 2.0 * options.resolution_mm;
+    std::vector<TrianglePoints> halves;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const auto& nearest = space.triangles().faces[feet[i].face];
       if (most_depth(pieces[i], depths[i], nearest, space.triangles()) <= least) continue;
       const auto& [a, b, c] = pieces[i];
       const glm::dvec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-      for (const Piece& half : {Piece{a, ab, ca}, Piece{ab, b, bc}, Piece{ca, bc, c}, Piece{ab, bc, ca}})
+      for (const TrianglePoints& half : {TrianglePoints{a, ab, ca}, TrianglePoints{ab, b, bc},
+                                         TrianglePoints{ca, bc, c}, TrianglePoints{ab, bc, ca}})
         halves.push_back(half);
     }
     pieces = std::move(halves);
@@ -119,16 +121,16 @@ void find_times(const Solid& part, const glm::dvec3& direction, Binding& binding
 
 }  // namespace
 
-Seating seating(const Solid& part, const Solid& object, const SeatingAsked& asked) {
+Seating seating(const Solid& part, const Solid& object, const SeatingOptions& options) {
   if (part.empty() || object.empty()) throw InvalidInput("seating needs a part and an object");
-  if (!(asked.resolution_mm > 0.0)) throw InvalidInput("the resolution of depths is above 0 mm");
-  const glm::dvec3 away = -asked.direction;
+  if (!(options.resolution_mm > 0.0)) throw InvalidInput("the resolution of depths is above 0 mm");
+  const glm::dvec3 away = -options.direction;
   // The way begins before the object by more than the object can reach into it.
   const glm::dvec3 extent = part.size().high_mm - part.size().low_mm;
   const double end_mm = std::max(far_end_mm(part, away), far_end_mm(object, away) + glm::length(extent));
-  const Shadow swept = shadow(part, {away, end_mm, asked.progress});
-  Seating made{deepest(object, swept.solid, asked), volume_mm3(swept.solid)};
-  if (made.binding) find_times(part, asked.direction, *made.binding);
+  const Shadow swept = shadow(part, {away, end_mm, options.progress});
+  Seating made{deepest(object, swept.solid, options), volume_mm3(swept.solid)};
+  if (made.binding) find_times(part, options.direction, *made.binding);
   return made;
 }
 

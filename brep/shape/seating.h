@@ -9,7 +9,7 @@
 
 namespace octotomy::brep {
 
-struct SeatingAsked {
+struct SeatingOptions {
   glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit, LPS: in which the part moves to its place
   double resolution_mm = 0.01;          ///< depths up to this are not looked for, and depths are good to it
   Progress progress = {};
@@ -35,6 +35,6 @@ struct Seating {
 /// not a unit vector, the resolution is not above 0 or a solid is empty; Stopped. The same bits on any thread
 /// count. Cost: shadow() of the part; a search in its tree for each triangle of the object within its box, and
 /// for parts of those triangles where the two surfaces lie closer than their size.
-Seating seating(const Solid& part, const Solid& object, const SeatingAsked& asked);
+Seating seating(const Solid& part, const Solid& object, const SeatingOptions& options);
 
 }  // namespace octotomy::brep

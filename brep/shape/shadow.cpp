@@ -99,10 +99,10 @@ struct Level {
 
 class ShadowSurface {
  public:
-  ShadowSurface(const Solid& solid, const ShadowAsked& asked)
+  ShadowSurface(const Solid& solid, const ShadowOptions& options)
       : solid_(solid),
-        progress_(asked.progress),
-        axes_(asked.direction),
+        progress_(options.progress),
+        axes_(options.direction),
         points_(turned(solid, axes_)),
         by_place_(points_),
         faces_(solid.linked(), points_) {
@@ -110,7 +110,7 @@ class ShadowSurface {
     same_depth_mm_ = same_depth_share * std::max({extent.x, extent.y, extent.z});
     double far = -std::numeric_limits<double>::infinity();
     for (const glm::dvec3& p : points_) far = std::max(far, p.z);
-    end_ = std::max(far, asked.end_mm);
+    end_ = std::max(far, options.end_mm);
   }
 
   Shadow made() {
@@ -324,13 +324,13 @@ double far_end_mm(const Solid& solid, const glm::dvec3& direction) {
   return far;
 }
 
-Shadow shadow(const Solid& solid, const ShadowAsked& asked) {
+Shadow shadow(const Solid& solid, const ShadowOptions& options) {
   constexpr double unit_error = 1e-9;  // of a direction that was normalised or typed with ten figures
-  if (!(std::abs(glm::length(asked.direction) - 1.0) < unit_error))
+  if (!(std::abs(glm::length(options.direction) - 1.0) < unit_error))
     throw std::invalid_argument("the direction of a shadow is a unit vector");
-  if (!std::isfinite(asked.end_mm)) throw std::invalid_argument("the end of a shadow is finite");
+  if (!std::isfinite(options.end_mm)) throw std::invalid_argument("the end of a shadow is finite");
   if (solid.empty()) return {};
-  return ShadowSurface(solid, asked).made();
+  return ShadowSurface(solid, options).made();
 }
 
 }  // namespace octotomy::brep

@@ -12,7 +12,7 @@ namespace octotomy::brep {
 /// The largest p . direction of a solid's points, in mm for a unit direction. Precondition: not empty.
 double far_end_mm(const Solid& solid, const glm::dvec3& direction);
 
-struct ShadowAsked {
+struct ShadowOptions {
   glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit, LPS: the way in which a part is put on
   double end_mm = 0.0;                  ///< p . direction of the plane at which the shadow ends
   Progress progress = {};
@@ -34,6 +34,6 @@ struct Shadow {
 /// empty shadow. Throws std::invalid_argument if the direction is not a unit vector or the end is not
 /// finite; Stopped. The same bits on any thread count. Cost: n log n for the n triangles that face the
 /// direction and are not surely hidden, and what their edges' crossings in the view add to n.
-Shadow shadow(const Solid& solid, const ShadowAsked& asked);
+Shadow shadow(const Solid& solid, const ShadowOptions& options);
 
 }  // namespace octotomy::brep

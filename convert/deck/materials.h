@@ -22,7 +22,7 @@ enum class DensityKind { Apparent, Ash };
 
 /// Piecewise E = a + b rho^c in MPa, rho in g/cm3.
 struct StiffnessLaw {
-  struct Piece {
+  struct PowerLaw {
     double from_g_cm3 = 0.0;  ///< the piece ends where the next one begins
     double a_mpa = 0.0;
     double b = 0.0;
@@ -31,7 +31,7 @@ struct StiffnessLaw {
   std::string name;
   std::string source;
   DensityKind density = DensityKind::Apparent;
-  std::vector<Piece> pieces;  ///< from_g_cm3 ascending, the first from 0
+  std::vector<PowerLaw> pieces;  ///< from_g_cm3 ascending, the first from 0
 };
 
 /// The published laws: morgan2003-femoral-neck, morgan2003-pooled, carter-hayes1977, keller1994, keyak1998.

@@ -11,7 +11,7 @@
 
 namespace octotomy::convert {
 
-Filled fill_cavities(const brep::Solid& solid, double smaller_than_mm3) {
+FilledCavities fill_cavities(const brep::Solid& solid, double smaller_than_mm3) {
   if (!(smaller_than_mm3 > 0.0)) throw std::invalid_argument("fill_cavities: the volume must be positive");
   const brep::Triangles& surface = solid.triangles();
   brep::DisjointSets shells(surface.points_mm.size());
@@ -26,7 +26,7 @@ Filled fill_cavities(const brep::Solid& solid, double smaller_than_mm3) {
     const auto& p = surface.points_mm;
     volume_mm3[shell] += glm::dot(glm::cross(p[b] - p[a], p[c] - p[a]), p[a] - p[shell]) / 6.0;
   }
-  Filled filled;
+  FilledCavities filled;
   for (const double own_mm3 : volume_mm3)
     if (own_mm3 < 0.0 && -own_mm3 < smaller_than_mm3) {
       ++filled.cavities;

@@ -8,7 +8,7 @@
 namespace octotomy::convert {
 
 /// A solid without its small cavities.
-struct Filled {
+struct FilledCavities {
   brep::Solid solid;
   std::size_t cavities = 0;  ///< filled ones
   double volume_mm3 = 0.0;   ///< of all filled cavities
@@ -19,6 +19,6 @@ struct Filled {
 /// a voxel. The scan shows nothing there, yet a mesher that keeps the surface makes flat elements beside it,
 /// and one that makes its own surface loses it. Precondition: no body within such a cavity.
 /// Throws std::invalid_argument if the volume is not positive. Cost: linear.
-Filled fill_cavities(const brep::Solid& solid, double smaller_than_mm3);
+FilledCavities fill_cavities(const brep::Solid& solid, double smaller_than_mm3);
 
 }  // namespace octotomy::convert

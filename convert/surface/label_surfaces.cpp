@@ -51,11 +51,11 @@ struct PointName {
 };
 
 /// A triangle of a tetrahedron, counter-clockwise seen from the side of the corner `front` of the cell.
-struct Piece {
+struct CellTriangle {
   std::array<PointName, 3> points;
   std::uint8_t behind = 0, front = 0;
 };
-using Pieces = std::vector<Piece>;
+using CellTriangles = std::vector<CellTriangle>;
 
 glm::dvec3 place_of(int corner) {
   return {corner & 1, (corner >> 1) & 1, corner >> 2};
@@ -99,7 +99,7 @@ class Derivation {
     if (classes.size() == 3) three_labels(classes[0], classes[1][0], classes[2][0]);
     if (classes.size() == 4) four_labels();
   }
-  Pieces take() { return std::move(pieces_); }
+  CellTriangles take() { return std::move(pieces_); }
 
  private:
   Between between(std::vector<int> numbers) const {
@@ -144,7 +144,7 @@ class Derivation {
 
   int tetrahedron_;
   std::array<int, 4> corners_;
-  Pieces pieces_;
+  CellTriangles pieces_;
 };
 
 constexpr std::array<std::array<int, 4>, 6> tetrahedra{
@@ -158,13 +158,13 @@ std::size_t pattern_of(const Label& a, const Label& b, const Label& c, const Lab
 }
 
 /// The pieces of each tetrahedron by the pattern of its labels.
-const std::array<std::array<Pieces, 64>, 6>& pieces() {
+const std::array<std::array<CellTriangles, 64>, 6>& pieces() {
   static const auto table = [] {
-    std::array<std::array<Pieces, 64>, 6> made;
+    std::array<std::array<CellTriangles, 64>, 6> made;
     for (std::size_t t = 0; t < 6; ++t)
       for (int labels = 0; labels < 256; ++labels) {
         const std::array<int, 4> four{labels & 3, (labels >> 2) & 3, (labels >> 4) & 3, labels >> 6};
-        Pieces& here = made[t][pattern_of(four[0], four[1], four[2], four[3])];
+        CellTriangles& here = made[t][pattern_of(four[0], four[1], four[2], four[3])];
         if (here.empty()) here = Derivation(static_cast<int>(t), tetrahedra[t], four).take();
       }
     return made;
@@ -278,7 +278,7 @@ class Extraction {
   void count_faces(const voxel::Progress& progress) {
     faces_.resize(static_cast<std::size_t>(size_.z - 1));
     std::vector<std::uint64_t> counts(faces_.size());
-    visit_pieces(progress, [&](std::size_t z, std::size_t, const auto&, const Pieces& found) {
+    visit_pieces(progress, [&](std::size_t z, std::size_t, const auto&, const CellTriangles& found) {
       counts[z] += found.size();
     });
     std::uint64_t count = 0;
@@ -301,20 +301,21 @@ class Extraction {
   }
 
   void find_faces(const voxel::Progress& progress) {
-    visit_pieces(progress, [&](std::size_t z, std::size_t cell, const auto& labels, const Pieces& found) {
-      for (const Piece& piece : found) {
-        Face face;
-        face.sides = {labels[piece.behind], labels[piece.front]};
-        for (std::size_t i = 0; i < 3; ++i)
-          face.points[i] = (cell + step_[piece.points[i].corner]) * code_count + piece.points[i].code;
-        // Wind outward from the part; between two parts, from the one of lower number.
-        const bool turn =
-            face.sides.behind == 0 || (face.sides.front != 0 && face.sides.front < face.sides.behind);
-        if (turn) std::swap(face.sides.behind, face.sides.front);
-        if (turn == lattice_.right_handed()) std::swap(face.points[1], face.points[2]);
-        faces_[z].push_back(face);
-      }
-    });
+    visit_pieces(
+        progress, [&](std::size_t z, std::size_t cell, const auto& labels, const CellTriangles& found) {
+          for (const CellTriangle& piece : found) {
+            Face face;
+            face.sides = {labels[piece.behind], labels[piece.front]};
+            for (std::size_t i = 0; i < 3; ++i)
+              face.points[i] = (cell + step_[piece.points[i].corner]) * code_count + piece.points[i].code;
+            // Wind outward from the part; between two parts, from the one of lower number.
+            const bool turn =
+                face.sides.behind == 0 || (face.sides.front != 0 && face.sides.front < face.sides.behind);
+            if (turn) std::swap(face.sides.behind, face.sides.front);
+            if (turn == lattice_.right_handed()) std::swap(face.points[1], face.points[2]);
+            faces_[z].push_back(face);
+          }
+        });
   }
 
   /// The keys of plane z are named by the cells above and below it.

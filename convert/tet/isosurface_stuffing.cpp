@@ -30,13 +30,13 @@ namespace octotomy::convert {
 namespace {
 
 // In halves of a cell, so that corners of cubes are even and their middles odd on all axes.
-using Place = glm::ivec3;
+using LatticePoint = glm::ivec3;
 
 /// The sides that leave a lattice point in the half space of positive directions: three long, four short.
 constexpr std::array<std::array<int, 3>, 7> ways{
     {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}}};
 constexpr std::size_t long_ways = 3;
-Place way(std::size_t w) {
+LatticePoint way(std::size_t w) {
   return {ways.at(w)[0], ways.at(w)[1], ways.at(w)[2]};
 }
 
@@ -50,11 +50,11 @@ struct Lattice {
   double half_mm = 0.5;
   glm::ivec3 points{0};  ///< along each axis, in halves
 
-  glm::dvec3 at(const Place& p) const { return origin_mm + half_mm * glm::dvec3(p); }
-  bool has(const Place& p) const {
-    return glm::all(glm::greaterThanEqual(p, Place(0))) && glm::all(glm::lessThan(p, points));
+  glm::dvec3 at(const LatticePoint& p) const { return origin_mm + half_mm * glm::dvec3(p); }
+  bool has(const LatticePoint& p) const {
+    return glm::all(glm::greaterThanEqual(p, LatticePoint(0))) && glm::all(glm::lessThan(p, points));
   }
-  std::size_t index(const Place& p) const {
+  std::size_t index(const LatticePoint& p) const {
     return (static_cast<std::size_t>(p.z) * static_cast<std::size_t>(points.y) +
             static_cast<std::size_t>(p.y)) *
                static_cast<std::size_t>(points.x) +
@@ -135,9 +135,9 @@ class CubeLists {
   }
 
   /// The share of the way from a point inside to one outside at which the last triangle is crossed.
-  double cut(const Place& inside, const Place& outside) const {
+  double cut(const LatticePoint& inside, const LatticePoint& outside) const {
     const glm::dvec3 a = lattice_.at(inside), along = lattice_.at(outside) - a;
-    const Place low = glm::min(inside, outside) / 2, high = glm::max(inside, outside) / 2;
+    const LatticePoint low = glm::min(inside, outside) / 2, high = glm::max(inside, outside) / 2;
     double share = -1.0;
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y)
@@ -222,30 +222,31 @@ class Stuffing {
 
  private:
   /// A side by its end that the way leaves from.
-  std::uint64_t key(const Place& from, std::size_t w) const { return lattice_.index(from) * 7 + w; }
-  bool is_inside(const Place& p) const { return lattice_.has(p) && inside_[lattice_.index(p)] != 0; }
+  std::uint64_t key(const LatticePoint& from, std::size_t w) const { return lattice_.index(from) * 7 + w; }
+  bool is_inside(const LatticePoint& p) const { return lattice_.has(p) && inside_[lattice_.index(p)] != 0; }
 
   template <typename Visit>
   void each_cut_side(const Visit& visit) const {
     for (int z = 0; z < lattice_.points.z; ++z)
       for (int y = z % 2; y < lattice_.points.y; y += 2)
         for (int x = z % 2; x < lattice_.points.x; x += 2) {
-          const Place from(x, y, z);
+          const LatticePoint from(x, y, z);
           const bool in = inside_[lattice_.index(from)] != 0;
           for (std::size_t w = 0; w < ways.size(); ++w)
-            if (const Place to = from + way(w); lattice_.has(to) && in != is_inside(to)) visit(from, to, w);
+            if (const LatticePoint to = from + way(w); lattice_.has(to) && in != is_inside(to))
+              visit(from, to, w);
         }
   }
 
   /// Pass 2: cut points as shares of the way from the side's key end.
   void cut(const CubeLists& triangles) {
     struct Side {
-      Place from{0}, to{0};
+      LatticePoint from{0}, to{0};
       std::size_t w = 0;
       double share = 0.0;
     };
     std::vector<Side> sides;
-    each_cut_side([&](const Place& from, const Place& to, std::size_t w) {
+    each_cut_side([&](const LatticePoint& from, const LatticePoint& to, std::size_t w) {
       sides.push_back({from, to, w, 0.0});
     });
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides.size(), 1024), [&](const auto& range) {
@@ -259,19 +260,19 @@ class Stuffing {
     for (const Side& side : sides) {
       cuts_.emplace(key(side.from, side.w), Cut{side.share, none});
       // Ends of cut sides in the order of the sides, each once.
-      for (const Place& end : {side.from, side.to})
+      for (const LatticePoint& end : {side.from, side.to})
         if (ends_.emplace(lattice_.index(end), end).second) end_order_.push_back(end);
     }
   }
 
   /// Pass 3, in the order in which the lattice points are met.
   void warp() {
-    for (const Place& p : end_order_) {
+    for (const LatticePoint& p : end_order_) {
       double nearest_mm = std::numeric_limits<double>::infinity();
       glm::dvec3 there(0.0);
       for (std::size_t w = 0; w < ways.size(); ++w)
         for (const bool leaves : {true, false}) {
-          const Place from = leaves ? p : p - way(w), other = leaves ? p + way(w) : from;
+          const LatticePoint from = leaves ? p : p - way(w), other = leaves ? p + way(w) : from;
           if (!lattice_.has(from) || warped_.count(lattice_.index(other)) != 0) continue;
           const auto found = cuts_.find(key(from, w));
           if (found == cuts_.end()) continue;
@@ -293,7 +294,7 @@ class Stuffing {
   static constexpr std::uint64_t short_cuts = std::uint64_t{1} << 62, lattice_points = std::uint64_t{1} << 61;
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-  Node node_at(const Place& p) {
+  Node node_at(const LatticePoint& p) {
     const std::size_t index = lattice_.index(p);
     const auto [known, is_new] = lattice_nodes_.emplace(index, none);
     if (is_new) {
@@ -303,10 +304,10 @@ class Stuffing {
     return {lattice_points + index, known->second};
   }
 
-  Node cut_between(const Place& p, const Place& q) {
+  Node cut_between(const LatticePoint& p, const LatticePoint& q) {
     for (std::size_t w = 0; w < ways.size(); ++w) {
       if (q - p != way(w) && p - q != way(w)) continue;
-      const Place from = q - p == way(w) ? p : q;
+      const LatticePoint from = q - p == way(w) ? p : q;
       Cut& cut = cuts_.at(key(from, w));
       if (cut.node == none)
         cut.node = new_node(lattice_.at(from) + cut.share * lattice_.half_mm * glm::dvec3(way(w)));
@@ -349,10 +350,10 @@ class Stuffing {
   }
 
   /// Does passes 4 and 5 for a tetrahedron of the lattice.
-  void add_inside_of(const std::array<Place, 4>& corners) {
-    std::array<Place, 4> in{}, out{}, zero{};
+  void add_inside_of(const std::array<LatticePoint, 4>& corners) {
+    std::array<LatticePoint, 4> in{}, out{}, zero{};
     std::size_t ins = 0, outs = 0, zeros = 0;
-    for (const Place& p : corners)
+    for (const LatticePoint& p : corners)
       if (warped_.count(lattice_.index(p)) != 0)
         zero.at(zeros++) = p;
       else if (is_inside(p))
@@ -381,18 +382,19 @@ class Stuffing {
 
   /// The four tetrahedra about each long side that leaves a point: two of its middles' neighbours on a square
   /// about the side. Each tetrahedron has two long sides, so the side of the corners of cubes counts.
-  void add_about(const Place& p) {
+  void add_about(const LatticePoint& p) {
     if ((p.x & 1) != 0) return;
     for (int axis = 0; axis < 3; ++axis) {
-      Place along(0), u(0), v(0);
+      LatticePoint along(0), u(0), v(0);
       along[axis] = 1;
       u[(axis + 1) % 3] = 1;
       v[(axis + 2) % 3] = 1;
-      const Place q = p + 2 * along, middle = p + along;
-      const std::array<Place, 4> ring{middle + u + v, middle - u + v, middle - u - v, middle + u - v};
+      const LatticePoint q = p + 2 * along, middle = p + along;
+      const std::array<LatticePoint, 4> ring{middle + u + v, middle - u + v, middle - u - v, middle + u - v};
       for (std::size_t k = 0; k < 4; ++k) {
-        const std::array<Place, 4> corners{p, q, ring.at(k), ring.at((k + 1) % 4)};
-        if (std::all_of(corners.begin(), corners.end(), [&](const Place& c) { return lattice_.has(c); }))
+        const std::array<LatticePoint, 4> corners{p, q, ring.at(k), ring.at((k + 1) % 4)};
+        if (std::all_of(corners.begin(), corners.end(),
+                        [&](const LatticePoint& c) { return lattice_.has(c); }))
           add_inside_of(corners);
       }
     }
@@ -407,8 +409,8 @@ class Stuffing {
   const voxel::Progress& progress_;
   std::vector<std::uint8_t> inside_;
   std::unordered_map<std::uint64_t, Cut> cuts_;
-  std::unordered_map<std::size_t, Place> ends_;
-  std::vector<Place> end_order_;
+  std::unordered_map<std::size_t, LatticePoint> ends_;
+  std::vector<LatticePoint> end_order_;
   std::unordered_map<std::size_t, glm::dvec3> warped_;
   std::unordered_map<std::size_t, std::uint32_t> lattice_nodes_;
   Tetrahedra made_;

@@ -98,27 +98,27 @@ class CornerNumbers {
   std::uint64_t count_marked() const {
     std::uint64_t count = 0;
     for (const auto& page : corners_.pages())
-      for (const Word& word : page) count += static_cast<std::uint64_t>(std::popcount(word.marked));
+      for (const CornerBlock& word : page) count += static_cast<std::uint64_t>(std::popcount(word.marked));
     return count;
   }
   /// Gives every corner marked the number `none`. Precondition: 32 bits hold their count.
   void start_numbering() {
     std::uint32_t before = 0;
     for (auto& page : corners_.pages())
-      for (Word& word : page) {
+      for (CornerBlock& word : page) {
         word.before = before;
         before += static_cast<std::uint32_t>(std::popcount(word.marked));
       }
     numbers_.assign(before, none);
   }
   std::uint32_t& of(const glm::ivec3& corner) {
-    const Word word = corners_.get(corner >> 2);
+    const CornerBlock word = corners_.get(corner >> 2);
     const std::uint64_t below = (std::uint64_t{1} << bit_of(corner)) - 1;
     return numbers_[word.before + static_cast<std::size_t>(std::popcount(word.marked & below))];
   }
 
  private:
-  struct Word {
+  struct CornerBlock {
     std::uint64_t marked = 0;  ///< of 4 x 4 x 4 corners
     std::uint32_t before = 0;  ///< marked in the words before
   };
@@ -126,7 +126,7 @@ class CornerNumbers {
     return voxel::child_index(corner.x & 3, corner.y & 3, corner.z & 3);
   }
 
-  SparseGrid<Word> corners_;
+  SparseGrid<CornerBlock> corners_;
   std::vector<std::uint32_t> numbers_;
 };
 

@@ -200,7 +200,7 @@ SizingField::SizingField(const std::vector<Refinement>& finer) {
       throw voxel::InvalidInput("a refinement's size must be above zero");
     if (where.points_mm.empty() && where.surface.faces.empty())
       throw voxel::InvalidInput("a refinement needs a place: points or a surface with triangles");
-    Place place{where.points_mm, nullptr, where.size_mm};
+    SizeSource place{where.points_mm, nullptr, where.size_mm};
     if (!where.surface.faces.empty()) place.surface = std::make_shared<brep::SurfaceTree>(where.surface);
     places_.push_back(std::move(place));
     least_mm_ = std::min(least_mm_, where.size_mm);
@@ -209,7 +209,7 @@ SizingField::SizingField(const std::vector<Refinement>& finer) {
 
 std::vector<double> SizingField::at_mm(const std::vector<glm::dvec3>& points_mm) const {
   std::vector<double> sizes_mm(points_mm.size(), std::numeric_limits<double>::infinity());
-  for (const Place& place : places_) {
+  for (const SizeSource& place : places_) {
     std::vector<double> ways_mm(points_mm.size(), std::numeric_limits<double>::infinity());
     if (place.surface) ways_mm = place.surface->distances_mm(points_mm);
     tbb::parallel_for(std::size_t{0}, points_mm.size(), [&](std::size_t i) {

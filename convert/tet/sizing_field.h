@@ -42,12 +42,12 @@ class SizingField {
   double least_mm() const { return least_mm_; }
 
  private:
-  struct Place {
+  struct SizeSource {
     std::vector<glm::dvec3> points_mm;
     std::shared_ptr<const brep::SurfaceTree> surface;
     double size_mm = 1.0;
   };
-  std::vector<Place> places_;
+  std::vector<SizeSource> places_;
   double least_mm_ = std::numeric_limits<double>::infinity();
 };
 

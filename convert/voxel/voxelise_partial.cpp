@@ -101,7 +101,7 @@ void for_each_cell(const Polygon& polygon, int axis, int first, int end, const F
 }
 
 /// The contribution of a polygon to its row of voxels.
-struct Piece {
+struct RowContribution {
   std::uint32_t voxel = 0;  ///< x + 1 in a row of side + 1 places, rows y fastest; place 0 is before the row
   std::uint32_t touches = 0;
   double area = 0.0;    ///< seen along x, positive if a line along x enters
@@ -109,7 +109,7 @@ struct Piece {
 };
 
 /// The polygon's area along x, and that times the mean distance from x0.
-void integrate(const Polygon& polygon, double x0, Piece& piece) {
+void integrate(const Polygon& polygon, double x0, RowContribution& piece) {
   const glm::dvec3& a = polygon.corners[0];
   for (int i = 1; i + 1 < polygon.count; ++i) {
     const glm::dvec3& b = polygon.corners[static_cast<std::size_t>(i)];
@@ -156,7 +156,7 @@ class ShareSlab {
   /// Shares of the touched voxels by block number x + blocks * y.
   std::vector<std::vector<Share>> shares() {
     std::stable_sort(pieces_.begin(), pieces_.end(),
-                     [](const Piece& a, const Piece& b) { return a.voxel < b.voxel; });
+                     [](const RowContribution& a, const RowContribution& b) { return a.voxel < b.voxel; });
     const int blocks = std::max(side_ / slab_layers, 1);
     std::vector<std::vector<Share>> result(static_cast<std::size_t>(blocks) *
                                            static_cast<std::size_t>(blocks));
@@ -201,13 +201,13 @@ class ShareSlab {
       Polygon before;
       Polygon rest;
       split(polygon, 0, -0.5, before, rest);
-      Piece piece{.voxel = row * places};
+      RowContribution piece{.voxel = row * places};
       integrate(before, 0.0, piece);
       pieces_.push_back({piece.voxel, 0, sign_ * piece.area, 0.0});
     }
     for_each_cell(polygon, 0, 0, side_, [&](int x, const Polygon& cell) {
-      Piece piece{.voxel = row * places + static_cast<std::uint32_t>(x) + 1,
-                  .touches = reaches_into(cell, 0, x) ? 1U : 0U};
+      RowContribution piece{.voxel = row * places + static_cast<std::uint32_t>(x) + 1,
+                            .touches = reaches_into(cell, 0, x) ? 1U : 0U};
       integrate(cell, x - 0.5, piece);
       piece.area *= sign_;
       piece.moment *= sign_;
@@ -217,7 +217,7 @@ class ShareSlab {
 
   int side_, first_z_, end_z_;
   double sign_;
-  std::vector<Piece> pieces_;
+  std::vector<RowContribution> pieces_;
 };
 
 /// The place of a block of sixteen voxels a side in tree order: its digits to base four, the largest blocks

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "planner/operation/measure/result_json.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/number_format.h"
 #include "voxel/space/rounded.h"
 

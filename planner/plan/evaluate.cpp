@@ -23,17 +23,17 @@
 #include "convert/voxel/voxelise.h"
 #include "planner/operation/object/certify.h"
 #include "planner/operation/object/import.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/same_patient.h"
-#include "planner/plan/beside.h"
+#include "planner/plan/background_tasks.h"
 #include "planner/plan/caveats.h"
 #include "planner/plan/dependence.h"
-#include "planner/plan/in_step.h"
 #include "planner/plan/makers.h"
 #include "planner/plan/room.h"
 #include "planner/plan/sha256.h"
+#include "planner/plan/step_errors.h"
 #include "verify/certificate/places.h"
 #include "verify/witness/reshaped_witness.h"
 #include "verify/witness/witness.h"
@@ -95,12 +95,13 @@ class Evaluator {
       tell(verb(step) + " " + step.id);
       const Makes makes = step.action.operation().makes;
       if ((makes != Makes::Object && makes != Makes::Scan) || !wanted_.contains(step.id)) continue;
-      in_step(step.id, [&] {
-        beside_.apart([&] {
+      name_step_in_errors(step.id, [&] {
+        background_.without_tasks([&] {
           if (!take_cached(step)) makes == Makes::Scan ? make_scan(step) : make(step);
         });
-        // Not within apart(), whose loops could run the task.
-        if (begun_ < uncertified_.size() && !works_ahead()) beside_.begin(uncertified_[begun_++].certify);
+        // Not within without_tasks(), whose loops could run the task.
+        if (begun_ < uncertified_.size() && !prepares_files())
+          background_.begin(uncertified_[begun_++].certify);
       });
       for (const std::string& scan : scans_used(step.action))
         if (--uses_left_[scan] == 0 && !options_.keep_scans) loaded_.erase(scan);
@@ -108,7 +109,8 @@ class Evaluator {
     for (std::size_t i = 0; i < uncertified_.size(); ++i) {
       Uncertified& made = uncertified_[i];
       tell("certifying " + made.object.id);
-      in_step(made.object.id, [&] { works_ahead() ? made.certify(options_.stop) : beside_.wait(i); });
+      name_step_in_errors(made.object.id,
+                          [&] { prepares_files() ? made.certify(options_.stop) : background_.wait(i); });
       result_.objects.change(made.index).certificate = std::move(made.object.certificate);
       for (const auto& [stage, ms] : made.timings) result_.timings[stage] += ms;
     }
@@ -219,7 +221,7 @@ class Evaluator {
     std::vector<voxel::Box> boxes;
     for (const Step& step : plan_.steps)
       if (is_import(step.action))
-        in_step(step.id, [&] { boxes.push_back(import_box(step.action, plan_.folder)); });
+        name_step_in_errors(step.id, [&] { boxes.push_back(import_box(step.action, plan_.folder)); });
     return boxes;
   }
 
@@ -431,7 +433,7 @@ class Evaluator {
     add_caveats(made_of, object);
     if (options_.meshes) need_room(result_.objects, object, least_universe_, room_);
     add_makers(made_of, !told.empty(), object);
-    if (options_.ahead) work_ahead(object);
+    if (options_.prepares_files) prepare_files_of(object);
     if (has_certificate(object) && options_.certify && options_.meshes && !object.is_tool &&
         is_judged(operation, object)) {
       if (certifies_beside()) {
@@ -453,10 +455,10 @@ class Evaluator {
 
   /// Preparing files takes longest, so it starts as soon as possible, and certificates run in parallel with
   /// it.
-  bool works_ahead() const {
-    return options_.ahead && std::any_of(plan_.steps.begin(), plan_.steps.end(), [](const Step& step) {
-             return step.action.operation().ahead != nullptr;
-           });
+  bool prepares_files() const {
+    return options_.prepares_files &&
+           std::any_of(plan_.steps.begin(), plan_.steps.end(),
+                       [](const Step& step) { return step.action.operation().prepare_file != nullptr; });
   }
 
   /// With a cache, objects are stored together with their certificates, so these must be finished.
@@ -469,7 +471,7 @@ class Evaluator {
   }
 
   /// Starts preparing the files for which this object was the last one missing.
-  void work_ahead(const Object& object) {
+  void prepare_files_of(const Object& object) {
     const auto is_made = [&](const std::string& id) {
       return id == object.id || std::any_of(result_.objects.begin(), result_.objects.end(),
                                             [&](const Object& made) { return made.id == id; });
@@ -477,7 +479,7 @@ class Evaluator {
     std::vector<Action> actions;
     std::vector<std::string> steps;
     for (const Step& step : plan_.steps) {
-      if (!step.action.operation().ahead) continue;
+      if (!step.action.operation().prepare_file) continue;
       const std::vector<std::string> used = objects_used(step.action);
       if (std::find(used.begin(), used.end(), object.id) == used.end() ||
           !std::all_of(used.begin(), used.end(), is_made))
@@ -488,9 +490,9 @@ class Evaluator {
     if (actions.empty()) return;
     Objects objects = result_.objects;
     objects.add(object);
-    const auto begun =
-        std::make_shared<Ahead>(std::move(actions), result_.universe, std::move(objects), options_.stop);
-    for (const std::string& step : steps) result_.ahead[step] = begun;
+    const auto begun = std::make_shared<FilePreparation>(std::move(actions), result_.universe,
+                                                         std::move(objects), options_.stop);
+    for (const std::string& step : steps) result_.file_preparations[step] = begun;
   }
 
   /// Whether the mesh has voxels of the other kernel or a witness of its own beside it.
@@ -581,8 +583,8 @@ class Evaluator {
   };
   std::deque<Uncertified> uncertified_;  ///< in the order of the background tasks
   std::size_t begun_ = 0;                ///< number of these that were started
-  Beside beside_{options_.stop};         ///< runs the certificates; last member, so that it ends before their
-                                         ///< inputs are destroyed
+  /// Runs the certificates; last member, so that it ends before their inputs are destroyed.
+  BackgroundTasks background_{options_.stop};
 };
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "planner/operation/table/object.h"
 #include "planner/operation/table/plan_universe.h"
 #include "planner/operation/table/stopwatch.h"
-#include "planner/plan/ahead.h"
+#include "planner/plan/file_preparation.h"
 #include "planner/plan/object_cache.h"
 #include "planner/plan/plan.h"
 
@@ -26,7 +26,7 @@ struct Evaluation {
   /// The scans, read or made, that measurements and files use; all scans with EvaluateOptions::keep_scans.
   std::map<std::string, std::shared_ptr<const LoadedScan>> loaded;
   /// Files that are being prepared, by their steps.
-  std::map<std::string, std::shared_ptr<Ahead>> ahead;
+  std::map<std::string, std::shared_ptr<FilePreparation>> file_preparations;
 
   const Object& object(const std::string& id) const { return objects.at(id); }
 };
@@ -45,7 +45,7 @@ struct EvaluateOptions {
   /// The steps to evaluate, together with those on which they depend. Empty: all.
   std::vector<std::string> wanted = {};
   /// Prepares files in parallel with the evaluation. For callers that write the files afterwards.
-  bool ahead = false;
+  bool prepares_files = false;
   /// Stores every scan in Evaluation::loaded, so that its slices can be drawn.
   bool keep_scans = false;
   /// An earlier evaluation of a plan with the same scans that stored them; they are then not read again. May

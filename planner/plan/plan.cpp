@@ -129,7 +129,7 @@ const char* export_of(const SortedJson& step) {
 }
 
 Step step_of(const SortedJson& value, std::size_t index, Scope& scope) {
-  Place place{"step " + std::to_string(index + 1), &scope};
+  FieldLocation place{"step " + std::to_string(index + 1), &scope};
   if (!value.is_object()) place.refuse("must be an object in braces, not " + type_of(value));
   if (const auto id = value.find("id"); id != value.end() && id->is_string())
     place.where = "step '" + id->get<std::string>() + "'";

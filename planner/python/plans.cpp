@@ -6,8 +6,8 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "planner/operation/measure/result_json.h"
-#include "planner/plan/answers.h"
 #include "planner/plan/evaluate.h"
+#include "planner/plan/plan_results.h"
 #include "planner/python/arrays.h"
 #include "planner/python/module.h"
 #include "planner/python/waiting.h"

@@ -293,10 +293,13 @@ TEST(Rooms, AForbiddenArrowIsSeen) {
   EXPECT_EQ(arrow("voxel/cellar/wine.h", "#include \"voxel/tree/octree.h\"").size(), 1u);
   EXPECT_EQ(arrow("voxel/solid/combine.h", "#include \"voxel/tree/octree.h\"").size(), 0u);
   // Within a folder of a folder, and from one such folder to another.
-  EXPECT_EQ(arrow("planner/operation/file/a.h", "#include \"planner/operation/object/trace.h\"").size(), 1u);
+  EXPECT_EQ(arrow("planner/operation/file/a.h", "#include \"planner/operation/object/provenance.h\"").size(),
+            1u);
   EXPECT_EQ(arrow("planner/operation/file/a.h", "#include \"planner/result/report/report.h\"").size(), 1u);
-  EXPECT_EQ(arrow("planner/result/report/a.h", "#include \"planner/operation/object/trace.h\"").size(), 0u);
-  EXPECT_EQ(arrow("planner/operation/loose.h", "#include \"planner/operation/object/trace.h\"").size(), 1u);
+  EXPECT_EQ(arrow("planner/result/report/a.h", "#include \"planner/operation/object/provenance.h\"").size(),
+            0u);
+  EXPECT_EQ(arrow("planner/operation/loose.h", "#include \"planner/operation/object/provenance.h\"").size(),
+            1u);
   EXPECT_EQ(
       arrow("convert/voxel/voxelise.h", "#include \"brep/mesh/mesh.h\"\n#include \"voxel/tree/octree.h\"")
           .size(),

@@ -72,7 +72,7 @@
 #include "brep/mesh/triangles.h"
 #include "verify/certificate/facet_count.h"
 #include "verify/interval/cell_table.h"
-#include "verify/interval/in_order.h"
+#include "verify/interval/ordered_parallel.h"
 
 namespace octotomy::verify {
 namespace {
@@ -280,7 +280,7 @@ class Modeller {
       std::array<double, 13> seen_mm2{};
       std::optional<LatticePlane> plane;
     };
-    in_order<Face>(
+    ordered_parallel<Face>(
         triangles_.faces.size(),
         [&](std::size_t face) {
           const Triangle at_mm = triangle(face);
@@ -323,7 +323,7 @@ class Modeller {
   void add_counts() {
     const std::vector<std::uint32_t> set = flat_sets();
     std::vector<double> area(set.size(), 0.0);
-    in_order<double>(
+    ordered_parallel<double>(
         set.size(), [&](std::size_t face) { return glm::length(in_voxels(face).area_vector()); },
         [&](std::size_t face, double size) {
           if (!moved_[face]) area[set[face]] += size;
@@ -339,7 +339,7 @@ class Modeller {
       NearlyPlane nearly;
       ArmsOfFace arms;
     };
-    in_order<Face>(
+    ordered_parallel<Face>(
         set.size(),
         [&](std::size_t face) {
           Face made;
@@ -453,7 +453,7 @@ class Modeller {
       std::uint32_t a = 0, b = 0;
       bool flat = false;
     };
-    in_order<Pair>(
+    ordered_parallel<Pair>(
         linked_.opposite.size(),
         [&](std::size_t number) {
           const auto side = static_cast<std::uint32_t>(number);
@@ -597,7 +597,7 @@ class Modeller {
 
   void add_edges() {
     CellTable<Bend> cells;
-    in_order<BentEdge>(
+    ordered_parallel<BentEdge>(
         linked_.opposite.size(),
         [&](std::size_t side) { return bent_edge(static_cast<std::uint32_t>(side)); },
         [&](std::size_t side, const BentEdge& edge) {

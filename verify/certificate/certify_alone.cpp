@@ -31,14 +31,14 @@ struct CentreCount {
     if (!first_surplus) first_surplus = other.first_surplus;
     if (!first_lacking) first_lacking = other.first_lacking;
   }
-  void add(const glm::ivec3& voxel, bool is_inside, const Word& word) {
-    if (word.in && word.out) {
-      ++(word.near ? on_surface : unknown);
+  void add(const glm::ivec3& voxel, bool is_inside, const AllowedSides& allowed) {
+    if (allowed.in && allowed.out) {
+      ++(allowed.near ? on_surface : unknown);
       by_witness += is_inside ? 1 : 0;
       return;
     }
-    by_witness += word.in ? 1 : 0;
-    if (word.allows(is_inside)) return;
+    by_witness += allowed.in ? 1 : 0;
+    if (allowed.allows(is_inside)) return;
     ++(is_inside ? surplus : lacking);
     std::optional<glm::ivec3>& first = is_inside ? first_surplus : first_lacking;
     if (!first) first = voxel;
@@ -55,7 +55,8 @@ CentreCount counted(const voxel::Octree& octree, const Witness& witness, const v
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x) {
         const glm::ivec3 voxel(x, y, z);
-        layer.add(voxel, octree.contains(voxel), witness.words(lattice.lps_mm(glm::dvec3(voxel))).voxel);
+        layer.add(voxel, octree.contains(voxel),
+                  witness.allowed_sides(lattice.lps_mm(glm::dvec3(voxel))).voxel);
       }
     done.one_more();
   });

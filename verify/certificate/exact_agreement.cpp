@@ -5,7 +5,7 @@
 // along which two surfaces cross, such an expression equals their intersection or union, or it does not
 // depend on them. In neither case do two wedges meet only at the line. With an exclusive or they do. Its
 // answer is therefore two solids with disjoint insides, a - b and b - a, and later operators combine the
-// pieces one by one: see Piece and Sides.
+// pieces one by one: see SolidOrComplement and Sides.
 #include "verify/certificate/exact_agreement.h"
 
 #include <algorithm>
@@ -67,7 +67,7 @@ brep::Mesh with_whole_numbers(brep::Mesh mesh) {
 }
 
 /// A solid or its complement.
-struct Piece {
+struct SolidOrComplement {
   brep::Solid solid;
   bool complement = false;
 };
@@ -131,7 +131,7 @@ class Evaluation {
 
   /// The inside and the outside of an expression, each as pieces with disjoint insides.
   struct Sides {
-    std::vector<Piece> in, out;
+    std::vector<SolidOrComplement> in, out;
     bool single() const { return in.size() == 1 && out.size() == 1; }
   };
   Sides on_meshes(const Expression& expression) {
@@ -144,8 +144,8 @@ class Evaluation {
         [&](const Term& term, Sides part) {
           if (term.kind == Expression::Kind::Not) return other(std::move(part));
           const glm::dmat4 motion = refined_motion(term, own_, position_.refinement);
-          for (std::vector<Piece>* side : {&part.in, &part.out})
-            for (Piece& piece : *side)
+          for (std::vector<SolidOrComplement>* side : {&part.in, &part.out})
+            for (SolidOrComplement& piece : *side)
               if (!piece.solid.empty()) piece.solid = brep::moved(piece.solid, motion);
           return part;
         },
@@ -157,15 +157,16 @@ class Evaluation {
   std::vector<std::string> findings() { return std::move(findings_); }
 
   /// The part of a piece within the universe.
-  brep::Solid within_universe(const Piece& piece) {
+  brep::Solid within_universe(const SolidOrComplement& piece) {
     const double side = position_.universe.side();
-    const Piece world{brep::solid_of(brep::Prism{{0, 1, 0},
-                                                 {0, 0, 1},
-                                                 {1, 0, 0},
-                                                 {{{0.0, 0.0}, {side, 0.0}, {side, side}, {0.0, side}}},
-                                                 0.0,
-                                                 side}),
-                      false};
+    const SolidOrComplement world{
+        brep::solid_of(brep::Prism{{0, 1, 0},
+                                   {0, 0, 1},
+                                   {1, 0, 0},
+                                   {{{0.0, 0.0}, {side, 0.0}, {side, side}, {0.0, side}}},
+                                   0.0,
+                                   side}),
+        false};
     if (!piece.complement) {
       const brep::Size& size = piece.solid.size();
       if (glm::all(glm::greaterThan(size.low_mm, glm::dvec3(0.0))) &&
@@ -190,20 +191,22 @@ class Evaluation {
                 joined(pairs(left.in, right.in), pairs(left.out, right.out))};
     }
   }
-  static Sides both(const Piece& piece) { return {{piece}, {{piece.solid, !piece.complement}}}; }
+  static Sides both(const SolidOrComplement& piece) { return {{piece}, {{piece.solid, !piece.complement}}}; }
   static Sides other(Sides sides) {
     std::swap(sides.in, sides.out);
     return sides;
   }
-  static std::vector<Piece> joined(std::vector<Piece> a, const std::vector<Piece>& b) {
+  static std::vector<SolidOrComplement> joined(std::vector<SolidOrComplement> a,
+                                               const std::vector<SolidOrComplement>& b) {
     a.insert(a.end(), b.begin(), b.end());
     return a;
   }
-  std::vector<Piece> pairs(const std::vector<Piece>& a, const std::vector<Piece>& b) {
-    std::vector<Piece> pieces;
-    for (const Piece& left : a)
-      for (const Piece& right : b) {
-        Piece piece = intersection(left, right);
+  std::vector<SolidOrComplement> pairs(const std::vector<SolidOrComplement>& a,
+                                       const std::vector<SolidOrComplement>& b) {
+    std::vector<SolidOrComplement> pieces;
+    for (const SolidOrComplement& left : a)
+      for (const SolidOrComplement& right : b) {
+        SolidOrComplement piece = intersection(left, right);
         if (piece.complement || !piece.solid.empty()) pieces.push_back(std::move(piece));
       }
     return pieces;
@@ -215,7 +218,7 @@ class Evaluation {
     areas_add_up_ = false;
     return {pairs(left.in, right.in), joined(left.out, pairs(left.in, right.out))};
   }
-  Piece intersection(const Piece& a, const Piece& b) {
+  SolidOrComplement intersection(const SolidOrComplement& a, const SolidOrComplement& b) {
     using brep::Operation;
     if (a.complement && b.complement) return {boolean(a.solid, Operation::Union, b.solid), true};
     if (a.complement) return {boolean(b.solid, Operation::Difference, a.solid), false};
@@ -297,7 +300,7 @@ ExactAnswers exact_answers(const Expression& expression, const voxel::Progress& 
       true,
       0.0,
       {}};
-  for (const Piece& piece : evaluation.on_meshes(expression).in) {
+  for (const SolidOrComplement& piece : evaluation.on_meshes(expression).in) {
     const brep::Solid solid = evaluation.within_universe(piece);
     if (!solid.empty()) answers.solids.push_back(solid);
   }

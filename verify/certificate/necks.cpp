@@ -96,7 +96,7 @@ bool Necks::is_thick(Side& side, const std::vector<glm::ivec3>& part) const {
 bool Necks::is_surely_connected(const std::vector<glm::ivec3>& part) const {
   const voxel::Lattice lattice = octree_.universe().lattice();
   const auto is_sure = [&](const glm::dvec3& voxel) {
-    const Reading reading = whole_.words(lattice.lps_mm(voxel));
+    const Reading reading = whole_.allowed_sides(lattice.lps_mm(voxel));
     return reading.voxel.in && !reading.voxel.near && reading.mesh.in && !reading.mesh.near;
   };
   // The part is a whole group of voxels, so a path out of it ends at its first voxel of both answers.
@@ -322,8 +322,11 @@ Witness witness_of_parts(Witness whole) {
   if (!whole) return {};
   std::vector<PartChoice> choices = whole.choices();
   choices.push_back({});
-  return Witness([whole = std::move(whole)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
-           const auto part = [](const Word& word) { return word == certainly_in ? untold : word; };
+  return Witness([whole = std::move(whole)](const glm::dvec3& p_mm, double slack_mm,
+                                            ReadingNeeds asked) -> Reading {
+           const auto part = [](const AllowedSides& allowed) {
+             return allowed == certainly_in ? either_side : allowed;
+           };
            const Reading reading = whole(p_mm, slack_mm, asked);
            return {part(reading.voxel), part(reading.mesh), reading.surfaces};
          })
@@ -343,12 +346,14 @@ Witness witness_of_parts(Witness whole, ChosenParts chosen) {
 Witness witness_of_filled(Witness hollow) {
   if (!hollow) return {};
   std::vector<PartChoice> choices = hollow.choices();
-  return Witness(
-             [hollow = std::move(hollow)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
-               const auto filled = [](const Word& word) { return word == certainly_out ? untold : word; };
-               const Reading reading = hollow(p_mm, slack_mm, asked);
-               return {filled(reading.voxel), filled(reading.mesh), reading.surfaces};
-             })
+  return Witness([hollow = std::move(hollow)](const glm::dvec3& p_mm, double slack_mm,
+                                              ReadingNeeds asked) -> Reading {
+           const auto filled = [](const AllowedSides& allowed) {
+             return allowed == certainly_out ? either_side : allowed;
+           };
+           const Reading reading = hollow(p_mm, slack_mm, asked);
+           return {filled(reading.voxel), filled(reading.mesh), reading.surfaces};
+         })
       .with_choices(std::move(choices));
 }
 

@@ -56,7 +56,7 @@ Fault fault_of(const Reading& reading, bool in_voxels, bool in_mesh) {
   const bool near = reading.voxel.near || reading.mesh.near;
   // Where the witness decides for one kernel and that kernel agrees, the difference is no error: the kernels'
   // interpolations differ there.
-  const bool told = reading.voxel != untold || reading.mesh != untold;
+  const bool told = reading.voxel != either_side || reading.mesh != either_side;
   return in_voxels == in_mesh || near || told ? Fault::None : Fault::Apart;
 }
 
@@ -152,7 +152,8 @@ std::vector<FailedVoxel> failed_voxels(const voxel::Octree& octree, const voxel:
     if (progress.stop.stop_requested()) return;
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const glm::dvec3 p_mm(lps_from_voxel * glm::dvec4(glm::dvec3(voxels[i]), 1.0));
-      faults[i] = fault_of(witness.words(p_mm), octree.contains(voxels[i]), digitised.contains(voxels[i]));
+      faults[i] =
+          fault_of(witness.allowed_sides(p_mm), octree.contains(voxels[i]), digitised.contains(voxels[i]));
     }
   });
   progress.at(0.5);
@@ -254,7 +255,7 @@ std::vector<FailedVoxel> failed_inside(const voxel::Octree& octree, const voxel:
         const glm::ivec3 at = low + voxel::child_place(bit);
         const bool inside = ((voxels >> bit) & 1) != 0;
         // The mesh's interpolation is enough: the voxel kernel's differs from it only at surfaces.
-        if (!is_within(at, octree) || witness.mesh_word(lattice.lps_mm(glm::dvec3(at))).allows(inside) ||
+        if (!is_within(at, octree) || witness.mesh_sides(lattice.lps_mm(glm::dvec3(at))).allows(inside) ||
             std::binary_search(compared.begin(), compared.end(), at, before))
           continue;
         found[i].push_back({at, inside ? Fault::MeshHas : Fault::MeshLacks});
@@ -294,8 +295,9 @@ bool hangs_on_no_face(const glm::ivec3& voxel, const voxel::Octree& octree, cons
       glm::ivec3 neighbour = voxel;
       neighbour[axis] += by;
       if (!is_within(neighbour, octree) || !lacking.contains(neighbour)) continue;
-      const Reading reading = witness.words(octree.universe().lattice().lps_mm(glm::dvec3(neighbour)));
-      if ((in_voxels ? reading.mesh : reading.voxel) == untold) return false;
+      const Reading reading =
+          witness.allowed_sides(octree.universe().lattice().lps_mm(glm::dvec3(neighbour)));
+      if ((in_voxels ? reading.mesh : reading.voxel) == either_side) return false;
     }
   return true;
 }
@@ -383,7 +385,7 @@ void add_stray_triangles(const brep::Triangles& mesh, const Witness& witness, co
     const auto& face = mesh.faces[i];
     return std::none_of(face.begin(), face.end(),
                         [&](std::uint32_t vertex) { return stray_vertex[vertex] != 0; }) &&
-           witness.mesh_word(facet_of(mesh, i).centroid_mm).near;
+           witness.mesh_sides(facet_of(mesh, i).centroid_mm).near;
   });
   progress.at(0.8);
   double largest_mm2 = 0.0;
@@ -422,7 +424,7 @@ std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digi
     if (!is_within(at, octree) || octree.contains(at) != inside) continue;
     ++count;
     if (digitised.contains(at) != inside) continue;
-    const Reading reading = witness.words(octree.universe().lattice().lps_mm(glm::dvec3(at)));
+    const Reading reading = witness.allowed_sides(octree.universe().lattice().lps_mm(glm::dvec3(at)));
     if (fault_of(reading, !inside, inside) != Fault::None) return count;
   }
   return count;
@@ -460,12 +462,12 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
   bool seen_alone = false, seen_in_both = !witness.lines();
   const auto is_lost = [&](const glm::ivec3& at, bool in_voxels) {
     const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(at));
-    const Fault fault = fault_of(witness.words(centre), in_voxels, false);
+    const Fault fault = fault_of(witness.allowed_sides(centre), in_voxels, false);
     return fault != Fault::None && !(fault == Fault::Apart && is_small) && brep::is_inside(centre, own);
   };
   const auto is_lost_in_both = [&](const glm::ivec3& at) {
     const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(at));
-    return !witness.mesh_word(centre).allows(false) && brep::is_inside(centre, own);
+    return !witness.mesh_sides(centre).allows(false) && brep::is_inside(centre, own);
   };
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
   for (const glm::dvec3& p : own.points_mm) {
@@ -545,7 +547,7 @@ std::optional<double> shift_limit_mm(const brep::Triangles& mesh, double voxel_m
       glm::dvec3 by_mm(0.0);
       by_mm[direction / 2] = (direction % 2 == 0 ? 1.0 : -1.0) * voxels * voxel_mm;
       seen_everywhere = std::any_of(points_mm.begin(), points_mm.end(), [&](const glm::dvec3& p_mm) {
-        return !witness.mesh_word(p_mm + by_mm).near;
+        return !witness.mesh_sides(p_mm + by_mm).near;
       });
     }
     if (seen_everywhere) return voxels * voxel_mm;

@@ -157,11 +157,11 @@ void add_reach(Certificate& certificate, const FarSample& found, double reach_mm
 }  // namespace
 
 void judge_reach(Certificate& certificate, const brep::Triangles& answer, const ReshapedSurface& expected,
-                 const ReachAsked& asked, const voxel::Progress& progress) {
-  const double reach_mm = expected.reach_mm + asked.shift_mm, fails_mm = reach_doubt * reach_mm;
-  const double border_mm = on_border_mm(asked.world_mm);
+                 const ReachOptions& options, const voxel::Progress& progress) {
+  const double reach_mm = expected.reach_mm + options.shift_mm, fails_mm = reach_doubt * reach_mm;
+  const double border_mm = on_border_mm(options.world_mm);
   const auto is_inner = [&](const glm::dvec3& p_mm) {
-    return depth_mm(asked.world_mm, p_mm) > fails_mm + border_mm;
+    return depth_mm(options.world_mm, p_mm) > fails_mm + border_mm;
   };
   const brep::Triangles& surface = expected.surface.triangles();
   const bool has_surface = std::any_of(surface.faces.begin(), surface.faces.end(), [&](const auto& face) {
@@ -178,13 +178,13 @@ void judge_reach(Certificate& certificate, const brep::Triangles& answer, const 
     return;
   }
   const TriangleGrid grid(answer);
-  const double search_mm = std::max(4.0 * fails_mm, asked.spacing_mm);
+  const double search_mm = std::max(4.0 * fails_mm, options.spacing_mm);
   const FarSample of_answer = farthest(
-      answer, expected.surface, asked.spacing_mm, search_mm,
-      [&](const glm::dvec3& p_mm) { return depth_mm(asked.world_mm, p_mm) > border_mm; },
+      answer, expected.surface, options.spacing_mm, search_mm,
+      [&](const glm::dvec3& p_mm) { return depth_mm(options.world_mm, p_mm) > border_mm; },
       voxel::part_of(progress, 0.0, 0.5));
   const FarSample of_surface =
-      farthest(surface, grid, asked.spacing_mm, search_mm, is_inner, voxel::part_of(progress, 0.5, 1.0));
+      farthest(surface, grid, options.spacing_mm, search_mm, is_inner, voxel::part_of(progress, 0.5, 1.0));
   add_reach(certificate, of_answer, reach_mm, expected.formula, true);
   add_reach(certificate, of_surface, reach_mm, expected.formula, false);
   if (certificate.limit)

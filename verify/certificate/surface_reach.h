@@ -10,7 +10,7 @@
 namespace octotomy::verify {
 
 /// What may separate an answer from the surface where it must lie, beyond the surface's own reach.
-struct ReachAsked {
+struct ReachOptions {
   voxel::Box world_mm;      ///< the answer ends there and the surface does not
   double shift_mm = 0.0;    ///< how far Booleans on the way moved the operand
   double spacing_mm = 1.0;  ///< of samples on a triangle, above 0
@@ -23,6 +23,6 @@ struct ReachAsked {
 /// of both empty is a FAIL. Throws voxel::Stopped. Parallel; same answer on any thread count. Cost: one
 /// search of a grid for each sample; for parts that are missing or added some hundred longer ones.
 void judge_reach(Certificate& certificate, const brep::Triangles& answer, const ReshapedSurface& expected,
-                 const ReachAsked& asked, const voxel::Progress& progress = {});
+                 const ReachOptions& options, const voxel::Progress& progress = {});
 
 }  // namespace octotomy::verify

@@ -53,7 +53,7 @@
 #include "brep/mesh/triangles.h"
 #include "verify/interval/bend_of_edges.h"
 #include "verify/interval/cell_table.h"
-#include "verify/interval/in_order.h"
+#include "verify/interval/ordered_parallel.h"
 #include "voxel/space/large_allocator.h"
 
 namespace octotomy::verify {
@@ -170,7 +170,7 @@ class Measuring {
     }
   }
   void add_faces() {
-    in_order_by_batch<Face>(
+    ordered_parallel_by_batch<Face>(
         triangles_.faces.size(),
         [&](std::size_t first, std::size_t end, Face* made) { make_faces(first, end, made); },
         [&](std::size_t, const Face& face) {
@@ -250,7 +250,7 @@ class Measuring {
 
   void add_edges() {
     cut_.assign(triangles_.points_mm.size(), 0);
-    in_order_by_batch<BentEdge>(
+    ordered_parallel_by_batch<BentEdge>(
         linked_.opposite.size(),
         [&](std::size_t first, std::size_t end, BentEdge* made) { make_edges(first, end, made); },
         [&](std::size_t, const BentEdge& edge) {
@@ -318,7 +318,7 @@ class Measuring {
       }
     });
     double area_mm2 = 0.0;
-    in_order<double>(
+    ordered_parallel<double>(
         triangles_.faces.size(),
         [&](std::size_t face) {
           const auto& [a, b, c] = triangles_.faces[face];

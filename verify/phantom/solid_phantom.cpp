@@ -19,7 +19,7 @@ using std::numbers::pi;
 constexpr int chequers = 8;  // cells a side: the nodes of level 3 (thesis 3.3.3)
 
 /// Size and position of the solid that a kind's builder makes.
-struct Place {
+struct SolidFrame {
   double radius_mm;
   glm::dvec3 centre_mm;
   glm::dmat3 lps_from_axes;
@@ -71,50 +71,50 @@ double ellipsoid_mm2(glm::dvec3 radii_mm) {
   return 2.0 * pi * c * c + 2.0 * pi * a * b / sine * (second * sine * sine + first * cosine * cosine);
 }
 
-using Builder = SolidPhantom (*)(const Place&);
+using Builder = SolidPhantom (*)(const SolidFrame&);
 
-SolidPhantom sphere(const Place& place) {
+SolidPhantom sphere(const SolidFrame& place) {
   return {place.universe, voxel::Sphere{place.centre_mm, place.radius_mm}, ball_mm3(place.radius_mm),
           sphere_mm2(place.radius_mm), place.centre_mm};
 }
 
-SolidPhantom ellipsoid(const Place& place) {
+SolidPhantom ellipsoid(const SolidFrame& place) {
   const glm::dvec3 radii_mm = place.radius_mm * glm::dvec3(1.0, 0.75, 0.5);
   return {place.universe, voxel::Ellipsoid{place.centre_mm, radii_mm, place.lps_from_axes},
           4.0 / 3.0 * pi * radii_mm.x * radii_mm.y * radii_mm.z, ellipsoid_mm2(radii_mm), place.centre_mm};
 }
 
-SolidPhantom cuboid(const Place& place, const glm::dvec3& half_mm) {
+SolidPhantom cuboid(const SolidFrame& place, const glm::dvec3& half_mm) {
   return {place.universe, voxel::OrientedBox{place.centre_mm, half_mm, place.lps_from_axes},
           8.0 * half_mm.x * half_mm.y * half_mm.z,
           8.0 * (half_mm.x * half_mm.y + half_mm.y * half_mm.z + half_mm.z * half_mm.x), place.centre_mm};
 }
 
-SolidPhantom box(const Place& place) {
+SolidPhantom box(const SolidFrame& place) {
   return cuboid(place, place.radius_mm * glm::dvec3(1.0, 0.75, 0.5));
 }
 
-SolidPhantom plate(const Place& place) {
+SolidPhantom plate(const SolidFrame& place) {
   const glm::dvec3 spacing_mm = place.universe.lattice().spacing_mm();
   const double voxel_mm = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   return cuboid(place, {place.radius_mm, 0.75 * place.radius_mm, voxel_mm});
 }
 
-SolidPhantom cylinder(const Place& place) {
+SolidPhantom cylinder(const SolidFrame& place) {
   const double r = 0.5 * place.radius_mm;
   const double height = 2.0 * place.radius_mm;
   return {place.universe, voxel::Cylinder{place.at({0, 0, -0.5 * height}), place.at({0, 0, 0.5 * height}), r},
           pi * r * r * height, 2.0 * pi * r * (r + height), place.centre_mm};
 }
 
-SolidPhantom torus(const Place& place) {
+SolidPhantom torus(const SolidFrame& place) {
   const double ring = place.radius_mm;
   const double tube = place.radius_mm / 3.0;
   return {place.universe, voxel::Torus{place.centre_mm, place.lps_from_axes[2], ring, tube},
           2.0 * pi * pi * ring * tube * tube, 4.0 * pi * pi * ring * tube, place.centre_mm};
 }
 
-SolidPhantom shell(const Place& place) {
+SolidPhantom shell(const SolidFrame& place) {
   const double inner = 0.75 * place.radius_mm;
   return {place.universe,
           voxel::Expression(voxel::Sphere{place.centre_mm, place.radius_mm}) -
@@ -123,7 +123,7 @@ SolidPhantom shell(const Place& place) {
           place.centre_mm};
 }
 
-SolidPhantom lens(const Place& place) {
+SolidPhantom lens(const SolidFrame& place) {
   const double r = place.radius_mm;
   const glm::dvec3 aside = place.lps_from_axes * glm::dvec3(0.5 * r, 0, 0);
   return {place.universe,
@@ -132,7 +132,7 @@ SolidPhantom lens(const Place& place) {
           2.0 * cap_mm3(r, 0.5 * r), 2.0 * cap_mm2(r, 0.5 * r), place.centre_mm};
 }
 
-SolidPhantom cut_sphere(const Place& place) {
+SolidPhantom cut_sphere(const SolidFrame& place) {
   const double r = place.radius_mm;
   const double height = r / 3.0;  // of the cap that is cut away
   const glm::dvec3 normal = place.lps_from_axes[2];
@@ -165,7 +165,7 @@ voxel::Octree chequerboard(const voxel::Universe& universe) {
 /// and of the sphere's area belongs to the solid. Of two cells with a common wall exactly one belongs to it,
 /// so all the ball's discs in planes between cells are boundary. Two reflections map the board to itself, so
 /// the centroid is the middle.
-SolidPhantom chequered_sphere(const Place& place) {
+SolidPhantom chequered_sphere(const SolidFrame& place) {
   if (place.universe.side() < chequers)
     throw voxel::InvalidInput("a chequered sphere takes at least 8 voxels a side, for its 8 cells");
   SolidPhantom solid = sphere(place);
@@ -184,7 +184,7 @@ SolidPhantom chequered_sphere(const Place& place) {
 
 /// The runs of ones that section 3.2.3 prints for figure 3.1's array of 4 x 4 x 4 voxels. In a larger
 /// universe each voxel of the figure is a cube of voxels.
-SolidPhantom figure_3_1(const Place& place) {
+SolidPhantom figure_3_1(const SolidFrame& place) {
   constexpr std::array<int, 13> ones{8, 9, 12, 13, 23, 24, 25, 26, 28, 29, 41, 44, 57};
   const voxel::Box bounds = voxel::bounds(place.universe.lattice());
   const glm::dvec3 cell_mm = (bounds.high_mm - bounds.low_mm) / 4.0;
@@ -252,7 +252,7 @@ voxel::Universe universe_of(const SolidPhantomOptions& options) {
   return universe;
 }
 
-void check_fit(const BuiltKind& kind, const Place& place) {
+void check_fit(const BuiltKind& kind, const SolidFrame& place) {
   const voxel::Box bounds = voxel::bounds(place.universe.lattice());
   const double reach_mm = kind.reach * place.radius_mm;
   for (int axis = 0; axis < 3; ++axis)
@@ -288,7 +288,7 @@ SolidPhantom solid_phantom(std::string_view kind, const SolidPhantomOptions& opt
   if (found->reach == 0.0 && options.radius_voxels)
     throw voxel::InvalidInput(std::string(kind) + " fills its universe and has no radius");
   const double voxel_mm = std::min({options.spacing_mm.x, options.spacing_mm.y, options.spacing_mm.z});
-  const Place place{radius_voxels * voxel_mm, options.centre_mm, options.lps_from_axes, universe};
+  const SolidFrame place{radius_voxels * voxel_mm, options.centre_mm, options.lps_from_axes, universe};
   check_fit(*found, place);
   return found->build(place);
 }

@@ -15,7 +15,7 @@
 #include "verify/interval/two_phase.h"
 #include "verify/phantom/drawn_solid.h"
 #include "verify/phantom/phantom_scan.h"
-#include "voxel/scan/upright.h"
+#include "voxel/scan/tilt_correction.h"
 #include "voxel/space/error.h"
 #include "voxel/space/shared_progress.h"
 
@@ -96,7 +96,7 @@ Errors errors_of(std::uint64_t seed, std::size_t number) {
   const bool is_tilted = errors.sampling == 2;
   if (is_tilted) solid = with_tilted_slices(std::move(solid), chance);
   voxel::Scene scan = phantom_scan(digitise_partial(solid), sampling, chance);
-  if (is_tilted) scan = voxel::upright(scan);
+  if (is_tilted) scan = voxel::tilt_corrected(scan);
   const brep::Solid surface = brep::trusted_solid(
       convert::isosurface(scan, 0.0, std::numeric_limits<double>::infinity()), brep::Proof::Construction);
   SampledFrom from;

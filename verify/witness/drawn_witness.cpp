@@ -84,8 +84,8 @@ class RegionWitness {
       const double side = along.x * to.y - along.y * to.x;
       if ((side > 0.0) == (b.y > a.y)) inside = !inside;
     }
-    const Word word = sides > 0 ? on_surface : inside ? certainly_in : certainly_out;
-    return {word, word, sides};
+    const AllowedSides allowed = sides > 0 ? on_surface : inside ? certainly_in : certainly_out;
+    return {allowed, allowed, sides};
   }
 
  private:
@@ -178,8 +178,8 @@ Witness witness_of_box(const voxel::Box& box) {
         sides += std::abs(inner_mm) <= near_mm ? 1 : 0;
         inside = inside && inner_mm >= -near_mm;
       }
-    const Word word = !inside ? certainly_out : sides > 0 ? on_surface : certainly_in;
-    return Reading{word, word, inside ? sides : 0};
+    const AllowedSides allowed = !inside ? certainly_out : sides > 0 ? on_surface : certainly_in;
+    return Reading{allowed, allowed, inside ? sides : 0};
   };
   return Witness(read).with_lines(lines_in_box(box));
 }
@@ -213,7 +213,7 @@ Witness witness_of_surface(brep::Solid solid) {
   return [solid = std::move(solid)](const glm::dvec3& p_mm, double slack_mm) {
     const double near_mm = on_plane * (1.0 + glm::length(p_mm)) + slack_mm;
     const bool near = !solid.empty() && solid.tree().distances_mm({p_mm}).front() <= near_mm;
-    return Reading{near ? on_surface : untold, near ? on_surface : untold, near ? 2 : 0};
+    return Reading{near ? on_surface : either_side, near ? on_surface : either_side, near ? 2 : 0};
   };
 }
 

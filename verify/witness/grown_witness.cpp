@@ -37,7 +37,7 @@ class Grown {
     std::visit([&](const auto& samples) { grow(samples, scan, from, seeds); }, scan.samples);
   }
 
-  Word word(const glm::dvec3& p_mm) const {
+  AllowedSides allowed(const glm::dvec3& p_mm) const {
     const glm::dvec3 place = place_of(p_mm);
     const glm::dvec3 nearest = glm::floor(place + 0.5);
     if (glm::any(glm::greaterThan(glm::abs(place - glm::dvec3(dims_ - 1) * 0.5),
@@ -56,7 +56,7 @@ class Grown {
           all_in = all_in && (state & surely_belongs) != 0;
           all_out = all_out && state == 0;
         }
-    return all_in ? certainly_in : all_out ? certainly_out : untold;
+    return all_in ? certainly_in : all_out ? certainly_out : either_side;
   }
 
  private:
@@ -129,8 +129,8 @@ class Grown {
 Witness witness_of_grown(const voxel::Scene& scan, const GrownFrom& from) {
   const auto grown = std::make_shared<const Grown>(scan, from);
   return [grown](const glm::dvec3& p_mm, double) {
-    const Word word = grown->word(p_mm);
-    return Reading{word, word, 0};
+    const AllowedSides allowed = grown->allowed(p_mm);
+    return Reading{allowed, allowed, 0};
   };
 }
 

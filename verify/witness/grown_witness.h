@@ -25,7 +25,7 @@ struct GrownFrom {
 };
 
 /// The samples that a path of neighbours joins to a seed, by a flood of this source's own. For voxels whose
-/// centres are the samples: at a sample both words are certain, beyond the scan all is outside. Elsewhere a
+/// centres are the samples: at a sample both sides are certain, beyond the scan all is outside. Elsewhere a
 /// point is certain where the eight samples about it agree. Throws std::invalid_argument without seeds, for a
 /// seed beyond the scan, and for other neighbours. Cost: linear in the samples; a byte for each is kept.
 Witness witness_of_grown(const voxel::Scene& scan, const GrownFrom& from);

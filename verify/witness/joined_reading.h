@@ -6,17 +6,17 @@
 // Combines the readings of several operands into the reading of a Boolean.
 namespace octotomy::verify {
 
-inline Word negated(const Word& a) {
+inline AllowedSides negated(const AllowedSides& a) {
   return {a.out, a.in, a.near};
 }
 
-inline Word conjunction(const Word& a, const Word& b) {
-  const Word word{a.in && b.in, a.out || b.out, false};
-  return {word.in, word.out, word.in && word.out && ((a.near && b.in) || (b.near && a.in))};
+inline AllowedSides conjunction(const AllowedSides& a, const AllowedSides& b) {
+  const AllowedSides allowed{a.in && b.in, a.out || b.out, false};
+  return {allowed.in, allowed.out, allowed.in && allowed.out && ((a.near && b.in) || (b.near && a.in))};
 }
 
 /// Has a surface wherever one of the operands has one.
-inline Word exclusive(const Word& a, const Word& b) {
+inline AllowedSides exclusive(const AllowedSides& a, const AllowedSides& b) {
   return {(a.in && b.out) || (a.out && b.in), (a.in && b.in) || (a.out && b.out), a.near || b.near};
 }
 

@@ -137,7 +137,7 @@ struct SurfacePlaces {
 };
 
 /// What both kernels may answer of the operand at a point.
-Word common_word(const Reading& reading) {
+AllowedSides common_sides(const Reading& reading) {
   return {reading.voxel.in || reading.mesh.in, reading.voxel.out || reading.mesh.out,
           reading.voxel.near || reading.mesh.near};
 }
@@ -151,18 +151,18 @@ SurfacePlaces places_at(const voxel::VoxelFace& face, const OffsetOperand& opera
   const auto at = [&](int eighths) {
     return lattice.lps_mm(glm::dvec3(face.voxel) + static_cast<double>(eighths) / steps_a_voxel * step);
   };
-  const auto word = [&](int eighths) { return common_word(operand.witness.words(at(eighths))); };
+  const auto allowed = [&](int eighths) { return common_sides(operand.witness.allowed_sides(at(eighths))); };
   constexpr int middle = steps_a_voxel / 2, most = 3 * steps_a_voxel / 2;
   SurfacePlaces places;
   int in = middle, out = middle;
-  while (in > middle - most && word(in).out) --in;
-  while (out < middle + most && word(out).in) ++out;
+  while (in > middle - most && allowed(in).out) --in;
+  while (out < middle + most && allowed(out).in) ++out;
   const bool both_have_voxel = operand.voxels.contains(face.voxel) && digitised.contains(face.voxel);
-  if (word(in) == certainly_in || (in < 0 && both_have_voxel)) {
-    in = word(in) == certainly_in ? in : 0;
+  if (allowed(in) == certainly_in || (in < 0 && both_have_voxel)) {
+    in = allowed(in) == certainly_in ? in : 0;
     places.in_mm.push_back(at(in));
   }
-  if (word(out) == certainly_out) places.out_mm.push_back(at(out));
+  if (allowed(out) == certainly_out) places.out_mm.push_back(at(out));
   for (int i = in; i <= out; ++i) places.between_mm.push_back(at(i));
   return places;
 }
@@ -194,7 +194,7 @@ SurfacePlaces places_of(const OffsetOperand& operand) {
 
 class OffsetWitness {
  public:
-  OffsetWitness(const OffsetOperand& operand, const OffsetAsked& asked, SurfacePlaces places)
+  OffsetWitness(const OffsetOperand& operand, const WitnessedOffset& asked, SurfacePlaces places)
       : operand_(operand.witness),
         voxel_from_lps_(glm::inverse(operand.voxels.universe().lps_from_voxel)),
         by_mm_(asked.by_mm),
@@ -207,10 +207,11 @@ class OffsetWitness {
         out_(std::move(places.out_mm), grid_mm()),
         between_(std::move(places.between_mm), grid_mm()) {}
 
-  Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked) const {
-    const Reading own = operand_(p_mm, slack_mm, Asked::BothWords);
-    const Word voxel = needs_voxels(asked) ? word(own.voxel, p_mm, voxel_error_mm(p_mm) + slack_mm) : Word{},
-               mesh = word(own.mesh, p_mm, mesh_error_mm_ + slack_mm);
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked) const {
+    const Reading own = operand_(p_mm, slack_mm, ReadingNeeds::BothSides);
+    const AllowedSides voxel = needs_voxels(asked) ? allowed(own.voxel, p_mm, voxel_error_mm(p_mm) + slack_mm)
+                                                   : AllowedSides{},
+                       mesh = allowed(own.mesh, p_mm, mesh_error_mm_ + slack_mm);
     // Where the surface may lie, a vertex of the mesh may, too.
     return {voxel, mesh, mesh.near ? 2 : 0};
   }
@@ -225,7 +226,7 @@ class OffsetWitness {
     return (is_centre ? cut_corner : cut_corner + 0.5) * diagonal_mm_ + whole_voxels_mm_;
   }
 
-  Word word(const Word& own, const glm::dvec3& p_mm, double error_mm) const {
+  AllowedSides allowed(const AllowedSides& own, const glm::dvec3& p_mm, double error_mm) const {
     const double most_mm = std::abs(by_mm_) - error_mm;
     const double least_mm = std::abs(by_mm_) + error_mm + own_error_mm_;
     if (by_mm_ > 0.0) {
@@ -305,18 +306,18 @@ double thin_mm2(const OffsetOperand& operand) {
 
 }  // namespace
 
-Witness witness_of_offset(const OffsetOperand& operand, const OffsetAsked& asked) {
+Witness witness_of_offset(const OffsetOperand& operand, const WitnessedOffset& asked) {
   if (!operand.witness) return {};
   SurfacePlaces places = places_of(operand);
   if (places.between_mm.empty()) return {};
   const auto read = std::make_shared<const OffsetWitness>(operand, asked, std::move(places));
-  return Witness([read](const glm::dvec3& p_mm, double slack_mm, Asked needed) {
+  return Witness([read](const glm::dvec3& p_mm, double slack_mm, ReadingNeeds needed) {
            return (*read)(p_mm, slack_mm, needed);
          })
       .with_choices(operand.witness.choices());
 }
 
-double offset_allowance_mm(const OffsetOperand& operand, const OffsetAsked& asked, double area_mm2) {
+double offset_allowance_mm(const OffsetOperand& operand, const WitnessedOffset& asked, double area_mm2) {
   if (!(area_mm2 > 0.0)) return 0.0;
   const double b = std::abs(asked.by_mm), c = asked.cell_mm;
   const double diagonal_mm = diagonal_of(operand.voxels.universe()),

@@ -17,7 +17,7 @@ struct OffsetOperand {
 };
 
 /// How far its surface moves, and how finely the mesh kernel looks for it.
-struct OffsetAsked {
+struct WitnessedOffset {
   double by_mm = 1.0;    ///< outward; below 0 inward; not 0
   double cell_mm = 1.0;  ///< edge of the mesh kernel's cells, above 0
 };
@@ -30,12 +30,12 @@ struct OffsetAsked {
 /// totals decide about errors below a voxel. Empty where the operand has no witness, or both answers are
 /// empty. Cost: some ten readings of the operand for each face of its voxels; of one reading that operand's
 /// and a look at the places about it.
-Witness witness_of_offset(const OffsetOperand& operand, const OffsetAsked& asked);
+Witness witness_of_offset(const OffsetOperand& operand, const WitnessedOffset& asked);
 
 /// How far two right answers to an offset may lie apart on the mean over a surface of `area_mm2`, beyond what
 /// digitisation does to that surface: the mean errors of both kernels' distances. Derived in
 /// offset_witness.cpp. Not of the answers under test, but of the operand. Cost: linear in the operand's
 /// triangles.
-double offset_allowance_mm(const OffsetOperand& operand, const OffsetAsked& asked, double area_mm2);
+double offset_allowance_mm(const OffsetOperand& operand, const WitnessedOffset& asked, double area_mm2);
 
 }  // namespace octotomy::verify

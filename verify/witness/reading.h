@@ -16,38 +16,38 @@
 namespace octotomy::verify {
 
 /// The answers that are allowed for a kernel at a point.
-struct Word {
+struct AllowedSides {
   bool in = false;    ///< inside is allowed
   bool out = false;   ///< outside is allowed
   bool near = false;  ///< a surface passes within rounding of the point
 
   bool allows(bool inside) const { return inside ? in : out; }
-  bool operator==(const Word&) const = default;
+  bool operator==(const AllowedSides&) const = default;
 };
-inline constexpr Word certainly_in{true, false, false};
-inline constexpr Word certainly_out{false, true, false};
+inline constexpr AllowedSides certainly_in{true, false, false};
+inline constexpr AllowedSides certainly_out{false, true, false};
 /// On a surface, within a kernel's interpolation and rounding.
-inline constexpr Word on_surface{true, true, true};
+inline constexpr AllowedSides on_surface{true, true, true};
 /// Away from any surface, and the witness cannot decide the side.
-inline constexpr Word untold{true, true, false};
+inline constexpr AllowedSides either_side{true, true, false};
 
 /// The allowed answers of each kernel at a point. They differ because the kernels interpolate differently.
 struct Reading {
-  Word voxel, mesh;
+  AllowedSides voxel, mesh;
   /// Number of surfaces that meet at the point. A surface with a vertex of its own there counts twice. A mesh
   /// may have a vertex at the point if the number is two or more.
   int surfaces = 0;
 };
 
-/// The parts of a reading that the caller needs: both words and the surfaces, the mesh's word and the
-/// surfaces, both words, or the mesh's word. Words without surfaces cost less, because one operand that
-/// decides alone makes the others unnecessary.
-enum class Asked { Both, MeshOnly, BothWords, MeshWord };
-constexpr bool needs_voxels(Asked asked) {
-  return asked == Asked::Both || asked == Asked::BothWords;
+/// The parts of a reading that the caller needs: both kernels' sides and the surfaces, the mesh's sides and
+/// the surfaces, both kernels' sides, or the mesh's sides. Sides without surfaces cost less, because one
+/// operand that decides alone makes the others unnecessary.
+enum class ReadingNeeds { Both, MeshOnly, BothSides, MeshSides };
+constexpr bool needs_voxels(ReadingNeeds asked) {
+  return asked == ReadingNeeds::Both || asked == ReadingNeeds::BothSides;
 }
-constexpr bool needs_surfaces(Asked asked) {
-  return asked == Asked::Both || asked == Asked::MeshOnly;
+constexpr bool needs_surfaces(ReadingNeeds asked) {
+  return asked == ReadingNeeds::Both || asked == ReadingNeeds::MeshOnly;
 }
 
 class Necks;
@@ -62,25 +62,25 @@ struct PartChoice {
 /// `slack_mm`. Empty: the object has no witness. Safe to call from several threads.
 class Witness {
  public:
-  using Read = std::function<Reading(const glm::dvec3& p_mm, double slack_mm, Asked asked)>;
+  using Read = std::function<Reading(const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked)>;
 
   Witness() = default;
-  /// `read` returns the whole reading; with a third parameter of type Asked it may leave out what is not
-  /// needed.
+  /// `read` returns the whole reading; with a third parameter of type ReadingNeeds it may leave out what is
+  /// not needed.
   template <typename Reader>
   requires std::is_invocable_v<const Reader&, const glm::dvec3&, double> ||
-      std::is_invocable_v<const Reader&, const glm::dvec3&, double, Asked>
+      std::is_invocable_v<const Reader&, const glm::dvec3&, double, ReadingNeeds>
       Witness(Reader read) {  // NOLINT(google-explicit-constructor): any reader is a witness
-    if constexpr (std::is_invocable_v<const Reader&, const glm::dvec3&, double, Asked>)
+    if constexpr (std::is_invocable_v<const Reader&, const glm::dvec3&, double, ReadingNeeds>)
       read_ = std::move(read);
     else
-      read_ = [read = std::move(read)](const glm::dvec3& p_mm, double slack_mm, Asked) {
+      read_ = [read = std::move(read)](const glm::dvec3& p_mm, double slack_mm, ReadingNeeds) {
         return read(p_mm, slack_mm);
       };
   }
 
   explicit operator bool() const { return static_cast<bool>(read_); }
-  Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked = Asked::Both) const {
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked = ReadingNeeds::Both) const {
     return read_(p_mm, slack_mm, asked);
   }
   /// The reader that the witness was made of; null if it is of another type.
@@ -101,11 +101,13 @@ class Witness {
     choices_ = std::move(choices);
     return std::move(*this);
   }
-  /// The mesh's word and the surfaces, at a fraction of the cost. The voxel kernel's word is not computed.
-  Reading of_mesh(const glm::dvec3& p_mm) const { return read_(p_mm, 0.0, Asked::MeshOnly); }
-  /// Both words, without the surfaces.
-  Reading words(const glm::dvec3& p_mm) const { return read_(p_mm, 0.0, Asked::BothWords); }
-  Word mesh_word(const glm::dvec3& p_mm) const { return read_(p_mm, 0.0, Asked::MeshWord).mesh; }
+  /// The mesh's sides and the surfaces, at a fraction of the cost. The voxel kernel's sides are not computed.
+  Reading of_mesh(const glm::dvec3& p_mm) const { return read_(p_mm, 0.0, ReadingNeeds::MeshOnly); }
+  /// Both kernels' sides, without the surfaces.
+  Reading allowed_sides(const glm::dvec3& p_mm) const { return read_(p_mm, 0.0, ReadingNeeds::BothSides); }
+  AllowedSides mesh_sides(const glm::dvec3& p_mm) const {
+    return read_(p_mm, 0.0, ReadingNeeds::MeshSides).mesh;
+  }
 
  private:
   Read read_;

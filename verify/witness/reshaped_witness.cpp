@@ -56,22 +56,23 @@ class ReshapedReader {
     return *state_->made;
   }
 
-  Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked) const {
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked) const {
     if (cut_) return cut_(p_mm, slack_mm, asked);
     const Reshaped& by = made();
     if (by.sides) {
-      // The voxels are digitised triangles, so that the mesh's word holds for both kernels.
-      Reading reading = by.sides(p_mm, slack_mm, needs_surfaces(asked) ? Asked::MeshOnly : Asked::MeshWord);
+      // The voxels are digitised triangles, so that the mesh's sides hold for both kernels.
+      Reading reading =
+          by.sides(p_mm, slack_mm, needs_surfaces(asked) ? ReadingNeeds::MeshOnly : ReadingNeeds::MeshSides);
       reading.voxel = reading.mesh;
       if (reading.mesh.near) reading.surfaces = 2;
       return reading;
     }
     const double near_mm = reach_doubt * by.expected.reach_mm + rounded_mm(p_mm) + slack_mm;
     const TriangleGrid& surface = by.expected.surface;
-    const Word word = surface.has_within(p_mm, near_mm) ? on_surface
-                      : surface.has_inside(p_mm)        ? certainly_in
-                                                        : certainly_out;
-    return {word, word, word.near ? 2 : 0};
+    const AllowedSides allowed = surface.has_within(p_mm, near_mm) ? on_surface
+                                 : surface.has_inside(p_mm)        ? certainly_in
+                                                                   : certainly_out;
+    return {allowed, allowed, allowed.near ? 2 : 0};
   }
 
  private:

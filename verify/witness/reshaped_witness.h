@@ -36,7 +36,7 @@ struct Reshaped {
   Witness sides = {};
 };
 
-/// Both words are the same, because only one kernel makes such objects. `make` is called at the first reading
+/// Both sides are the same, because only one kernel makes such objects. `make` is called at the first reading
 /// or expected_surface(), once, from any thread. Preconditions: the surface is closed; `make` does not read
 /// this witness. Cost of a reading: some triangles of the surface.
 Witness witness_of_reshaped(std::function<Reshaped()> make);

@@ -102,9 +102,11 @@ class SliceWitness {
       is_near = is_near || std::abs(value_mm) <= near_mm;
       (value_mm <= 0.0 ? is_in : is_out) = true;
     }
-    const Word word = is_near || (is_in && is_out) ? on_surface : is_in ? certainly_in : certainly_out;
+    const AllowedSides allowed = is_near || (is_in && is_out) ? on_surface
+                                 : is_in                      ? certainly_in
+                                                              : certainly_out;
     // A mesh of such a surface may have a vertex anywhere on it.
-    return {word, word, word.near ? 2 : 0};
+    return {allowed, allowed, allowed.near ? 2 : 0};
   }
 
  private:

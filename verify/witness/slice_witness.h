@@ -23,7 +23,7 @@ struct DrawnStack {
 
 /// The inside of the contours by the even-odd rule: a slab for each slice, from halfway to the slice before
 /// it to halfway to the next one; the outermost slabs reach as far beyond. Compares a point with every edge
-/// of the slices beside it. Both words are the same. Throws std::invalid_argument unless two slices or more
+/// of the slices beside it. Both sides are the same. Throws std::invalid_argument unless two slices or more
 /// ascend. Cost of a reading: linear in the edges of two slices.
 Witness witness_of_slices(const DrawnStack& stack);
 

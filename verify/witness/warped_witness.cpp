@@ -181,7 +181,7 @@ Witness witness_of_warped(Witness still, const brep::Triangles& still_surface,
   if (!still || motion->turns_over()) return {};
   const double off_mm = bent_mm(still_surface, *motion);
   return Witness([still = std::move(still), motion = std::move(motion), off_mm](
-                     const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
+                     const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked) -> Reading {
     const auto origin = motion->origin_mm(p_mm);
     if (!origin) return {on_surface, on_surface, 2};
     return still(*origin, slack_mm + off_mm, asked);

@@ -75,11 +75,11 @@ class WindowWitness {
     }
   }
 
-  Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked) const {
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked) const {
     const glm::dvec3 u = scan_from_lps_(p_mm);
     const double slack = slack_mm / finest_mm_;
-    const Word mesh = mesh_word(u, slack);
-    return {needs_voxels(asked) ? voxel_word(universe_from_lps_(p_mm), u) : Word{}, mesh,
+    const AllowedSides mesh = mesh_sides(u, slack);
+    return {needs_voxels(asked) ? voxel_sides(universe_from_lps_(p_mm), u) : AllowedSides{}, mesh,
             mesh.near && needs_surfaces(asked) ? surfaces(u, slack) : 0};
   }
 
@@ -153,19 +153,19 @@ class WindowWitness {
   /// Whether the surfaces of two bounds may end in the plane of the outermost samples or in a face of padding.
   bool may_end_in_face(double highest) const { return low_ > -infinite && highest > high_; }
 
-  /// The word for the value f at a point. If f is more than `above` over the lower bound, the answer must be
+  /// Sides for the value f at a point. If f is more than `above` over the lower bound, the answer must be
   /// inside; if it is more than `below` under it, outside. The upper bound is treated in the same way with
   /// the opposite sign. NaN allows both answers.
-  Word word(double value, double above, double below) const {
+  AllowedSides allowed(double value, double above, double below) const {
     const bool surely_in = value >= low_ + above && value <= high_ - below;
     const bool surely_out = value < low_ - below || value > high_ + above;
     return surely_in ? certainly_in : surely_out ? certainly_out : on_surface;
   }
 
-  /// The word of a cell whose samples are so far from the window's bounds that the stray cannot matter. Of
+  /// Sides of a cell whose samples are so far from the window's bounds that the stray cannot matter. Of
   /// the four terms of stray_of(), three are at most half the samples' range each, the last at most 1.6 times
   /// it.
-  std::optional<Word> clear_word(const Cell& at, double slack) const {
+  std::optional<AllowedSides> clear_sides(const Cell& at, double slack) const {
     const double reach =
         (3.2 + 3.0 * slack) * (at.high - at.low) + rounding * std::max(std::abs(at.low), std::abs(at.high));
     if (at.high + reach < low_ || at.low - reach > high_) return certainly_out;
@@ -185,7 +185,7 @@ class WindowWitness {
   /// let p_i be the distances beyond the samples along the axes, in samples. If all of the cell's own samples
   /// are inside, the surface is the plane where the p_i add up to a half. If some are inside, the surface
   /// does not reach beyond that plane.
-  Word word_beyond(const glm::dvec3& u, double slack) const {
+  AllowedSides sides_beyond(const glm::dvec3& u, double slack) const {
     double past = 0.0;
     for (int axis = 0; axis < 3; ++axis)
       past += std::max({0.0, -u[axis], u[axis] - static_cast<double>(dims_[axis] - 1)});
@@ -224,7 +224,7 @@ class WindowWitness {
 
   /// Padding is outside. The surface closes half way between an inside sample and padding, so both answers
   /// are allowed in a cell that has both, and within `slack` of such a cell. None: no padding is near.
-  std::optional<Word> word_at_padding(const Cell& at, const glm::dvec3& u, double slack) const {
+  std::optional<AllowedSides> sides_at_padding(const Cell& at, const glm::dvec3& u, double slack) const {
     const double by = std::max(slack, may_end_in_face(at.high) ? on_face : 0.0);
     if (by == 0.0 && at.low != padding_) return std::nullopt;
     bool is_near = false, any_in = false, any_measured = false;
@@ -242,20 +242,20 @@ class WindowWitness {
     return any_in || (any_measured && may_end_in_face(highest)) ? on_surface : certainly_out;
   }
 
-  /// The mesh's word; word_beyond() computes it beyond the outermost samples.
-  Word mesh_word(const glm::dvec3& u, double slack) const {
+  /// The mesh's sides; sides_beyond() computes them beyond the outermost samples.
+  AllowedSides mesh_sides(const glm::dvec3& u, double slack) const {
     const double past = beyond(u);
     if (past >= 1.0) return certainly_out;
-    if (past > rounding) return word_beyond(u, slack);
+    if (past > rounding) return sides_beyond(u, slack);
     const Cell at = cell(u);
     if (past > -on_face - 3.0 * slack && may_end_in_face(at.high)) return on_surface;
     if (scan_->padding)
-      if (const std::optional<Word> word = word_at_padding(at, u, slack)) return *word;
-    if (const std::optional<Word> clear = clear_word(at, slack)) return *clear;
+      if (const std::optional<AllowedSides> allowed = sides_at_padding(at, u, slack)) return *allowed;
+    if (const std::optional<AllowedSides> clear = clear_sides(at, slack)) return *clear;
     const Stray stray = stray_of(at);
     // Within a cell f changes by at most the samples' range per sample along each axis.
     const double moved = 3.0 * slack * (at.high - at.low);
-    const Word answer = word(at.value(), stray.above + moved, stray.below + moved);
+    const AllowedSides answer = allowed(at.value(), stray.above + moved, stray.below + moved);
     // Cells beside those with padding may have the surface of such cells.
     if (answer == certainly_in && scan_->padding && spans_window(at) && is_beside_padding(u))
       return on_surface;
@@ -277,15 +277,15 @@ class WindowWitness {
     return whole >= 2 ? 2 : 1;
   }
 
-  /// The voxel kernel's word, at a voxel's centre from the voxel's own sample. Elsewhere it is interpolated
+  /// The voxel kernel's sides, at a voxel's centre from the voxel's own sample. Elsewhere it is interpolated
   /// from the scan's samples around the position. Samples that were not measured are left out of the mean,
   /// provided that the nearest sample was measured.
-  Word voxel_word(const glm::dvec3& q, const glm::dvec3& u) const {
+  AllowedSides voxel_sides(const glm::dvec3& q, const glm::dvec3& u) const {
     const glm::dvec3 nearest = glm::round(q), off = glm::abs(q - nearest);
     if (std::max({off.x, off.y, off.z}) < 1e-7) {
       const Measured own = measured_at(nearest);
       if (!own.sure) return on_surface;
-      return own.value ? word(*own.value, rounded_, rounded_) : certainly_out;
+      return own.value ? allowed(*own.value, rounded_, rounded_) : certainly_out;
     }
     const glm::dvec3 first = glm::floor(u), t = u - first;
     double value = 0.0, weights = 0.0;
@@ -303,7 +303,7 @@ class WindowWitness {
       if (weights > 1e-9 && std::min({halves.x, halves.y, halves.z}) < 1e-6) return on_surface;
       if (!sample_at(glm::floor(u + 0.5))) return certainly_out;
     }
-    return word(value / weights, rounded_, rounded_);
+    return allowed(value / weights, rounded_, rounded_);
   }
 
   /// A measured sample of the scan. None beyond the scan and for padding.

@@ -23,7 +23,7 @@ double cost_of(const Witness& witness) {
 }
 
 /// Whether no further operand of an intersection can change the needed parts of the reading.
-bool decides(const Reading& a, Asked asked) {
+bool decides(const Reading& a, ReadingNeeds asked) {
   return !needs_surfaces(asked) && a.mesh == certainly_out &&
          (!needs_voxels(asked) || a.voxel == certainly_out);
 }
@@ -36,15 +36,15 @@ struct Operand {
 Witness intersection(Operand a, Operand b) {
   if (!a.witness || !b.witness) return {};
   if (cost_of(b.witness) < cost_of(a.witness)) std::swap(a, b);
-  return
-      [a = std::move(a), b = std::move(b)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
-        const auto read = [&](const Operand& operand) {
-          const Reading reading = operand.witness(p_mm, slack_mm, asked);
-          return operand.is_complement ? negated(reading) : reading;
-        };
-        const Reading first = read(a);
-        return decides(first, asked) ? first : conjunction(first, read(b));
-      };
+  return [a = std::move(a), b = std::move(b)](const glm::dvec3& p_mm, double slack_mm,
+                                              ReadingNeeds asked) -> Reading {
+    const auto read = [&](const Operand& operand) {
+      const Reading reading = operand.witness(p_mm, slack_mm, asked);
+      return operand.is_complement ? negated(reading) : reading;
+    };
+    const Reading first = read(a);
+    return decides(first, asked) ? first : conjunction(first, read(b));
+  };
 }
 
 /// The choices of all operands, without duplicates.
@@ -67,7 +67,7 @@ class ReadExpression {
         is_read_once_(static_cast<std::size_t>(tree.leaf_count()) == leaves_.size()),
         whole_(joint_of(tree)) {}
 
-  Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked) const {
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked) const {
     if (is_read_once_)
       return read(
           whole_, [&](std::size_t leaf) { return leaves_[leaf](p_mm, slack_mm, asked); }, asked);
@@ -115,7 +115,7 @@ class ReadExpression {
   /// The recursion depth is that of the text's parentheses. It does not grow with the number of operands in a
   /// row.
   template <typename ReadLeaf>
-  static Reading read(const Joint& joint, const ReadLeaf& leaf, Asked asked) {
+  static Reading read(const Joint& joint, const ReadLeaf& leaf, ReadingNeeds asked) {
     if (joint.parts.empty()) return joint.is_complement ? negated(leaf(joint.leaf)) : leaf(joint.leaf);
     Reading made = read(joint.parts.front(), leaf, asked);
     for (std::size_t i = 1; i < joint.parts.size() && (joint.is_exclusive || !decides(made, asked)); ++i) {
@@ -154,8 +154,8 @@ Witness carried(Witness still, const glm::dmat4& moved_from_still) {
   const glm::dmat4 still_from_moved = glm::inverse(moved_from_still);
   std::vector<PartChoice> choices = still.choices();
   for (PartChoice& choice : choices) choice.chosen_from_made = choice.chosen_from_made * still_from_moved;
-  return Witness([still = std::move(still), back = Affine(still_from_moved)](const glm::dvec3& p_mm,
-                                                                             double slack_mm, Asked asked) {
+  return Witness([still = std::move(still), back = Affine(still_from_moved)](
+                     const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked) {
            return still(back(p_mm), slack_mm, asked);
          })
       .with_lines(std::move(lines))
@@ -166,9 +166,10 @@ Witness loosened(Witness tight, double by_mm) {
   if (!tight) return {};
   LineReading lines = tight.lines();
   std::vector<PartChoice> choices = tight.choices();
-  return Witness([tight = std::move(tight), by_mm](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
-           return tight(p_mm, slack_mm + by_mm, asked);
-         })
+  return Witness(
+             [tight = std::move(tight), by_mm](const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked) {
+               return tight(p_mm, slack_mm + by_mm, asked);
+             })
       .with_lines(std::move(lines))
       .with_choices(std::move(choices));
 }
@@ -177,12 +178,13 @@ Witness with_voxels_within(Witness tight, double by_mm) {
   if (!tight) return {};
   LineReading lines = tight.lines();
   std::vector<PartChoice> choices = tight.choices();
-  return Witness([tight = std::move(tight), by_mm](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
-           Reading reading = tight(p_mm, slack_mm, asked);
-           if (needs_voxels(asked) && !reading.voxel.near)
-             reading.voxel = tight(p_mm, slack_mm + by_mm, Asked::BothWords).voxel;
-           return reading;
-         })
+  return Witness(
+             [tight = std::move(tight), by_mm](const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked) {
+               Reading reading = tight(p_mm, slack_mm, asked);
+               if (needs_voxels(asked) && !reading.voxel.near)
+                 reading.voxel = tight(p_mm, slack_mm + by_mm, ReadingNeeds::BothSides).voxel;
+               return reading;
+             })
       .with_lines(std::move(lines))
       .with_choices(std::move(choices));
 }
@@ -200,7 +202,7 @@ Witness witness_of_expression(std::string_view text,
       lines_in_expression(text, [&](const std::string& name) { return lookup(name).lines(); });
   std::vector<PartChoice> choices = choices_of(leaves);
   const auto read = std::make_shared<const ReadExpression>(tree, std::move(leaves));
-  return Witness([read](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
+  return Witness([read](const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked) {
            return (*read)(p_mm, slack_mm, asked);
          })
       .with_lines(std::move(lines))

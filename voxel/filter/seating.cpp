@@ -10,16 +10,16 @@
 namespace octotomy::voxel {
 
 Seating seating(const Octree& part, const Expression& part_solid, const Octree& object,
-                const SeatingAsked& asked) {
+                const SeatingOptions& options) {
   const Universe& universe = part.universe();
   const Lattice lattice = universe.lattice();
   // Beyond the whole universe.
   const Box world = bounds(lattice);
-  const glm::dvec3 away = -asked.direction;
+  const glm::dvec3 away = -options.direction;
   const double end_mm = glm::dot(away, glm::mix(world.low_mm, world.high_mm,
                                                 glm::dvec3(glm::greaterThan(away, glm::dvec3(0.0))))) +
                         glm::length(lattice.spacing_mm());
-  const Shadow way = shadow(part, part_solid, {away, end_mm, asked.progress});
+  const Shadow way = shadow(part, part_solid, {away, end_mm, options.progress});
   const Octree swept = combine(universe, Expression(way.window));
   Seating made;
   made.swept_mm3 = static_cast<double>(swept.voxel_count()) * lattice.voxel_mm3();
@@ -40,7 +40,7 @@ Seating seating(const Octree& part, const Expression& part_solid, const Octree& 
         deepest = square;
         made.binding = {lattice.lps_mm(glm::dvec3(voxel)), std::sqrt(static_cast<double>(square)) - half_mm};
       }
-  asked.progress.at(1.0);
+  options.progress.at(1.0);
   return made;
 }
 

@@ -8,7 +8,7 @@
 
 namespace octotomy::voxel {
 
-struct SeatingAsked {
+struct SeatingOptions {
   glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit, LPS: in which the part moves to its place
   Progress progress = {};
 };
@@ -29,6 +29,6 @@ struct Seating {
 /// voxel's diagonal: half of it from each digitised surface. Throws as shadow(). Parallel; same bits on any
 /// thread count. Cost: shadow() of the part, and a distance map over the voxels that both have.
 Seating seating(const Octree& part, const Expression& part_solid, const Octree& object,
-                const SeatingAsked& asked);
+                const SeatingOptions& options);
 
 }  // namespace octotomy::voxel

@@ -319,18 +319,18 @@ FirstDepths first_depths(const SurfaceCrossings& crossings, const Universe& univ
 
 }  // namespace
 
-Shadow shadow(const Octree& octree, const Expression& solid, const ShadowAsked& asked) {
-  check_unit(asked.direction);
-  if (!std::isfinite(asked.end_mm)) throw std::invalid_argument("the end of a shadow is finite");
+Shadow shadow(const Octree& octree, const Expression& solid, const ShadowOptions& options) {
+  check_unit(options.direction);
+  if (!std::isfinite(options.end_mm)) throw std::invalid_argument("the end of a shadow is finite");
   check_voxels(octree);
   const Universe& universe = octree.universe();
   const SurfaceCrossings crossings(octree, solid);
-  asked.progress.at(0.3);
-  FirstDepths depths = first_depths(crossings, universe, solid, asked.direction);
+  options.progress.at(0.3);
+  FirstDepths depths = first_depths(crossings, universe, solid, options.direction);
   depths.sum_up();
-  asked.progress.at(0.6);
+  options.progress.at(0.6);
 
-  const ShadowShares shares(depths, asked.end_mm);
+  const ShadowShares shares(depths, options.end_mm);
   const int side = (universe.side() + 15) / 16;
   std::vector<std::uint8_t> is_in(static_cast<std::size_t>(side) * static_cast<std::size_t>(side) *
                                   static_cast<std::size_t>(side));
@@ -343,15 +343,15 @@ Shadow shadow(const Octree& octree, const Expression& solid, const ShadowAsked& 
   std::vector<glm::ivec3> blocks;
   for (std::size_t i = 0; i < is_in.size(); ++i)
     if (is_in[i] != 0) blocks.push_back(block_of(i));
-  asked.progress.at(0.7);
+  options.progress.at(0.7);
   GreyOctree grey = grey_octree_of_bricks(
       universe, static_cast<std::int16_t>(-points_a_voxel), blocks,
       [&](std::size_t number, GreyBrick& brick) {
-        if (!asked.progress.stop.stop_requested())
+        if (!options.progress.stop.stop_requested())
           fill_shares(shares, blocks[number], universe.side(), brick);
       },
       Octree::full(universe), 1.0);
-  asked.progress.at(1.0);
+  options.progress.at(1.0);
   return {{std::move(grey), 0.0, points_a_voxel}, depths.far_end_mm()};
 }
 

@@ -10,7 +10,7 @@
 
 namespace octotomy::voxel {
 
-struct ShadowAsked {
+struct ShadowOptions {
   glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit, LPS: the way in which a part is put on
   double end_mm = 0.0;                  ///< p . direction of the plane at which the shadow ends
   Progress progress = {};
@@ -38,7 +38,7 @@ struct Shadow {
 /// empty; Stopped. Parallel; same bits on any thread count. Cost: the crossings, and for each voxel of the
 /// shadow's boundary 125 look-ups; 8 bytes a column, 2 bytes for each voxel of the blocks of 16 voxels a side
 /// that hold a part of the shadow.
-Shadow shadow(const Octree& octree, const Expression& solid, const ShadowAsked& asked);
+Shadow shadow(const Octree& octree, const Expression& solid, const ShadowOptions& options);
 
 /// The largest p . direction of the object's surface as voxels have it, for a unit direction. Throws as
 /// shadow(). Cost: the crossings.

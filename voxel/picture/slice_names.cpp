@@ -86,7 +86,7 @@ CutName cut(const std::string& name) {
 }
 
 /// Properties that names with equal text have at one of their numbers.
-struct Place {
+struct NumberProperties {
   bool has_minus = false, has_other = false, is_behind_word = false;
   std::size_t least_digits = 0, most_digits = 0;  ///< counts of digits after a dot, if there is one
   bool ends_with_zero = false;                    ///< several digits after a dot end with 0
@@ -152,7 +152,7 @@ std::optional<double> last_number(const CutName& name) {
 
 SliceNames ordered_by_name(const std::vector<fs::path>& files) {
   std::vector<CutName> names;
-  std::map<std::pair<std::string, std::size_t>, Place> places;
+  std::map<std::pair<std::string, std::size_t>, NumberProperties> places;
   for (const fs::path& file : files) {
     names.push_back(cut(file.stem().string()));
     for (std::size_t i = 0; i < names.back().numbers.size(); ++i)
@@ -160,7 +160,7 @@ SliceNames ordered_by_name(const std::vector<fs::path>& files) {
   }
   for (CutName& name : names)
     for (std::size_t i = 0; i < name.numbers.size(); ++i) {
-      const Place& place = places[{name.text, i}];
+      const NumberProperties& place = places[{name.text, i}];
       name.numbers[i].is_negative = name.numbers[i].sign == '-' && place.is_sign();
       name.numbers[i].is_decimal = place.is_decimal();
     }
@@ -184,14 +184,14 @@ SliceNames ordered_by_name(const std::vector<fs::path>& files) {
   const auto any = [&](const auto& is) {
     return std::any_of(places.begin(), places.end(), [&](const auto& entry) { return is(entry.second); });
   };
-  doubt(any([](const Place& p) { return p.is_sign() && !p.has_other; }),
+  doubt(any([](const NumberProperties& p) { return p.is_sign() && !p.has_other; }),
         "each name has a minus before its number, which is taken as its sign: where it only separates, the "
         "stack is upside down; rename the files");
   doubt(
-      any([](const Place& p) { return p.is_sign() && p.has_other && p.is_behind_word; }),
+      any([](const NumberProperties& p) { return p.is_sign() && p.has_other && p.is_behind_word; }),
       "a minus behind a letter is taken as the number's sign, as other names have none there: where it only "
       "separates, the slices are out of order; rename the files");
-  doubt(any([](const Place& p) { return p.least_digits != p.most_digits && p.is_decimal(); }),
+  doubt(any([](const NumberProperties& p) { return p.least_digits != p.most_digits && p.is_decimal(); }),
         "a dot in numbers is taken as the decimal point, so that 1.25 comes before 1.5: where it separates "
         "two numbers, the slices are out of order; rename the files");
   return made;

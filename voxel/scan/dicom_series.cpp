@@ -247,7 +247,7 @@ class SeriesAssembler {
     std::vector<Series> all = by_series(std::move(found));
     choices_ = choices(all);
     for (const Series& series : all) choice_count_ += series.stacks.size();
-    const Asked wanted = options_.series.empty() ? Asked{} : asked(all);
+    const ChosenSeries wanted = options_.series.empty() ? ChosenSeries{} : asked(all);
     Series& taken = all[wanted.series];
     if (wanted.stack) {
       find("series", Verdict::Pass, "took " + taken.choice(*wanted.stack) + " of " + choices_);
@@ -319,15 +319,15 @@ class SeriesAssembler {
     return compared(of_a, of_b).differing.empty();
   }
 
-  struct Asked {
+  struct ChosenSeries {
     std::size_t series = 0;
     std::optional<std::size_t> stack = {};
   };
 
   /// The one series or stack that the options' text names by number, identifier, description or attribute.
-  Asked asked(const std::vector<Series>& all) const {
+  ChosenSeries asked(const std::vector<Series>& all) const {
     const std::string& wanted = options_.series;
-    std::vector<Asked> described, with_words;
+    std::vector<ChosenSeries> described, with_words;
     for (std::size_t i = 0; i < all.size(); ++i) {
       const DicomSlice& first = all[i].members.front();
       if (wanted == std::to_string(i + 1) || wanted == first.series_uid) return {i};

@@ -24,7 +24,7 @@
 #include "voxel/scan/dicom_series.h"
 #include "voxel/scan/neighbour_audit.h"
 #include "voxel/scan/slice_plan.h"
-#include "voxel/scan/upright.h"
+#include "voxel/scan/tilt_correction.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
 
@@ -66,7 +66,7 @@ class SeriesReader {
       need_memory(
           path_, std::uint64_t(plan.size_px.x) * std::uint64_t(plan.size_px.y) * plan.slice_count,
           std::holds_alternative<FloatSamples>(scene_.samples) ? sizeof(float) : sizeof(std::int16_t));
-      scene_.samples = upright_samples(plan, stack.first().size_px, scene_.samples, scene_.padding);
+      scene_.samples = tilt_corrected_samples(plan, stack.first().size_px, scene_.samples, scene_.padding);
     }
     scene_.lattice = lattice_of(stack, plan);
     scene_.modality = stack.first().modality;

@@ -75,12 +75,12 @@ std::uint32_t section_checksum(std::uint32_t number, const std::uint8_t* section
 // Writing ------------------------------------------------------------------------------------------------
 
 /// A section to be written: `make` returns its raw bytes when it is compressed.
-struct Piece {
+struct SectionToWrite {
   const char* name;
   std::function<Bytes()> make;
 };
 
-void cut(const char* name, Bytes raw, std::vector<Piece>& pieces) {
+void cut(const char* name, Bytes raw, std::vector<SectionToWrite>& pieces) {
   const auto whole = std::make_shared<const Bytes>(std::move(raw));
   for (std::size_t from = 0; from < whole->size(); from += largest_raw) {
     const std::size_t to = std::min(whole->size(), from + largest_raw);
@@ -165,7 +165,7 @@ std::size_t grid_bytes(const Universe& universe) {
   return (side * side * side + 7) / 8;
 }
 
-void cut_grey(const GreyOctree& grey, std::vector<Piece>& pieces) {
+void cut_grey(const GreyOctree& grey, std::vector<SectionToWrite>& pieces) {
   Bytes grid(grid_bytes(grey.universe()), 0);
   const auto blocks = std::make_shared<std::vector<glm::ivec3>>();
   for_each_block(grey.universe(), [&](std::size_t number, const glm::ivec3& block) {
@@ -189,7 +189,7 @@ void cut_grey(const GreyOctree& grey, std::vector<Piece>& pieces) {
   cut("STEP", std::move(step), pieces);
 }
 
-void cut_partial(const PartialOctree& partial, std::vector<Piece>& pieces) {
+void cut_partial(const PartialOctree& partial, std::vector<SectionToWrite>& pieces) {
   check(partial);
   cut("TREE", packed_treecode(partial.inside), pieces);
   cut("TOUC", packed_treecode(partial.touching), pieces);
@@ -199,8 +199,8 @@ void cut_partial(const PartialOctree& partial, std::vector<Piece>& pieces) {
   cut("FRAC", std::move(fractions), pieces);
 }
 
-std::vector<Piece> pieces_of(const OctreeFile& file) {
-  std::vector<Piece> pieces;
+std::vector<SectionToWrite> pieces_of(const OctreeFile& file) {
+  std::vector<SectionToWrite> pieces;
   const auto* grey = std::get_if<GreyOctree>(&file.tree);
   cut("UNIV", universe_bytes(universe(file), grey != nullptr ? grey->background() : std::int16_t{0}), pieces);
   if (file.name.size() > largest_raw)
@@ -214,7 +214,7 @@ std::vector<Piece> pieces_of(const OctreeFile& file) {
   return pieces;
 }
 
-Bytes section_of(std::uint32_t number, const Piece& piece) {
+Bytes section_of(std::uint32_t number, const SectionToWrite& piece) {
   const Bytes raw = piece.make();
   Bytes section(section_header_bytes + ZSTD_compressBound(raw.size()));
   const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), &ZSTD_freeCCtx);
@@ -480,7 +480,7 @@ const Universe& universe(const OctreeFile& file) {
 }
 
 std::vector<std::uint8_t> octree_file_bytes(const OctreeFile& file) {
-  const std::vector<Piece> pieces = pieces_of(file);
+  const std::vector<SectionToWrite> pieces = pieces_of(file);
   std::vector<Bytes> sections(pieces.size());
   tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t number) {
     sections[number] = section_of(static_cast<std::uint32_t>(number), pieces[number]);

@@ -60,7 +60,7 @@ ScanRows::ScanRows(const Universe& universe, const Scene& scene, std::int16_t ba
       voxel[axis] = i;
       along_[static_cast<std::size_t>(axis)].push_back(place(axis, position(voxel)[axis]));
     }
-  for (const Place& x : along_[0]) {
+  for (const AxisPosition& x : along_[0]) {
     in_row_.low.push_back(x.low);
     in_row_.high.push_back(x.high);
     in_row_.share.push_back(x.share);
@@ -78,8 +78,8 @@ glm::dvec3 ScanRows::position(const glm::dvec3& voxel) const {
   return glm::dvec3(scan_from_universe_ * glm::dvec4(voxel, 1.0));
 }
 
-ScanRows::Place ScanRows::place(int axis, double p) const {
-  Place result;
+ScanRows::AxisPosition ScanRows::place(int axis, double p) const {
+  AxisPosition result;
   result.inside = p >= -0.5 && p <= dims_[axis] - 0.5;
   if (!result.inside) return result;
   const double clamped = std::clamp(p, 0.0, dims_[axis] - 1.0);
@@ -89,7 +89,7 @@ ScanRows::Place ScanRows::place(int axis, double p) const {
   return result;
 }
 
-std::array<ScanRows::Place, 3> ScanRows::places(const glm::ivec3& voxel) const {
+std::array<ScanRows::AxisPosition, 3> ScanRows::places(const glm::ivec3& voxel) const {
   const auto known = [&](int axis) {
     return along_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(voxel[axis])];
   };
@@ -138,7 +138,7 @@ std::uint16_t ScanRows::copy(const Sample* samples, const glm::ivec3& first, std
 }
 
 template <typename Sample>
-bool ScanRows::is_mixed(const Sample* samples, const std::array<Place, 3>& at) const {
+bool ScanRows::is_mixed(const Sample* samples, const std::array<AxisPosition, 3>& at) const {
   const auto& [x, y, z] = at;
   for (int corner = 0; corner < 8; ++corner) {
     const bool right = (corner & 1) != 0, back = (corner & 2) != 0, up = (corner & 4) != 0;
@@ -173,8 +173,8 @@ std::uint16_t ScanRows::interpolate(const Sample* samples, const glm::ivec3& fir
 // As interpolate(), with the same bits, but a row at a time.
 std::uint16_t ScanRows::interpolate_along(const std::int16_t* samples, const glm::ivec3& first,
                                           std::int16_t* row) const {
-  const Place& y = along_[1][static_cast<std::size_t>(first.y)];
-  const Place& z = along_[2][static_cast<std::size_t>(first.z)];
+  const AxisPosition& y = along_[1][static_cast<std::size_t>(first.y)];
+  const AxisPosition& z = along_[2][static_cast<std::size_t>(first.z)];
   if (!y.inside || !z.inside) {
     std::fill_n(row, length, background_);
     return 0;
@@ -195,11 +195,11 @@ std::uint16_t ScanRows::interpolate_along(const std::int16_t* samples, const glm
 
 int ScanRows::slices_read(int first, int last) const {
   if (offset_) return std::clamp(last + offset_->z + 1, 0, dims_.z);
-  const std::vector<Place>& along_z = along_[2];
+  const std::vector<AxisPosition>& along_z = along_[2];
   if (along_z.empty()) return dims_.z;
   int count = 0;
   for (int z = first; z <= last; ++z)
-    if (const Place& place = along_z[static_cast<std::size_t>(z)]; place.inside)
+    if (const AxisPosition& place = along_z[static_cast<std::size_t>(z)]; place.inside)
       count = std::max(count, place.high + 1);
   return count;
 }

@@ -42,7 +42,7 @@ class ScanRows {
 
  private:
   /// A position along one axis: between two samples, or outside.
-  struct Place {
+  struct AxisPosition {
     int low = 0;
     int high = 0;
     double share = 0.0;  ///< weight of the higher sample
@@ -50,12 +50,12 @@ class ScanRows {
   };
   bool is_diagonal() const;
   glm::dvec3 position(const glm::dvec3& voxel) const;
-  Place place(int axis, double p) const;
-  std::array<Place, 3> places(const glm::ivec3& voxel) const;
+  AxisPosition place(int axis, double p) const;
+  std::array<AxisPosition, 3> places(const glm::ivec3& voxel) const;
   std::size_t index(int y, int z) const;
   /// Whether an interpolated sample would depend on padding.
   template <typename Sample>
-  bool is_mixed(const Sample* samples, const std::array<Place, 3>& at) const;
+  bool is_mixed(const Sample* samples, const std::array<AxisPosition, 3>& at) const;
   template <typename Sample>
   std::uint16_t copy(const Sample* samples, const glm::ivec3& first, std::int16_t* row) const;
   template <typename Sample>
@@ -69,8 +69,9 @@ class ScanRows {
   std::int16_t background_;
   double step_;
   glm::dmat4 scan_from_universe_;
-  std::optional<glm::ivec3> offset_;         ///< from the universe to the scan, if the two lattices coincide
-  std::array<std::vector<Place>, 3> along_;  ///< per axis and voxel, if the lattices' axes are parallel
+  std::optional<glm::ivec3> offset_;  ///< from the universe to the scan, if the two lattices coincide
+  std::array<std::vector<AxisPosition>, 3>
+      along_;  ///< per axis and voxel, if the lattices' axes are parallel
   struct {
     std::vector<std::int32_t> low, high;
     std::vector<double> share;

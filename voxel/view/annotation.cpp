@@ -9,7 +9,7 @@
 
 #include "voxel/view/lettering.h"
 #include "voxel/view/pixel_index.h"
-#include "voxel/view/tone.h"
+#include "voxel/view/srgb.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -56,7 +56,7 @@ class Sheet {
       const bool whole_row = y == 0 || y == canvas_.size_px.y - 1;
       for (int x = 0; x < canvas_.size_px.x; x += whole_row ? 1 : std::max(1, canvas_.size_px.x - 1)) {
         const std::uint8_t* rgb = &(*canvas_.rgb)[3 * pixel_index(canvas_.size_px, x, y)];
-        for (int channel = 0; channel < 3; ++channel) sum += Tone::table().linear(rgb[channel]);
+        for (int channel = 0; channel < 3; ++channel) sum += SrgbTable::table().linear(rgb[channel]);
         count += 3;
       }
     }

@@ -14,21 +14,21 @@ namespace octotomy::voxel {
 namespace {
 
 /// The columns of the map that a row or column of pixels lies between, along one axis.
-struct Place {
+struct AxisColumns {
   int nearest = -1;  ///< -1: outside
   int low = 0, high = 0;
   float low_weight = 0.0f, high_weight = 0.0f;
 };
 
-std::vector<Place> places(int pixel_count, double first, double per_px, int side) {
-  std::vector<Place> places(static_cast<std::size_t>(pixel_count));
+std::vector<AxisColumns> places(int pixel_count, double first, double per_px, int side) {
+  std::vector<AxisColumns> places(static_cast<std::size_t>(pixel_count));
   for (int i = 0; i < pixel_count; ++i) {
     const double at = first + (i + 0.5) * per_px;
     const double nearest = std::floor(at + 0.5);
     if (!(nearest >= 0.0 && nearest < side)) continue;
     const double low = std::floor(at);
     const auto t = static_cast<float>(at - low);
-    Place& place = places[static_cast<std::size_t>(i)];
+    AxisColumns& place = places[static_cast<std::size_t>(i)];
     place.nearest = static_cast<int>(nearest);
     // Columns beyond the map have no weight.
     place.low = std::max(0, static_cast<int>(low));
@@ -44,14 +44,14 @@ std::vector<Place> places(int pixel_count, double first, double per_px, int side
 DepthImage picture_of(const ColumnMap& map, const AxisView& axes, const VoxelRays& rays,
                       const glm::ivec2& size_px) {
   DepthImage image = unset(size_px);
-  const std::vector<Place> across =
+  const std::vector<AxisColumns> across =
       places(size_px.x, rays.first[axes.axis[0]], rays.per_px_x[axes.axis[0]], map.side);
-  const std::vector<Place> down =
+  const std::vector<AxisColumns> down =
       places(size_px.y, rays.first[axes.axis[1]], rays.per_px_y[axes.axis[1]], map.side);
   const auto limit_mm = static_cast<float>(break_mm(std::max(map.spacing_mm.x, map.spacing_mm.y)));
   tbb::parallel_for(tbb::blocked_range<int>(0, size_px.y, 8), [&](const tbb::blocked_range<int>& range) {
     for (int y = range.begin(); y < range.end(); ++y) {
-      const Place& j = down[static_cast<std::size_t>(y)];
+      const AxisColumns& j = down[static_cast<std::size_t>(y)];
       Seen* const pixel = &image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_px.x)];
       std::fill_n(pixel, across.size(), Seen{});
       if (j.nearest < 0) continue;
@@ -59,7 +59,7 @@ DepthImage picture_of(const ColumnMap& map, const AxisView& axes, const VoxelRay
       const Seen* const low = &map.at(0, j.low);
       const Seen* const high = &map.at(0, j.high);
       for (std::size_t x = 0; x < across.size(); ++x) {
-        const Place& i = across[x];
+        const AxisColumns& i = across[x];
         if (i.nearest < 0 || !nearest[i.nearest].lit()) continue;
         const Seen answer = nearest[i.nearest];
         float sum = 0.0f;

@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "voxel/view/layer.h"
-#include "voxel/view/tone.h"
+#include "voxel/view/srgb.h"
 
 // 1 mark the leaves and blocks near visible samples; 2 march every ray: find the next marked leaf, take the
 // samples of its steps, light them, compose. The marks do not change the positions of the steps.
@@ -334,7 +334,7 @@ std::vector<std::uint8_t> over(const Composite& composite, const glm::vec3& back
   const glm::vec3 behind = linear_from_srgb(background);
   std::vector<std::uint8_t> rgb(3 * composite.light.size());
   for (std::size_t i = 0; i < composite.light.size(); ++i)
-    put(&rgb[3 * i], glm::vec3(composite.light[i]) + (1.0f - composite.light[i].w) * behind);
+    put_srgb(&rgb[3 * i], glm::vec3(composite.light[i]) + (1.0f - composite.light[i].w) * behind);
   return rgb;
 }
 

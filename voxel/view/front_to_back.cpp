@@ -170,7 +170,8 @@ class PolygonWalk {
         screen_.light(corner, {static_cast<float>(polygons_.depth_mm(polygon, centre)), object_, true});
       return;
     }
-    if (polygons_.place(polygon, corner, screen_.side_px(level)) == NodePolygons::Place::Outside) return;
+    if (polygons_.place(polygon, corner, screen_.side_px(level)) == NodePolygons::Containment::Outside)
+      return;
     for (int i = 0; i < 4; ++i) paint(polygon, level + 1, 2 * square + glm::ivec2(i & 1, i >> 1));
   }
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "voxel/view/tone.h"
+#include "voxel/view/srgb.h"
 
 namespace octotomy::voxel {
 namespace {

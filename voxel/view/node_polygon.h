@@ -63,19 +63,19 @@ class NodePolygons {
   }
   /// Whether a square of pixel positions lies wholly inside or wholly outside the polygon. Conservative: for
   /// a square on one side, Either may be returned as well.
-  enum class Place { Inside, Outside, Either };
-  Place place(const Polygon& polygon, const glm::dvec2& low_px, double side_px) const {
+  enum class Containment { Inside, Outside, Either };
+  Containment place(const Polygon& polygon, const glm::dvec2& low_px, double side_px) const {
     const glm::dvec2 d = low_px + 0.5 * side_px - polygon.centre_px;
-    if (glm::any(glm::greaterThan(glm::abs(d), polygon.half_px + 0.5 * side_px))) return Place::Outside;
+    if (glm::any(glm::greaterThan(glm::abs(d), polygon.half_px + 0.5 * side_px))) return Containment::Outside;
     bool inside = true;
     for (int i = 0; i < pair_count_; ++i) {
       const Pair& pair = pairs_[static_cast<std::size_t>(i)];
       const double distance = std::abs(glm::dot(pair.across, d));
       const double reach = 0.5 * side_px * (std::abs(pair.across.x) + std::abs(pair.across.y));
-      if (distance - reach > pair.half_width * polygon.edge) return Place::Outside;
+      if (distance - reach > pair.half_width * polygon.edge) return Containment::Outside;
       inside = inside && distance + reach <= pair.half_width * polygon.edge;
     }
-    return inside ? Place::Inside : Place::Either;
+    return inside ? Containment::Inside : Containment::Either;
   }
   /// Depth at which the ray of a pixel position enters the node. Precondition: its polygon holds the
   /// position.

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "voxel/view/pixel_index.h"
-#include "voxel/view/tone.h"
+#include "voxel/view/srgb.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -41,8 +41,8 @@ double distance_to(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b
 void mix(std::uint8_t* rgb, const glm::vec3& linear, float share) {
   glm::vec3 mixed;
   for (int channel = 0; channel < 3; ++channel)
-    mixed[channel] = glm::mix(Tone::table().linear(rgb[channel]), linear[channel], share);
-  put(rgb, mixed);
+    mixed[channel] = glm::mix(SrgbTable::table().linear(rgb[channel]), linear[channel], share);
+  put_srgb(rgb, mixed);
 }
 
 }  // namespace
@@ -94,7 +94,7 @@ void fill_rectangle(const Canvas& canvas, const glm::ivec2& first, const glm::iv
   const glm::ivec2 high = glm::clamp(last, glm::ivec2(0), canvas.size_px);
   for (int y = low.y; y < high.y; ++y)
     for (int x = low.x; x < high.x; ++x)
-      put(&(*canvas.rgb)[3 * pixel_index(canvas.size_px, x, y)], linear_from_srgb(colour));
+      put_srgb(&(*canvas.rgb)[3 * pixel_index(canvas.size_px, x, y)], linear_from_srgb(colour));
 }
 
 }  // namespace octotomy::voxel

@@ -13,8 +13,8 @@
 #include "voxel/view/depth_plane.h"
 #include "voxel/view/mean_depth.h"
 #include "voxel/view/pixel_index.h"
+#include "voxel/view/srgb.h"
 #include "voxel/view/surface_break.h"
-#include "voxel/view/tone.h"
 
 // Passes over flat planes of floats, each in parallel over rows:
 // 1 smooth depths (depth_plane.h); 2 compute slopes; 3 compute the mean depth around every cell of 4 x 4
@@ -159,7 +159,8 @@ OCTOTOMY_VECTOR_CLONES void root_row(const float* __restrict colour, const float
     const float light = colour[i] * diffuse[i] + mirrored[i];
     const float at_most = light < 1.0f ? light : 1.0f;
     constexpr float to_nearest = 0.5f;
-    root[i] = static_cast<int>(to_nearest + std::sqrt(at_most > 0.0f ? at_most : 0.0f) * Tone::root_steps);
+    root[i] =
+        static_cast<int>(to_nearest + std::sqrt(at_most > 0.0f ? at_most : 0.0f) * SrgbTable::root_steps);
   }
 }
 
@@ -251,7 +252,7 @@ std::vector<std::uint8_t> flat_picture(const DepthImage& image, const Scenery& s
       // The farthest pixels keep a tenth of their light, so that they are not black.
       if (scenery.style == Style::Depth) colour *= 1.0f - 0.9f * (seen.depth_mm - nearest) * per_span;
     }
-    put(&rgb[3 * i], colour);
+    put_srgb(&rgb[3 * i], colour);
   });
   return rgb;
 }
@@ -330,9 +331,9 @@ std::vector<std::uint8_t> shaded_picture(const DepthImage& image, const Scenery&
   std::vector<glm::vec3> colours;
   for (const glm::vec3& colour : scenery.colours) colours.push_back(linear_from_srgb(colour));
   std::array<std::uint8_t, 3> background{};
-  put(background.data(), linear_from_srgb(scenery.background));
+  put_srgb(background.data(), linear_from_srgb(scenery.background));
   std::vector<std::uint8_t> rgb(3 * image.pixels.size());
-  const Tone& tone = Tone::table();
+  const SrgbTable& table = SrgbTable::table();
   each_row(image.size_px, [&](int y, Rows& rows) {
     const glm::ivec2& lit = plane.lit[static_cast<std::size_t>(y)];
     if (normals.empty())
@@ -353,7 +354,7 @@ std::vector<std::uint8_t> shaded_picture(const DepthImage& image, const Scenery&
       const bool seen = x >= lit.x && x < lit.y && image.at(x, y).lit();
       for (std::size_t channel = 0; channel < 3; ++channel)
         pixel[channel] =
-            seen ? tone.srgb_of_root(rows.root[channel][static_cast<std::size_t>(x)]) : background[channel];
+            seen ? table.srgb_of_root(rows.root[channel][static_cast<std::size_t>(x)]) : background[channel];
     }
   });
   for (std::size_t i = 0; i < scenery.paint.kinds.size(); ++i)
@@ -425,10 +426,10 @@ std::array<std::uint8_t, 3> blend(const DepthImage& image, const std::vector<std
         nearest = pixel_index(image.size_px, i, j);
       }
     for (int channel = 0; channel < 3; ++channel)
-      sum[channel] += Tone::table().linear(rgb[3 * nearest + static_cast<std::size_t>(channel)]);
+      sum[channel] += SrgbTable::table().linear(rgb[3 * nearest + static_cast<std::size_t>(channel)]);
   }
   std::array<std::uint8_t, 3> mean{};
-  put(mean.data(), sum / static_cast<float>(parts.size()));
+  put_srgb(mean.data(), sum / static_cast<float>(parts.size()));
   return mean;
 }
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "voxel/space/error.h"
-#include "voxel/view/tone.h"
+#include "voxel/view/srgb.h"
 
 namespace octotomy::voxel {
 namespace {

@@ -42,26 +42,26 @@ class PartsAhead {
   }
 
  private:
-  enum class Place : std::uint32_t { New, Touching, Taken };
+  enum class PartState : std::uint32_t { New, Touching, Taken };
 
   void own(std::size_t part) {
-    Place expected = Place::New;
-    if (places_[part].compare_exchange_strong(expected, Place::Taken)) return;
-    places_[part].wait(Place::Touching);
+    PartState expected = PartState::New;
+    if (places_[part].compare_exchange_strong(expected, PartState::Taken)) return;
+    places_[part].wait(PartState::Touching);
   }
 
   void touch(std::size_t part) {
-    Place expected = Place::New;
-    if (!places_[part].compare_exchange_strong(expected, Place::Touching)) return;
+    PartState expected = PartState::New;
+    if (!places_[part].compare_exchange_strong(expected, PartState::Touching)) return;
     for (std::size_t at = 0; at < size(part); at += page_bytes) begin(part)[at] = 0;
-    places_[part].store(Place::Taken);
+    places_[part].store(PartState::Taken);
     places_[part].notify_all();
   }
 
   char* memory_;
   std::size_t bytes_;
   std::size_t asked_ = 0;
-  std::vector<std::atomic<Place>> places_;
+  std::vector<std::atomic<PartState>> places_;
   tbb::isolated_task_group tasks_;  ///< isolated: a thread that waits for these tasks runs no others
 };
 

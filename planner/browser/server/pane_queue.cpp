@@ -13,7 +13,7 @@ bool PaneQueue::stop_if(const Test& test) {
   return stops;
 }
 
-void PaneQueue::ask(Asked asked) {
+void PaneQueue::ask(PaneRequest asked) {
   const std::lock_guard lock(mutex_);
   stop_if(
       [&](const Drawn& drawn) { return drawn.name == asked.name && !(drawn.is_moving && asked.is_moving); });
@@ -22,13 +22,13 @@ void PaneQueue::ask(Asked asked) {
   changed_.notify_all();
 }
 
-std::optional<PaneQueue::Asked> PaneQueue::withdraw(const PaneName& name) {
+std::optional<PaneQueue::PaneRequest> PaneQueue::withdraw(const PaneName& name) {
   const std::lock_guard lock(mutex_);
   const auto pane = panes_.find(name);
   return pane == panes_.end() ? std::nullopt : std::exchange(pane->second.waiting, std::nullopt);
 }
 
-std::optional<PaneQueue::Asked> PaneQueue::withdraw(std::uint64_t window, std::int64_t id) {
+std::optional<PaneQueue::PaneRequest> PaneQueue::withdraw(std::uint64_t window, std::int64_t id) {
   const std::lock_guard lock(mutex_);
   for (auto& [name, pane] : panes_)
     if (name.window == window && pane.waiting && pane.waiting->request.id == id)
@@ -51,13 +51,13 @@ std::map<PaneName, PaneQueue::Pane>::iterator PaneQueue::ready() {
   return chosen;
 }
 
-std::optional<PaneQueue::Asked> PaneQueue::next(const std::stop_token& stop) {
+std::optional<PaneQueue::PaneRequest> PaneQueue::next(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   drawn_.reset();
   if (!changed_.wait(lock, stop, [this] { return ready() != panes_.end(); })) return {};
   Pane& pane = ready()->second;
   pane.served = ++turn_;
-  Asked asked = *std::exchange(pane.waiting, std::nullopt);
+  PaneRequest asked = *std::exchange(pane.waiting, std::nullopt);
   if (asked.is_moving) pane.in_flight.insert(asked.request.id);
   drawn_ = Drawn{asked.name, asked.request.id, asked.is_moving, asked.stop};
   return asked;
@@ -80,12 +80,12 @@ int PaneQueue::moving_panes() const {
   return std::max(1, static_cast<int>(count));
 }
 
-std::optional<PaneQueue::Asked> PaneQueue::close(const PaneName& name) {
+std::optional<PaneQueue::PaneRequest> PaneQueue::close(const PaneName& name) {
   const std::lock_guard lock(mutex_);
   stop_if([&](const Drawn& drawn) { return drawn.name == name; });
   const auto pane = panes_.find(name);
   if (pane == panes_.end()) return {};
-  std::optional<Asked> waited = std::move(pane->second.waiting);
+  std::optional<PaneRequest> waited = std::move(pane->second.waiting);
   panes_.erase(pane);
   return waited;
 }

@@ -30,7 +30,7 @@ class PaneQueue {
  public:
   static constexpr std::size_t most_in_flight = 2;
 
-  struct Asked {
+  struct PaneRequest {
     PaneName name;
     Request request;
     bool is_moving = false;
@@ -40,28 +40,28 @@ class PaneQueue {
   /// Queues a request in place of the pane's older one. The caller must first call withdraw() to answer the
   /// older one; otherwise it is dropped without an answer. Stops the pane's current picture, unless both
   /// requests are moving, so that frames appear even if requests arrive faster.
-  void ask(Asked asked);
+  void ask(PaneRequest asked);
   /// Removes a pane's waiting request.
-  std::optional<Asked> withdraw(const PaneName& name);
+  std::optional<PaneRequest> withdraw(const PaneName& name);
   /// The same by the request's number.
-  std::optional<Asked> withdraw(std::uint64_t window, std::int64_t id);
+  std::optional<PaneRequest> withdraw(std::uint64_t window, std::int64_t id);
   /// Stops a request while it is drawn; returns whether it was.
   bool stop(std::uint64_t window, std::int64_t id);
   /// The next request whose pane is free; waits for one. None: stopped.
-  std::optional<Asked> next(const std::stop_token& stop);
+  std::optional<PaneRequest> next(const std::stop_token& stop);
   /// Records that the page has shown a frame.
   void shown(const PaneName& name, std::int64_t frame);
   /// The number of panes that share the drawing time: those with a moving request or frames in flight, at
   /// least 1.
   int moving_panes() const;
   /// Removes a pane and stops its current picture. Returns its waiting request.
-  std::optional<Asked> close(const PaneName& name);
+  std::optional<PaneRequest> close(const PaneName& name);
   /// Removes all panes of a closed window and stops its current picture.
   void close_window(std::uint64_t window);
 
  private:
   struct Pane {
-    std::optional<Asked> waiting;
+    std::optional<PaneRequest> waiting;
     std::set<std::int64_t> in_flight;  ///< moving frames that the page has not shown yet
     std::uint64_t served = 0;          ///< turn in which it was served last
   };

@@ -5,12 +5,12 @@
 #include <chrono>
 #include <tuple>
 
-#include "planner/browser/server/answers.h"
 #include "planner/browser/server/new_files.h"
 #include "planner/browser/server/new_plan.h"
+#include "planner/browser/server/object_requests.h"
 #include "planner/browser/server/pane_fields.h"
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/output_path.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/table/nearest_name.h"
 #include "planner/plan/plan.h"
 #include "planner/plan/rebase.h"
@@ -52,17 +52,17 @@ Json procedures_json() {
   return list;
 }
 
-Json hello(Desk& desk, const Json&, const Watched&) {
+Json hello(Session& session, const Json&, const Watched&) {
   Json tissues = Json::array(), folders = Json::array();
   for (const voxel::Tissue& tissue : voxel::tissues())
     tissues.push_back({{"name", std::string(tissue.name)},
                        {"low", tissue.low ? Json(*tissue.low) : Json(nullptr)},
                        {"high", tissue.high ? Json(*tissue.high) : Json(nullptr)},
                        {"source", std::string(tissue.source)}});
-  for (const fs::path& folder : desk.folders.opened()) folders.push_back(folder.string());
+  for (const fs::path& folder : session.folders.opened()) folders.push_back(folder.string());
   return {{"version", OCTOTOMY_VERSION},
           {"units", {{"length", "mm"}, {"angle", "deg"}, {"frame", "LPS"}}},
-          {"plan_state", desk.state()},
+          {"plan_state", session.state()},
           {"schema", plan_schema()},
           {"procedures", procedures_json()},
           {"tissues", tissues},
@@ -70,24 +70,24 @@ Json hello(Desk& desk, const Json&, const Watched&) {
           {"most_upload_bytes", most_upload_bytes}};
 }
 
-Json open(Desk& desk, const Json& said, const Watched& watched) {
+Json open(Session& session, const Json& said, const Watched& watched) {
   if (said.contains("phantom")) {
     const voxel::Progress progress{watched.stop, [&](double share) {
                                      if (watched.progress) watched.progress("making the head phantom", share);
                                    }};
-    const fs::path place = desk.folders.need_within(desk.working_folder() / "head_phantom.nrrd");
-    desk.open(phantom_at(place, progress), watched);
+    const fs::path place = session.folders.need_within(session.working_folder() / "head_phantom.nrrd");
+    session.open(phantom_at(place, progress), watched);
   } else {
-    desk.open(desk.folders.need_within(said.at("path").get<std::string>()), watched,
-              said.value("series", ""));
+    session.open(session.folders.need_within(said.at("path").get<std::string>()), watched,
+                 said.value("series", ""));
   }
   return nullptr;
 }
 
 /// The DICOM series of a folder, for a person to pick one; none of anything else. What is no readable scan is
 /// refused when it is opened.
-Json series(Desk& desk, const Json& said, const Watched&) {
-  const fs::path path = desk.folders.need_within(said.at("path").get<std::string>());
+Json series(Session& session, const Json& said, const Watched&) {
+  const fs::path path = session.folders.need_within(said.at("path").get<std::string>());
   Json list = Json::array();
   if (!fs::is_directory(path)) return {{"series", list}};
   try {
@@ -114,9 +114,10 @@ bool is_beside(const std::string& name) {
   return name.find(".plan.json.") != std::string::npos || name.ends_with(".json");
 }
 
-Json list(Desk& desk, const Json& said, const Watched&) {
+Json list(Session& session, const Json& said, const Watched&) {
   constexpr std::size_t most_entries = 5000;
-  const fs::path folder = desk.folders.need_within(said.value("folder", desk.working_folder().string()));
+  const fs::path folder =
+      session.folders.need_within(said.value("folder", session.working_folder().string()));
   Json entries = Json::array();
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (entries.size() == most_entries) break;
@@ -138,14 +139,14 @@ Json list(Desk& desk, const Json& said, const Watched&) {
 }
 
 /// The plans of the opened folders, the one that was changed last first.
-Json recent(Desk& desk, const Json&, const Watched&) {
+Json recent(Session& session, const Json&, const Watched&) {
   constexpr std::size_t most_plans = 8;
   struct Found {
     fs::file_time_type changed;
     fs::path path;
   };
   std::vector<Found> found;
-  for (const fs::path& folder : desk.folders.opened()) {
+  for (const fs::path& folder : session.folders.opened()) {
     std::error_code failed;
     for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end;
          entry.increment(failed)) {
@@ -174,20 +175,20 @@ Json recent(Desk& desk, const Json&, const Watched&) {
 /// A request that changes the document.
 template <typename Change>
 auto change(const Change& work) {
-  return [work](Desk& desk, const Json& said, const Watched&) -> Json {
-    desk.with_document([&](Document& document) { work(document, said); });
+  return [work](Session& session, const Json& said, const Watched&) -> Json {
+    session.with_document([&](Document& document) { work(document, said); });
     return nullptr;
   };
 }
 
-Json save(Desk& desk, const Json& said, const Watched&) {
+Json save(Session& session, const Json& said, const Watched&) {
   const bool is_own = !said.contains("path") || said["path"].is_null();
-  const auto plan = desk.with_document([&](Document& document) {
+  const auto plan = session.with_document([&](Document& document) {
     if (is_own) document.need_saved();
     return document.plan();
   });
   if (is_own) return {{"path", plan->file.string()}};
-  const fs::path to = desk.folders.need_within(said["path"].get<std::string>());
+  const fs::path to = session.folders.need_within(said["path"].get<std::string>());
   if (to.extension() != ".json")
     throw voxel::Error(voxel::ErrorCode::Input, to.string() + ": a plan's name ends in .plan.json");
   if (fs::exists(to))
@@ -197,10 +198,10 @@ Json save(Desk& desk, const Json& said, const Watched&) {
   return {{"path", to.string()}};
 }
 
-Json evaluate(Desk& desk, const Json& said, const Watched& watched) {
+Json evaluate(Session& session, const Json& said, const Watched& watched) {
   const bool certify = said.value("certify", false);
-  const Snapshot made = desk.evaluate(said.value("objects", std::vector<std::string>{}), certify, watched);
-  const Json state = desk.state();
+  const Snapshot made = session.evaluate(said.value("objects", std::vector<std::string>{}), certify, watched);
+  const Json state = session.state();
   return {
       {"objects", state.at("objects")}, {"measurements", made.measurements}, {"scans", state.at("scans")}};
 }
@@ -283,9 +284,9 @@ Procedure known_procedure(const Json& said) {
 }
 
 /// What a procedure would act on, for the page to state before it is planned.
-Json acts_on(Desk& desk, const Json& said, const Watched&) {
+Json acts_on(Session& session, const Json& said, const Watched&) {
   const Procedure procedure = known_procedure(said);
-  const auto [whole, folder] = desk.with_document([](Document& document) {
+  const auto [whole, folder] = session.with_document([](Document& document) {
     return std::pair{Json(document.json()), document.path().parent_path()};
   });
   const std::optional<std::string> outcome =
@@ -295,9 +296,9 @@ Json acts_on(Desk& desk, const Json& said, const Watched&) {
 
 /// Adds a procedure's steps: in place of its own, after another procedure on what that has planned, or as the
 /// plan's first.
-Json procedure(Desk& desk, const Json& said, const Watched& watched) {
+Json procedure(Session& session, const Json& said, const Watched& watched) {
   const Procedure procedure = known_procedure(said);
-  const auto [text, whole, folder] = desk.with_document([](Document& document) {
+  const auto [text, whole, folder] = session.with_document([](Document& document) {
     return std::tuple{document.plan()->text, Json(document.json()), document.path().parent_path()};
   });
   ProcedureInput input = input_of(said, whole, procedure);
@@ -313,7 +314,7 @@ Json procedure(Desk& desk, const Json& said, const Watched& watched) {
       if (const auto sent = input.values.find(value.name);
           sent != input.values.end() && sent->second == value.preset)
         input.values.erase(sent);
-    Chained chain = chained(before, desk.evaluate(before, {*outcome}, false, watched), procedure, input);
+    Chained chain = chained(before, session.evaluate(before, {*outcome}, false, watched), procedure, input);
     made = std::move(chain.plan);
     added = std::move(chain.made);
     carried = std::move(chain.carried);
@@ -325,7 +326,7 @@ Json procedure(Desk& desk, const Json& said, const Watched& watched) {
     for (const Json& step : alone.at("steps")) added.push_back(step.at("id"));
   }
   Json ids = Json::array();
-  desk.with_document([&, &text = text](Document& document) {
+  session.with_document([&, &text = text](Document& document) {
     if (document.plan()->text != text)
       throw voxel::Error(voxel::ErrorCode::Input, "the plan was changed meanwhile: plan the procedure again");
     document.record(made, procedure.name);
@@ -337,39 +338,40 @@ Json procedure(Desk& desk, const Json& said, const Watched& watched) {
   return {{"made", ids}, {"carried", carried}};
 }
 
-Json diff(Desk& desk, const Json& said, const Watched&) {
+Json diff(Session& session, const Json& said, const Watched&) {
   const auto edit_of = [&](const char* key) { return said.at(key).get<std::int64_t>(); };
-  return desk.with_document(
+  return session.with_document(
       [&](const Document& document) -> Json { return document.difference_of(edit_of("a"), edit_of("b")); });
 }
 
 }  // namespace
 
-const std::vector<Word>& words() {
-  static const std::vector<Word> all{
-      {"hello", Lane::Desk, false, hello},
+const std::vector<RequestKind>& request_kinds() {
+  static const std::vector<RequestKind> all{
+      {"hello", Lane::Session, false, hello},
       {"open", Lane::Long, true, open},
-      {"list", Lane::Desk, false, list},
+      {"list", Lane::Session, false, list},
       {"series", Lane::Long, false, series},
-      {"recent", Lane::Desk, false, recent},
-      {"save", Lane::Desk, false, save},
-      {"edit", Lane::Desk, true, change([](Document& document, const Json& said) { document.edit(said); })},
-      {"undo", Lane::Desk, true, change([](Document& document, const Json&) { document.undo(); })},
-      {"redo", Lane::Desk, true, change([](Document& document, const Json&) { document.redo(); })},
-      {"go_to", Lane::Desk, true, change([](Document& document, const Json& said) {
+      {"recent", Lane::Session, false, recent},
+      {"save", Lane::Session, false, save},
+      {"edit", Lane::Session, true,
+       change([](Document& document, const Json& said) { document.edit(said); })},
+      {"undo", Lane::Session, true, change([](Document& document, const Json&) { document.undo(); })},
+      {"redo", Lane::Session, true, change([](Document& document, const Json&) { document.redo(); })},
+      {"go_to", Lane::Session, true, change([](Document& document, const Json& said) {
          const Json& where = said.at("where");
          document.go_to(where.is_string() ? where.get<std::string>() : where.dump());
        })},
-      {"branch", Lane::Desk, true,
+      {"branch", Lane::Session, true,
        change([](Document& document, const Json& said) { document.begin_branch(said.at("name")); })},
-      {"name_version", Lane::Desk, true,
+      {"name_version", Lane::Session, true,
        change([](Document& document, const Json& said) { document.name_version(said.at("name")); })},
-      {"diff", Lane::Desk, false, diff},
-      {"procedure", Lane::Desk, true, procedure},
-      {"acts_on", Lane::Desk, false, acts_on},
-      {"landmark", Lane::Desk, true, place_landmark},
+      {"diff", Lane::Session, false, diff},
+      {"procedure", Lane::Session, true, procedure},
+      {"acts_on", Lane::Session, false, acts_on},
+      {"landmark", Lane::Session, true, place_landmark},
       {"find_landmarks", Lane::Long, false, find_landmarks},
-      {"command", Lane::Desk, false, command_of_step},
+      {"command", Lane::Session, false, command_of_step},
       {"evaluate", Lane::Evaluate, false, evaluate, true},
       {"overlap", Lane::Overlap, false, overlap},
       {"part", Lane::Long, false, part},
@@ -385,13 +387,13 @@ const std::vector<Word>& words() {
   return all;
 }
 
-const Word& find_word(const std::string& name) {
+const RequestKind& find_request_kind(const std::string& name) {
   std::vector<std::string> names;
-  for (const Word& word : words()) {
-    if (word.name == name) return word;
-    names.push_back(word.name);
+  for (const RequestKind& request_kind : request_kinds()) {
+    if (request_kind.name == name) return request_kind;
+    names.push_back(request_kind.name);
   }
-  // The time to find the nearest word grows with the name's length.
+  // The time to find the nearest kind grows with the name's length.
   constexpr std::size_t longest_typed = 60;
   throw voxel::Error(
       voxel::ErrorCode::Input,

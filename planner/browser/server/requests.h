@@ -5,28 +5,28 @@
 #include <string>
 #include <vector>
 
-#include "planner/browser/server/desk.h"
 #include "planner/browser/server/message.h"
+#include "planner/browser/server/session.h"
 
-// The requests of a page to the desk, one function per word. All pass on exceptions of the functions that
+// The requests of a page to the session, one function per kind. All pass on exceptions of the functions that
 // they call.
 namespace octotomy::planner::serve {
 
-/// The server's thread that handles a request: edits do not wait for long tasks, and for some words only the
+/// The server's thread that handles a request: edits do not wait for long tasks, and for some kinds only the
 /// newest request is needed. A certifying evaluation has its own thread, so that the quick evaluation after
 /// an edit does not stop it.
-enum class Lane { Desk, Evaluate, Certify, Overlap, Long };
+enum class Lane { Session, Evaluate, Certify, Overlap, Long };
 
-struct Word {
+struct RequestKind {
   std::string name;
-  Lane lane = Lane::Desk;
+  Lane lane = Lane::Session;
   bool changes_plan = false;  ///< the answer is the plan's state, which is sent to all windows
-  std::function<Json(Desk& desk, const Json& said, const Watched& watched)> answer;
+  std::function<Json(Session& session, const Json& said, const Watched& watched)> answer;
   bool changes_objects = false;  ///< the plan's state is sent to all windows
 };
 
-const std::vector<Word>& words();
-/// Throws voxel::Error, Input, with the nearest word.
-const Word& find_word(const std::string& name);
+const std::vector<RequestKind>& request_kinds();
+/// Throws voxel::Error, Input, with the nearest kind.
+const RequestKind& find_request_kind(const std::string& name);
 
 }  // namespace octotomy::planner::serve

@@ -14,9 +14,9 @@
 #include <filesystem>
 #include <system_error>
 
-#include "planner/browser/server/answers.h"
-#include "planner/browser/server/gate.h"
+#include "planner/browser/server/access_control.h"
 #include "planner/browser/server/new_files.h"
+#include "planner/browser/server/object_requests.h"
 #include "planner/browser/server/page.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/json_file.h"
@@ -58,8 +58,8 @@ const std::string& file_policy() {
 
 struct Context {
   Service& service;
-  Desk& desk;
-  Gate gate;
+  Session& session;
+  AccessControl access;
 };
 
 std::string text_of(beast::string_view text) {
@@ -194,28 +194,29 @@ class Connection : public std::enable_shared_from_this<Connection> {
       return why.has_value();
     };
     if (target.path == "/upload" && request.method() == http::verb::post) {
-      if (!refused(context_.gate.refusal_of_action(caller))) upload(target);
+      if (!refused(context_.access.refusal_of_action(caller))) upload(target);
       return;
     }
     if (request.method() != http::verb::get || parser_->content_length().value_or(0) > 0) {
-      if (!refused(context_.gate.refusal(caller)))
+      if (!refused(context_.access.refusal(caller)))
         refuse(http::status::method_not_allowed, "only GET is known here");
       return;
     }
     if (target.path == "/socket") {
-      if (refused(context_.gate.refusal_of_action(caller))) return;
+      if (refused(context_.access.refusal_of_action(caller))) return;
       http::request<http::string_body> upgrade(request.base());
       if (!beast::websocket::is_upgrade(upgrade))
         return refuse(http::status::bad_request, "a WebSocket is expected");
       return std::make_shared<Socket>(std::move(stream_), context_)->run(upgrade);
     }
     if (auto named = file_of(target)) {
-      if (!refused(context_.gate.refusal({caller.host, caller.origin, named->token}))) send_file(named->name);
+      if (!refused(context_.access.refusal({caller.host, caller.origin, named->token})))
+        send_file(named->name);
       return;
     }
     const std::string path = target.path == "/" ? "/index.html" : target.path;
-    if (refused(path == "/index.html" ? context_.gate.refusal(caller)
-                                      : context_.gate.refusal_of_host(caller)))
+    if (refused(path == "/index.html" ? context_.access.refusal(caller)
+                                      : context_.access.refusal_of_host(caller)))
       return;
     for (const PageFile& file : page_files())
       if (file.path == path) return say(http::status::ok, std::string(file.type), std::string(file.bytes));
@@ -257,8 +258,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
   void send_file(const std::string& name) {
-    const fs::path folder = files_folder(context_.desk);
-    const fs::path path = context_.desk.folders.need_within(folder / need_plain_name(name));
+    const fs::path folder = files_folder(context_.session);
+    const fs::path path = context_.session.folders.need_within(folder / need_plain_name(name));
     auto response = std::make_shared<http::response<http::file_body>>(http::status::ok, 11);
     beast::error_code failed;
     if (fs::is_regular_file(path)) response->body().open(path.c_str(), beast::file_mode::scan, failed);
@@ -280,9 +281,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void upload(const Target& target) {
     const auto named = target.query.find("name");
     const fs::path name = need_plain_name(named == target.query.end() ? "" : named->second);
-    const fs::path folder = context_.desk.working_folder() / "uploads";
+    const fs::path folder = context_.session.working_folder() / "uploads";
     const fs::path place =
-        context_.desk.folders.need_within(name.has_parent_path() ? folder / name : unused(folder / name));
+        context_.session.folders.need_within(name.has_parent_path() ? folder / name : unused(folder / name));
     arriving_.emplace(place.parent_path());
     const fs::path part = arriving_->hidden() / place.filename();
     upload_.emplace(std::move(*parser_));
@@ -366,7 +367,7 @@ Server::Server(ServerOptions options) : options_(std::move(options)), port_(std:
 
 Server::~Server() = default;
 
-void Server::run(Service& service, Desk& desk, const std::stop_token& stop) {
+void Server::run(Service& service, Session& session, const std::stop_token& stop) {
   const Tcp::endpoint endpoint = port_->acceptor.local_endpoint();
   const net::ip::address address = endpoint.address();
   const std::string port = std::to_string(endpoint.port());
@@ -374,7 +375,7 @@ void Server::run(Service& service, Desk& desk, const std::stop_token& stop) {
   std::vector<std::string> hosts{name + ":" + port};
   if (address.is_loopback()) hosts.push_back("localhost:" + port);
   if (address.is_unspecified()) hosts.clear();
-  Context context{service, desk, Gate(options_.token, hosts)};
+  Context context{service, session, AccessControl(options_.token, hosts)};
   // Connections end with it, before the objects to which they refer.
   const std::unique_ptr<Port> opened = std::move(port_);
   net::io_context& io = opened->io;

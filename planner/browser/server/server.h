@@ -30,7 +30,7 @@ class Server {
 
   /// Serves the page, its files and its WebSockets until a stop is requested. May be called once. Invalid
   /// data from a caller end only that caller's connection.
-  void run(Service& service, Desk& desk, const std::stop_token& stop);
+  void run(Service& service, Session& session, const std::stop_token& stop);
 
  private:
   struct Port;

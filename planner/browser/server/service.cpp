@@ -48,9 +48,9 @@ void guarded(const Work& work, const Refuse& refuse) noexcept {
 
 }  // namespace
 
-Service::Service(Desk& desk, LineOf line_of) : desk_(desk), line_of_(std::move(line_of)) {
-  for (const Lane lane : {Lane::Desk, Lane::Evaluate, Lane::Certify, Lane::Overlap, Lane::Long})
-    lanes_[lane] = std::make_unique<LaneQueue>(lane != Lane::Desk && lane != Lane::Long);
+Service::Service(Session& session, LineOf line_of) : session_(session), line_of_(std::move(line_of)) {
+  for (const Lane lane : {Lane::Session, Lane::Evaluate, Lane::Certify, Lane::Overlap, Lane::Long})
+    lanes_[lane] = std::make_unique<LaneQueue>(lane != Lane::Session && lane != Lane::Long);
   for (Drawing& drawing : drawings_)
     drawing.thread = std::jthread([&](const std::stop_token& stop) { draw(drawing, stop); });
 }
@@ -96,7 +96,7 @@ void Service::tell_all(const Message& message) {
 }
 
 void Service::tell_plan() {
-  tell_all(event("plan", {{"plan_state", desk_.state()}}));
+  tell_all(event("plan", {{"plan_state", session_.state()}}));
 }
 
 void Service::receive(std::uint64_t window, const std::string& text) {
@@ -148,8 +148,8 @@ void Service::take(std::uint64_t window, Request request) {
     if (const auto older = panes.withdraw(pane())) drop(*older, "a newer picture of the pane was asked for");
     return panes.ask({pane(), std::move(request), is_moving});
   }
-  const Word& word = find_word(request.what);
-  const bool certifies = word.lane == Lane::Evaluate && said.value("certify", false);
+  const RequestKind& request_kind = find_request_kind(request.what);
+  const bool certifies = request_kind.lane == Lane::Evaluate && said.value("certify", false);
   const auto of_window = find(window);
   if (of_window == nullptr) return;
   if (of_window->waiting >= most_waiting)
@@ -157,17 +157,17 @@ void Service::take(std::uint64_t window, Request request) {
   ++of_window->waiting;
   const auto asked = std::make_shared<const Request>(std::move(request));
   const auto leave = std::shared_ptr<void>(nullptr, [of_window](void*) { --of_window->waiting; });
-  lanes_.at(certifies ? Lane::Certify : word.lane)
+  lanes_.at(certifies ? Lane::Certify : request_kind.lane)
       ->put({window, asked->id,
-             [this, window, asked, &word, leave](const std::stop_token& stop) {
-               answer(window, *asked, word, stop);
+             [this, window, asked, &request_kind, leave](const std::stop_token& stop) {
+               answer(window, *asked, request_kind, stop);
              },
              [this, window, asked, leave] {
                refuse(window, asked->id, Stopped("a newer request took its place"));
              }});
 }
 
-void Service::answer(std::uint64_t window, const Request& request, const Word& word,
+void Service::answer(std::uint64_t window, const Request& request, const RequestKind& request_kind,
                      const std::stop_token& stop) {
   Clock::time_point told{};
   bool was_told = false;
@@ -186,15 +186,15 @@ void Service::answer(std::uint64_t window, const Request& request, const Word& w
                   }};
   guarded(
       [&] {
-        Json ok = word.answer(desk_, request.said, watched);
-        if (word.changes_plan) {
-          Json state = desk_.state();
+        Json ok = request_kind.answer(session_, request.said, watched);
+        if (request_kind.changes_plan) {
+          Json state = session_.state();
           tell_all(event("plan", {{"plan_state", state}}));
           if (ok.is_object()) state.update(ok);
           ok = std::move(state);
         }
-        if (word.lane == Lane::Evaluate) tell_all(event("objects", ok));
-        if (word.changes_objects) tell_plan();
+        if (request_kind.lane == Lane::Evaluate) tell_all(event("objects", ok));
+        if (request_kind.changes_objects) tell_plan();
         send(window, answer_to(request.id, ok));
       },
       [&](const std::exception& error) { refuse(window, request.id, error); });
@@ -205,7 +205,7 @@ void Service::refuse(std::uint64_t window, std::int64_t id, const std::exception
   send(window, refusal_to(id, error, line_of_));
 }
 
-void Service::drop(const PaneQueue::Asked& asked, const char* why) {
+void Service::drop(const PaneQueue::PaneRequest& asked, const char* why) {
   refuse(asked.name.window, asked.request.id, Stopped(why));
 }
 
@@ -222,11 +222,11 @@ void Service::draw(Drawing& drawing, const std::stop_token& over) {
             return;
           }
           if (asked->request.said.value("kind", "view") == "slice")
-            return send(asked->name.window, draw_slice(desk_, asked->request, stop));
+            return send(asked->name.window, draw_slice(session_, asked->request, stop));
           auto& view = views[asked->name];
           if (view == nullptr) view = std::make_unique<ViewPane>();
           send(asked->name.window,
-               view->draw(desk_, asked->request,
+               view->draw(session_, asked->request,
                           std::min(most_frame_ms, most_round_ms / panes.moving_panes()), stop));
         },
         [&](const std::exception& error) {

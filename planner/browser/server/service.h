@@ -11,16 +11,16 @@
 #include <string>
 #include <thread>
 
-#include "planner/browser/server/desk.h"
 #include "planner/browser/server/lane_queue.h"
 #include "planner/browser/server/message.h"
 #include "planner/browser/server/pane_queue.h"
 #include "planner/browser/server/requests.h"
+#include "planner/browser/server/session.h"
 #include "planner/browser/server/view_pane.h"
 
 namespace octotomy::planner::serve {
 
-/// The windows on one desk and the threads that handle their requests: one each for views and slices, for
+/// The windows on one session and the threads that handle their requests: one each for views and slices, for
 /// pictures along rays, which take longer, for edits, evaluation, certificates, overlaps and long tasks. Every request is answered exactly once, even if it
 /// fails. All members may be called from any thread.
 class Service {
@@ -29,7 +29,7 @@ class Service {
   using Send = std::function<void(Message message)>;
 
   /// `line_of` formats error messages.
-  Service(Desk& desk, LineOf line_of);
+  Service(Session& session, LineOf line_of);
   ~Service();
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
@@ -52,10 +52,11 @@ class Service {
   void tell_all(const Message& message);
   void tell_plan();
   void take(std::uint64_t window, Request request);
-  void answer(std::uint64_t window, const Request& request, const Word& word, const std::stop_token& stop);
+  void answer(std::uint64_t window, const Request& request, const RequestKind& request_kind,
+              const std::stop_token& stop);
   void refuse(std::uint64_t window, std::int64_t id, const std::exception& error);
   /// Answers a waiting request for a picture that is not drawn.
-  void drop(const PaneQueue::Asked& asked, const char* why);
+  void drop(const PaneQueue::PaneRequest& asked, const char* why);
   /// Draws pictures of one kind, one after the other.
   struct Drawing {
     PaneQueue panes;
@@ -64,7 +65,7 @@ class Service {
   };
   void draw(Drawing& drawing, const std::stop_token& over);
 
-  Desk& desk_;
+  Session& session_;
   LineOf line_of_;
   std::mutex mutex_;
   std::map<std::uint64_t, std::shared_ptr<Window>> windows_;

@@ -81,7 +81,7 @@ void draw_threshold(const Json& threshold, SlicePicture& picture) {
 }
 
 /// The position of the pixels; for a curve, of those at its middle.
-Json frame_of(const voxel::Sheet& sheet) {
+Json sheet_frame(const voxel::Sheet& sheet) {
   const glm::ivec2 size_px = sheet.size_px();
   const std::size_t left = static_cast<std::size_t>((size_px.x - 1) / 2);
   const std::size_t right = std::min(left + 1, sheet.columns_mm.size() - 1);
@@ -97,9 +97,9 @@ Json frame_of(const voxel::Sheet& sheet) {
 
 }  // namespace
 
-Message draw_slice(Desk& desk, const Request& request, const std::stop_token& stop) {
+Message draw_slice(Session& session, const Request& request, const std::stop_token& stop) {
   const Json& said = request.said;
-  const Snapshot snapshot = desk.snapshot();
+  const Snapshot snapshot = session.snapshot();
   if (!snapshot.evaluation || snapshot.evaluation->loaded.empty())
     throw std::runtime_error("no scan is open");
   const auto& loaded = snapshot.evaluation->loaded;
@@ -107,12 +107,13 @@ Message draw_slice(Desk& desk, const Request& request, const std::stop_token& st
   if (named == loaded.end()) throw std::runtime_error("scan: there is none of that name");
   const voxel::Scene& scene = named->second->scene();
   Slice slice = slice_asked(said, scene);
-  Desk::Preview preview;
+  Session::Preview preview;
   std::string replaced;
   if (const Json asked = said.value("preview", Json()); asked.is_object()) {
     replaced = asked.at("object");
     const auto against = asked.value("against", std::vector<std::string>{});
-    preview = desk.preview(asked, said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
+    preview =
+        session.preview(asked, said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
   }
   std::vector<Outlined> outlined, hatched;
   std::vector<std::string> hatch_colours;
@@ -121,7 +122,7 @@ Message draw_slice(Desk& desk, const Request& request, const std::stop_token& st
     if (!entry.contains("id")) continue;
     const std::string id = entry["id"];
     const bool is_dragged = preview.evaluation && id == replaced;
-    const std::string sought = is_dragged ? Desk::Preview::moved : id;
+    const std::string sought = is_dragged ? Session::Preview::moved : id;
     for (const Object& object : (is_dragged ? *preview.evaluation : *snapshot.evaluation).objects) {
       if (object.id != sought || object.voxel.octree.is_empty()) continue;
       drawn.push_back(id);
@@ -138,7 +139,7 @@ Message draw_slice(Desk& desk, const Request& request, const std::stop_token& st
   }
   if (preview.evaluation)
     for (const Object& object : preview.evaluation->objects)
-      if (object.id == Desk::Preview::overlap && !object.voxel.octree.is_empty()) {
+      if (object.id == Session::Preview::overlap && !object.voxel.octree.is_empty()) {
         hatch_colours.push_back(text_of_colour(interference_colour()));
         hatched.push_back({object.id, object.voxel.octree, true});
       }
@@ -155,7 +156,7 @@ Message draw_slice(Desk& desk, const Request& request, const std::stop_token& st
               {"height", size_px.y},
               {"objects", drawn},
               {"letters", picture.said.at("letters")},
-              {"view_frame", frame_of(picture.sheet)}};
+              {"view_frame", sheet_frame(picture.sheet)}};
   const Json threshold = said.value("threshold", Json());
   draw_threshold(threshold, picture);
   if (is_moving) return packed(header, {{"jpeg", jpeg_of(size_px, picture.rgb)}});

@@ -218,12 +218,12 @@ struct ViewPane::Drawing {
   }
 };
 
-voxel::DrawnObject ViewPane::threshold(Desk& desk, const Snapshot& snapshot, const Json& window) {
+voxel::DrawnObject ViewPane::threshold(Session& session, const Snapshot& snapshot, const Json& window) {
   const std::string name = window.value("scan", "ct");
   const auto scan = snapshot.evaluation->loaded.find(name);
   if (scan == snapshot.evaluation->loaded.end()) throw std::runtime_error("window: there is no such scan");
   const voxel::GreyOctree grey =
-      window.value("alone", false) ? desk.alone(snapshot, name) : scan->second->grey;
+      window.value("alone", false) ? session.alone(snapshot, name) : scan->second->grey;
   const std::string text = window.dump();
   SampleWindow samples{number_of(window, "low").value_or(-std::numeric_limits<double>::infinity())};
   samples.high = number_of(window, "high");
@@ -238,21 +238,23 @@ voxel::DrawnObject ViewPane::threshold(Desk& desk, const Snapshot& snapshot, con
   return object;
 }
 
-void ViewPane::add_objects(Desk& desk, const Json& said, Drawing& drawing, const std::stop_token& stop) {
+void ViewPane::add_objects(Session& session, const Json& said, Drawing& drawing,
+                           const std::stop_token& stop) {
   const Evaluation& evaluation = *drawing.snapshot.evaluation;
-  Desk::Preview preview;
+  Session::Preview preview;
   std::string dragged;
   if (const Json asked = said.value("preview", Json()); !asked.is_null()) {
     dragged = asked.at("object");
     const auto against = asked.value("against", std::vector<std::string>{});
-    preview = desk.preview(asked, said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
+    preview =
+        session.preview(asked, said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
     drawing.is_of_plan = false;
   }
-  const Object* moved = preview.evaluation ? find(*preview.evaluation, Desk::Preview::moved) : nullptr;
+  const Object* moved = preview.evaluation ? find(*preview.evaluation, Session::Preview::moved) : nullptr;
   for (const Json& entry : said.value("objects", Json::array())) {
     if (entry.contains("window")) {
       drawing.is_of_plan = false;
-      drawing.add(threshold(desk, drawing.snapshot, entry.at("window")), "", entry);
+      drawing.add(threshold(session, drawing.snapshot, entry.at("window")), "", entry);
       continue;
     }
     const std::string id = entry.at("id");
@@ -268,7 +270,7 @@ void ViewPane::add_objects(Desk& desk, const Json& said, Drawing& drawing, const
     drawing.of_plan.push_back(moved);
     drawing.add(planner::drawn(*moved, glm::vec3(1.0f)), dragged, Json::object());
   }
-  if (const Object* both = find(*preview.evaluation, Desk::Preview::overlap)) {
+  if (const Object* both = find(*preview.evaluation, Session::Preview::overlap)) {
     drawing.header["overlap_mm3"] = both->voxel.measures.volume_mm3;
     drawing.add({"overlap", both->voxel.octree}, "", {{"colour", text_of_colour(interference_colour())}});
   }
@@ -311,11 +313,12 @@ void ViewPane::colour(const Json& colour_by, Drawing& drawing) {
   if (is_mutual || drawing.objects.front().name != of) drawing.is_of_plan = false;
 }
 
-Message ViewPane::draw(Desk& desk, const Request& request, double most_ms, const std::stop_token& stop) {
+Message ViewPane::draw(Session& session, const Request& request, double most_ms,
+                       const std::stop_token& stop) {
   const Json& said = request.said;
   const Clock::time_point start = Clock::now();
   Drawing drawing;
-  drawing.snapshot = desk.snapshot();
+  drawing.snapshot = session.snapshot();
   drawing.render = render_of(said);
   if (!drawing.snapshot.evaluation) throw std::runtime_error("no plan is open");
   drawing.is_moving = said.value("dragging", false);
@@ -324,7 +327,7 @@ Message ViewPane::draw(Desk& desk, const Request& request, double most_ms, const
     drawing.background = need_colour(*background);
     drawing.is_of_plan = false;
   }
-  add_objects(desk, said, drawing, stop);
+  add_objects(session, said, drawing, stop);
   if (drawing.objects.empty()) return drawing.blank();
   if (is_ray_picture(drawing.render)) return along_rays(drawing, most_ms, stop);
   if (const Json colour_by = said.value("colour_by", Json()); colour_by.is_object())

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "planner/browser/server/desk.h"
 #include "planner/browser/server/message.h"
+#include "planner/browser/server/session.h"
 #include "voxel/view/renderer.h"
 
 namespace octotomy::planner::serve {
@@ -18,16 +18,16 @@ class ViewPane {
   /// A frame for a request "pane" of the kind "view". During a motion a JPEG, with fewer pixels if all would
   /// take longer than `most_ms`; at rest the PNG of `octotomy render`, with the depth and the object of every
   /// pixel. Throws std::runtime_error for an invalid request; Stopped.
-  Message draw(Desk& desk, const Request& request, double most_ms, const std::stop_token& stop);
+  Message draw(Session& session, const Request& request, double most_ms, const std::stop_token& stop);
 
  private:
   struct Drawing;
   /// Adds the objects of a request; a dragged one at its new position.
-  void add_objects(Desk& desk, const Json& said, Drawing& drawing, const std::stop_token& stop);
+  void add_objects(Session& session, const Json& said, Drawing& drawing, const std::stop_token& stop);
   /// Colours one of them by its distance to another; "mutual": both by each other.
   void colour(const Json& colour_by, Drawing& drawing);
   /// A window of a scan that is not a step yet; with "alone", in a universe around the scan.
-  voxel::DrawnObject threshold(Desk& desk, const Snapshot& snapshot, const Json& window);
+  voxel::DrawnObject threshold(Session& session, const Snapshot& snapshot, const Json& window);
   Message moving(Drawing& drawing, double most_ms);
   /// A picture of what lies along rays; during a motion with fewer pixels if all would take too long.
   Message along_rays(Drawing& drawing, double most_ms, const std::stop_token& stop);

@@ -20,7 +20,7 @@ namespace {
 
 using namespace octotomy::voxel;
 
-struct Desk {
+struct PageState {
   Scene scene;
   std::optional<GreyOctree> grey;
   Octree object = Octree::empty({});
@@ -29,8 +29,8 @@ struct Desk {
   std::vector<std::uint8_t> rgba;
 };
 
-Desk& desk() {
-  static Desk only;
+PageState& page_state() {
+  static PageState only;
   return only;
 }
 
@@ -40,34 +40,34 @@ extern "C" {
 
 /// Room for the samples of a scan, x fastest; the scan before it is gone.
 [[clang::export_name("new_scan")]] std::int16_t* new_scan(int x, int y, int z) {
-  desk() = Desk();
-  desk().scene.lattice.dims = {x, y, z};
-  desk().scene.samples = Int16Samples(desk().scene.lattice.sample_count());
-  return std::get<Int16Samples>(desk().scene.samples).data();
+  page_state() = PageState();
+  page_state().scene.lattice.dims = {x, y, z};
+  page_state().scene.samples = Int16Samples(page_state().scene.lattice.sample_count());
+  return std::get<Int16Samples>(page_state().scene.samples).data();
 }
 
 /// Room for lps_from_voxel, 16 numbers by columns.
 [[clang::export_name("lps_from_voxel")]] double* lps_from_voxel() {
-  return &desk().scene.lattice.lps_from_voxel[0][0];
+  return &page_state().scene.lattice.lps_from_voxel[0][0];
 }
 
 /// Takes the samples and the matrix that were written. Voxels keep the scan's lattice.
 [[clang::export_name("open_scan")]] void open_scan() {
-  Scene& scene = desk().scene;
+  Scene& scene = page_state().scene;
   check(scene);
   Universe universe;
   universe.lps_from_voxel = scene.lattice.lps_from_voxel;
   const int longest = std::max({scene.lattice.dims.x, scene.lattice.dims.y, scene.lattice.dims.z});
   for (universe.depth = 2; universe.side() < longest; ++universe.depth) {
   }
-  desk().grey = grey_octree_of(universe, scene);
+  page_state().grey = grey_octree_of(universe, scene);
   scene.samples = Int16Samples();
 }
 
 /// The octree of the samples low..high. Returns the number of voxels, volume in mm³, area by Crofton's
 /// formula in mm², the centroid in LPS mm, bytes of nodes, and 1 if there is any voxel.
 [[clang::export_name("choose_window")]] const double* choose_window(double low, double high) {
-  Desk& the = desk();
+  PageState& the = page_state();
   the.low = low;
   the.object = combine(the.grey->universe(), window_of(*the.grey, low, high));
   const Measures measures = measure(the.object);
@@ -88,7 +88,7 @@ extern "C" {
 [[clang::export_name("draw")]] const std::uint8_t* draw(int width_px, int height_px, double look_x,
                                                         double look_y, double look_z, double up_x,
                                                         double up_y, double up_z) {
-  Desk& the = desk();
+  PageState& the = page_state();
   RenderOptions options;
   options.size_px = {width_px, height_px};
   options.view.look = {look_x, look_y, look_z};

@@ -15,8 +15,8 @@
 #include "planner/operation/table/number_format.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/scan/write_dicom_seg.h"
-#include "voxel/space/file_text.h"
 #include "voxel/scan/write_scene.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -167,7 +167,7 @@ int convert(const Program& program, const ConvertText& text) {
     throw std::runtime_error(text.out.string() +
                              ": unknown kind of scan; use .nrrd, .nii.gz or .mha, or a folder for DICOM");
   need_used(text, folder, false);
-  need_folder_of(text.out, folder ? Output::Folder : Output::File);
+  need_folder_of(text.out, folder ? OutputKind::Folder : OutputKind::File);
   Timings timings;
   const voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
   if (program.stop.stop_requested()) throw Stopped("stopped before " + text.out.string() + " was written");

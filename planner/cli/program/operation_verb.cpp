@@ -22,7 +22,7 @@
 #include "planner/operation/measure/octree_summary.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/object/certify.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/field_json.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"

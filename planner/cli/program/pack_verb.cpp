@@ -22,7 +22,7 @@ int pack(Program& program, const PackText& text) {
   result.plan = plan_of(program, text);
   result.anonymous = text.anonymous;
   EvaluateOptions options = evaluate_options(program);
-  options.ahead = true;
+  options.prepares_files = true;
   options.keep_scans = true;
   result.evaluation = evaluated(program, result.plan, options);
   result.pictures = plan_pictures(result.plan, result.evaluation);

@@ -192,7 +192,7 @@ int phantom(const Program& program, const PhantomText& text) {
       throw CLI::ValidationError(option->get_name(), "has no effect for " + text.kind + ": leave it out");
   }
   const bool is_folder = is_scan && (text.dicom || !text.out.has_extension());
-  need_folder_of(text.out, is_folder ? Output::Folder : Output::File);
+  need_folder_of(text.out, is_folder ? OutputKind::Folder : OutputKind::File);
   return text.kind == "head" ? head(program, text) : is_scan ? leg(program, text) : solid(program, text);
 }
 

@@ -2,9 +2,9 @@
 #include <CLI/CLI.hpp>
 
 #include "planner/cli/program/verbs.h"
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/output_path.h"
 #include "planner/operation/file/outputs.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/table/control_character.h"
 #include "planner/plan/difference.h"
 #include "planner/plan/history.h"

@@ -6,8 +6,8 @@
 
 #include "planner/cli/program/verbs.h"
 #include "planner/cli/verb/plan_in.h"
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/output_path.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/result/report/pdf.h"
 #include "planner/result/report/preview.h"
@@ -101,7 +101,7 @@ int run(Program& program, const RunText& text, Plan plan, const std::function<vo
   need_result_folder(text.out, result_names(result.plan));
   EvaluateOptions options = evaluate_options(program);
   options.certify = text.certify == Certify::Now;
-  options.ahead = true;
+  options.prepares_files = true;
   need_disk_of_label_maps(result.plan, text.out, options);
   result.evaluation = evaluated(program, result.plan, options);
   if (!options.certify)

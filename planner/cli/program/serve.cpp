@@ -10,8 +10,8 @@
 #include <system_error>
 #include <unistd.h>
 
+#include "planner/browser/server/access_control.h"
 #include "planner/browser/server/folders.h"
-#include "planner/browser/server/gate.h"
 #include "planner/browser/server/server.h"
 #include "planner/cli/program/verbs.h"
 #include "planner/cli/verb/verb.h"
@@ -71,10 +71,10 @@ void allow_reading_of(const Plan& plan, serve::Folders& folders) {
 
 /// Ends the program after the server: every edit is on disk, nobody waits for running work, and stopping it
 /// may take long. Waits for a running edit before renaming is disabled, because an edit renames files.
-[[noreturn]] void end_program(serve::Desk& desk, bool is_out_of_time) {
+[[noreturn]] void end_program(serve::Session& session, bool is_out_of_time) {
   constexpr std::chrono::milliseconds longest_edit{100};
   while (!has_last_word(Speaker::Verb)) ::pause();
-  desk.close_within(longest_edit);
+  session.close_within(longest_edit);
   voxel::remove_unfinished();
   if (is_out_of_time) warn("out of time: the server has ended; every edit is in the plan's file");
   std::_Exit(is_out_of_time ? out_of_resources : done);
@@ -101,16 +101,16 @@ int run(Program& program, ServeText& text) {
   if (text.options.address != "127.0.0.1" && text.options.address != "::1")
     warn("--listen " + text.options.address +
          ": others on the network can reach this server and read all traffic, because nothing is encrypted");
-  serve::Desk desk(fs::current_path());
-  for (const fs::path& path : text.paths) desk.folders.open(path);
-  if (beginning && serve::is_plan(*beginning)) allow_reading_of(read_plan(*beginning), desk.folders);
-  if (beginning) desk.open(*beginning, {program.stop.get_token(), program.progress()});
-  serve::Service service(desk, line_of);
-  server.run(service, desk, program.stop.get_token());
+  serve::Session session(fs::current_path());
+  for (const fs::path& path : text.paths) session.folders.open(path);
+  if (beginning && serve::is_plan(*beginning)) allow_reading_of(read_plan(*beginning), session.folders);
+  if (beginning) session.open(*beginning, {program.stop.get_token(), program.progress()});
+  serve::Service service(session, line_of);
+  server.run(service, session, program.stop.get_token());
   // The watch started shortly before or after this verb.
   constexpr std::chrono::duration<double> margin{0.1};
-  end_program(desk, program.time_limit_s && Clock::now() - start + margin >=
-                                                std::chrono::duration<double>(*program.time_limit_s));
+  end_program(session, program.time_limit_s && Clock::now() - start + margin >=
+                                                   std::chrono::duration<double>(*program.time_limit_s));
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ SuiteAnswer verify_pack(Program& program, const VerifyText& text, const std::fil
   Result result;
   result.plan = plan_of(program, text, parse_plan(packed.plan, path.parent_path()));
   EvaluateOptions options = evaluate_options(program);
-  options.ahead = true;
+  options.prepares_files = true;
   options.keep_scans = true;
   result.evaluation = evaluated(program, result.plan, options);
   result.pictures = plan_pictures(result.plan, result.evaluation);

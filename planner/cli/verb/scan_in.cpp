@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "planner/cli/verb/numbers.h"
-#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/path_checks.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner::cli {

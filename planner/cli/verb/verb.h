@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/plan/evaluate.h"
 #include "voxel/space/lattice.h"

@@ -42,8 +42,8 @@ glm::dmat4 motion_of_many(const std::vector<WantedPoint>& points, PointFit fit) 
     from.push_back({point.name, point.from_mm});
     to.push_back({point.name, point.to_mm});
   }
-  return brep::register_landmarks(from, to,
-                                  fit == PointFit::Best ? brep::Motion::rigid : brep::Motion::three_points)
+  return brep::register_landmarks(
+             from, to, fit == PointFit::Best ? brep::MotionModel::rigid : brep::MotionModel::three_points)
       .fixed_from_moving;
 }
 

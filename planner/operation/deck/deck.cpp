@@ -33,7 +33,7 @@ std::vector<std::string> region_names(const Deck& deck) {
   return names;
 }
 
-void check_held(const Deck& deck, const Place& place) {
+void check_held(const Deck& deck, const FieldLocation& place) {
   if (place.scope != nullptr)
     for (const ObjectName& moved : deck.moved)
       if (const Operation& maker = place.scope->maker_of(moved.name); !maker.is_motion)
@@ -44,7 +44,7 @@ void check_held(const Deck& deck, const Place& place) {
     place.refuse("'element_mm' and 'material' are of an object that others hold: add 'moved' or 'fixed'");
 }
 
-void check_regions(const Deck& deck, const Place& place) {
+void check_regions(const Deck& deck, const FieldLocation& place) {
   const std::vector<std::string> names = region_names(deck);
   for (const auto& [one, other] : deck.sliding) {
     for (const std::string& name : {one, other})
@@ -77,7 +77,7 @@ void check_regions(const Deck& deck, const Place& place) {
                     "', which holds them, to 'regions', or leave 'smooth_mm' out");
 }
 
-void check(const Deck& deck, const Place& place) {
+void check(const Deck& deck, const FieldLocation& place) {
   check_output_path(deck.path, {".inp", ".vtu", ".feb", ".msh", ".node"}, place.at("path"));
   check_held(deck, place);
   if (deck.fallback && deck.is_held() && !deck.smooth_mm)
@@ -149,13 +149,13 @@ void write_elements(const convert::Tetrahedra& tetrahedra, convert::DeckOptions 
 }
 
 /// A filling that decks of one object share.
-struct Filled {
+struct SharedFilling {
   Filling filling;
   std::vector<convert::DeckSurface> surfaces;
 };
 
 /// The filling, or the reason why there is none.
-using Tried = std::variant<Filled, std::string>;
+using Tried = std::variant<SharedFilling, std::string>;
 
 Tried fill(const Object& object, const Deck& deck, const AnswerBench& bench) {
   const Stopwatch watch(bench.timings, "tetrahedralise");
@@ -171,7 +171,7 @@ Tried fill(const Object& object, const Deck& deck, const AnswerBench& bench) {
     return error.what();
   }
   if (const auto* why = std::get_if<std::string>(&filling)) return *why;
-  Filled filled{std::get<Filling>(std::move(filling)), {}};
+  SharedFilling filled{std::get<Filling>(std::move(filling)), {}};
   if (object.mesh.within && !object.mesh.within->empty())
     filled.surfaces = cut_surfaces(object, filled.filling.tetrahedra);
   return filled;
@@ -201,7 +201,7 @@ void write_filled(const Object& object, const Deck& deck, const AnswerBench& ben
   const Tried& tried = filled_once(object, deck, bench);
   if (const auto* why = std::get_if<std::string>(&tried))
     return made.findings.push_back("not written: " + *why);
-  const auto& [filling, surfaces] = std::get<Filled>(tried);
+  const auto& [filling, surfaces] = std::get<SharedFilling>(tried);
   made.details.update({{"regions", filling.bodies}, {"fallback", filling.fallback}});
   made.findings = filling.findings;
   convert::DeckOptions options;
@@ -248,7 +248,7 @@ void write(const Deck& deck, const AnswerBench& bench, Exported& made) {
 
 /// Computes the filling of a single object ahead of writing. Several regions and held objects are filled when
 /// they are written.
-void ahead(const Deck& deck, const AnswerBench& bench) {
+void prepare_file(const Deck& deck, const AnswerBench& bench) {
   const Object& object = bench.objects.at(deck.object.name);
   if (deck.regions.empty() && !deck.is_held() && obstacle_of(object, deck).empty())
     filled_once(object, deck, bench);
@@ -312,7 +312,7 @@ Operation deck_operation() {
           record("stiffness", &Deck::stiffness, "Materials of the elements from a scan.", stiffness_record()))
       .example(R"({"id": "deck", "do": "deck", "object": "advanced", "path": "maxilla.inp"})")
       .check(check)
-      .ahead(ahead)
+      .prepares_file(prepare_file)
       .write(write);
 }
 

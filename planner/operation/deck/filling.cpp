@@ -53,7 +53,7 @@ brep::Solid bodies_of(const brep::Solid& solid, Filling& filling) {
 /// The mesh without cavities smaller than a voxel, which are noise at the threshold. Adds a finding on the
 /// filled cavities.
 brep::Solid filled(const brep::Solid& solid, const voxel::Universe& universe, Filling& filling) {
-  convert::Filled made = convert::fill_cavities(solid, universe.lattice().voxel_mm3());
+  convert::FilledCavities made = convert::fill_cavities(solid, universe.lattice().voxel_mm3());
   if (made.cavities > 0)
     filling.findings.push_back(std::to_string(made.cavities) + " cavities smaller than a voxel, " +
                                grouped(made.volume_mm3, 3) + " mm\u00b3 together, are filled");

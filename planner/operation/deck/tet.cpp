@@ -19,10 +19,10 @@
 #include "planner/operation/deck/filling.h"
 #include "planner/operation/deck/node_sets.h"
 #include "planner/operation/deck/stiffness.h"
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/landmarks_file.h"
 #include "planner/operation/file/mesh_file.h"
 #include "planner/operation/file/mesh_in.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/file/step_on_files.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/comma_numbers.h"
@@ -107,7 +107,7 @@ convert::TetOptions options_of(const Tet& asked, const FileBench& bench) {
 }
 
 /// What a deck is made of, and how it came about.
-struct Filled {
+struct TetResult {
   convert::Tetrahedra tetrahedra;
   std::size_t regions = 1;
   std::optional<std::string> fallback;  ///< why the elements are an octree's own
@@ -135,7 +135,7 @@ voxel::Octree voxels_of(const Tet& asked, const brep::Triangles& triangles, bool
 
 /// Elements as they are made, or why the fallback is to be taken. Without --fallback throws where none are
 /// made, and keeps unfit ones with a finding.
-void fill(const Tet& asked, bool is_of_voxels, Filled& filled,
+void fill(const Tet& asked, bool is_of_voxels, TetResult& filled,
           const std::function<convert::Tetrahedra()>& make) {
   try {
     filled.tetrahedra = make();
@@ -160,7 +160,7 @@ void fill(const Tet& asked, bool is_of_voxels, Filled& filled,
 }
 
 /// In place of smooth elements those of an octree.
-void fall_back(Filled& filled, convert::Tetrahedra tetrahedra, const voxel::Universe& universe) {
+void fall_back(TetResult& filled, convert::Tetrahedra tetrahedra, const voxel::Universe& universe) {
   filled.tetrahedra = std::move(tetrahedra);
   filled.findings = {"fallback: " + *filled.fallback +
                      "; the elements are an octree's, whose surface is in steps of " +
@@ -194,11 +194,11 @@ CheckedMesh checked_mesh(const FileBench& bench, const Tet& asked, std::vector<s
   return surface;
 }
 
-Filled of_mesh(const FileBench& bench, const Tet& asked) {
+TetResult of_mesh(const FileBench& bench, const Tet& asked) {
   std::vector<std::string> mended;
   const CheckedMesh surface = checked_mesh(bench, asked, mended);
   const auto& [triangles, health] = surface;
-  Filled filled;
+  TetResult filled;
   const Stopwatch watch(bench.timings, "tetrahedralise");
   if (health.solid()) {
     const brep::Mesh solid = brep::mesh_of(triangles);
@@ -231,10 +231,10 @@ voxel::Octree octree_in(const std::string& name, const FileBench& bench) {
 }
 
 /// The octree and the regions beside it: smooth elements where a size is asked for, or else the voxels' own.
-Filled of_octrees(const FileBench& bench, const Tet& asked) {
+TetResult of_octrees(const FileBench& bench, const Tet& asked) {
   std::vector<voxel::Octree> octrees;
   for (const std::string& name : asked.inputs()) octrees.push_back(octree_in(name, bench));
-  Filled filled;
+  TetResult filled;
   filled.regions = octrees.size();
   const Stopwatch watch(bench.timings, "tetrahedralise");
   if (asked.size_mm) {
@@ -256,7 +256,7 @@ Filled of_octrees(const FileBench& bench, const Tet& asked) {
   return filled;
 }
 
-convert::DeckOptions deck_of(const FileBench& bench, const Tet& asked, Filled& filled,
+convert::DeckOptions deck_of(const FileBench& bench, const Tet& asked, TetResult& filled,
                              const convert::TetQuality& quality) {
   convert::DeckOptions deck;
   deck.title = std::filesystem::path(asked.file.name).filename().string();
@@ -292,7 +292,7 @@ convert::DeckOptions deck_of(const FileBench& bench, const Tet& asked, Filled& f
   return deck;
 }
 
-void check(const Tet& asked, const Place& place) {
+void check(const Tet& asked, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".inp", ".feb", ".vtu", ".msh", ".node"}, place.at("path"));
   if (!asked.of_voxels && (!asked.regions.empty() || asked.size_mm || asked.contact))
@@ -312,7 +312,7 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
   check_set_names(asked.nodes);
   if (!asked.finer.empty() && of_voxels && !asked.size_mm)
     throw std::runtime_error("--finer is not of voxels' own elements: give --size, too");
-  Filled filled = of_voxels ? of_octrees(bench, asked) : of_mesh(bench, asked);
+  TetResult filled = of_voxels ? of_octrees(bench, asked) : of_mesh(bench, asked);
   const convert::Tetrahedra& tetrahedra = filled.tetrahedra;
   const convert::TetQuality quality = convert::quality(tetrahedra);
   convert::DeckOptions deck = deck_of(bench, asked, filled, quality);

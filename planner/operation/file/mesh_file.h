@@ -10,7 +10,7 @@
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/progress.h"
 #include "brep/mesh/solid.h"
-#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/table/stopwatch.h"
 
 namespace octotomy::planner {

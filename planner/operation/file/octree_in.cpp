@@ -4,7 +4,7 @@
 #include <array>
 #include <fstream>
 
-#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/path_checks.h"
 
 namespace octotomy::planner {
 

@@ -12,7 +12,7 @@
 namespace octotomy::planner {
 
 void check_output_path(const std::filesystem::path& path, const std::vector<std::string>& extensions,
-                       const Place& place) {
+                       const FieldLocation& place) {
   const std::string name = output_path(path).generic_string();
   if (has_control(name)) place.refuse("a path has no control characters: choose another name");
   if (std::none_of(extensions.begin(), extensions.end(),

@@ -12,7 +12,7 @@ namespace octotomy::planner {
 /// Refuses a path that is not within the result's folder, that an earlier step writes, or that ends in none
 /// of `extensions`.
 void check_output_path(const std::filesystem::path& path, const std::vector<std::string>& extensions,
-                       const Place& place);
+                       const FieldLocation& place);
 
 /// The file that a path names below a result's folder; makes the folders that it leads through, and the
 /// result's own folder never: where that was removed, nothing brings it back.

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "brep/mesh/error.h"
-#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/path_checks.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/space/error.h"
 

@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/mesh_in.h"
 #include "planner/operation/file/octree_in.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/table/fault.h"
 
 namespace octotomy::planner {

@@ -26,7 +26,7 @@ std::vector<FlapSegment> segments_of(const FlapFields& fields) {
   return flap_segments(plan_of(fields));
 }
 
-void check_flap(const FlapFields& fields, const Place& place) {
+void check_flap(const FlapFields& fields, const FieldLocation& place) {
   const auto need_still = [&](const char* name, const std::vector<Mark>& marks) {
     for (const Mark& mark : marks)
       if (!mark.object.empty())

@@ -25,7 +25,7 @@ FlapPlan plan_of(const FlapFields& fields);
 /// The segments; throws as flap_segments().
 std::vector<FlapSegment> segments_of(const FlapFields& fields);
 /// Refuses fields that define no flap, and marks that move with an object.
-void check_flap(const FlapFields& fields, const Place& place);
+void check_flap(const FlapFields& fields, const FieldLocation& place);
 
 /// The fields as those of an operation that derives from FlapFields.
 template <typename Owner>

@@ -19,7 +19,7 @@ struct Flap : FlapFields {
   double slab_mm = 2.0;
 };
 
-void check(const Flap& flap, const Place& place) {
+void check(const Flap& flap, const FieldLocation& place) {
   check_flap(flap, place);
   const std::size_t count = flap.curve.size() - 1;
   if (flap.segments.size() != count)

@@ -19,7 +19,7 @@ struct FlapScan : FlapFields {
 /// osteotomies.
 constexpr double beyond_cuts_mm = 10.0;
 
-void check(const FlapScan& step, const Place& place) {
+void check(const FlapScan& step, const FieldLocation& place) {
   check_flap(step, place);
   const std::size_t count = step.curve.size() - 1;
   if (static_cast<std::size_t>(step.segment) > count)

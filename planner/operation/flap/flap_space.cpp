@@ -22,22 +22,22 @@ struct FlapSpace : FlapFields {
 constexpr int sides = 8;
 
 /// A part of a beam between two cuts.
-struct Piece {
+struct BeamSegment {
   FlapPlane start, end;
   glm::dvec3 along, across;
 };
 struct Beam {
-  std::vector<Piece> pieces;
+  std::vector<BeamSegment> pieces;
   double reach_mm = 0.0;  ///< from its axis to its sides
 };
 
 /// A direction perpendicular to a piece, at an angle from the direction of its face.
-glm::dvec3 square_at(const Piece& piece, double radians) {
+glm::dvec3 square_at(const BeamSegment& piece, double radians) {
   return std::cos(radians) * piece.across + std::sin(radians) * glm::cross(piece.along, piece.across);
 }
 
 /// The slab of one thickness about a cut.
-Piece slab_about(const FlapPlane& cut, const glm::dvec3& across, double slab_mm) {
+BeamSegment slab_about(const FlapPlane& cut, const glm::dvec3& across, double slab_mm) {
   const glm::dvec3 aside = glm::normalize(across - cut.normal * glm::dot(cut.normal, across));
   const glm::dvec3 half = 0.5 * slab_mm * cut.normal;
   return {{cut.point_mm - half, cut.normal}, {cut.point_mm + half, cut.normal}, cut.normal, aside};
@@ -45,7 +45,9 @@ Piece slab_about(const FlapPlane& cut, const glm::dvec3& across, double slab_mm)
 
 Beam beam_of(const FlapSpace& space) {
   const std::vector<FlapSegment> segments = segments_of(space);
-  const auto piece = [](const FlapSegment& one) { return Piece{one.start, one.end, one.along, one.across}; };
+  const auto piece = [](const FlapSegment& one) {
+    return BeamSegment{one.start, one.end, one.along, one.across};
+  };
   if (space.part == "segment")
     return {{piece(segments.at(static_cast<std::size_t>(space.number - 1)))}, space.reach_mm};
   if (space.part == "osteotomy") {
@@ -62,7 +64,7 @@ Beam beam_of(const FlapSpace& space) {
   return beam;
 }
 
-void check(const FlapSpace& space, const Place& place) {
+void check(const FlapSpace& space, const FieldLocation& place) {
   check_flap(space, place);
   const std::size_t segments = space.curve.size() - 1;
   const std::size_t most = space.part == "osteotomy" ? segments + 1 : segments;
@@ -89,7 +91,7 @@ std::string definition(const FlapSpace& space, const Objects&) {
          std::to_string(space.number);
 }
 
-voxel::Expression voxels_of(const Piece& piece, double reach_mm) {
+voxel::Expression voxels_of(const BeamSegment& piece, double reach_mm) {
   const auto below = [](const glm::dvec3& normal, double offset_mm) {
     return voxel::Expression(voxel::HalfSpace{normal, offset_mm});
   };
@@ -104,7 +106,7 @@ voxel::Expression voxels_of(const Piece& piece, double reach_mm) {
 
 void voxels(const FlapSpace& space, const VoxelBench& bench, VoxelSide& made) {
   const Beam beam = beam_of(space);
-  for (const Piece& piece : beam.pieces) {
+  for (const BeamSegment& piece : beam.pieces) {
     const voxel::Expression one = voxels_of(piece, beam.reach_mm);
     made.symbol = made.symbol ? *made.symbol | one : one;
   }
@@ -120,7 +122,7 @@ void triangles(const FlapSpace& space, const MeshBench&, MeshSide& made) {
   const double corner_mm = flap_corner_mm(beam.reach_mm);
   brep::Triangles surface;
   for (std::size_t cut = 0; cut <= beam.pieces.size(); ++cut) {
-    const Piece& piece = beam.pieces[std::min(cut, beam.pieces.size() - 1)];
+    const BeamSegment& piece = beam.pieces[std::min(cut, beam.pieces.size() - 1)];
     const FlapPlane& plane = cut < beam.pieces.size() ? piece.start : piece.end;
     for (int k = 0; k < sides; ++k) {
       const glm::dvec3 off = corner_mm * square_at(piece, glm::two_pi<double>() * (k + 0.5) / sides);
@@ -155,7 +157,7 @@ verify::Witness behind(const glm::dvec3& normal, const glm::dvec3& point_mm) {
   return verify::carried(verify::witness_of_box({glm::dvec3(-far_mm), {far_mm, far_mm, 0.0}}), placed);
 }
 
-verify::Witness witness_of(const Piece& piece, double reach_mm) {
+verify::Witness witness_of(const BeamSegment& piece, double reach_mm) {
   verify::Witness made = verify::both(behind(-piece.start.normal, piece.start.point_mm),
                                       behind(piece.end.normal, piece.end.point_mm));
   for (int side = 0; side < sides; ++side) {

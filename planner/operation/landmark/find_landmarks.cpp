@@ -4,9 +4,9 @@
 #include <map>
 
 #include "convert/surface/isosurface.h"
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/mesh_file.h"
 #include "planner/operation/file/output_path.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/landmark/first_guess.h"
 #include "planner/operation/landmark/landmark_guesses.h"
 #include "planner/operation/picture/drawn_files.h"

@@ -2,9 +2,9 @@
 // The size of an airway and its narrowest section, between two ends.
 #include <cmath>
 
+#include "planner/operation/measure/airway_sections.h"
 #include "planner/operation/measure/digitised.h"
 #include "planner/operation/measure/measurement.h"
-#include "planner/operation/measure/passage.h"
 #include "planner/operation/table/operation.h"
 
 namespace octotomy::planner {
@@ -16,7 +16,7 @@ struct Airway {
   double step_mm = 1.0;
 };
 
-MeasuredSection measured(const PassageSection& section, const Digitised& digitised) {
+MeasuredSection measured(const AirwaySection& section, const Digitised& digitised) {
   return {section.along_mm,
           section.at_mm,
           section.direction,
@@ -30,11 +30,12 @@ MeasuredSection measured(const PassageSection& section, const Digitised& digitis
 Json measure(const Airway& asked, const AnswerBench& bench) {
   const Stopwatch watch(bench.timings, "airway");
   const Object& object = bench.objects.at(asked.object.name);
-  const Passage found = passage(object.voxel.octree, object.mesh.within, mark_mm(asked.begin, bench.objects),
-                                mark_mm(asked.end, bench.objects), asked.step_mm);
+  const AirwaySections found =
+      airway_sections(object.voxel.octree, object.mesh.within, mark_mm(asked.begin, bench.objects),
+                      mark_mm(asked.end, bench.objects), asked.step_mm);
   const Digitised digitised = digitised_of(bench, object);
   const HalfWidth of_volume = volume_half_width(object.voxel.measures, digitised, seen_size_of(object));
-  const PassageSection& least = found.sections[found.narrowest];
+  const AirwaySection& least = found.sections[found.narrowest];
   MeasuredAirway made{object.id, {}, {}};
   AirwaySize& airway = made.airway;
   airway.volume_mm3 = object.voxel.measures.volume_mm3;
@@ -43,8 +44,7 @@ Json measure(const Airway& asked, const AnswerBench& bench) {
   airway.length_mm = found.length_mm;
   airway.narrowest = measured(least, digitised);
   airway.narrowest.half_width_terms = section_half_width(least, digitised).terms;
-  for (const PassageSection& section : found.sections)
-    airway.sections.push_back(measured(section, digitised));
+  for (const AirwaySection& section : found.sections) airway.sections.push_back(measured(section, digitised));
   if (!object.mesh.within) made.findings.push_back("there is no mesh: voxels alone answer");
   if (const auto finding = too_coarse_finding(object, of_volume)) made.findings.push_back(*finding);
   const double differ = least.mesh_mm2 ? std::abs(*least.mesh_mm2 - least.voxel_mm2) : 0.0;

@@ -8,8 +8,8 @@
 
 #include "brep/measure/difference.h"
 #include "convert/surface/label_surfaces.h"
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/label_table.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/record.h"
 #include "planner/operation/table/same_patient.h"

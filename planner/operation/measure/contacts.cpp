@@ -16,7 +16,7 @@ struct ContactMap {
   double within_mm = ContactOptions{}.within_mm, apart_mm = ContactOptions{}.apart_mm;
 };
 
-void check(const ContactMap& asked, const Place& place) {
+void check(const ContactMap& asked, const FieldLocation& place) {
   if (asked.object.name == asked.against.name)
     place.at("against").refuse("is the object itself: name what it is to touch");
 }

@@ -7,11 +7,11 @@
 
 #include "brep/mesh/error.h"
 #include "convert/surface/label_surfaces.h"
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/label_table.h"
 #include "planner/operation/file/mesh_file.h"
 #include "planner/operation/file/output_path.h"
 #include "planner/operation/file/outputs.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
@@ -36,7 +36,7 @@ struct Surfaces {
 
 constexpr const char* name_mark = "{name}";
 
-void check(const Surfaces& surfaces, const Place& place) {
+void check(const Surfaces& surfaces, const FieldLocation& place) {
   if (place.scope != nullptr) check_output_path(surfaces.path, {".vtp", ".obj", ".glb"}, place.at("path"));
   for (const int label : surfaces.labels)
     if (label < 1 || label > voxel::most_label)

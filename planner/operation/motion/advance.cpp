@@ -25,7 +25,7 @@ struct Advance {
   std::optional<glm::dvec3> contact_mm;
 };
 
-void check(const Advance& asked, const Place& place) {
+void check(const Advance& asked, const FieldLocation& place) {
   if (asked.object.name == asked.against.name)
     place.at("against").refuse("is the object itself: name what it is to meet");
   if (asked.towards.has_value() == asked.direction.has_value())

@@ -47,7 +47,7 @@ double reach_mm(const voxel::Box& box, const std::array<glm::dvec3, 2>& axis_mm)
   return reach;
 }
 
-void check(const Autorotate& asked, const Place& place) {
+void check(const Autorotate& asked, const FieldLocation& place) {
   if (asked.object.name == asked.against.name)
     place.at("against").refuse("is the object itself: name what it is to meet");
   const std::vector<Mark>& condyles = asked.condyles;

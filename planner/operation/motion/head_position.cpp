@@ -18,14 +18,14 @@ struct HeadPosition {
 /// about 1 mm, and 1 mm over 10 mm tilts the plane by 6 degrees.
 constexpr double shortest_mm = 10.0;
 
-glm::dvec3 direction(const glm::dvec3& vector, const Place& place, const char* of) {
+glm::dvec3 direction(const glm::dvec3& vector, const FieldLocation& place, const char* of) {
   if (glm::length(vector) < shortest_mm)
     place.refuse(std::string("its points lie within 10 mm of ") + of + ": choose points farther apart");
   return glm::normalize(vector);
 }
 
 /// Columns left, back and up, of the plane through both porions and the orbitales.
-glm::dmat3 of_frankfort(const std::vector<Mark>& marks, const Place& place) {
+glm::dmat3 of_frankfort(const std::vector<Mark>& marks, const FieldLocation& place) {
   const glm::dvec3 right = marks[0].p_mm, left = marks[1].p_mm;
   const glm::dvec3 front = marks.size() == 3 ? marks[2].p_mm : 0.5 * (marks[2].p_mm + marks[3].p_mm);
   const glm::dvec3 to_left = direction(left - right, place, "each other");
@@ -40,7 +40,8 @@ glm::dmat3 of_frankfort(const std::vector<Mark>& marks, const Place& place) {
 }
 
 /// The frame rotated about its own up axis, so that its mid-plane is parallel to the line of the points.
-glm::dmat3 along_midline(const glm::dmat3& frame, const std::vector<Mark>& marks, const Place& place) {
+glm::dmat3 along_midline(const glm::dmat3& frame, const std::vector<Mark>& marks,
+                         const FieldLocation& place) {
   // The mean direction between points, without its part along up: longer differences count for more.
   const glm::dvec3 up = frame[2];
   glm::dvec3 back(0.0);
@@ -54,7 +55,7 @@ glm::dmat3 along_midline(const glm::dmat3& frame, const std::vector<Mark>& marks
   return {glm::cross(back, up), back, up};
 }
 
-void check(const HeadPosition& position, const Place& place) {
+void check(const HeadPosition& position, const FieldLocation& place) {
   for (const std::vector<Mark>* marks : {&position.frankfort, &position.midline})
     for (const Mark& mark : *marks)
       if (!mark.object.empty())

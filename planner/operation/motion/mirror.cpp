@@ -10,7 +10,7 @@
 #include "planner/operation/file/mesh_file.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/motion/fit_rows.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/solid/expression.h"
@@ -65,7 +65,7 @@ Json fit_json(const brep::MirrorPlane& plane, const std::optional<brep::MirrorFi
           {"slide_mm", of_fit(&brep::MirrorFit::slide_mm)}};
 }
 
-void check(const Mirror& mirror, const Place& place) {
+void check(const Mirror& mirror, const FieldLocation& place) {
   if (mirror.exactly && mirror.plane.empty())
     place.at("exactly").refuse("mirrors about a plane as it stands: add 'plane'");
   if (!mirror.plane.empty() && mirror.plane[1] == glm::dvec3(0.0))

@@ -12,7 +12,7 @@
 #include "brep/mesh/move.h"
 #include "planner/operation/anatomy/head_directions.h"
 #include "planner/operation/anatomy/motion_of_points.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/number_format.h"
@@ -139,7 +139,7 @@ glm::dmat4 motion_of(const Move& move, const MarkPlaces& places) {
 /// The largest deviation of a matrix from a rigid motion: its numbers are copied with six decimals.
 constexpr double rigid_to = 1e-5;
 
-void check_matrix(const glm::dmat4& matrix, const Place& place) {
+void check_matrix(const glm::dmat4& matrix, const FieldLocation& place) {
   const glm::dmat3 turn(matrix);
   const glm::dmat3 off = glm::transpose(turn) * turn - glm::dmat3(1.0);
   double worst = 0.0;
@@ -150,7 +150,7 @@ void check_matrix(const glm::dmat4& matrix, const Place& place) {
     place.refuse("is no rigid motion: its first three columns must be a rotation, its last row [0, 0, 0, 1]");
 }
 
-void check_ways(const Move& move, const Place& place) {
+void check_ways(const Move& move, const FieldLocation& place) {
   const bool by_parts = is_translated(move) || is_turned(move) || move.to;
   const int ways =
       int{by_parts} + int{!move.points.empty()} + int{move.matrix.has_value()} + int{move.with.has_value()};
@@ -167,10 +167,10 @@ void check_ways(const Move& move, const Place& place) {
   if (move.rotate && move.turn) place.refuse("says its turn twice, as 'rotate' and 'turn': keep one of them");
 }
 
-void check(const Move& move, const Place& place) {
+void check(const Move& move, const FieldLocation& place) {
   check_ways(move, place);
   if (move.rotate) {
-    const Place rotate = place.at("rotate");
+    const FieldLocation rotate = place.at("rotate");
     if (move.rotate->axis.has_value() == !move.rotate->through.empty())
       rotate.refuse(move.rotate->axis ? "says its axis twice, as 'axis' and 'through': keep one of them"
                                       : "'axis' is missing: add it, or 'through', two points");

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/bench.h"
 #include "planner/operation/table/operation.h"
 

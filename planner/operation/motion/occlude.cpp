@@ -44,7 +44,7 @@ struct Seat {
   std::vector<glm::dvec3> points_mm;
 };
 
-void check(const Occlude& asked, const Place& place) {
+void check(const Occlude& asked, const FieldLocation& place) {
   if (asked.object.name == asked.against.name)
     place.at("against").refuse("is the object itself: name what it is to meet");
 }

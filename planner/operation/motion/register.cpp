@@ -12,7 +12,7 @@
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/motion/fit_rows.h"
 #include "planner/operation/motion/move.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 
@@ -138,7 +138,7 @@ std::optional<std::string> mirrored(std::vector<brep::Landmark> moving,
   constexpr double most_mm = 3.0;  // the error of landmarks placed by hand on a head
   if (fit.rms_mm <= most_mm) return std::nullopt;
   for (brep::Landmark& mark : moving) mark.p_mm.x = -mark.p_mm.x;
-  const double rms_mm = brep::register_landmarks(moving, fixed, brep::Motion::similarity).rms_mm;
+  const double rms_mm = brep::register_landmarks(moving, fixed, brep::MotionModel::similarity).rms_mm;
   if (rms_mm > 0.3 * fit.rms_mm) return std::nullopt;
   return "the landmarks lie " + grouped(fit.rms_mm, 1) + " mm apart, and " + grouped(rms_mm, 1) +
          " mm if one set is mirrored: left and right are exchanged in one of them, by its names or its frame";
@@ -148,10 +148,11 @@ Laid by_landmarks(const std::filesystem::path& moving, const std::filesystem::pa
                   const std::string& motion, Timings& timings) {
   const Stopwatch watch(timings, "landmarks");
   const std::vector<brep::Landmark> from = read_landmarks(moving), to = read_landmarks(fixed);
-  const brep::LandmarkFit fit = brep::register_landmarks(from, to,
-                                                         motion == "similarity" ? brep::Motion::similarity
-                                                         : motion == "rigid"    ? brep::Motion::rigid
-                                                                                : brep::Motion::three_points);
+  const brep::LandmarkFit fit =
+      brep::register_landmarks(from, to,
+                               motion == "similarity" ? brep::MotionModel::similarity
+                               : motion == "rigid"    ? brep::MotionModel::rigid
+                                                      : brep::MotionModel::three_points);
   Laid laid{fit.fixed_from_moving, fit.rms_mm};
   FitOfLandmarks& details = laid.details.landmarks.emplace();
   details.motion = motion;
@@ -216,7 +217,7 @@ void by_surfaces(const brep::Mesh& moving, const brep::Mesh& fixed, const Regist
   laid.findings.insert(laid.findings.end(), fit.findings.begin(), fit.findings.end());
 }
 
-void check(const Register& asked, const Place& place) {
+void check(const Register& asked, const FieldLocation& place) {
   if (asked.landmarks_only && asked.landmarks.empty())
     place.at("landmarks_only").refuse("takes the motion of landmarks: add 'landmarks', two files");
   if (place.scope != nullptr && asked.motion == "similarity")

@@ -12,7 +12,7 @@
 #include "planner/operation/file/mesh_file.h"
 #include "planner/operation/file/write_label_table.h"
 #include "planner/operation/measure/result_json.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "verify/witness/reshaped_witness.h"

@@ -38,7 +38,7 @@ struct Boolean {
   char sign() const { return operation == "union" ? '|' : operation == "intersection" ? '&' : '-'; }
 };
 
-void check(const Boolean& asked, const Place& place) {
+void check(const Boolean& asked, const FieldLocation& place) {
   if (asked.exact && !asked.further.empty())
     place.at("exact").refuse("proves one Boolean at a time: leave 'with' out");
 }

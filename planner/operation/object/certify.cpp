@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "verify/certificate/certify_alone.h"
 #include "verify/certificate/certify_bounded.h"
 #include "verify/certificate/surface_reach.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/operation/object/combine.h"
 
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/operation.h"
 #include "verify/question/expression_on_meshes.h"
 #include "verify/question/expression_tree.h"
@@ -19,7 +19,7 @@ std::vector<std::string> uses(const Combine& combine) {
   return voxel::names_in(combine.expression);
 }
 
-void check(const Combine& combine, const Place& place) {
+void check(const Combine& combine, const FieldLocation& place) {
   check_expression(combine.expression, place.at("expression"));
 }
 
@@ -135,7 +135,7 @@ void bound_of_operands(const std::vector<std::string>& names, const BoundBench& 
   made.ends_with_universe = true;
 }
 
-void check_expression(const std::string& expression, const Place& place) {
+void check_expression(const std::string& expression, const FieldLocation& place) {
   // Any object will do to check the grammar and the names; motions are steps of their own.
   voxel::Names names;
   names.object = [&](std::string_view name) -> voxel::Expression {

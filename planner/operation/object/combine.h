@@ -17,7 +17,7 @@ struct Combine {
 };
 
 /// Refuses a text that is no expression of earlier objects, with the position of the fault.
-void check_expression(const std::string& expression, const Place& place);
+void check_expression(const std::string& expression, const FieldLocation& place);
 
 /// The voxel kernel's Boolean of earlier objects. `expression` builds it from what the names stand for; it is
 /// called twice, with the objects' octrees and with their symbols.

@@ -2,8 +2,8 @@
 // Writes contours on a scan's slices as a file that masks read: traced, thinned, smoothed, moved outwards or
 // inwards, edited.
 #include "brep/contour/contour.h"
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/outputs.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/file/region_file.h"
 #include "planner/operation/file/slice_contours.h"
 #include "planner/operation/file/step_on_files.h"
@@ -32,7 +32,7 @@ bool is_json(const std::filesystem::path& path) {
   return path.extension() == ".json";
 }
 
-void check(const Contours& contours, const Place& place) {
+void check(const Contours& contours, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   check_output_path(contours.out, {".json"}, place.at("path"));
   if (!contours.window) place.refuse("'window' is missing: add it, for example \"bone\"");

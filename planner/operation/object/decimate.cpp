@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "brep/mesh/measure.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/object/reshape_file.h"
-#include "planner/operation/object/trace.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "verify/witness/reshaped_witness.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/file/step_on_files.h"
 #include "planner/operation/measure/half_width.h"
 #include "planner/operation/measure/octree_summary.h"
@@ -80,10 +80,10 @@ glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
 }
 
 /// Of a step: the expression names objects of the plan and motions of its own.
-void check(const Eval& asked, const Place& place) {
+void check(const Eval& asked, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".octree"}, place.at("path"));
-  const Place at = place.at("expression");
+  const FieldLocation at = place.at("expression");
   try {
     const auto motions = bound(asked.motions, "motions", "X,Y,Z");
     // Any object will do to check the grammar and the names.

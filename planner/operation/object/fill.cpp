@@ -4,7 +4,7 @@
 
 #include "convert/surface/fill_cavities.h"
 #include "planner/operation/object/parts.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/operation.h"
 #include "verify/witness/witness.h"
 #include "voxel/filter/morphology.h"
@@ -29,7 +29,7 @@ void voxels(const Fill& fill, const VoxelBench& bench, VoxelSide& made) {
 
 void triangles(const Fill& fill, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "components");
-  convert::Filled filled =
+  convert::FilledCavities filled =
       convert::fill_cavities(bench.object(fill.object.name), std::numeric_limits<double>::infinity());
   made.details = {{"cavities", filled.cavities}, {"filled_mm3", filled.volume_mm3}};
   made.whole = filled.solid;

@@ -6,7 +6,7 @@
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/error.h"
 #include "planner/operation/file/mesh_in.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/operation.h"
 
 namespace octotomy::planner {
@@ -19,7 +19,7 @@ struct Import {
   std::optional<std::string> frame, unit;
 };
 
-void check(const Import& import, const Place& place) {
+void check(const Import& import, const FieldLocation& place) {
   if (import.frame && !brep::frame_named(*import.frame))
     place.at("frame").refuse(
         "'" + *import.frame +

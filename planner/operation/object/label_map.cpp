@@ -18,7 +18,7 @@ struct LabelMap {
   std::filesystem::path path;
 };
 
-void check(const LabelMap& map, const Place& place) {
+void check(const LabelMap& map, const FieldLocation& place) {
   check_output_path(map.path, {".nrrd", ".nii.gz", ".mha"}, place.at("path"));
 }
 

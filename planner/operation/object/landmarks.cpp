@@ -14,14 +14,14 @@ struct Landmarks {
   std::filesystem::path file;
 };
 
-void check(const Landmarks& landmarks, const Place& place) {
+void check(const Landmarks& landmarks, const FieldLocation& place) {
   if (landmarks.points.empty() && landmarks.file.empty())
     place.refuse("names no point: add 'points', or 'file'");
   if (place.scope == nullptr) return;
   for (std::size_t i = 0; i < landmarks.points.size(); ++i)
     place.scope->bind_landmark(place.at("points[" + std::to_string(i) + "]").where, landmarks.points[i]);
   if (landmarks.file.empty()) return;
-  const Place file = place.at("file");
+  const FieldLocation file = place.at("file");
   if (!std::filesystem::is_regular_file(place.scope->folder() / landmarks.file))
     file.refuse(landmarks.file.string() + " is no file: paths are relative to the plan's folder");
   std::vector<brep::Landmark> read;

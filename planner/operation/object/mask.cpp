@@ -7,7 +7,7 @@
 #include "planner/operation/file/contour_findings.h"
 #include "planner/operation/file/region_file.h"
 #include "planner/operation/object/mask_file.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
@@ -48,7 +48,7 @@ std::optional<glm::dmat4> held(const Mask& mask, const Objects& objects) {
   return glm::dmat4(objects.lps_from_head);
 }
 
-void check(const Mask& mask, const Place& place) {
+void check(const Mask& mask, const FieldLocation& place) {
   const char* const of_set = "is about a structure set: add the set as 'slices'";
   if (mask.slices.empty() && !mask.structure.empty()) place.at("structure").refuse(of_set);
   if (mask.slices.empty() && mask.bridge_mm) place.at("bridge_mm").refuse(of_set);

@@ -6,8 +6,8 @@
 
 #include "planner/operation/file/contour_findings.h"
 #include "planner/operation/file/drawn_region.h"
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/octree_in.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/file/region_file.h"
 #include "planner/operation/measure/octree_summary.h"
 #include "planner/operation/table/json_file.h"

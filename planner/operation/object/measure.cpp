@@ -15,16 +15,16 @@
 #include "planner/operation/measure/surface_questions.h"
 #include "planner/operation/measure/wall_thickness.h"
 #include "planner/operation/object/measure_file.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/filter/label_map.h"
 
 namespace octotomy::planner {
 namespace {
 
-void check(const Measure& measure, const Place& place) {
+void check(const Measure& measure, const FieldLocation& place) {
   if (place.scope == nullptr) return;
-  const Place points = place.at("points_mm");
+  const FieldLocation points = place.at("points_mm");
   if (measure.asks_surface() && (measure.to || !measure.points_mm.empty()))
     place.refuse("asks a surface and a gap or points: measure them in a step each");
   if (measure.points_mm.empty()) {

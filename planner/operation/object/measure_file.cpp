@@ -21,7 +21,7 @@
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/measure/surface_questions.h"
 #include "planner/operation/measure/wall_thickness.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/plan_universe.h"
 #include "voxel/filter/components.h"

@@ -154,7 +154,7 @@ Finished finished(Made made, const Meshed& asked, Timings& timings) {
   return {triangles_of(surface), measure(surface)};
 }
 
-void check(const Meshed& asked, const Place& place) {
+void check(const Meshed& asked, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".stl", ".ply", ".obj", ".off", ".vtp", ".glb"}, place.at("path"));
   if (asked.surface == "contours")

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "convert/deck/deck.h"
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/output_path.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/file/representation.h"
 #include "planner/operation/file/step_on_files.h"
 #include "planner/operation/measure/octree_summary.h"
@@ -151,7 +151,7 @@ void need_form_name(const Build& asked) {
                            asked.as + " is written as .txt or under a name of your own, as ." + asked.as);
 }
 
-void check(const Build& asked, const Place& place) {
+void check(const Build& asked, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   if (!asked.as.empty()) need_form_name(asked);
   check_output_path(asked.out, {asked.as.empty() ? ".octree" : asked.out.extension().string()},

@@ -11,7 +11,7 @@
 #include "brep/mesh/error.h"
 #include "brep/shape/convex_inset.h"
 #include "brep/shape/decimate.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "verify/witness/offset_witness.h"
@@ -26,7 +26,7 @@ struct Offset {
   std::optional<double> cell_mm;
 };
 
-void check(const Offset& offset, const Place& place) {
+void check(const Offset& offset, const FieldLocation& place) {
   if (offset.by_mm == 0.0)
     place.at("by_mm").refuse(
         "0 moves nothing: say how far outward, or inward as a number below 0, or use the object itself");
@@ -166,8 +166,8 @@ void bound(const Offset& offset, const BoundBench& bench, Object& made) {
   if (made.mesh.whole && object.mesh.whole) {
     const verify::OffsetOperand operand{object.witness, object.voxel.octree, *object.mesh.whole,
                                         is_whole_voxels(object.voxel)};
-    const verify::OffsetAsked asked{offset.by_mm,
-                                    offset.cell_mm.value_or(cell_for(*object.mesh.whole, offset.by_mm))};
+    const verify::WitnessedOffset asked{offset.by_mm,
+                                        offset.cell_mm.value_or(cell_for(*object.mesh.whole, offset.by_mm))};
     made.witness = verify::witness_of_offset(operand, asked);
     made.bound.measured_apart_mm =
         object.bound.measured_apart_mm +

@@ -17,7 +17,7 @@
 #include "brep/mesh/components.h"
 #include "brep/mesh/triangles.h"
 #include "convert/voxel/voxelise.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "verify/certificate/certify_bounded.h"
 #include "verify/witness/witness.h"
 #include "voxel/filter/components.h"
@@ -270,7 +270,8 @@ std::optional<Differing> ranked(const WholeObject& whole, const brep::Solid& sol
   const auto counts = [](const voxel::Octree& set) { return voxel::components(set).voxel_counts; };
   // Without a witness certificates of the parts follow (settle_choice()).
   const auto words = [&](const glm::dvec3& p_mm) {
-    return whole.witness ? whole.witness.words(p_mm) : verify::Reading{verify::untold, verify::untold};
+    return whole.witness ? whole.witness.allowed_sides(p_mm)
+                         : verify::Reading{verify::either_side, verify::either_side};
   };
   // A component that passes between the voxels' centres may be several pieces of voxels. It stays if one of
   // them is the voxels', too.

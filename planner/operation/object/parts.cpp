@@ -11,7 +11,7 @@
 #include "brep/mesh/distance.h"
 #include "brep/shape/prism.h"
 #include "planner/operation/object/part_choice.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "verify/witness/witness.h"
@@ -42,7 +42,7 @@ std::vector<glm::dvec3> BridgeDecisions::decided_mm() const {
   return all;
 }
 
-void check(const BridgeDecisions& bridges, const Place& place) {
+void check(const BridgeDecisions& bridges, const FieldLocation& place) {
   for (const glm::dvec3& p_mm : bridges.cut_mm)
     if (std::find(bridges.keep_mm.begin(), bridges.keep_mm.end(), p_mm) != bridges.keep_mm.end())
       place.refuse("'keep_bridges_mm' and 'cut_bridges_mm' both have (" + plain(p_mm.x) + ", " +
@@ -171,7 +171,7 @@ std::optional<Parts> with_parts(const Parts& parts, const std::vector<glm::dvec3
   return more;
 }
 
-void check(const Parts& parts, const Place& place) {
+void check(const Parts& parts, const FieldLocation& place) {
   if (int{parts.largest.has_value()} + int{parts.at_least_mm3.has_value()} + int{!parts.at_mm.empty()} != 1)
     place.refuse("needs one of 'largest', a number of parts, 'at_least_mm3', a volume, and 'at_mm', points");
   check(bridges_of(parts), place);

@@ -35,7 +35,7 @@ struct BridgeDecisions {
 };
 
 /// Refuses a point that is listed both as kept and as cut.
-void check(const BridgeDecisions& bridges, const Place& place);
+void check(const BridgeDecisions& bridges, const FieldLocation& place);
 
 /// The object without the cubes of the cut necks: as voxels, as an expression, as a solid and as a witness.
 voxel::Octree cut_bridges(const voxel::Octree& whole, const BridgeDecisions& bridges);

@@ -12,7 +12,7 @@
 #include "planner/operation/file/mesh_in.h"
 #include "planner/operation/file/outputs.h"
 #include "planner/operation/measure/result_json.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 
@@ -28,7 +28,7 @@ struct Repair {
   double max_volume_share = brep::RepairOptions{}.max_volume_share;
 };
 
-void check(const Repair& repair, const Place& place) {
+void check(const Repair& repair, const FieldLocation& place) {
   if (!repair.weld_mm && !repair.duplicates && !repair.orient && !repair.flat && !repair.holes &&
       !repair.intersections && !repair.solid)
     place.refuse(

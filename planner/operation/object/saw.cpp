@@ -5,7 +5,7 @@
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/components.h"
 #include "brep/mesh/error.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "verify/witness/witness.h"
@@ -26,7 +26,7 @@ brep::SawCut cut_of(const Saw& saw) {
   return {saw.line_mm, saw.direction, saw.depth_mm, saw.kerf_mm};
 }
 
-void check(const Saw& saw, const Place& place) {
+void check(const Saw& saw, const FieldLocation& place) {
   try {
     brep::saw_blade(cut_of(saw));
   } catch (const brep::InvalidInput& error) {

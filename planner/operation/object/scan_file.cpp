@@ -13,7 +13,7 @@ struct ScanFile {
   std::filesystem::path path;
 };
 
-void check(const ScanFile& file, const Place& place) {
+void check(const ScanFile& file, const FieldLocation& place) {
   check_output_path(file.path, {".nrrd", ".nii", ".nii.gz", ".mha"}, place.at("path"));
 }
 

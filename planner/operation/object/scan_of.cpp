@@ -31,7 +31,7 @@ std::vector<std::string> uses(const ScanOf& step) {
   return voxel::names_in(step.expression);
 }
 
-void check(const ScanOf& step, const Place& place) {
+void check(const ScanOf& step, const FieldLocation& place) {
   check_expression(step.expression, place.at("expression"));
 }
 
@@ -159,7 +159,7 @@ class SecondReading {
     if (tree.parts.empty()) {
       const Object& object = *objects_[static_cast<std::size_t>(tree.leaf)];
       if (!object.witness) return {false, false, nullptr};
-      const verify::Word word = object.witness(p_mm, near_mm_, verify::Asked::BothWords).voxel;
+      const verify::AllowedSides word = object.witness(p_mm, near_mm_, verify::ReadingNeeds::BothSides).voxel;
       return {word.in, word.in != word.out && !word.near, object.is_tool ? nullptr : &object};
     }
     Owned made = read(tree.parts.front(), p_mm);

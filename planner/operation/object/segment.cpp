@@ -18,7 +18,7 @@
 #include "planner/operation/file/region_file.h"
 #include "planner/operation/object/part_choice.h"
 #include "planner/operation/object/parts.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
@@ -228,7 +228,7 @@ class Segmenter {
   Segmented made_{voxel::Octree::empty(source_.universe)};
 };
 
-void check(const Segment& segment, const Place& place) {
+void check(const Segment& segment, const FieldLocation& place) {
   const int ways = (segment.window ? 1 : 0) + (segment.otsu ? 1 : 0) + (segment.tolerance ? 1 : 0) +
                    (segment.label ? 1 : 0) + (segment.named ? 1 : 0);
   if (ways != 1 && place.scope != nullptr)

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The segment operation on files: an object for each window, and further octrees, written as an octree, a
 // label map or a DICOM segmentation.
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/octree_in.h"
 #include "planner/operation/file/outputs.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/file/slice_contours.h"
 #include "planner/operation/file/write_label_table.h"
 #include "planner/operation/measure/octree_summary.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/object/segment.h"
-#include "planner/operation/object/trace.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/plan_universe.h"

@@ -8,7 +8,7 @@
 #include "brep/mesh/disjoint_sets.h"
 #include "planner/operation/file/mesh_file.h"
 #include "planner/operation/file/outputs.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
@@ -23,7 +23,7 @@ struct Separate {
   std::filesystem::path out;
 };
 
-void check(const Separate& separate, const Place& place) {
+void check(const Separate& separate, const FieldLocation& place) {
   if (place.scope != nullptr && !separate.piece)
     place.at("piece").refuse("is missing: say which, 1 the largest; a step for each piece");
 }
@@ -51,7 +51,7 @@ void bound(const Separate& separate, const BoundBench& bench, Object& made) {
 }
 
 /// A piece of a surface of any triangles.
-struct Piece {
+struct SeparatedPart {
   std::vector<std::uint32_t> faces;
   double area_mm2 = 0.0;
   std::optional<double> volume_mm3;  ///< of a closed surface, without its cavities
@@ -60,8 +60,8 @@ struct Piece {
 
 /// The pieces of a closed surface are its bodies with their cavities, sorted by volume. Those of an open one
 /// are the sets of triangles that are connected by edges, sorted by area.
-std::vector<Piece> pieces_of(const brep::Mesh& surface) {
-  std::vector<Piece> pieces;
+std::vector<SeparatedPart> pieces_of(const brep::Mesh& surface) {
+  std::vector<SeparatedPart> pieces;
   const auto edges = surface.edges();
   if (std::none_of(edges.begin(), edges.end(), [](const auto& edge) { return edge.is_boundary(); })) {
     for (brep::Component& part : brep::components(surface))
@@ -78,12 +78,12 @@ std::vector<Piece> pieces_of(const brep::Mesh& surface) {
     const auto f = static_cast<std::uint32_t>(face.idx());
     const auto [known, is_new] = number.emplace(sets.set_of(f), pieces.size());
     if (is_new) pieces.emplace_back();
-    Piece& piece = pieces[known->second];
+    SeparatedPart& piece = pieces[known->second];
     piece.faces.push_back(f);
     piece.area_mm2 += surface.calc_face_area(face);
   }
   std::stable_sort(pieces.begin(), pieces.end(),
-                   [](const Piece& a, const Piece& b) { return a.area_mm2 > b.area_mm2; });
+                   [](const SeparatedPart& a, const SeparatedPart& b) { return a.area_mm2 > b.area_mm2; });
   return pieces;
 }
 
@@ -101,7 +101,7 @@ FileAnswer on_files(const Separate& asked, const FileBench& bench) {
   asked.piece ? need_folder_of(asked.out) : need_piece(asked, 1);
   FileAnswer answer;
   const brep::Mesh surface = read_surface(asked.object.name, bench.timings, &answer.findings);
-  std::vector<Piece> pieces;
+  std::vector<SeparatedPart> pieces;
   {
     const Stopwatch watch(bench.timings, "components");
     pieces = pieces_of(surface);
@@ -116,7 +116,7 @@ FileAnswer on_files(const Separate& asked, const FileBench& bench) {
   std::size_t small = 0;
   double small_mm2 = 0.0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const Piece& piece = pieces[i];
+    const SeparatedPart& piece = pieces[i];
     if (asked.piece && i + 1 != static_cast<std::size_t>(*asked.piece)) continue;
     if (piece.area_mm2 < asked.least_mm2) {
       ++small;

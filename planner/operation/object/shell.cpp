@@ -4,7 +4,7 @@
 #include "brep/boolean/boolean.h"
 #include "brep/shape/convex_inset.h"
 #include "brep/shape/offset.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "verify/witness/offset_witness.h"
@@ -61,7 +61,7 @@ void bound(const Shell& shell, const BoundBench& bench, Object& made) {
   if (made.mesh.whole && object.mesh.whole) {
     const verify::OffsetOperand operand{object.witness, object.voxel.octree, *object.mesh.whole,
                                         is_whole_voxels(object.voxel)};
-    const verify::OffsetAsked asked{-shell.thickness_mm, cell_of(shell)};
+    const verify::WitnessedOffset asked{-shell.thickness_mm, cell_of(shell)};
     made.witness = verify::without(object.witness, verify::witness_of_offset(operand, asked));
     // The outer surface is the operand's; only the inner surface was computed from distances.
     const double area_mm2 = made.mesh.whole->measures().area_mm2,

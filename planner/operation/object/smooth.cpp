@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "brep/mesh/measure.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/object/reshape_file.h"
-#include "planner/operation/object/trace.h"
 #include "planner/operation/table/operation.h"
 #include "verify/witness/reshaped_witness.h"
 

@@ -15,7 +15,7 @@ struct Surface {
   std::filesystem::path path;
 };
 
-void check(const Surface& surface, const Place& place) {
+void check(const Surface& surface, const FieldLocation& place) {
   check_output_path(surface.path, {".stl", ".ply", ".obj", ".off", ".vtp", ".glb"}, place.at("path"));
 }
 

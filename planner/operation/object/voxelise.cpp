@@ -9,9 +9,9 @@
 #include "brep/shape/repair.h"
 #include "convert/voxel/voxelise_partial.h"
 #include "convert/voxel/winding_number.h"
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/mesh_in.h"
 #include "planner/operation/file/octree_in.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/file/step_on_files.h"
 #include "planner/operation/file/write_label_table.h"
 #include "planner/operation/measure/octree_summary.h"
@@ -214,7 +214,7 @@ FileAnswer write_labels(const FileBench& bench, const Voxelise& asked, const std
   return {std::move(json), std::move(rows), findings};
 }
 
-void check(const Voxelise& asked, const Place& place) {
+void check(const Voxelise& asked, const FieldLocation& place) {
   const bool labels = !is_octree(asked.out);
   if (place.scope != nullptr)
     check_output_path(asked.out, {".octree", ".nrrd", ".nii.gz", ".mha"}, place.at("path"));

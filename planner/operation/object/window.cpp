@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "convert/surface/isosurface.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "verify/witness/witness.h"
@@ -21,7 +21,7 @@ struct Window {
   std::optional<double> high;
 };
 
-void check(const Window& window, const Place& place) {
+void check(const Window& window, const FieldLocation& place) {
   if (window.high && *window.high < window.low)
     place.at("high").refuse("is below 'low': nothing would be in the window, swap them");
 }

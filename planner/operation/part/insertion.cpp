@@ -12,7 +12,7 @@
 
 namespace octotomy::planner {
 
-void check(const Insertion& insertion, const Place& place) {
+void check(const Insertion& insertion, const FieldLocation& place) {
   if (insertion.direction && insertion.seen_from)
     place.at("seen_from").refuse("states the direction a second time: leave out 'direction' or 'seen_from'");
   if (!insertion.direction && !insertion.seen_from)

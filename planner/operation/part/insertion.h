@@ -18,7 +18,7 @@ struct Insertion {
 };
 
 /// Refuses both and neither, a direction without length and an unknown view.
-void check(const Insertion& insertion, const Place& place);
+void check(const Insertion& insertion, const FieldLocation& place);
 /// A unit vector, LPS.
 glm::dvec3 direction_of(const Insertion& insertion, const glm::dmat3& lps_from_head);
 /// The first direction, then rings about it a step apart up to `within_deg`, their directions about a step

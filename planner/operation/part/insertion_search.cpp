@@ -23,7 +23,7 @@ struct InsertionSearch {
   double step_deg = 10.0;
 };
 
-void check(const InsertionSearch& asked, const Place& place) {
+void check(const InsertionSearch& asked, const FieldLocation& place) {
   check(asked.insertion, place);
   if (asked.step_deg > asked.within_deg)
     place.at("step_deg").refuse("is larger than 'within_deg', so no direction but the first is tried");

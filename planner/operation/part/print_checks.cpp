@@ -196,7 +196,7 @@ PrintCheck overhang_check(const brep::Linked& surface, const PrintLimits& limits
   double all_mm2 = 0.0, least_mm2 = limits.least_wall_mm * limits.least_wall_mm;
   std::size_t patches = 0;
   const std::vector<brep::Overhang> found =
-      brep::overhangs(surface, {limits.up, limits.overhang_deg, brep::OverhangAsked().resting_mm});
+      brep::overhangs(surface, {limits.up, limits.overhang_deg, brep::OverhangOptions().resting_mm});
   for (const brep::Overhang& patch : found) {
     // The layer below carries what is smaller than the smallest wall.
     if (patch.area_mm2 < least_mm2) break;

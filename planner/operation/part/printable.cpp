@@ -6,7 +6,7 @@
 
 #include "planner/operation/file/mesh_in.h"
 #include "planner/operation/measure/result_json.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/part/print_checks.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
@@ -23,7 +23,7 @@ struct Printable {
   std::optional<double> voxel_mm;  ///< of the verb
 };
 
-void check(const Printable& asked, const Place& place) {
+void check(const Printable& asked, const FieldLocation& place) {
   for (int axis = 0; axis < 3; ++axis)
     if (!(asked.bed_mm[axis] > 0.0))
       place.at("bed_mm").refuse("must be three lengths above 0: width, depth and height");

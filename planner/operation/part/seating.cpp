@@ -30,7 +30,7 @@ struct Seating {
 /// Depths of the mesh are good to this.
 constexpr double resolution_mm = 0.01;
 
-void check(const Seating& seating, const Place& place) {
+void check(const Seating& seating, const FieldLocation& place) {
   check(seating.insertion, place);
   for (const ObjectName& object : seating.against)
     if (object.name == seating.part.name)

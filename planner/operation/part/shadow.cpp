@@ -16,7 +16,7 @@
 #include "brep/shape/offset.h"
 #include "brep/shape/prism.h"
 #include "planner/operation/measure/result_json.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/part/insertion.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
@@ -36,7 +36,7 @@ struct Shadow {
   double end_mm = 0.0;              ///< settled: p . along of the end plane
 };
 
-void check(const Shadow& shadow, const Place& place) {
+void check(const Shadow& shadow, const FieldLocation& place) {
   check(shadow.insertion, place);
 }
 

@@ -25,7 +25,7 @@
 #include "brep/shape/shadow.h"
 #include "brep/shape/untangle.h"
 #include "planner/operation/measure/result_json.h"
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 #include "planner/operation/part/arch_band.h"
 #include "planner/operation/part/insertion.h"
 #include "planner/operation/table/number_format.h"
@@ -70,7 +70,7 @@ const ObjectName& name_of(const Splint& splint, int jaw) {
   return jaw == 0 ? splint.upper : splint.lower;
 }
 
-void check(const Splint& splint, const Place& place) {
+void check(const Splint& splint, const FieldLocation& place) {
   if (splint.upper.name == splint.lower.name)
     place.at("lower").refuse("is the upper jaw itself: name the object with the lower teeth");
 }

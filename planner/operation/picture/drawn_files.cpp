@@ -3,7 +3,7 @@
 
 #include <variant>
 
-#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/picture/colour.h"
 #include "planner/operation/picture/mesh_voxels.h"
 #include "planner/operation/picture/ray_pictures.h"

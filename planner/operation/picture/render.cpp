@@ -7,9 +7,9 @@
 #include <limits>
 #include <map>
 
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/octree_in.h"
 #include "planner/operation/file/output_path.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/picture/colour.h"
 #include "planner/operation/picture/drawn_files.h"
@@ -197,7 +197,7 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
   return made;
 }
 
-void check(const Render& render, const Place& place) {
+void check(const Render& render, const FieldLocation& place) {
   const auto refuse = [&](const std::string& field, const std::string& why) { place.at(field).refuse(why); };
   if (render.colours.size() > render.objects.size() || render.opacities.size() > render.objects.size())
     refuse("colours", "and opacities: give at most one of each an object");

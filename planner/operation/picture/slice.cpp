@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "planner/operation/file/file_kind.h"
 #include "planner/operation/file/octree_in.h"
 #include "planner/operation/file/output_path.h"
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/picture/colour.h"
 #include "planner/operation/picture/mesh_voxels.h"
@@ -419,7 +419,7 @@ bool cuts_samples(const Slice& slice) {
   return !is_mesh(slice.scan.name) && octree_kind(slice.scan.name) != OctreeKind::Binary;
 }
 
-void check(const Slice& slice, const Place& place) {
+void check(const Slice& slice, const FieldLocation& place) {
   if (slice.window && !slice.level.empty())
     place.at("level").refuse("says the same as 'window': leave one out");
   if (slice.grid_mm && !slice.curve_mm.empty())

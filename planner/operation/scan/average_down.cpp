@@ -12,7 +12,7 @@ struct AverageDown {
   std::vector<int> factor;
 };
 
-void check(const AverageDown& step, const Place& place) {
+void check(const AverageDown& step, const FieldLocation& place) {
   check_axes(step.factor, place.at("factor"));
 }
 

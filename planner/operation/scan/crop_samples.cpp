@@ -11,7 +11,7 @@ struct CropSamples {
   glm::dvec3 first{0.0}, last{0.0};
 };
 
-void check(const CropSamples& step, const Place& place) {
+void check(const CropSamples& step, const FieldLocation& place) {
   for (const glm::dvec3& index : {step.first, step.last})
     if (index != glm::floor(index) || glm::any(glm::greaterThan(glm::abs(index), glm::dvec3(1e6))))
       place.refuse("indices are whole numbers from 0, both included");

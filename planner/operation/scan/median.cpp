@@ -12,7 +12,7 @@ struct Median {
   std::vector<int> radius_samples;
 };
 
-void check(const Median& step, const Place& place) {
+void check(const Median& step, const FieldLocation& place) {
   check_axes(step.radius_samples, place.at("radius_samples"));
 }
 

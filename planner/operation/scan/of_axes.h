@@ -14,7 +14,7 @@ inline glm::ivec3 of_axes(const std::vector<int>& numbers) {
 }
 
 /// Refuses what is neither.
-inline void check_axes(const std::vector<int>& numbers, const Place& place) {
+inline void check_axes(const std::vector<int>& numbers, const FieldLocation& place) {
   if (numbers.size() != 1 && numbers.size() != 3) place.refuse("must be one number, or one for each axis");
 }
 

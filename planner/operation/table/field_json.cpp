@@ -42,7 +42,7 @@ bool in_range(const Field& field, double value) {
 /// Reads one value. The overloads of read() are the types of Slot.
 class Reader {
  public:
-  Reader(const Field& field, const SortedJson& json, const Place& place)
+  Reader(const Field& field, const SortedJson& json, const FieldLocation& place)
       : field_(field), json_(json), place_(place) {}
 
   void read(bool* value) const {
@@ -77,7 +77,7 @@ class Reader {
   void read(Mark* value) const { *value = mark(json_, place_); }
   void read(std::vector<Mark>* value) const {
     each("points [x, y, z] or names of landmarks",
-         [&](const SortedJson& entry, const Place& at) { value->push_back(mark(entry, at)); });
+         [&](const SortedJson& entry, const FieldLocation& at) { value->push_back(mark(entry, at)); });
   }
   void read(glm::dmat4* value) const {
     const auto refuse = [&] { place_.refuse("must be four rows of four numbers, as printed by register"); };
@@ -108,31 +108,32 @@ class Reader {
   }
   void read(std::vector<double>* value) const {
     value->clear();  // of the default
-    each("numbers",
-         [&](const SortedJson& entry, const Place& at) { value->push_back(number_of(entry, at.where)); });
+    each("numbers", [&](const SortedJson& entry, const FieldLocation& at) {
+      value->push_back(number_of(entry, at.where));
+    });
   }
   void read(std::vector<int>* value) const {
     each("whole numbers",
-         [&](const SortedJson& entry, const Place& at) { value->push_back(whole(entry, at)); });
+         [&](const SortedJson& entry, const FieldLocation& at) { value->push_back(whole(entry, at)); });
   }
   void read(std::vector<std::string>* value) const {
-    each("texts", [&](const SortedJson& entry, const Place& at) {
+    each("texts", [&](const SortedJson& entry, const FieldLocation& at) {
       Reader(field_, entry, at).read(&value->emplace_back());
     });
   }
   void read(std::vector<glm::dvec3>* value) const {
     each("points [x, y, z]",
-         [&](const SortedJson& entry, const Place& at) { value->push_back(point(entry, at)); });
+         [&](const SortedJson& entry, const FieldLocation& at) { value->push_back(point(entry, at)); });
   }
   void read(std::vector<ObjectName>* value) const {
-    each("names of earlier steps", [&](const SortedJson& entry, const Place& at) {
+    each("names of earlier steps", [&](const SortedJson& entry, const FieldLocation& at) {
       if (!entry.is_string()) place_.refuse("must hold names of earlier steps, not " + type_of(entry));
       value->push_back({entry.get<std::string>()});
-      Place{place_.where, at.scope}.need_object(value->back().name);
+      FieldLocation{place_.where, at.scope}.need_object(value->back().name);
     });
   }
   void read(Polygons* value) const {
-    each("polygons", [&](const SortedJson& polygon, const Place& at) {
+    each("polygons", [&](const SortedJson& polygon, const FieldLocation& at) {
       if (!polygon.is_array()) at.refuse("must be a list of points [u, v]");
       auto& points = value->emplace_back();
       for (const SortedJson& entry : polygon)
@@ -152,7 +153,7 @@ class Reader {
     if (records.form == Records::Form::Optional)
       return read_fields(field_.fields, json_, records.add(""), place_);
     if (records.form == Records::Form::List) {
-      each("records", [&](const SortedJson& entry, const Place& at) {
+      each("records", [&](const SortedJson& entry, const FieldLocation& at) {
         read_fields(field_.fields, entry, records.add(""), at);
       });
       return;
@@ -163,28 +164,28 @@ class Reader {
   }
 
  private:
-  static std::string text(const SortedJson& json, const Place& place) {
+  static std::string text(const SortedJson& json, const FieldLocation& place) {
     if (!json.is_string()) place.refuse("must be a text in quotes, not " + type_of(json));
     if (json.get_ref<const std::string&>().empty()) place.refuse("is empty: say what is meant");
     return json.get<std::string>();
   }
-  double number(const SortedJson& json, const Place& place) const {
+  double number(const SortedJson& json, const FieldLocation& place) const {
     const double value = number_of(json, place.where);
     if (!in_range(field_, value)) place.refuse("must be " + range_text(field_) + for_example(field_));
     return value;
   }
-  static int whole(const SortedJson& json, const Place& place) {
+  static int whole(const SortedJson& json, const FieldLocation& place) {
     const double value = number_of(json, place.where);
     if (value != std::trunc(value) || std::abs(value) > std::numeric_limits<int>::max())
       place.refuse("must be a whole number");
     return static_cast<int>(value);
   }
-  static glm::dvec3 point(const SortedJson& json, const Place& place) {
+  static glm::dvec3 point(const SortedJson& json, const FieldLocation& place) {
     if (!json.is_array() || json.size() != 3) place.refuse("must be three numbers [x, y, z]");
     return {number_of(json[0], place.where), number_of(json[1], place.where),
             number_of(json[2], place.where)};
   }
-  static Mark mark(const SortedJson& json, const Place& place) {
+  static Mark mark(const SortedJson& json, const FieldLocation& place) {
     if (json.is_array()) return {point(json, place), "", ""};
     if (!json.is_string()) place.refuse("must be three numbers [x, y, z] or the name of a landmark");
     const std::string said = text(json, place);
@@ -213,7 +214,7 @@ class Reader {
 
   const Field& field_;
   const SortedJson& json_;
-  const Place& place_;
+  const FieldLocation& place_;
 };
 
 Json json_of(const glm::dvec3& value) {
@@ -368,7 +369,7 @@ SortedJson point_in(const std::string& word) {
 }
 
 /// One word of the command line as JSON, by the field's type.
-struct Word {
+struct JsonOfWord {
   const Field& field;
   const std::string& word;
 
@@ -422,8 +423,8 @@ constexpr bool is_list<std::vector<Value>*> = true;
 
 }  // namespace
 
-void read_fields(const std::vector<Field>& fields, const SortedJson& object, void* owner, const Place& place,
-                 const std::vector<std::string>& also) {
+void read_fields(const std::vector<Field>& fields, const SortedJson& object, void* owner,
+                 const FieldLocation& place, const std::vector<std::string>& also) {
   if (!object.is_object()) place.refuse("must be an object in braces, not " + type_of(object));
   std::vector<std::string> known = also;
   for (const Field& field : fields) known.push_back(field.name);
@@ -437,14 +438,14 @@ void read_fields(const std::vector<Field>& fields, const SortedJson& object, voi
       if (field.is_required) place.refuse("'" + field.name + "' is missing: add it");
       continue;
     }
-    const Place at = place.at(field.name);
+    const FieldLocation at = place.at(field.name);
     const Reader reader(field, *found, at);
     std::visit([&](const auto& slot) { reader.read(slot); }, field.slot(owner));
   }
 }
 
 void need_fields_read(const std::vector<Field>& fields, const SortedJson& object, const void* owner,
-                      const Place& place) {
+                      const FieldLocation& place) {
   for (const Field& field : fields) {
     const auto* conditional = field.slot.target<ConditionalSlot>();
     const auto given = object.find(field.name);
@@ -493,7 +494,9 @@ Json fields_schema(const std::vector<Field>& fields, void* fresh) {
 }
 
 SortedJson json_of_words(const Field& field, void* fresh, const std::vector<std::string>& words) {
-  const auto one = [&](const std::string& word) { return std::visit(Word{field, word}, field.slot(fresh)); };
+  const auto one = [&](const std::string& word) {
+    return std::visit(JsonOfWord{field, word}, field.slot(fresh));
+  };
   if (!takes_several(field, fresh)) return one(words.empty() ? "" : words.back());
   SortedJson list = SortedJson::array();
   for (const std::string& word : words) list.push_back(one(word));

@@ -15,13 +15,13 @@ namespace octotomy::planner {
 /// here. Throws std::runtime_error with the place, what is wrong and what to try: an unknown key with the
 /// nearest known one, a missing one, a wrong type, a number out of its range, a name that is not bound.
 void read_fields(const std::vector<Field>& fields, const nlohmann::json& object, void* owner,
-                 const Place& place, const std::vector<std::string>& also = {});
+                 const FieldLocation& place, const std::vector<std::string>& also = {});
 
 /// Throws std::runtime_error with the place for a field that `object` gives although the operation in `owner`
 /// does not read it (Field::read_if()): what changes nothing is a mistake of whoever gave it. A false flag, an
 /// empty list and null give nothing.
 void need_fields_read(const std::vector<Field>& fields, const nlohmann::json& object, const void* owner,
-                      const Place& place);
+                      const FieldLocation& place);
 
 /// The fields as JSON that read_fields() reads back to the same value. Optional fields that are absent, and
 /// empty lists, are left out, and those that the operation does not read (Field::read_if()).

@@ -35,7 +35,7 @@ struct Operation {
   /// A value with all defaults.
   std::function<std::shared_ptr<void>()> fresh;
   /// Checks conditions that involve several fields. Throws if one is not met.
-  std::function<void(const void* value, const Place& place)> check;
+  std::function<void(const void* value, const FieldLocation& place)> check;
   /// The operation in words, to show to users: "skull & cut".
   std::function<std::string(const void* value, const Objects& objects)> definition;
   /// Completes the value by what the operation computes, such as a plane of best fit. The other functions get
@@ -55,7 +55,7 @@ struct Operation {
   std::function<void(const void* value, const AnswerBench& bench, Exported& made)> write;
   /// The part of writing a file that needs no certificate. Stores its results in the bench's `kept`, where
   /// `write` reads them. Runs in parallel with later steps. Empty if there is no such part.
-  std::function<void(const void* value, const AnswerBench& bench)> ahead;
+  std::function<void(const void* value, const AnswerBench& bench)> prepare_file;
   /// The objects that the operation uses in addition to those that its fields name.
   std::function<std::vector<std::string>(const void* value)> uses;
   /// Examples of the operation as a verb on files; empty: it is not a verb. For an operation that makes a
@@ -117,7 +117,7 @@ class Describe {
   Describe&& of_head() && { return entry_.is_of_head = true, std::move(*this); }
   Describe&& tool() && { return entry_.is_tool = true, std::move(*this); }
   Describe&& motion() && { return entry_.is_motion = true, std::move(*this); }
-  Describe&& check(void (*part)(const Value&, const Place&)) && { return bind(entry_.check, part); }
+  Describe&& check(void (*part)(const Value&, const FieldLocation&)) && { return bind(entry_.check, part); }
   using Definition = std::string (*)(const Value&, const Objects&);
   using Voxels = void (*)(const Value&, const VoxelBench&, VoxelSide&);
   using Triangles = void (*)(const Value&, const MeshBench&, MeshSide&);
@@ -150,7 +150,9 @@ class Describe {
   Describe&& write(void (*part)(const Value&, const AnswerBench&, Exported&)) && {
     return bind(entry_.write, part);
   }
-  Describe&& ahead(void (*part)(const Value&, const AnswerBench&)) && { return bind(entry_.ahead, part); }
+  Describe&& prepares_file(void (*part)(const Value&, const AnswerBench&)) && {
+    return bind(entry_.prepare_file, part);
+  }
   Describe&& uses(std::vector<std::string> (*part)(const Value&)) && { return bind(entry_.uses, part); }
   operator Operation() && { return std::move(entry_); }
 

@@ -24,12 +24,12 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
-void Place::refuse(const std::string& what) const {
+void FieldLocation::refuse(const std::string& what) const {
   throw std::runtime_error(where.empty() ? what : where + ": " + what);
 }
 
 void Scope::bind(const std::string& where, const std::string& id, const Operation& operation) {
-  const Place place{where};
+  const FieldLocation place{where};
   if (!is_identifier(id))
     place.refuse("id '" + id + "' is not a name: use letters, digits and underscores, a letter first");
   if (operation.makes == Makes::Scan && contains(scans_, id))
@@ -44,19 +44,19 @@ void Scope::need_object(const std::string& where, const std::string& name) const
   const auto found = operations_.find(name);
   if (found != operations_.end() && found->second->makes == Makes::Object) return;
   if (found != operations_.end())
-    Place{where}.refuse("'" + name + "' is a " + found->second->name + " step, not an object");
-  Place{where}.refuse("no earlier step is called '" + name + "'" + suggestion(name, objects_));
+    FieldLocation{where}.refuse("'" + name + "' is a " + found->second->name + " step, not an object");
+  FieldLocation{where}.refuse("no earlier step is called '" + name + "'" + suggestion(name, objects_));
 }
 
 void Scope::need_scan(const std::string& where, const std::string& name) const {
   const auto found = operations_.find(name);
   const bool is_made = found != operations_.end() && found->second->makes == Makes::Scan;
   if (!is_made && !contains(scans_, name))
-    Place{where}.refuse("no scan is called '" + name + "'" + suggestion(name, scans_));
+    FieldLocation{where}.refuse("no scan is called '" + name + "'" + suggestion(name, scans_));
 }
 
 void Scope::bind_landmark(const std::string& where, const NamedPoint& landmark) {
-  const Place place{where};
+  const FieldLocation place{where};
   if (landmark.name.empty() || landmark.name.find('@') != std::string::npos)
     place.refuse("the landmark '" + landmark.name + "' needs a name without '@'");
   if (!landmark_of_.emplace(landmark.name, landmarks_.size()).second)
@@ -69,20 +69,20 @@ glm::dvec3 Scope::landmark_mm(const std::string& where, const std::string& name)
     return landmarks_[found->second].p_mm;
   std::vector<std::string> known;
   for (const NamedPoint& landmark : landmarks_) known.push_back(landmark.name);
-  Place{where}.refuse(known.empty()
-                          ? "no earlier step names landmarks: add a landmarks step, or type [x, y, z]"
-                          : "no landmark is called '" + name + "'" + suggestion(name, known));
+  FieldLocation{where}.refuse(known.empty()
+                                  ? "no earlier step names landmarks: add a landmarks step, or type [x, y, z]"
+                                  : "no landmark is called '" + name + "'" + suggestion(name, known));
 }
 
 void Scope::hold_head(const std::string& where, const glm::dmat3& lps_from_head) {
   if (lps_from_head_)
-    Place{where}.refuse("an earlier step already sets the head's orientation: keep one of the two");
+    FieldLocation{where}.refuse("an earlier step already sets the head's orientation: keep one of the two");
   lps_from_head_ = lps_from_head;
 }
 
 void Scope::take_path(const std::string& where, const std::string& path) {
   if (!paths_.insert(path).second)
-    Place{where}.refuse("'" + path + "' is written by an earlier step: choose another");
+    FieldLocation{where}.refuse("'" + path + "' is written by an earlier step: choose another");
 }
 
 }  // namespace octotomy::planner

@@ -61,12 +61,14 @@ class Scope {
 };
 
 /// The position of a value in its document, for error messages, and the names bound there.
-struct Place {
+struct FieldLocation {
   std::string where;       ///< "step 'cut'"; may be empty
   Scope* scope = nullptr;  ///< null: names are paths of files and are not checked
 
   /// The place of a field or record of this value.
-  Place at(const std::string& field) const { return {where.empty() ? field : where + ", " + field, scope}; }
+  FieldLocation at(const std::string& field) const {
+    return {where.empty() ? field : where + ", " + field, scope};
+  }
   /// Throws std::runtime_error: "step 'cut', regions: has no region".
   [[noreturn]] void refuse(const std::string& what) const;
   void need_object(const std::string& name) const {

@@ -137,13 +137,13 @@ class Chart {
 
  private:
   /// A placed landmark, or the mean of earlier places.
-  struct Place {
+  struct PlacedPoint {
     std::optional<std::size_t> landmark;
     std::vector<std::size_t> mean_of;
   };
 
   void add_mean(const CephalometricLandmark& landmark) {
-    Place mean;
+    PlacedPoint mean;
     for (const std::string& name : landmark.mean_of) {
       const auto part = place_of_.find(name);
       if (part == place_of_.end()) return;
@@ -195,7 +195,7 @@ class Chart {
     return measure.definition->kind == Kind::Difference ? a - b : 100.0 * a / b;
   }
 
-  std::vector<Place> places_;
+  std::vector<PlacedPoint> places_;
   std::vector<std::size_t> used_;  ///< places, ascending
   std::vector<ChartedMeasure> measures_;
   std::vector<std::pair<std::string, std::vector<std::string>>> lacking_;

@@ -33,21 +33,21 @@ constexpr double lattice_share = 0.03;
 constexpr std::size_t samples = 5000;
 
 /// An object that moves, in its last position.
-struct Piece {
+struct MovedObject {
   const Object* moved;
   const Object* still;
   glm::dmat4 motion;
 };
 
-std::vector<Piece> pieces_of(const Objects& objects) {
-  std::vector<Piece> pieces;
+std::vector<MovedObject> pieces_of(const Objects& objects) {
+  std::vector<MovedObject> pieces;
   for (const Object& object : objects) {
     if (!object.moved) continue;
     const Object* still = &objects.at(object.moved->object);
     while (still->moved) still = &objects.at(still->moved->object);
-    const Piece piece{&object, still, moved_since_made(objects, object.id)};
-    const auto same =
-        std::find_if(pieces.begin(), pieces.end(), [&](const Piece& other) { return other.still == still; });
+    const MovedObject piece{&object, still, moved_since_made(objects, object.id)};
+    const auto same = std::find_if(pieces.begin(), pieces.end(),
+                                   [&](const MovedObject& other) { return other.still == still; });
     if (same == pieces.end())
       pieces.push_back(piece);
     else
@@ -65,14 +65,15 @@ bool shares_bone(const Object& object, const Object& piece) {
 }
 
 /// The largest object from the scan that is not part of a moved one; if there is none, the largest of all.
-const Object& unmoved_of(const Objects& objects, const std::vector<Piece>& pieces, const std::string& asked) {
+const Object& unmoved_of(const Objects& objects, const std::vector<MovedObject>& pieces,
+                         const std::string& asked) {
   if (!asked.empty()) return objects.at(asked);
   const Object* best = nullptr;
   for (const bool apart : {true, false}) {
     for (const Object& object : objects) {
       if (object.is_tool || object.moved || !object.shown || !object.mesh.whole) continue;
       if (apart && std::any_of(pieces.begin(), pieces.end(),
-                               [&](const Piece& piece) { return shares_bone(object, *piece.still); }))
+                               [&](const MovedObject& piece) { return shares_bone(object, *piece.still); }))
         continue;
       if (best == nullptr || object.voxel.measures.volume_mm3 > best->voxel.measures.volume_mm3)
         best = &object;
@@ -175,7 +176,7 @@ std::optional<std::string> bound_finding(const voxel::Scene& after, double low) 
 Outcome outcome_of(const Plan& plan, const Evaluation& evaluation, const voxel::Scene& after,
                    const OutcomeOptions& options) {
   const Objects& objects = evaluation.objects;
-  const std::vector<Piece> pieces = pieces_of(objects);
+  const std::vector<MovedObject> pieces = pieces_of(objects);
   const Object& unmoved = unmoved_of(objects, pieces, options.unmoved);
   if (!options.low && !unmoved.shown)
     throw std::runtime_error(
@@ -194,7 +195,7 @@ Outcome outcome_of(const Plan& plan, const Evaluation& evaluation, const voxel::
   if (auto finding = bound_finding(after, low)) outcome.findings.push_back(std::move(*finding));
   const std::vector<MovedLandmark> landmarks = moved_landmarks(objects, plan.landmarks);
   const glm::dmat3& head = objects.lps_from_head;
-  for (const Piece& piece : pieces) {
+  for (const MovedObject& piece : pieces) {
     const Laid part =
         laid(solid_of(*piece.still), surface, outcome.after_from_before * piece.motion, sample_mm, options);
     PieceOutcome made;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "planner/plan/answers.h"
 #include "planner/plan/evaluate.h"
+#include "planner/plan/plan_results.h"
 #include "planner/plan/signature.h"
 #include "planner/result/report/scene_pictures.h"
 #include "voxel/space/scene.h"

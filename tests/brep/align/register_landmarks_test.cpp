@@ -39,7 +39,8 @@ TEST(RegisterLandmarks, AnyMotionIsRecoveredWhateverTheOrderOfNames) {
     motion = glm::scale(motion, glm::dvec3(scale));
     auto there = moved_marks(face(), motion);
     std::shuffle(there.begin(), there.end(), random);
-    const auto fit = register_landmarks(face(), there, seed % 2 == 0 ? Motion::rigid : Motion::similarity);
+    const auto fit =
+        register_landmarks(face(), there, seed % 2 == 0 ? MotionModel::rigid : MotionModel::similarity);
     EXPECT_LT(largest_difference(fit.fixed_from_moving, motion), 1e-9) << "seed " << seed;
     EXPECT_LT(fit.rms_mm, 1e-9) << "seed " << seed;
     EXPECT_NEAR(fit.scale, scale, 1e-11) << "seed " << seed;
@@ -107,15 +108,15 @@ TEST(RegisterLandmarks, ThreePointsTrustTheFirstThenTheDirectionToTheSecond) {
   const glm::dmat4 motion = glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(5, 6, 7)), 0.8,
                                         glm::normalize(glm::dvec3(1, 2, 3)));
   auto there = moved_marks(face(), motion);
-  EXPECT_LT(
-      largest_difference(register_landmarks(face(), there, Motion::three_points).fixed_from_moving, motion),
-      1e-12);
+  EXPECT_LT(largest_difference(register_landmarks(face(), there, MotionModel::three_points).fixed_from_moving,
+                               motion),
+            1e-12);
   // The second pair disagrees about its distance only, the third about its place in the plane, the rest in
   // any way: none of that may turn the answer.
   there[1].p_mm += 2.5 * glm::normalize(there[1].p_mm - there[0].p_mm);
   there[2].p_mm += 3.0 * (there[1].p_mm - there[0].p_mm) + 0.5 * (there[2].p_mm - there[0].p_mm);
   for (std::size_t k = 3; k < there.size(); ++k) there[k].p_mm += glm::dvec3(1.0, -2.0, 3.0);
-  const LandmarkFit fit = register_landmarks(face(), there, Motion::three_points);
+  const LandmarkFit fit = register_landmarks(face(), there, MotionModel::three_points);
   EXPECT_LT(largest_difference(fit.fixed_from_moving, motion), 1e-12);
   EXPECT_LT(fit.residuals_mm[0], 1e-12);
   EXPECT_NEAR(fit.residuals_mm[1], 2.5, 1e-12);
@@ -126,7 +127,7 @@ TEST(RegisterLandmarks, ThreePointsTrustTheFirstThenTheDirectionToTheSecond) {
 TEST(RegisterLandmarks, ThreePointsOnALineAreRefusedThoughOthersLieBesideIt) {
   std::vector<Landmark> marks = {{"a", {0, 0, 0}}, {"b", {10, 0, 0}}, {"c", {20, 0, 0}}, {"d", {0, 9, 3}}};
   EXPECT_NO_THROW(register_landmarks(marks, marks));
-  EXPECT_THROW(register_landmarks(marks, marks, Motion::three_points), std::invalid_argument);
+  EXPECT_THROW(register_landmarks(marks, marks, MotionModel::three_points), std::invalid_argument);
 }
 
 }  // namespace

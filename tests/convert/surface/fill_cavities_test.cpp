@@ -17,7 +17,7 @@ TEST(FillCavities, OnlyCavitiesSmallerThanTheVolumeAreFilledAndCounted) {
   const brep::Triangles small = ball({5, 0, 0}, 0.01, 0), medium = ball({-5, 0, 0}, 2.0, 2),
                         outer = ball({0, 0, 0}, 20.0, 3);
   const brep::Solid solid = brep::solid_of(together(together(outer, inside_out(small)), inside_out(medium)));
-  const Filled filled = fill_cavities(solid, 1.0);
+  const FilledCavities filled = fill_cavities(solid, 1.0);
   EXPECT_EQ(filled.cavities, 1u);
   EXPECT_NEAR(filled.volume_mm3, tests::volume_mm3(small), 1e-12);
   EXPECT_NEAR(brep::volume_mm3(filled.solid), tests::volume_mm3(outer) - tests::volume_mm3(medium), 1e-9);
@@ -26,7 +26,7 @@ TEST(FillCavities, OnlyCavitiesSmallerThanTheVolumeAreFilledAndCounted) {
 
 TEST(FillCavities, ASmallBodyIsNoCavityAndASolidWithoutAnyStaysAsItIs) {
   const brep::Solid bodies = brep::solid_of(together(ball({0, 0, 0}, 20.0, 3), ball({50, 0, 0}, 0.01, 0)));
-  const Filled filled = fill_cavities(bodies, 1.0);
+  const FilledCavities filled = fill_cavities(bodies, 1.0);
   EXPECT_EQ(filled.cavities, 0u);
   EXPECT_EQ(filled.solid.mesh().n_faces(), bodies.mesh().n_faces());
   EXPECT_THROW(fill_cavities(bodies, 0.0), std::invalid_argument);

@@ -32,7 +32,7 @@ void fail_in(const std::string& part, const Fail& fail) {
     throw std::system_error(std::make_error_code(std::errc::no_space_on_device), "the test's disk");
 }
 
-void check(const Fail& fail, const Place&) {
+void check(const Fail& fail, const FieldLocation&) {
   fail_in("check", fail);
 }
 

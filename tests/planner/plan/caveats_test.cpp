@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "planner/operation/table/json.h"
-#include "planner/plan/answers.h"
 #include "planner/plan/evaluate.h"
+#include "planner/plan/plan_results.h"
 #include "tests/planner/ball_scan.h"
 
 namespace octotomy::planner {

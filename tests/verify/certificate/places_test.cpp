@@ -324,8 +324,9 @@ TEST(Places, OfPartsACrumbThatNoFaceHoldsIsChanceAndABiteIsNone) {
       return std::min({inward.x, inward.y, inward.z});
     };
     if (std::abs(depth(8.5, 20.5)) < 0.01) return {on_surface, on_surface, 3};
-    const Word word = std::max(depth(8.5, 20.5), depth(24.5, 27.5)) > 0.0 ? certainly_in : certainly_out;
-    return {word, word};
+    const AllowedSides allowed =
+        std::max(depth(8.5, 20.5), depth(24.5, 27.5)) > 0.0 ? certainly_in : certainly_out;
+    return {allowed, allowed};
   };
   const auto contradicted = [&](const Expression& octree) {
     return judge_places(voxel::combine(universe, octree), convert::voxelise(universe, surface.linked()),
@@ -394,8 +395,8 @@ class LumpOnAThread : public testing::Test {
       if (std::abs(depth(body_, p_mm)) < 0.01) return {on_surface, on_surface, 3};
       const double inside =
           std::max({depth(body_, p_mm), depth(lump_, p_mm), with_thread ? depth(thread_, p_mm) : -1.0});
-      const Word word = inside > 0.0 ? certainly_in : certainly_out;
-      return {word, word};
+      const AllowedSides allowed = inside > 0.0 ? certainly_in : certainly_out;
+      return {allowed, allowed};
     };
   }
   Places judged(const Expression& voxels, const brep::Solid& mesh, const Witness& witness) const {
@@ -555,10 +556,11 @@ TEST(Witness, SaysOfTheMeshAloneAndOfWordsAloneWhatItSaysOfAll) {
       const Reading both = subject.witness(p, 0.0), mesh = subject.witness.of_mesh(p);
       ASSERT_EQ(mesh.mesh, both.mesh) << subject.name << " at " << p.x << ", " << p.y << ", " << p.z;
       ASSERT_EQ(mesh.surfaces, both.surfaces) << subject.name << " at " << p.x << ", " << p.y << ", " << p.z;
-      const Reading words = subject.witness.words(p);
-      ASSERT_EQ(words.mesh, both.mesh) << subject.name << " at " << p.x << ", " << p.y << ", " << p.z;
-      ASSERT_EQ(words.voxel, both.voxel) << subject.name << " at " << p.x << ", " << p.y << ", " << p.z;
-      ASSERT_EQ(subject.witness.mesh_word(p), both.mesh) << subject.name << " at " << p.x << ", " << p.y;
+      const Reading allowed_sides = subject.witness.allowed_sides(p);
+      ASSERT_EQ(allowed_sides.mesh, both.mesh) << subject.name << " at " << p.x << ", " << p.y << ", " << p.z;
+      ASSERT_EQ(allowed_sides.voxel, both.voxel)
+          << subject.name << " at " << p.x << ", " << p.y << ", " << p.z;
+      ASSERT_EQ(subject.witness.mesh_sides(p), both.mesh) << subject.name << " at " << p.x << ", " << p.y;
       near += both.mesh.near ? 1 : 0;
     }
   }

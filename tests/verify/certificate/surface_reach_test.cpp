@@ -232,8 +232,8 @@ TEST_F(ReshapedBalls, ReadsOnceAndIsNoneOfItsCopiesUnderABoolean) {
   EXPECT_EQ(calls, 0);
   const Witness copy = witness;
   EXPECT_EQ(copy.words({0, 0, 0}).mesh, certainly_in);
-  EXPECT_EQ(witness.words({22, 0, 0}).voxel, certainly_in);
-  EXPECT_EQ(witness.words({15, 0, 0}).mesh, certainly_out);
+  EXPECT_EQ(witness.allowed_sides({22, 0, 0}).voxel, certainly_in);
+  EXPECT_EQ(witness.allowed_sides({15, 0, 0}).mesh, certainly_out);
   EXPECT_EQ(witness.of_mesh({0, 0, 12.0}).mesh, on_surface);
   EXPECT_EQ(calls, 1);
   EXPECT_TRUE(is_reshaped(copy));

@@ -5,7 +5,7 @@
 #include <map>
 #include <random>
 
-#include "verify/interval/in_order.h"
+#include "verify/interval/ordered_parallel.h"
 
 namespace octotomy::verify {
 namespace {
@@ -30,11 +30,11 @@ TEST(CellTable, GathersByCellAndIsReadInTheirOrder) {
   EXPECT_EQ(next, expected.end());
 }
 
-TEST(InOrder, TakesEachItemOnceInAscendingOrder) {
+TEST(OrderedParallel, TakesEachItemOnceInAscendingOrder) {
   for (const std::size_t count :
        {std::size_t{0}, std::size_t{1}, std::size_t{1} << 14, std::size_t{100'003}}) {
     std::size_t taken = 0;
-    in_order<std::size_t>(
+    ordered_parallel<std::size_t>(
         count, [](std::size_t i) { return 3 * i + 1; },
         [&](std::size_t i, std::size_t item) {
           ASSERT_EQ(i, taken++);

@@ -34,10 +34,11 @@ TEST(GrownWitness, FacesDoNotJoinCubesThatMeetAtACornerAndCornersDo) {
   for (const int neighbours : {6, 18, 26}) {
     const Witness witness = witness_of_grown(
         scene, {.seeds_mm = {sample_mm(scene, 2)}, .tolerance = 10.0, .neighbours = neighbours});
-    EXPECT_EQ(witness.words(sample_mm(scene, 4)).voxel, certainly_in) << neighbours;
-    EXPECT_EQ(witness.words(sample_mm(scene, 5)).voxel, neighbours == 26 ? certainly_in : certainly_out)
+    EXPECT_EQ(witness.allowed_sides(sample_mm(scene, 4)).voxel, certainly_in) << neighbours;
+    EXPECT_EQ(witness.allowed_sides(sample_mm(scene, 5)).voxel,
+              neighbours == 26 ? certainly_in : certainly_out)
         << neighbours;
-    EXPECT_EQ(witness.words(sample_mm(scene, 0)).voxel, certainly_out) << neighbours;
+    EXPECT_EQ(witness.allowed_sides(sample_mm(scene, 0)).voxel, certainly_out) << neighbours;
   }
 }
 
@@ -45,8 +46,8 @@ TEST(GrownWitness, AWindowsPartIsTheOneAtTheSeed) {
   const voxel::Scene scene = two_cubes();
   const Witness witness =
       witness_of_grown(scene, {.seeds_mm = {sample_mm(scene, 7)}, .tolerance = {}, .low = 50.0});
-  EXPECT_EQ(witness.words(sample_mm(scene, 8)).voxel, certainly_in);
-  EXPECT_EQ(witness.words(sample_mm(scene, 4)).voxel, certainly_out);
+  EXPECT_EQ(witness.allowed_sides(sample_mm(scene, 8)).voxel, certainly_in);
+  EXPECT_EQ(witness.allowed_sides(sample_mm(scene, 4)).voxel, certainly_out);
 }
 
 TEST(GrownWitness, TheRangeOfTheSeedsIsWidenedAtBothEnds) {
@@ -55,27 +56,27 @@ TEST(GrownWitness, TheRangeOfTheSeedsIsWidenedAtBothEnds) {
   const Witness all =
       witness_of_grown(scene, {.seeds_mm = {sample_mm(scene, 0), sample_mm(scene, 2)}, .tolerance = 0.0});
   for (const int sample : {0, 2, 5, 11})
-    EXPECT_EQ(all.words(sample_mm(scene, sample)).voxel, certainly_in) << sample;
-  EXPECT_EQ(all.words(glm::dvec3(-1.5)).voxel, certainly_out) << "beyond the scan";
+    EXPECT_EQ(all.allowed_sides(sample_mm(scene, sample)).voxel, certainly_in) << sample;
+  EXPECT_EQ(all.allowed_sides(glm::dvec3(-1.5)).voxel, certainly_out) << "beyond the scan";
   const Witness wide = witness_of_grown(scene, {.seeds_mm = {sample_mm(scene, 2)}, .tolerance = 100.0});
-  EXPECT_EQ(wide.words(sample_mm(scene, 11)).voxel, certainly_in);
+  EXPECT_EQ(wide.allowed_sides(sample_mm(scene, 11)).voxel, certainly_in);
   const Witness narrow = witness_of_grown(scene, {.seeds_mm = {sample_mm(scene, 2)}, .tolerance = 99.0});
-  EXPECT_EQ(narrow.words(sample_mm(scene, 11)).voxel, certainly_out);
+  EXPECT_EQ(narrow.allowed_sides(sample_mm(scene, 11)).voxel, certainly_out);
 }
 
 TEST(GrownWitness, SamplesWithinRoundingOfABoundMayBelongOrNot) {
   const voxel::Scene scene = two_cubes();
   const Witness witness = witness_of_grown(
       scene, {.seeds_mm = {sample_mm(scene, 2)}, .tolerance = {}, .low = 100.0, .rounding = 0.5});
-  EXPECT_EQ(witness.words(sample_mm(scene, 2)).voxel, untold);
-  EXPECT_EQ(witness.words(sample_mm(scene, 0)).voxel, certainly_out);
+  EXPECT_EQ(witness.allowed_sides(sample_mm(scene, 2)).voxel, either_side);
+  EXPECT_EQ(witness.allowed_sides(sample_mm(scene, 0)).voxel, certainly_out);
 }
 
 TEST(GrownWitness, BetweenSamplesThatDifferTheSideIsUnknown) {
   const voxel::Scene scene = two_cubes();
   const Witness witness = witness_of_grown(scene, {.seeds_mm = {sample_mm(scene, 2)}, .tolerance = 10.0});
-  EXPECT_EQ(witness.words(scene.lattice.lps_mm({0.5, 2.0, 2.0})).voxel, untold);
-  EXPECT_EQ(witness.words(scene.lattice.lps_mm({2.5, 2.5, 2.5})).voxel, certainly_in);
+  EXPECT_EQ(witness.allowed_sides(scene.lattice.lps_mm({0.5, 2.0, 2.0})).voxel, either_side);
+  EXPECT_EQ(witness.allowed_sides(scene.lattice.lps_mm({2.5, 2.5, 2.5})).voxel, certainly_in);
 }
 
 TEST(GrownWitness, SeedsBeyondTheScanAreRefused) {

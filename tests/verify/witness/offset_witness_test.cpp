@@ -130,12 +130,12 @@ TEST_F(OffsetOfABall, AnotherStepsOperandFailsAlsoWhereBothKernelsTookIt) {
 TEST_F(OffsetOfABall, TheWitnessIsSureAwayFromTheMovedSurfaceAlone) {
   const Operand of = operand();
   const Witness witness = witness_of_offset(of.both, {by_mm, cell_mm});
-  const auto word = [&](double distance_mm) {
-    return witness.mesh_word(centre_mm + glm::dvec3(0.0, 0.6, 0.8) * distance_mm);
+  const auto allowed = [&](double distance_mm) {
+    return witness.mesh_sides(centre_mm + glm::dvec3(0.0, 0.6, 0.8) * distance_mm);
   };
-  EXPECT_EQ(word(radius_mm), certainly_in);
-  EXPECT_TRUE(word(radius_mm + by_mm).near);
-  EXPECT_EQ(word(radius_mm + 2.0 * by_mm), certainly_out);
+  EXPECT_EQ(allowed(radius_mm), certainly_in);
+  EXPECT_TRUE(allowed(radius_mm + by_mm).near);
+  EXPECT_EQ(allowed(radius_mm + 2.0 * by_mm), certainly_out);
 }
 
 TEST_F(OffsetOfABall, AnOperandOfWholeVoxelsAllowsHalfAVoxelMore) {

@@ -28,38 +28,38 @@ DrawnStack squares(double first_mm, double second_mm, double third_mm) {
 
 TEST(SliceWitness, BetweenSquaresTheSideIsTheMeanOfBoth) {
   const Witness witness = witness_of_slices(squares(10.0, 20.0, 20.0));
-  EXPECT_EQ(witness.mesh_word({14.99, 0.0, 5.0}), certainly_in);
-  EXPECT_EQ(witness.mesh_word({15.01, 0.0, 5.0}), certainly_out);
-  EXPECT_TRUE(witness.mesh_word({15.0, 0.0, 5.0}).near);
-  EXPECT_EQ(witness.mesh_word({12.49, 0.0, 2.5}), certainly_in);
-  EXPECT_EQ(witness.mesh_word({12.51, 0.0, 2.5}), certainly_out);
+  EXPECT_EQ(witness.mesh_sides({14.99, 0.0, 5.0}), certainly_in);
+  EXPECT_EQ(witness.mesh_sides({15.01, 0.0, 5.0}), certainly_out);
+  EXPECT_TRUE(witness.mesh_sides({15.0, 0.0, 5.0}).near);
+  EXPECT_EQ(witness.mesh_sides({12.49, 0.0, 2.5}), certainly_in);
+  EXPECT_EQ(witness.mesh_sides({12.51, 0.0, 2.5}), certainly_out);
 }
 
 TEST(SliceWitness, TheNearerSliceDecidesWhereNothingIsInterpolated) {
   DrawnStack stack = squares(10.0, 20.0, 20.0);
   stack.is_interpolated = false;
   const Witness witness = witness_of_slices(stack);
-  EXPECT_EQ(witness.mesh_word({15.0, 0.0, 4.99}), certainly_out);
-  EXPECT_EQ(witness.mesh_word({15.0, 0.0, 5.01}), certainly_in);
-  EXPECT_TRUE(witness.mesh_word({15.0, 0.0, 5.0}).near) << "halfway either slice may decide";
+  EXPECT_EQ(witness.mesh_sides({15.0, 0.0, 4.99}), certainly_out);
+  EXPECT_EQ(witness.mesh_sides({15.0, 0.0, 5.01}), certainly_in);
+  EXPECT_TRUE(witness.mesh_sides({15.0, 0.0, 5.0}).near) << "halfway either slice may decide";
 }
 
 TEST(SliceWitness, TheOutermostSlabsReachHalfAGapBeyondTheirSlices) {
   const Witness witness = witness_of_slices(squares(10.0, 10.0, 10.0));
-  EXPECT_EQ(witness.mesh_word({0.0, 0.0, -4.99}), certainly_in);
-  EXPECT_EQ(witness.mesh_word({0.0, 0.0, -5.01}), certainly_out);
-  EXPECT_EQ(witness.mesh_word({0.0, 0.0, 24.99}), certainly_in);
-  EXPECT_EQ(witness.mesh_word({0.0, 0.0, 25.01}), certainly_out);
+  EXPECT_EQ(witness.mesh_sides({0.0, 0.0, -4.99}), certainly_in);
+  EXPECT_EQ(witness.mesh_sides({0.0, 0.0, -5.01}), certainly_out);
+  EXPECT_EQ(witness.mesh_sides({0.0, 0.0, 24.99}), certainly_in);
+  EXPECT_EQ(witness.mesh_sides({0.0, 0.0, 25.01}), certainly_out);
 }
 
 TEST(SliceWitness, APolygonInAnotherIsAHoleAndAnEmptySliceIsAGap) {
   DrawnStack stack = squares(10.0, 10.0, 10.0);
   for (DrawnStack::Slice& slice : stack.slices) slice.polygons_mm.push_back(square(4.0));
-  EXPECT_EQ(witness_of_slices(stack).mesh_word({0.0, 0.0, 7.0}), certainly_out);
-  EXPECT_EQ(witness_of_slices(stack).mesh_word({7.0, 0.0, 7.0}), certainly_in);
+  EXPECT_EQ(witness_of_slices(stack).mesh_sides({0.0, 0.0, 7.0}), certainly_out);
+  EXPECT_EQ(witness_of_slices(stack).mesh_sides({7.0, 0.0, 7.0}), certainly_in);
   stack.slices[1].polygons_mm.clear();
-  EXPECT_EQ(witness_of_slices(stack).mesh_word({7.0, 0.0, 10.0}), certainly_out);
-  EXPECT_EQ(witness_of_slices(stack).mesh_word({7.0, 0.0, 4.9}), certainly_in);
+  EXPECT_EQ(witness_of_slices(stack).mesh_sides({7.0, 0.0, 10.0}), certainly_out);
+  EXPECT_EQ(witness_of_slices(stack).mesh_sides({7.0, 0.0, 4.9}), certainly_in);
 }
 
 TEST(SliceWitness, SlicesThatDoNotAscendAreRefused) {
@@ -96,10 +96,10 @@ TEST(SliceWitness, AgreesWithTheVoxelKernelsDistanceOnRandomStars) {
       const glm::dvec3 p_mm(50.0 * share(random) - 25.0, 50.0 * share(random) - 25.0,
                             40.0 * share(random) - 10.0);
       const bool inside = distance(mask.view.project(p_mm), glm::dot(p_mm, stack.look), 0.0, 0.0).low <= 0.0;
-      const Word word = witness.words(p_mm).voxel;
-      EXPECT_TRUE(word.allows(inside)) << "seed " << seed << ", point " << i;
-      in += word == certainly_in ? 1 : 0;
-      out += word == certainly_out ? 1 : 0;
+      const AllowedSides allowed = witness.allowed_sides(p_mm).voxel;
+      EXPECT_TRUE(allowed.allows(inside)) << "seed " << seed << ", point " << i;
+      in += allowed == certainly_in ? 1 : 0;
+      out += allowed == certainly_out ? 1 : 0;
     }
   }
   EXPECT_GT(in, 500u);

@@ -131,7 +131,8 @@ TEST_F(AWarpedBall, WhereAPointFindsNoOriginAnyAnswerIsAllowed) {
   EXPECT_FALSE(turn->turns_over());
   EXPECT_FALSE(turn->origin_mm({17, 15, 18}));
   const Witness window = witness_of_window(scan(), 0.0, endless, tests::unit_universe(5));
-  EXPECT_EQ(witness_of_warped(window, still().triangles(), turn).words({17, 15, 18}).mesh, on_surface);
+  EXPECT_EQ(witness_of_warped(window, still().triangles(), turn).allowed_sides({17, 15, 18}).mesh,
+            on_surface);
   const auto turned_over = std::make_shared<const NodeMotion>(all, over, fade_mm);
   EXPECT_TRUE(turned_over->turns_over());
   EXPECT_FALSE(witness_of_warped(window, still().triangles(), turned_over));

@@ -47,15 +47,15 @@ Contradictions contradictions(const std::shared_ptr<const voxel::Scene>& scan, d
   Contradictions found;
   for (const auto& [a, b, c] : mesh.faces)
     found.triangles +=
-        witness.mesh_word((mesh.points_mm[a] + mesh.points_mm[b] + mesh.points_mm[c]) / 3.0).near ? 0 : 1;
+        witness.mesh_sides((mesh.points_mm[a] + mesh.points_mm[b] + mesh.points_mm[c]) / 3.0).near ? 0 : 1;
   const voxel::Octree inside =
       convert::voxelise(universe, brep::trusted_solid(mesh, brep::Proof::Construction).linked());
   for (int z = 0; z < 64; ++z)
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x) {
-        const Word word = witness.mesh_word(universe.lattice().lps_mm({x, y, z}));
-        found.sure += word == certainly_in ? 1 : 0;
-        found.voxels += word.allows(inside.contains({x, y, z})) ? 0 : 1;
+        const AllowedSides allowed = witness.mesh_sides(universe.lattice().lps_mm({x, y, z}));
+        found.sure += allowed == certainly_in ? 1 : 0;
+        found.voxels += allowed.allows(inside.contains({x, y, z})) ? 0 : 1;
       }
   return found;
 }

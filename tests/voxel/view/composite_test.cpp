@@ -12,7 +12,7 @@
 #include "tests/voxel/field_scene.h"
 #include "voxel/tree/interpolate.h"
 #include "voxel/view/object_normals.h"
-#include "voxel/view/tone.h"
+#include "voxel/view/srgb.h"
 
 namespace octotomy::voxel {
 namespace {

@@ -8,7 +8,7 @@
 #include "voxel/solid/combine.h"
 #include "voxel/view/lab.h"
 #include "voxel/view/render.h"
-#include "voxel/view/tone.h"
+#include "voxel/view/srgb.h"
 
 namespace octotomy::voxel {
 namespace {

@@ -7,7 +7,7 @@
 namespace octotomy::planner::serve {
 namespace {
 
-PaneQueue::Asked asked(std::int64_t id, int pane = 0, bool is_moving = true, std::uint64_t window = 1) {
+PaneQueue::PaneRequest asked(std::int64_t id, int pane = 0, bool is_moving = true, std::uint64_t window = 1) {
   return {{window, pane}, {id, "pane", {}}, is_moving};
 }
 
@@ -88,7 +88,7 @@ TEST(PaneQueue, AWindowThatHasGoneLeavesNothing) {
 }
 
 /// A queue that has given out a request, whose picture is drawn, and its token.
-std::stop_token token_of_drawn(PaneQueue& queue, PaneQueue::Asked request) {
+std::stop_token token_of_drawn(PaneQueue& queue, PaneQueue::PaneRequest request) {
   queue.ask(std::move(request));
   return queue.next({})->stop.get_token();
 }

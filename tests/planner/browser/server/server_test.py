@@ -39,7 +39,7 @@ def octotomy(folder, *arguments):
 
 
 class Served(unittest.TestCase):
-    """One server, whose desk holds the head phantom."""
+    """One server, whose session holds the head phantom."""
 
     @classmethod
     def setUpClass(cls):
@@ -66,7 +66,7 @@ class Served(unittest.TestCase):
         return self.window.ask("pane", pane=0, size=[300, 200], dragging=False, **said)
 
 
-class Gate(Served):
+class AccessControl(Served):
     def test_a_wrong_token_origin_or_host_is_refused(self):
         where = f"{self.server.host}:{self.server.port}"
         for wrong in ({"token": ""}, {"token": "0" * 32}, {"token": self.server.token[:-1]},
@@ -326,7 +326,7 @@ class Wire(Served):
             self.window.send_bytes(json.dumps({"do": "shown", "pane": 4, "frame": rest}).encode())
 
 
-class Desk(Served):
+class Session(Served):
     def test_edits_undo_redo_and_branches_reach_every_window(self):
         other = Window(self.server)
         state = self.window.ask("edit", add={"step": BOX}, what="draw the cut")

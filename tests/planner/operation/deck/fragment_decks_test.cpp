@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "convert/tet/tetrahedralise.h"
-#include "planner/plan/answers.h"
+#include "planner/plan/plan_results.h"
 #include "planner/plan/random_plan.h"
 #include "planner/plan/sha256.h"
 #include "tests/convert/surfaces.h"
@@ -169,9 +169,9 @@ TEST(FragmentDecks, BegunAheadAreTheSameFilesAndReasons) {
     std::vector<Exported> made;
     for (const bool ahead : {false, true}) {
       EvaluateOptions options;
-      options.ahead = ahead;
+      options.prepares_files = ahead;
       const Evaluation evaluation = evaluate(plan, options);
-      EXPECT_EQ(evaluation.ahead.size(), ahead ? 1u : 0u) << keys;
+      EXPECT_EQ(evaluation.file_preparations.size(), ahead ? 1u : 0u) << keys;
       made.push_back(deck_of(plan, evaluation, folder / (ahead ? "ahead" : "after")));
     }
     EXPECT_EQ(made[0].written, made[1].written) << keys;
@@ -190,10 +190,10 @@ TEST(FragmentDecks, BegunAheadShareOneFillingAndTellItsProgressAndTime) {
   const Plan plan = folder.plan_of_half(
       R"("path": "ball.inp" }, { "id": "again", "do": "deck", "object": "upper", "path": "ball.vtu")");
   EvaluateOptions options;
-  options.ahead = true;
+  options.prepares_files = true;
   const Evaluation evaluation = evaluate(plan, options);
-  ASSERT_EQ(evaluation.ahead.size(), 2u);
-  EXPECT_EQ(evaluation.ahead.at("deck"), evaluation.ahead.at("again"));
+  ASSERT_EQ(evaluation.file_preparations.size(), 2u);
+  EXPECT_EQ(evaluation.file_preparations.at("deck"), evaluation.file_preparations.at("again"));
   std::filesystem::create_directory(folder / "out");
   Timings timings;
   const std::vector<Exported> files = write_files(plan, evaluation, folder / "out", timings);
@@ -212,7 +212,7 @@ TEST(FragmentDecks, BegunAheadEndWithTheEvaluationOrTheStop) {
   std::filesystem::create_directory(folder / "out");
   std::stop_source source;
   EvaluateOptions options{source.get_token(), {}};
-  options.ahead = true;
+  options.prepares_files = true;
   const Evaluation evaluation = evaluate(plan, options);
   evaluate(plan, options);  // begins a filling that nobody wants
   source.request_stop();

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "planner/plan/answers.h"
 #include "planner/plan/plan.h"
+#include "planner/plan/plan_results.h"
 #include "tests/planner/ball_scan.h"
 
 namespace octotomy::planner {

@@ -7,7 +7,7 @@
 
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/measure.h"
-#include "planner/plan/answers.h"
+#include "planner/plan/plan_results.h"
 #include "tests/file_bytes.h"
 #include "tests/planner/operation/ball_operation.h"
 #include "voxel/measure/measure.h"

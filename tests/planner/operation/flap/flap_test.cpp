@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "planner/operation/table/json.h"
-#include "planner/plan/answers.h"
 #include "planner/plan/evaluate.h"
+#include "planner/plan/plan_results.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/planner/ct_scene.h"
 #include "verify/phantom/leg_phantom.h"

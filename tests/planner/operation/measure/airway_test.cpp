@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-#include "planner/operation/measure/passage.h"
+#include "planner/operation/measure/airway_sections.h"
 #include "planner/operation/table/json.h"
-#include "planner/plan/answers.h"
 #include "planner/plan/evaluate.h"
+#include "planner/plan/plan_results.h"
 #include "tests/planner/ball_scan.h"
 #include "voxel/scan/write_scene.h"
 

@@ -4,7 +4,7 @@
 
 #include "planner/operation/measure/near_surfaces.h"
 #include "planner/operation/table/json.h"
-#include "planner/plan/answers.h"
+#include "planner/plan/plan_results.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {

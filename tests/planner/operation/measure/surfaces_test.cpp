@@ -6,7 +6,7 @@
 #include "brep/mesh/health.h"
 #include "planner/operation/table/field_json.h"
 #include "planner/operation/table/operation.h"
-#include "planner/plan/answers.h"
+#include "planner/plan/plan_results.h"
 #include "tests/file_bytes.h"
 #include "tests/planner/operation/ball_operation.h"
 #include "voxel/scan/read_scene.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "planner/operation/table/json.h"
-#include "planner/plan/answers.h"
+#include "planner/plan/plan_results.h"
 #include "tests/planner/ct_scene.h"
 #include "tests/planner/operation/ball_operation.h"
 #include "verify/phantom/chance.h"

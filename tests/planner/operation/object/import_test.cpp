@@ -5,7 +5,7 @@
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/triangles.h"
 #include "planner/operation/table/json.h"
-#include "planner/plan/answers.h"
+#include "planner/plan/plan_results.h"
 #include "tests/brep/shapes.h"
 #include "tests/brep/told.h"
 #include "tests/planner/operation/ball_operation.h"

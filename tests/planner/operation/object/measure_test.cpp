@@ -6,7 +6,7 @@
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/triangles.h"
 #include "planner/operation/table/json.h"
-#include "planner/plan/answers.h"
+#include "planner/plan/plan_results.h"
 #include "tests/brep/shapes.h"
 #include "tests/planner/ct_scene.h"
 #include "tests/planner/operation/ball_operation.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "planner/plan/answers.h"
+#include "planner/plan/plan_results.h"
 #include "tests/planner/operation/ball_operation.h"
 #include "voxel/scan/read_scene.h"
 

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "planner/operation/table/json.h"
-#include "planner/plan/answers.h"
+#include "planner/plan/plan_results.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {

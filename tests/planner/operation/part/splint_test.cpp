@@ -6,7 +6,7 @@
 
 #include "planner/operation/part/arch_band.h"
 #include "planner/operation/table/json.h"
-#include "planner/plan/answers.h"
+#include "planner/plan/plan_results.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "brep/mesh/error.h"
-#include "planner/plan/in_step.h"
+#include "planner/plan/step_errors.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner {
@@ -78,7 +78,7 @@ TEST(Fault, IsReadBackFromItsName) {
 
 TEST(Fault, KeepsItsKindAndNamesTheStepItIsIn) {
   for (const Case& each : cases()) {
-    const auto [fault, message] = caught([&] { in_step("cut", each.fail); });
+    const auto [fault, message] = caught([&] { name_step_in_errors("cut", each.fail); });
     EXPECT_EQ(fault, each.fault) << each.name;
     const bool goes_by = each.fault == Fault::Cancelled || each.name == "no memory";
     EXPECT_EQ(message.find("step 'cut': ") == std::string::npos, goes_by) << each.name << ": " << message;
@@ -87,7 +87,7 @@ TEST(Fault, KeepsItsKindAndNamesTheStepItIsIn) {
 
 TEST(Fault, SaysThatTheProgramIsWrongOnlyWhereItIs) {
   for (const Case& each : cases()) {
-    const std::string message = caught([&] { in_step("cut", each.fail); }).second;
+    const std::string message = caught([&] { name_step_in_errors("cut", each.fail); }).second;
     const bool blames_itself = message.find("mistake in the program") != std::string::npos &&
                                message.find("report") != std::string::npos;
     EXPECT_EQ(blames_itself, each.fault == Fault::Internal) << each.name << ": " << message;

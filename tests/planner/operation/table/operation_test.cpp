@@ -35,7 +35,7 @@ TEST(Operation, EveryExampleIsReadAndPrintedBackToTheSame) {
     const SortedJson example = SortedJson::parse(operation.example);
     Scope scope = scope_for(operation, example);
     Action action(operation), again(operation);
-    const Place place{operation.name, &scope};
+    const FieldLocation place{operation.name, &scope};
     read_fields(operation.fields, example, action.value(), place, {"id", "do"});
     if (operation.check) operation.check(action.value(), place);
     const auto printed = print_fields(operation.fields, action.value());

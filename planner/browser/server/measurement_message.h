@@ -9,9 +9,10 @@ namespace octotomy::planner::serve {
 
 /// {"id", "says", "value", "unit", "half_width", "sentence", "details"} of one of measurements_json(): a
 /// distance, an angle, a gap, or a size. Null if it has no number, such as the gap to an empty object.
-Json told_measurement(const Json& measured);
+Json measurement_message(const Json& measured);
 
 /// A number of a result as a page shows it; `what` begins its sentence.
-Json told(const Json& value, const std::string& unit, const Json& half_width, const std::string& what);
+Json number_message(const Json& value, const std::string& unit, const Json& half_width,
+                    const std::string& what);
 
 }  // namespace octotomy::planner::serve

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/browser/server/told_measurement.h"
+#include "planner/browser/server/measurement_message.h"
 
 #include <utility>
 
@@ -62,7 +62,8 @@ constexpr auto members_of(const ToldNumbers&) {
 
 }  // namespace
 
-Json told(const Json& value, const std::string& unit, const Json& half_width, const std::string& what) {
+Json number_message(const Json& value, const std::string& unit, const Json& half_width,
+                    const std::string& what) {
   const int decimals = unit == "per_mm" ? 4 : unit == "mm" || unit == "deg" ? 2 : 0;
   std::string sentence = what + ": " + grouped(value.get<double>(), decimals) + unit_text(unit);
   if (half_width.is_number())
@@ -70,31 +71,31 @@ Json told(const Json& value, const std::string& unit, const Json& half_width, co
   return {{"value", value}, {"unit", unit}, {"half_width", half_width}, {"sentence", sentence}};
 }
 
-Json told_measurement(const Json& json) {
+Json measurement_message(const Json& json) {
   const auto measured = record_of<ToldNumbers>(json);
   Json number;
   std::string says;
   if (measured.distance_mm) {
     says = "Distance";
-    number = told(*measured.distance_mm, "mm", print_value(measured.distance_half_width_mm), says);
+    number = number_message(*measured.distance_mm, "mm", print_value(measured.distance_half_width_mm), says);
   } else if (measured.angle_deg) {
     says = "Angle";
-    number = told(*measured.angle_deg, "deg", print_value(measured.angle_half_width_deg), says);
+    number = number_message(*measured.angle_deg, "deg", print_value(measured.angle_half_width_deg), says);
   } else if (json.contains(MeasuredGap::key)) {
     if (!measured.gap_mm) return nullptr;
     says = "Gap from " + measured.object + " to " + measured.to;
-    number = told(*measured.gap_mm, "mm", print_value(measured.gap_half_width_mm), says);
+    number = number_message(*measured.gap_mm, "mm", print_value(measured.gap_half_width_mm), says);
   } else if (const SurfaceQuestion* asked = surface_question(json)) {
     says = asked->words + measured.object;
     number = json.at(asked->key).is_object()
-                 ? told(json.at(asked->key).at(asked->number), asked->unit, nullptr, says)
+                 ? number_message(json.at(asked->key).at(asked->number), asked->unit, nullptr, says)
                  : Json{{"value", nullptr},
                         {"unit", asked->unit},
                         {"half_width", nullptr},
                         {"sentence", says + ": no answer yet, the surface is made by Certify"}};
   } else if (measured.volume) {
     says = "Volume of " + measured.object;
-    number = told(measured.volume->value, "mm3", print_value(measured.volume->half_width), says);
+    number = number_message(measured.volume->value, "mm3", print_value(measured.volume->half_width), says);
   } else {
     return nullptr;
   }

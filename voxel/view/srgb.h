@@ -8,9 +8,9 @@
 namespace octotomy::voxel {
 
 /// sRGB and linear light by table: IEC 61966-2-1.
-class Tone {
+class SrgbTable {
  public:
-  static const Tone& table();
+  static const SrgbTable& table();
 
   /// The table runs over square roots, in which sRGB is nearly linear: 1024 steps reach all 256 values.
   /// `root` is root_steps times the square root of linear light from 0 to 1, rounded to the nearest.
@@ -20,7 +20,7 @@ class Tone {
   float linear(std::uint8_t srgb) const { return to_linear_[srgb]; }
 
  private:
-  Tone();
+  SrgbTable();
   std::array<std::uint8_t, 1024> to_srgb_{};
   std::array<float, 256> to_linear_{};
 };
@@ -32,6 +32,6 @@ float srgb_from_linear(float linear);
 glm::vec3 linear_from_srgb(const glm::vec3& colour);
 
 /// Writes a linear colour as three bytes of sRGB.
-void put(std::uint8_t* rgb, const glm::vec3& linear);
+void put_srgb(std::uint8_t* rgb, const glm::vec3& linear);
 
 }  // namespace octotomy::voxel

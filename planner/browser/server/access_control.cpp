@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/browser/server/gate.h"
+#include "planner/browser/server/access_control.h"
 
 #include <algorithm>
 #include <fcntl.h>
@@ -101,12 +101,12 @@ std::string token_in(const std::filesystem::path& path) {
   return token;
 }
 
-std::optional<std::string> Gate::refusal_of_host(const Caller& caller) const {
+std::optional<std::string> AccessControl::refusal_of_host(const Caller& caller) const {
   if (hosts_.empty() || std::find(hosts_.begin(), hosts_.end(), caller.host) != hosts_.end()) return {};
   return "this server is not called '" + caller.host + "': open the address that it printed";
 }
 
-std::optional<std::string> Gate::refusal(const Caller& caller) const {
+std::optional<std::string> AccessControl::refusal(const Caller& caller) const {
   if (auto why = refusal_of_host(caller)) return why;
   if (!caller.origin.empty() && caller.origin != "http://" + caller.host)
     return "a page of another site asks: open the address that the server printed";
@@ -115,7 +115,7 @@ std::optional<std::string> Gate::refusal(const Caller& caller) const {
   return {};
 }
 
-std::optional<std::string> Gate::refusal_of_action(const Caller& caller) const {
+std::optional<std::string> AccessControl::refusal_of_action(const Caller& caller) const {
   if (auto why = refusal(caller)) return why;
   if (caller.origin.empty()) return "the request does not say its Origin";
   return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/plan/ahead.h"
+#include "planner/plan/file_preparation.h"
 
 #include <chrono>
 #include <mutex>
@@ -9,7 +9,7 @@
 
 namespace octotomy::planner {
 
-struct Ahead::Work {
+struct FilePreparation::Work {
   std::vector<Action> actions;
   voxel::Universe universe;
   Objects objects;
@@ -34,12 +34,12 @@ struct Ahead::Work {
                             .stop = stop,
                             .report = tell,
                             .kept = kept};
-    for (const Action& action : actions) action.operation().ahead(action.value(), bench);
+    for (const Action& action : actions) action.operation().prepare_file(action.value(), bench);
   }
 };
 
-Ahead::Ahead(std::vector<Action> actions, const voxel::Universe& universe, Objects objects,
-             const std::stop_token& stop)
+FilePreparation::FilePreparation(std::vector<Action> actions, const voxel::Universe& universe,
+                                 Objects objects, const std::stop_token& stop)
     : work_(new Work{std::move(actions), universe, std::move(objects)}),
       stopped_with_(stop, [this] { stop_.request_stop(); }) {
   std::packaged_task<void()> task([work = work_, asked = stop_.get_token()] { work->run(asked); });
@@ -47,8 +47,8 @@ Ahead::Ahead(std::vector<Action> actions, const voxel::Universe& universe, Objec
   thread_ = std::jthread(std::move(task));
 }
 
-void Ahead::finish(Kept& kept, Timings& timings, const std::stop_token& stop,
-                   const std::function<void(const std::string& doing, double fraction)>& progress) {
+void FilePreparation::finish(Kept& kept, Timings& timings, const std::stop_token& stop,
+                             const std::function<void(const std::string& doing, double fraction)>& progress) {
   using namespace std::chrono_literals;
   while (done_.wait_for(20ms) != std::future_status::ready) {
     if (stop.stop_requested()) stop_.request_stop();

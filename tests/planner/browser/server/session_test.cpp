@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/browser/server/desk.h"
+#include "planner/browser/server/session.h"
 
 #include <atomic>
 #include <chrono>
@@ -20,61 +20,61 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class DeskTest : public testing::Test {
+class SessionTest : public testing::Test {
  protected:
-  DeskTest() { voxel::write_scene(tests::ball_scene(8.0, 24), folder_ / "ball.nrrd"); }
+  SessionTest() { voxel::write_scene(tests::ball_scene(8.0, 24), folder_ / "ball.nrrd"); }
 
   void add(const Json& step) {
-    desk_->with_document([&](Document& document) { document.edit({{"add", {{"step", step}}}}); });
+    session_->with_document([&](Document& document) { document.edit({{"add", {{"step", step}}}}); });
   }
 
   tests::ScratchFolder kept_;
   fs::path folder_ = fs::canonical(kept_.path());
-  std::unique_ptr<Desk> desk_ = std::make_unique<Desk>(folder_);
+  std::unique_ptr<Session> session_ = std::make_unique<Session>(folder_);
 };
 
-TEST_F(DeskTest, AScanBeginsAPlanOfItsBoneInTheWorkingFolder) {
-  EXPECT_TRUE(desk_->state().is_null());
-  EXPECT_THROW(desk_->with_document([](Document&) {}), voxel::Error);
-  desk_->open(folder_ / "ball.nrrd", {});
-  const Json state = desk_->state();
+TEST_F(SessionTest, AScanBeginsAPlanOfItsBoneInTheWorkingFolder) {
+  EXPECT_TRUE(session_->state().is_null());
+  EXPECT_THROW(session_->with_document([](Document&) {}), voxel::Error);
+  session_->open(folder_ / "ball.nrrd", {});
+  const Json state = session_->state();
   EXPECT_EQ(state["path"], (folder_ / "ball.plan.json").string());
   EXPECT_EQ(state["scans"][0]["bounds_mm"], Json::parse("[[-12.0,-12.0,-12.0],[12.0,12.0,12.0]]"));
   EXPECT_FALSE(state["objects"][0]["evaluated"]);
-  desk_->evaluate({}, false, {});
-  EXPECT_TRUE(desk_->state()["objects"][0]["evaluated"]);
-  EXPECT_EQ(desk_->snapshot().evaluation->loaded.size(), 1u) << "slices need the samples";
+  session_->evaluate({}, false, {});
+  EXPECT_TRUE(session_->state()["objects"][0]["evaluated"]);
+  EXPECT_EQ(session_->snapshot().evaluation->loaded.size(), 1u) << "slices need the samples";
 }
 
-TEST_F(DeskTest, APlanOfAnotherScanIsLeftAlone) {
+TEST_F(SessionTest, APlanOfAnotherScanIsLeftAlone) {
   std::ofstream(folder_ / "ball.plan.json") << "{}";
-  desk_->open(folder_ / "ball.nrrd", {});
-  EXPECT_EQ(desk_->state()["path"], (folder_ / "ball-2.plan.json").string());
+  session_->open(folder_ / "ball.nrrd", {});
+  EXPECT_EQ(session_->state()["path"], (folder_ / "ball-2.plan.json").string());
 }
 
-TEST_F(DeskTest, AStepThatFailsTakesOnlyThoseThatNeedItAlong) {
-  desk_->open(folder_ / "ball.nrrd", {});
+TEST_F(SessionTest, AStepThatFailsTakesOnlyThoseThatNeedItAlong) {
+  session_->open(folder_ / "ball.nrrd", {});
   add({{"id", "lost"}, {"do", "import"}, {"path", "nowhere.stl"}});
   add({{"id", "more"}, {"do", "combine"}, {"expression", "bone | lost"}});
   add({{"id", "same"}, {"do", "combine"}, {"expression", "bone & bone"}});
-  const Snapshot made = desk_->evaluate({}, false, {});
+  const Snapshot made = session_->evaluate({}, false, {});
   EXPECT_EQ(made.evaluation->objects.size(), 2u);
   ASSERT_EQ(made.errors.size(), 1u);
   EXPECT_EQ(made.errors.begin()->first, "lost");
-  const Json state = desk_->state();
+  const Json state = session_->state();
   for (const Json& object : state["objects"])
     EXPECT_EQ(object.contains("error"), object["id"] == "lost") << object;
 }
 
-TEST_F(DeskTest, AReportLeavesOutWhatFailedAndSaysSo) {
-  desk_->open(folder_ / "ball.nrrd", {});
+TEST_F(SessionTest, AReportLeavesOutWhatFailedAndSaysSo) {
+  session_->open(folder_ / "ball.nrrd", {});
   add({{"id", "lost"}, {"do", "import"}, {"path", "nowhere.stl"}});
   add({{"id", "more"}, {"do", "combine"}, {"expression", "bone | lost"}});
   add({{"id", "more_size"}, {"do", "measure"}, {"object", "more"}});
   add({{"id", "lost_file"}, {"do", "export"}, {"object", "lost"}, {"path", "lost.stl"}});
   add({{"id", "size"}, {"do", "measure"}, {"object", "bone"}});
   add({{"id", "file"}, {"do", "export"}, {"object", "bone"}, {"path", "bone.stl"}});
-  const Json made = find_word("report").answer(*desk_, Json::object(), {});
+  const Json made = find_request_kind("report").answer(*session_, Json::object(), {});
   EXPECT_EQ(made["left_out"], Json({"lost", "more", "more_size", "lost_file"}));
   EXPECT_EQ(made["counts"]["PASS"], 1);
   const fs::path folder = made["folder"].get<std::string>();
@@ -87,19 +87,19 @@ TEST_F(DeskTest, AReportLeavesOutWhatFailedAndSaysSo) {
   EXPECT_EQ(failed, 4) << result["findings"];
   EXPECT_NE(tests::bytes_of(folder / "report.html").find("nowhere.stl"), std::string::npos)
       << "the report says why";
-  const Snapshot certified = desk_->evaluate({}, true, {});
+  const Snapshot certified = session_->evaluate({}, true, {});
   EXPECT_TRUE(certified.evaluation->object("bone").certificate.has_value());
 }
 
-TEST_F(DeskTest, AMeasurementThatFailsLeavesTheOthersTheirAnswers) {
-  desk_->open(folder_ / "ball.nrrd", {});
+TEST_F(SessionTest, AMeasurementThatFailsLeavesTheOthersTheirAnswers) {
+  session_->open(folder_ / "ball.nrrd", {});
   add({{"id", "wide"}, {"do", "measure"}, {"points_mm", {{-8, 0, 0}, {8, 0, 0}}}});
   add({{"id", "nowhere"},
        {"do", "airway"},
        {"object", "bone"},
        {"begin", {100, 0, 0}},
        {"end", {-100, 0, 0}}});
-  const Snapshot made = desk_->evaluate({}, true, {});
+  const Snapshot made = session_->evaluate({}, true, {});
   ASSERT_EQ(made.errors.count("nowhere"), 1U);
   ASSERT_EQ(made.measurements.size(), 2U);
   EXPECT_EQ(made.measurements[0]["value"], 16.0);
@@ -107,26 +107,28 @@ TEST_F(DeskTest, AMeasurementThatFailsLeavesTheOthersTheirAnswers) {
   EXPECT_EQ(made.measurements[1]["sentence"], made.errors.at("nowhere"));
 }
 
-TEST_F(DeskTest, BoneBeginsInTheScansOwnSamples) {
-  desk_->open(folder_ / "ball.nrrd", {});
+TEST_F(SessionTest, BoneBeginsInTheScansOwnSamples) {
+  session_->open(folder_ / "ball.nrrd", {});
   voxel::Scene ball = voxel::read_scene(folder_ / "ball.nrrd");
-  EXPECT_EQ(desk_->state()["scans"][0]["bone_low"], bone_low(ball));
+  EXPECT_EQ(session_->state()["scans"][0]["bone_low"], bone_low(ball));
   ball.meaning = voxel::Meaning::Hounsfield;
   EXPECT_EQ(bone_low(ball), 300.0);
   ball.meaning = voxel::Meaning::Label;
   EXPECT_EQ(bone_low(ball), 1.0);
   ball.meaning = voxel::Meaning::Raw;
   EXPECT_EQ(bone_low(ball), thresholds_of(ball).upper);
-  EXPECT_TRUE(desk_->state()["scans"][0]["patient"].is_null());
+  EXPECT_TRUE(session_->state()["scans"][0]["patient"].is_null());
 }
 
-TEST_F(DeskTest, TheLargestPartOfAnOverlapHasAPlace) {
-  desk_->open(folder_ / "ball.nrrd", {});
+TEST_F(SessionTest, TheLargestPartOfAnOverlapHasAPlace) {
+  session_->open(folder_ / "ball.nrrd", {});
   add({{"id", "moved"}, {"do", "move"}, {"object", "bone"}, {"translate_mm", {6, 0, 0}}});
   add({{"id", "both"}, {"do", "combine"}, {"expression", "bone & moved"}});
   add({{"id", "none"}, {"do", "combine"}, {"expression", "bone - bone"}});
-  desk_->evaluate({}, false, {});
-  const auto part = [&](const char* id) { return find_word("part").answer(*desk_, {{"object", id}}, {}); };
+  session_->evaluate({}, false, {});
+  const auto part = [&](const char* id) {
+    return find_request_kind("part").answer(*session_, {{"object", id}}, {});
+  };
   const Json both = part("both");
   EXPECT_EQ(both["parts"], 1);
   EXPECT_GT(both["mm3"], 0.0);
@@ -136,15 +138,15 @@ TEST_F(DeskTest, TheLargestPartOfAnOverlapHasAPlace) {
   EXPECT_THROW(part("nobody"), voxel::Error);
 }
 
-TEST_F(DeskTest, APartIsFoundAtAPointOfItsSurface) {
+TEST_F(SessionTest, APartIsFoundAtAPointOfItsSurface) {
   voxel::write_scene(tests::ball_scene(3.0, 24), folder_ / "small.nrrd");
-  desk_->open(folder_ / "small.nrrd", {});
+  session_->open(folder_ / "small.nrrd", {});
   add({{"id", "moved"}, {"do", "move"}, {"object", "bone"}, {"translate_mm", {8, 0, 0}}});
   add({{"id", "two"}, {"do", "combine"}, {"expression", "bone | moved"}});
   add({{"id", "one"}, {"do", "parts"}, {"object", "two"}, {"at_mm", {{0, 0, 0}}}});
-  desk_->evaluate({}, false, {});
+  session_->evaluate({}, false, {});
   const auto part = [&](const char* id, const Json& near_mm) {
-    return find_word("part").answer(*desk_, {{"object", id}, {"near_mm", near_mm}}, {});
+    return find_request_kind("part").answer(*session_, {{"object", id}, {"near_mm", near_mm}}, {});
   };
   const double one_mm3 = part("one", {0, 0, 0})["mm3"];
   const Json found = part("two", {0, 3.4, 0});
@@ -157,34 +159,37 @@ TEST_F(DeskTest, APartIsFoundAtAPointOfItsSurface) {
   EXPECT_THROW(part("two", {1e300, 0, 0}), voxel::Error);
 }
 
-TEST_F(DeskTest, StepsAreTriedWithoutAChangeOfThePlan) {
-  desk_->open(folder_ / "ball.nrrd", {});
-  desk_->evaluate({}, false, {});
-  const Json before = desk_->state()["plan"];
-  const double bone_mm3 = desk_->state()["objects"][0]["volume"]["value"];
+TEST_F(SessionTest, StepsAreTriedWithoutAChangeOfThePlan) {
+  session_->open(folder_ / "ball.nrrd", {});
+  session_->evaluate({}, false, {});
+  const Json before = session_->state()["plan"];
+  const double bone_mm3 = session_->state()["objects"][0]["volume"]["value"];
   const Json held{{"id", "held"}, {"do", "clamp_streaks"}, {"scan", "ct"}, {"metal", 1}, {"low", -1},
                   {"high", 1}};
   const Json none{{"id", "none"}, {"do", "window"}, {"scan", "held"}, {"low", 300}};
   const Json same{{"id", "same"}, {"do", "parts"}, {"object", "bone"}, {"largest", 1}};
-  const Json made = find_word("try").answer(*desk_, {{"steps", {held, none, same}}}, {});
+  const Json made = find_request_kind("try").answer(*session_, {{"steps", {held, none, same}}}, {});
   ASSERT_EQ(made["scans"].size(), 1U);
   EXPECT_EQ(made["scans"][0]["id"], "held");
   EXPECT_GT(made["scans"][0]["details"]["lowered_samples"], 0);
   EXPECT_EQ(made["objects"], Json({{{"id", "none"}, {"mm3", 0.0}}, {{"id", "same"}, {"mm3", bone_mm3}}}));
-  EXPECT_EQ(desk_->state()["plan"], before);
-  const Desk::Preview drawn = desk_->preview({{"steps", {held, none}}}, {}, {});
+  EXPECT_EQ(session_->state()["plan"], before);
+  const Session::Preview drawn = session_->preview({{"steps", {held, none}}}, {}, {});
   ASSERT_EQ(drawn.evaluation->objects.size(), 1U);
-  EXPECT_EQ(drawn.evaluation->objects[0].id, Desk::Preview::moved);
+  EXPECT_EQ(drawn.evaluation->objects[0].id, Session::Preview::moved);
   EXPECT_TRUE(drawn.evaluation->objects[0].voxel.octree.is_empty());
-  EXPECT_THROW(find_word("try").answer(*desk_, {{"steps", Json::array()}}, {}), std::runtime_error);
+  EXPECT_THROW(find_request_kind("try").answer(*session_, {{"steps", Json::array()}}, {}),
+               std::runtime_error);
 }
 
-TEST_F(DeskTest, AFoldersSeriesArePickedByThePerson) {
+TEST_F(SessionTest, AFoldersSeriesArePickedByThePerson) {
   const fs::path scans = folder_ / "scans";
   fs::create_directory(scans);
-  EXPECT_EQ(find_word("series").answer(*desk_, {{"path", (folder_ / "ball.nrrd").string()}}, {})["series"],
+  EXPECT_EQ(find_request_kind("series").answer(*session_, {{"path", (folder_ / "ball.nrrd").string()}},
+                                               {})["series"],
             Json::array());
-  EXPECT_EQ(find_word("series").answer(*desk_, {{"path", scans.string()}}, {})["series"], Json::array());
+  EXPECT_EQ(find_request_kind("series").answer(*session_, {{"path", scans.string()}}, {})["series"],
+            Json::array());
   for (const int side : {24, 16}) {
     voxel::Scene ball = tests::ball_scene(5.0, side);
     ball.meaning = voxel::Meaning::Hounsfield;
@@ -193,15 +198,15 @@ TEST_F(DeskTest, AFoldersSeriesArePickedByThePerson) {
     options.series_description = "side " + std::to_string(side);
     voxel::write_dicom_series(ball, scans / std::to_string(side), options);
   }
-  const Json list = find_word("series").answer(*desk_, {{"path", scans.string()}}, {})["series"];
+  const Json list = find_request_kind("series").answer(*session_, {{"path", scans.string()}}, {})["series"];
   ASSERT_EQ(list.size(), 2U);
   EXPECT_EQ(list[1]["name"], "side 16");
   EXPECT_EQ(list[1]["slices"], 16);
   EXPECT_EQ(list[1]["size"], Json({16, 16}));
   EXPECT_EQ(list[1]["spacing_mm"], Json({1.0, 1.0, 1.0}));
   const auto opened = [&](const Json& choice) {
-    find_word("open").answer(*desk_, {{"path", scans.string()}, {"series", choice}}, {});
-    return desk_->state();
+    find_request_kind("open").answer(*session_, {{"path", scans.string()}, {"series", choice}}, {});
+    return session_->state();
   };
   const Json second = opened(list[1]["choice"]);
   EXPECT_EQ(second["scans"][0]["dims"], Json({16, 16, 16}));
@@ -209,11 +214,12 @@ TEST_F(DeskTest, AFoldersSeriesArePickedByThePerson) {
   EXPECT_EQ(opened(list[1]["choice"])["path"], second["path"]) << "its own plan again";
 }
 
-TEST_F(DeskTest, ALandmarkFarFromBoneIsNotCalledSnapped) {
-  desk_->open(folder_ / "ball.nrrd", {});
-  desk_->evaluate({}, false, {});
+TEST_F(SessionTest, ALandmarkFarFromBoneIsNotCalledSnapped) {
+  session_->open(folder_ / "ball.nrrd", {});
+  session_->evaluate({}, false, {});
   const auto placed = [&](const Json& point) {
-    return find_word("landmark").answer(*desk_, {{"name", "a"}, {"point", point}, {"snap", true}}, {});
+    return find_request_kind("landmark")
+        .answer(*session_, {{"name", "a"}, {"point", point}, {"snap", true}}, {});
   };
   EXPECT_EQ(placed({0, -9, 0})["snapped"], true);
   const Json far = placed({11.5, -11.5, -11.5});
@@ -221,38 +227,38 @@ TEST_F(DeskTest, ALandmarkFarFromBoneIsNotCalledSnapped) {
   EXPECT_EQ(far["point"], Json({11.5, -11.5, -11.5}));
 }
 
-TEST_F(DeskTest, APreviewIsTheMoveStepsObject) {
-  desk_->open(folder_ / "ball.nrrd", {});
-  desk_->evaluate({}, false, {});
+TEST_F(SessionTest, APreviewIsTheMoveStepsObject) {
+  session_->open(folder_ / "ball.nrrd", {});
+  session_->evaluate({}, false, {});
   const Json move{{"translate_mm", {2, 0, 0}}};
-  const Desk::Preview preview = desk_->preview("bone", move, {"bone"}, {});
+  const Session::Preview preview = session_->preview("bone", move, {"bone"}, {});
   add({{"id", "moved"}, {"do", "move"}, {"object", "bone"}, {"translate_mm", {2, 0, 0}}});
-  const Snapshot made = desk_->evaluate({}, false, {});
-  EXPECT_TRUE(preview.evaluation->object(Desk::Preview::moved).voxel.octree ==
+  const Snapshot made = session_->evaluate({}, false, {});
+  EXPECT_TRUE(preview.evaluation->object(Session::Preview::moved).voxel.octree ==
               made.evaluation->object("moved").voxel.octree);
-  EXPECT_EQ(desk_->state()["plan"]["steps"].size(), 2u) << "a preview is no step";
-  const Desk::Preview again = desk_->preview("bone", move, {}, {});
+  EXPECT_EQ(session_->state()["plan"]["steps"].size(), 2u) << "a preview is no step";
+  const Session::Preview again = session_->preview("bone", move, {}, {});
   EXPECT_EQ(again.evaluation->objects.size(), 2u) << "no overlap was asked for";
 }
 
-TEST_F(DeskTest, ACertificateIsOfTheStepAsItWas) {
-  desk_->open(folder_ / "ball.nrrd", {});
-  desk_->evaluate({}, true, {});
-  const Json bone = desk_->state()["objects"][0];
+TEST_F(SessionTest, ACertificateIsOfTheStepAsItWas) {
+  session_->open(folder_ / "ball.nrrd", {});
+  session_->evaluate({}, true, {});
+  const Json bone = session_->state()["objects"][0];
   EXPECT_EQ(bone["certificate"]["verdict"], "PASS") << bone;
   EXPECT_GT(bone["volume"]["half_width"], 0.0);
-  desk_->with_document([&](Document& document) {
+  session_->with_document([&](Document& document) {
     Json step = document.json()["steps"][0];
     step["low"] = 500;
     document.edit({{"replace", {{"id", "bone"}, {"step", step}}}});
   });
-  desk_->evaluate({}, false, {});
-  EXPECT_FALSE(desk_->state()["objects"][0].contains("certificate"));
-  desk_->with_document([](Document& document) { document.undo(); });
-  EXPECT_TRUE(desk_->state()["objects"][0].contains("certificate"));
+  session_->evaluate({}, false, {});
+  EXPECT_FALSE(session_->state()["objects"][0].contains("certificate"));
+  session_->with_document([](Document& document) { document.undo(); });
+  EXPECT_TRUE(session_->state()["objects"][0].contains("certificate"));
 }
 
-TEST_F(DeskTest, APlanSavedInAnotherFolderReadsTheSameFiles) {
+TEST_F(SessionTest, APlanSavedInAnotherFolderReadsTheSameFiles) {
   const auto write_marks = [&](const fs::path& path, double x) {
     std::ofstream(path) << Json{{"landmarks", {{{"name", "ans"}, {"point_mm", {x, 0, 0}}}}}};
   };
@@ -265,9 +271,9 @@ TEST_F(DeskTest, APlanSavedInAnotherFolderReadsTheSameFiles) {
       {"id": "bone", "do": "window", "scan": "ct", "low": 0},
       {"id": "plate", "do": "import", "path": "plate.stl"},
       {"id": "piece", "do": "export", "object": "bone", "path": "piece.stl"}]})";
-  desk_->open(folder_ / "own.plan.json", {});
+  session_->open(folder_ / "own.plan.json", {});
   const fs::path saved = folder_ / "other/q.plan.json";
-  find_word("save").answer(*desk_, {{"path", saved.string()}}, {});
+  find_request_kind("save").answer(*session_, {{"path", saved.string()}}, {});
   const Plan plan = read_plan(saved);
   EXPECT_EQ(scan_path(plan, plan.scans.at("ct")).lexically_normal(), folder_ / "ball.nrrd");
   ASSERT_EQ(plan.landmarks.size(), 1u);
@@ -275,34 +281,35 @@ TEST_F(DeskTest, APlanSavedInAnotherFolderReadsTheSameFiles) {
   const Json steps = Json::parse(plan.text)["steps"];
   EXPECT_EQ(steps[2]["path"], "../plate.stl");
   EXPECT_EQ(steps[3]["path"], "piece.stl");
-  find_word("save").answer(*desk_, {{"path", (folder_ / "same.plan.json").string()}}, {});
+  find_request_kind("save").answer(*session_, {{"path", (folder_ / "same.plan.json").string()}}, {});
   EXPECT_EQ(read_plan(folder_ / "same.plan.json").text, read_plan(folder_ / "own.plan.json").text);
-  EXPECT_ANY_THROW(find_word("save").answer(*desk_, {{"path", saved.string()}}, {})) << "it is there already";
+  EXPECT_ANY_THROW(find_request_kind("save").answer(*session_, {{"path", saved.string()}}, {}))
+      << "it is there already";
 }
 
-TEST_F(DeskTest, AClosedOneLetsTheEditThatIsUnderWayEndAndTakesNoOther) {
-  desk_->open(folder_ / "ball.nrrd", {});
+TEST_F(SessionTest, AClosedOneLetsTheEditThatIsUnderWayEndAndTakesNoOther) {
+  session_->open(folder_ / "ball.nrrd", {});
   std::atomic<bool> is_editing = false;
   std::jthread editing([&] {
-    desk_->with_document([&](Document& document) {
+    session_->with_document([&](Document& document) {
       is_editing = true;
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
       document.name_version("late");
     });
   });
   while (!is_editing) std::this_thread::yield();
-  desk_->close_within(std::chrono::seconds(10));
+  session_->close_within(std::chrono::seconds(10));
   editing.join();
   EXPECT_EQ(PlanHistory(folder_ / "ball.plan.json").newest(1)[0].names, std::vector<std::string>{"late"});
-  EXPECT_THROW(desk_->with_document([](Document&) {}), voxel::Error);
+  EXPECT_THROW(session_->with_document([](Document&) {}), voxel::Error);
 }
 
-TEST_F(DeskTest, AStoppedEvaluationChangesNothing) {
-  desk_->open(folder_ / "ball.nrrd", {});
+TEST_F(SessionTest, AStoppedEvaluationChangesNothing) {
+  session_->open(folder_ / "ball.nrrd", {});
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_THROW(desk_->evaluate({}, false, {stop.get_token(), {}}), Stopped);
-  EXPECT_FALSE(desk_->state()["objects"][0]["evaluated"]);
+  EXPECT_THROW(session_->evaluate({}, false, {stop.get_token(), {}}), Stopped);
+  EXPECT_FALSE(session_->state()["objects"][0]["evaluated"]);
 }
 
 }  // namespace

@@ -1,48 +1,48 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "planner/browser/server/desk.h"
 #include "planner/browser/server/message.h"
+#include "planner/browser/server/session.h"
 
 // Requests for numbers, certificates and files of the plan's objects. Those that change or show the document
 // are in requests.h.
 namespace octotomy::planner::serve {
 
 /// {"kind", "points" or "object"} -> {"value", "unit", "half_width", "sentence"}, as for a step "measure".
-Json measure(Desk& desk, const Json& said, const Watched& watched);
+Json measure(Session& session, const Json& said, const Watched& watched);
 /// {"object"} -> {"verdict", "sentence", "place", "detection_limit", "rows"}.
-Json certify(Desk& desk, const Json& said, const Watched& watched);
+Json certify(Session& session, const Json& said, const Watched& watched);
 /// {"object", "with", "move"} -> {"mm3"}, in voxels.
-Json overlap(Desk& desk, const Json& said, const Watched& watched);
+Json overlap(Session& session, const Json& said, const Watched& watched);
 /// {"object", "near_mm"} -> {"parts", "whole_mm3", "mm3", "at_mm"}: the number of its connected parts, and of the
 /// part at a point its volume and the centre of a voxel in it; without a point those of the largest part, and its
 /// centroid, null where the object is empty.
-Json part(Desk& desk, const Json& said, const Watched& watched);
+Json part(Session& session, const Json& said, const Watched& watched);
 /// {"steps"} -> {"objects": [{"id", "mm3"}], "scans": [{"id", "details", "findings"}]}: what steps would make
 /// after those of the plan, which stays as it is; in voxels.
-Json try_steps(Desk& desk, const Json& said, const Watched& watched);
+Json try_steps(Session& session, const Json& said, const Watched& watched);
 /// {"path", "frame", "unit"} -> {"audit"}: a mesh file's statements on its frame and unit, and how its size
 /// and position fit the plan's first scan. The path is relative as in a plan.
-Json mesh_audit(Desk& desk, const Json& said, const Watched& watched);
+Json mesh_audit(Session& session, const Json& said, const Watched& watched);
 /// {"object"} -> {"rows"}: its movement in words.
-Json movement(Desk& desk, const Json& said, const Watched& watched);
+Json movement(Session& session, const Json& said, const Watched& watched);
 /// {"name", "point", "snap"} -> {"point", "snapped"}: names a point; with "snap", moves it to the nearest
 /// bone if one is near.
-Json place_landmark(Desk& desk, const Json& said, const Watched& watched);
+Json place_landmark(Session& session, const Json& said, const Watched& watched);
 /// {"object"} -> {"landmarks", "missing", "findings"}: proposed landmarks; does not place them.
-Json find_landmarks(Desk& desk, const Json& said, const Watched& watched);
+Json find_landmarks(Session& session, const Json& said, const Watched& watched);
 /// {"object", "path"} -> {"file"}, writes the file into the plan's folder of exports.
-Json export_file(Desk& desk, const Json& said, const Watched& watched);
+Json export_file(Session& session, const Json& said, const Watched& watched);
 /// {"anonymous"} -> {"folder", "file", "counts", "left_out"}: a report of all steps with results. Steps that
 /// failed, and those that depend on them, are left out, each with a finding.
-Json report(Desk& desk, const Json& said, const Watched& watched);
+Json report(Session& session, const Json& said, const Watched& watched);
 /// {"path", "low", "unmoved"} -> the outcome's JSON: compares a later scan with the plan.
-Json outcome(Desk& desk, const Json& said, const Watched& watched);
+Json outcome(Session& session, const Json& said, const Watched& watched);
 /// {"step"} -> {"shell", "python"}: commands that make the step and those on which it depends, and add it to
 /// a plan.
-Json command_of_step(Desk& desk, const Json& said, const Watched& watched);
+Json command_of_step(Session& session, const Json& said, const Watched& watched);
 
 /// Where the open plan's exports and reports are written: "NAME files" beside it.
-std::filesystem::path files_folder(const Desk& desk);
+std::filesystem::path files_folder(const Session& session);
 
 }  // namespace octotomy::planner::serve

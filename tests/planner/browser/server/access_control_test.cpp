@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/browser/server/gate.h"
+#include "planner/browser/server/access_control.h"
 
 #include <fstream>
 #include <gtest/gtest.h>
@@ -12,11 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const Gate gate("0123", {"127.0.0.1:80", "localhost:80"});
+const AccessControl access("0123", {"127.0.0.1:80", "localhost:80"});
 
-TEST(Gate, LetsItsOwnPageInAndNoOther) {
+TEST(AccessControl, LetsItsOwnPageInAndNoOther) {
   const Caller own{"127.0.0.1:80", "http://127.0.0.1:80", "0123"};
-  EXPECT_FALSE(gate.refusal_of_action(own));
+  EXPECT_FALSE(access.refusal_of_action(own));
   for (const Caller& wrong :
        {Caller{"evil.example:80", "http://evil.example:80", "0123"},
         Caller{"127.0.0.1:80", "http://evil.example", "0123"},
@@ -24,35 +24,35 @@ TEST(Gate, LetsItsOwnPageInAndNoOther) {
         Caller{"127.0.0.1:80", "", "0123"}, Caller{"", "http://", "0123"}, Caller{own.host, own.origin, ""},
         Caller{own.host, own.origin, "012"}, Caller{own.host, own.origin, "01230"},
         Caller{own.host, own.origin, "0124"}})
-    EXPECT_TRUE(gate.refusal_of_action(wrong)) << wrong.host << " " << wrong.origin << " " << wrong.token;
+    EXPECT_TRUE(access.refusal_of_action(wrong)) << wrong.host << " " << wrong.origin << " " << wrong.token;
 }
 
-TEST(Gate, ABrowserSaysNoOriginWhenItOpensThePage) {
-  EXPECT_FALSE(gate.refusal({"localhost:80", "", "0123"}));
-  EXPECT_TRUE(gate.refusal({"localhost:80", "http://evil.example", "0123"}));
-  EXPECT_TRUE(gate.refusal({"localhost:80", "", "4567"}));
-  EXPECT_FALSE(gate.refusal_of_host({"localhost:80", "", ""}));
-  EXPECT_TRUE(gate.refusal_of_host({"localhost:81", "", ""}));
+TEST(AccessControl, ABrowserSaysNoOriginWhenItOpensThePage) {
+  EXPECT_FALSE(access.refusal({"localhost:80", "", "0123"}));
+  EXPECT_TRUE(access.refusal({"localhost:80", "http://evil.example", "0123"}));
+  EXPECT_TRUE(access.refusal({"localhost:80", "", "4567"}));
+  EXPECT_FALSE(access.refusal_of_host({"localhost:80", "", ""}));
+  EXPECT_TRUE(access.refusal_of_host({"localhost:81", "", ""}));
 }
 
-TEST(Gate, AFileIsNamedBehindTheTokenSoThatItsLinksKeepIt) {
+TEST(AccessControl, AFileIsNamedBehindTheTokenSoThatItsLinksKeepIt) {
   const auto file = file_of(parse_target("/file/0123/report/a%20b.html"));
   ASSERT_TRUE(file);
   EXPECT_EQ(file->token, "0123");
   EXPECT_EQ(file->name, "report/a b.html");
-  EXPECT_TRUE(gate.refusal({"localhost:80", "", file_of(parse_target("/file/a.stl"))->token}));
-  EXPECT_TRUE(gate.refusal({"localhost:80", "", file_of(parse_target("/file//a.stl?token=0123"))->token}));
+  EXPECT_TRUE(access.refusal({"localhost:80", "", file_of(parse_target("/file/a.stl"))->token}));
+  EXPECT_TRUE(access.refusal({"localhost:80", "", file_of(parse_target("/file//a.stl?token=0123"))->token}));
   EXPECT_FALSE(file_of(parse_target("/index.html")));
 }
 
-TEST(Gate, TokensAreLongAndDiffer) {
+TEST(AccessControl, TokensAreLongAndDiffer) {
   std::set<std::string> tokens;
   for (int i = 0; i < 100; ++i) tokens.insert(new_token());
   EXPECT_EQ(tokens.size(), 100u);
   EXPECT_EQ(tokens.begin()->size(), 32u);
 }
 
-TEST(Gate, ATokenFileIsItsOwnersAlone) {
+TEST(AccessControl, ATokenFileIsItsOwnersAlone) {
   const tests::ScratchFolder folder;
   const fs::path path = folder / "token";
   const std::string token = token_in(path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/operation/object/trace.h"
+#include "planner/operation/object/provenance.h"
 
 #include <algorithm>
 #include <cmath>

@@ -42,9 +42,9 @@ bool is_plan(const std::filesystem::path& path);
 
 /// The one plan that all windows work on, its objects and its files. All members may be called from any
 /// thread.
-class Desk {
+class Session {
  public:
-  explicit Desk(std::filesystem::path working_folder);
+  explicit Session(std::filesystem::path working_folder);
 
   Folders folders;
   ObjectCache cache;
@@ -100,7 +100,7 @@ class Desk {
   Document& need_document() const;
   Json objects_json(const Plan& plan) const;
   /// bone_low() of each scan that was read, computed again where the scan was read anew. Calls wait for each
-  /// other; the desk's own lock is free meanwhile.
+  /// other; the session's own lock is free meanwhile.
   std::map<std::string, double> bone_lows_of(const Evaluation& evaluation);
   /// The certificates and sizes of what was evaluated in both kernels, by the keys of the steps.
   void keep_certified(const Plan& plan, const Evaluation& evaluation);

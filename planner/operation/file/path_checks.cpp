@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/operation/file/file_kind.h"
+#include "planner/operation/file/path_checks.h"
 
 #include <algorithm>
 #include <climits>
@@ -37,10 +37,10 @@ bool is_octree(const fs::path& path) {
   return has_extension(path, {".octree"});
 }
 
-void need_folder_of(const fs::path& out, Output kind) {
+void need_folder_of(const fs::path& out, OutputKind kind) {
   const auto refuse = [&](const std::string& why) { throw std::runtime_error(out.string() + ": " + why); };
   if (has_control(out.native())) refuse("a file's name has no control characters: choose another name");
-  if (kind == Output::File && !out.has_filename()) refuse("names a folder: add the file's name");
+  if (kind == OutputKind::File && !out.has_filename()) refuse("names a folder: add the file's name");
   const fs::path file = voxel::place_of(out), folder = file.parent_path();
   if (!fs::is_directory(folder))
     refuse("there is no folder " + folder.string() + ": make it, or choose another name");
@@ -51,10 +51,10 @@ void need_folder_of(const fs::path& out, Output kind) {
   const bool is_folder = fs::is_directory(status);
   if (fs::exists(status) && !is_folder && !fs::is_regular_file(status))
     refuse("is a pipe or device and is not replaced: choose another name");
-  if (fs::exists(status) && is_folder != (kind == Output::Folder))
+  if (fs::exists(status) && is_folder != (kind == OutputKind::Folder))
     refuse(is_folder ? "is a folder and is not replaced: choose another name"
                      : "is a file, and a folder is made: choose another name");
-  kind == Output::File ? voxel::need_own_data_file(out) : voxel::need_no_slices(out);
+  kind == OutputKind::File ? voxel::need_own_data_file(out) : voxel::need_no_slices(out);
   try {
     const voxel::StagedFiles trial(folder);
   } catch (const voxel::Error& error) {
@@ -67,7 +67,7 @@ void need_folder_of(const fs::path& out, Output kind) {
 }
 
 void need_folder_of(const fs::path& out) {
-  need_folder_of(out, Output::File);
+  need_folder_of(out, OutputKind::File);
 }
 
 void need_extension(const fs::path& out, const std::vector<std::string>& extensions,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/plan/answers.h"
+#include "planner/plan/plan_results.h"
 
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/json.h"
-#include "planner/plan/in_step.h"
 #include "planner/plan/sha256.h"
+#include "planner/plan/step_errors.h"
 #include "planner/plan/trial.h"
 
 namespace octotomy::planner {
@@ -41,7 +41,7 @@ Json measurements_json(const Plan& plan, const Evaluation& evaluation) {
   for (const Step& step : plan.steps) {
     if (step.action.operation().makes != Makes::Measurement) continue;
     Json json{{"id", step.id}};
-    in_step(step.id, [&] {
+    name_step_in_errors(step.id, [&] {
       json.update(step.action.operation().measure(step.action.value(), bench));
       if (const auto* trials = step.action.get_if<Trials>())
         json.update(trials_json(plan, evaluation, *trials));
@@ -66,7 +66,7 @@ Exported write_file(const Plan& plan, const Evaluation& evaluation, const Step& 
                           .scan = scans_of(evaluation)};
   Exported exported;
   exported.id = step.id;
-  in_step(step.id, [&] { step.action.operation().write(step.action.value(), bench, exported); });
+  name_step_in_errors(step.id, [&] { step.action.operation().write(step.action.value(), bench, exported); });
   if (exported.written) exported.details["bytes"] = std::filesystem::file_size(folder / exported.path);
   return exported;
 }
@@ -79,7 +79,8 @@ std::vector<Exported> write_files(const Plan& plan, const Evaluation& evaluation
   for (const Step& step : plan.steps)
     if (step.action.operation().makes == Makes::File) {
       try {
-        if (const auto begun = evaluation.ahead.find(step.id); begun != evaluation.ahead.end())
+        if (const auto begun = evaluation.file_preparations.find(step.id);
+            begun != evaluation.file_preparations.end())
           begun->second->finish(kept, timings, options.stop, options.progress);
         files.push_back(write_file(plan, evaluation, step, folder, timings, kept, options));
       } catch (const std::exception& error) {

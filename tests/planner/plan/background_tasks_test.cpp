@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/plan/beside.h"
+#include "planner/plan/background_tasks.h"
 
 #include <array>
 #include <atomic>
@@ -14,25 +14,25 @@
 namespace octotomy::planner {
 namespace {
 
-TEST(Beside, WorksOnEveryPieceAndThrowsWhatAPieceThrewWhereItIsWaitedFor) {
+TEST(BackgroundTasks, WorksOnEveryPieceAndThrowsWhatAPieceThrewWhereItIsWaitedFor) {
   for (const std::size_t threads : {1, 4}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     std::array<std::atomic<int>, 3> done{};
-    Beside beside({});
+    BackgroundTasks tasks({});
     for (std::size_t i = 0; i < done.size(); ++i)
-      beside.begin([&done, i](const std::stop_token&) {
+      tasks.begin([&done, i](const std::stop_token&) {
         if (i == 1) throw std::runtime_error("the second piece");
         tbb::parallel_for(0, 100, [&](int) { ++done[i]; });
       });
-    beside.wait(0);
+    tasks.wait(0);
     EXPECT_EQ(done[0], 100) << threads << " threads";
-    EXPECT_THROW(beside.wait(1), std::runtime_error);
-    beside.wait(2);
+    EXPECT_THROW(tasks.wait(1), std::runtime_error);
+    tasks.wait(2);
     EXPECT_EQ(done[2], 100) << threads << " threads";
   }
 }
 
-/// Whether the caller takes up a piece while it waits, within apart() or not, for what the other thread does.
+/// Whether the caller takes up a piece while it waits for the other thread, within without_tasks() or not.
 bool takes_up_a_piece(bool apart) {
   using namespace std::chrono_literals;
   std::atomic<bool> is_held = false, has_piece = false, is_begun = false, was_begun = false;
@@ -44,19 +44,19 @@ bool takes_up_a_piece(bool apart) {
     was_begun = is_begun.load();
   });
   while (!is_held) std::this_thread::sleep_for(1ms);
-  Beside beside({});
-  beside.begin([&](const std::stop_token&) { is_begun = true; });
+  BackgroundTasks tasks({});
+  tasks.begin([&](const std::stop_token&) { is_begun = true; });
   has_piece = true;
   if (apart)
-    beside.apart([&] { held.wait(); });
+    tasks.without_tasks([&] { held.wait(); });
   else
     held.wait();
-  beside.wait(0);
+  tasks.wait(0);
   EXPECT_TRUE(is_begun);
   return was_begun;
 }
 
-TEST(Beside, TakesUpNoPieceWithinWorkThatStandsApart) {
+TEST(BackgroundTasks, TakesUpNoPieceWithinWorkThatStandsApart) {
   if (std::thread::hardware_concurrency() < 2)
     GTEST_SKIP() << "one processor has no other thread to wait for";
 #ifdef OCTOTOMY_PLAIN_THREADS
@@ -67,7 +67,7 @@ TEST(Beside, TakesUpNoPieceWithinWorkThatStandsApart) {
   EXPECT_FALSE(takes_up_a_piece(true));
 }
 
-TEST(Beside, ItsEndAndTheCallersTokenStopThePieces) {
+TEST(BackgroundTasks, ItsEndAndTheCallersTokenStopThePieces) {
   using namespace std::chrono_literals;
   if (std::thread::hardware_concurrency() < 2)
     GTEST_SKIP() << "one processor begins no piece beside its own work";
@@ -79,16 +79,16 @@ TEST(Beside, ItsEndAndTheCallersTokenStopThePieces) {
     ++stopped;
   };
   {
-    Beside beside(source.get_token());
-    beside.begin(until_stopped);
+    BackgroundTasks tasks(source.get_token());
+    tasks.begin(until_stopped);
     source.request_stop();
-    beside.wait(0);
+    tasks.wait(0);
     EXPECT_EQ(stopped, 1);
   }
   std::atomic<bool> is_begun = false;
   {
-    Beside beside({});
-    beside.begin([&](const std::stop_token& stop) {
+    BackgroundTasks tasks({});
+    tasks.begin([&](const std::stop_token& stop) {
       is_begun = true;
       until_stopped(stop);
     });
@@ -97,7 +97,7 @@ TEST(Beside, ItsEndAndTheCallersTokenStopThePieces) {
   EXPECT_EQ(stopped, 2);
 }
 
-TEST(Beside, ItsEndLeavesNothingOutOfALoopThatHasBegun) {
+TEST(BackgroundTasks, ItsEndLeavesNothingOutOfALoopThatHasBegun) {
   using namespace std::chrono_literals;
   if (std::thread::hardware_concurrency() < 2)
     GTEST_SKIP() << "one processor begins no piece beside its own work";
@@ -105,8 +105,8 @@ TEST(Beside, ItsEndLeavesNothingOutOfALoopThatHasBegun) {
   std::atomic<bool> is_begun = false;
   std::atomic<int> done = 0;
   {
-    Beside beside({});
-    beside.begin([&](const std::stop_token& stop) {
+    BackgroundTasks tasks({});
+    tasks.begin([&](const std::stop_token& stop) {
       is_begun = true;
       while (!stop.stop_requested()) std::this_thread::sleep_for(1ms);
       tbb::parallel_for(0, 1000, [&](int) { ++done; });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/upright.h"
+#include "voxel/scan/tilt_correction.h"
 
 #include <algorithm>
 #include <cassert>
@@ -75,14 +75,14 @@ Stored interpolated(const SlicePlan& plan, const glm::ivec2& from_px, const Stor
 
 }  // namespace
 
-SceneSamples upright_samples(const SlicePlan& plan, const glm::ivec2& slice_px, const SceneSamples& stored,
-                             std::optional<double> padding) {
+SceneSamples tilt_corrected_samples(const SlicePlan& plan, const glm::ivec2& slice_px,
+                                    const SceneSamples& stored, std::optional<double> padding) {
   return std::visit(
       [&](const auto& samples) -> SceneSamples { return interpolated(plan, slice_px, samples, padding); },
       stored);
 }
 
-Scene upright(const Scene& scene) {
+Scene tilt_corrected(const Scene& scene) {
   const glm::dmat4& axes = scene.lattice.lps_from_voxel;
   const glm::dvec3 row_mm(axes[0]), column_mm(axes[1]), step_mm(axes[2]);
   assert(std::abs(glm::dot(row_mm, column_mm)) < 1e-6 * glm::length(row_mm) * glm::length(column_mm));
@@ -98,7 +98,7 @@ Scene upright(const Scene& scene) {
     plan.sources.push_back({static_cast<std::size_t>(k), static_cast<std::size_t>(k), 0.0});
   }
   Scene made = scene;
-  made.samples = upright_samples(plan, glm::ivec2(scene.lattice.dims), scene.samples, scene.padding);
+  made.samples = tilt_corrected_samples(plan, glm::ivec2(scene.lattice.dims), scene.samples, scene.padding);
   made.lattice.dims = {plan.size_px, slices};
   made.lattice.lps_from_voxel[2] = glm::dvec4(step_mm - lean_px.x * row_mm - lean_px.y * column_mm, 0.0);
   made.lattice.lps_from_voxel[3] = axes * glm::dvec4(glm::dvec2(plan.low_px), 0.0, 1.0);

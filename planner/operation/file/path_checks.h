@@ -14,12 +14,12 @@ bool is_mesh(const std::filesystem::path& path);
 bool is_octree(const std::filesystem::path& path);
 
 /// What a verb makes at a path.
-enum class Output { File, Folder };
+enum class OutputKind { File, Folder };
 
 /// Throws std::runtime_error or voxel::Error where a file or folder cannot be made at `out`, or would replace
 /// what is none, or a file beside it (voxel::need_own_data_file()): before the work, so that none is lost.
 /// Tries it with a hidden folder beside the path.
-void need_folder_of(const std::filesystem::path& out, Output kind);
+void need_folder_of(const std::filesystem::path& out, OutputKind kind);
 /// The same of a file.
 void need_folder_of(const std::filesystem::path& out);
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/browser/server/desk.h"
+#include "planner/browser/server/session.h"
 
 #include <algorithm>
 #include <set>
 
+#include "planner/browser/server/measurement_message.h"
 #include "planner/browser/server/new_plan.h"
-#include "planner/browser/server/told_measurement.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/picture/colour.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/plan_universe.h"
-#include "planner/plan/answers.h"
 #include "planner/plan/dependence.h"
+#include "planner/plan/plan_results.h"
 #include "planner/result/report/patient.h"
 #include "voxel/filter/tissue.h"
 #include "voxel/scan/read_scene.h"
@@ -113,7 +113,7 @@ void add(const Object& object, ObjectState& state) {
 }
 
 /// A measure step of an object, for its recommended sizes.
-constexpr const char* size_of = "size_of_";
+constexpr const char* size_step_prefix = "size_of_";
 
 /// The measurements of a plan. For steps that fail, `errors` gets the reason by their ids.
 Json answered(const Plan& plan, const Evaluation& evaluation, std::map<std::string, std::string>& errors) {
@@ -149,7 +149,7 @@ Json measurements_of(Plan plan, const Evaluation& evaluation, std::map<std::stri
   });
   Json list = Json::array();
   for (const Json& answer : answered(plan, evaluation, errors)) {
-    Json told = told_measurement(answer);
+    Json told = measurement_message(answer);
     if (!told.is_null()) list.push_back(std::move(told));
   }
   for (const Step& step : plan.steps)
@@ -182,12 +182,12 @@ bool is_plan(const fs::path& path) {
   return path.extension() == ".json";
 }
 
-Desk::Desk(fs::path working_folder)
+Session::Session(fs::path working_folder)
     : cache(most_answers, most_bytes), working_folder_(std::move(working_folder)) {
   folders.open(working_folder_);
 }
 
-void Desk::open(const fs::path& path, const Watched& watched, const std::string& series) {
+void Session::open(const fs::path& path, const Watched& watched, const std::string& series) {
   const voxel::Progress progress{watched.stop, [&](double share) {
                                    if (watched.progress) watched.progress("read " + path.string(), share);
                                  }};
@@ -215,19 +215,19 @@ void Desk::open(const fs::path& path, const Watched& watched, const std::string&
   }
 }
 
-void Desk::close_within(std::chrono::milliseconds most) {
+void Session::close_within(std::chrono::milliseconds most) {
   const std::unique_lock lock(mutex_, most);
   if (lock.owns_lock()) document_.reset();
 }
 
-Document& Desk::need_document() const {
+Document& Session::need_document() const {
   if (document_ == nullptr)
     throw voxel::Error(voxel::ErrorCode::Input, "no plan is open: open a scan, a plan or the head phantom");
   return *document_;
 }
 
-Evaluation Desk::evaluate(const Plan& plan, const std::vector<std::string>& steps, bool certify,
-                          const Watched& watched, bool only_look_up) {
+Evaluation Session::evaluate(const Plan& plan, const std::vector<std::string>& steps, bool certify,
+                             const Watched& watched, bool only_look_up) {
   EvaluateOptions options;
   options.stop = watched.stop;
   options.progress = watched.progress;
@@ -243,7 +243,7 @@ Evaluation Desk::evaluate(const Plan& plan, const std::vector<std::string>& step
   return planner::evaluate(plan, options);
 }
 
-Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, const Watched& watched) {
+Snapshot Session::evaluate(const std::vector<std::string>& steps, bool certify, const Watched& watched) {
   Snapshot made;
   std::uint64_t opened = 0;
   std::vector<std::string> wanted = steps;
@@ -301,7 +301,7 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
   return made;
 }
 
-std::map<std::string, double> Desk::bone_lows_of(const Evaluation& evaluation) {
+std::map<std::string, double> Session::bone_lows_of(const Evaluation& evaluation) {
   std::map<std::string, double> lows;
   const std::lock_guard lock(bone_mutex_);
   for (const auto& [name, loaded] : evaluation.loaded) {
@@ -316,15 +316,15 @@ std::map<std::string, double> Desk::bone_lows_of(const Evaluation& evaluation) {
   return lows;
 }
 
-void Desk::keep_certified(const Plan& plan, const Evaluation& evaluation) {
+void Session::keep_certified(const Plan& plan, const Evaluation& evaluation) {
   Json measures = Json::array();
   for (const Object& object : evaluation.objects)
     if (!object.is_tool && !object.voxel.octree.is_empty())
-      measures.push_back({{"id", size_of + object.id}, {"do", "measure"}, {"object", object.id}});
+      measures.push_back({{"id", size_step_prefix + object.id}, {"do", "measure"}, {"object", object.id}});
   Json whole = Json::parse(plan.text);
   for (const Json& step : measures) whole["steps"].push_back(step);
   Plan measuring = parse_plan(whole.dump(), plan.folder);
-  std::erase_if(measuring.steps, [](const Step& step) { return !step.id.starts_with(size_of); });
+  std::erase_if(measuring.steps, [](const Step& step) { return !step.id.starts_with(size_step_prefix); });
   const std::map<std::string, std::string> keys = keys_of(plan);
   std::map<std::string, Certified> found;
   for (const Object& object : evaluation.objects) {
@@ -337,12 +337,12 @@ void Desk::keep_certified(const Plan& plan, const Evaluation& evaluation) {
   for (auto& [id, said] : found) certified_[id] = std::move(said);
 }
 
-Snapshot Desk::snapshot() const {
+Snapshot Session::snapshot() const {
   const std::lock_guard lock(mutex_);
   return snapshot_;
 }
 
-voxel::GreyOctree Desk::alone(const Snapshot& snapshot, const std::string& scan) {
+voxel::GreyOctree Session::alone(const Snapshot& snapshot, const std::string& scan) {
   const auto loaded = snapshot.evaluation->loaded.find(scan);
   if (loaded == snapshot.evaluation->loaded.end())
     throw voxel::Error(voxel::ErrorCode::Input, "there is no scan '" + scan + "'");
@@ -355,8 +355,8 @@ voxel::GreyOctree Desk::alone(const Snapshot& snapshot, const std::string& scan)
   return alone_->second;
 }
 
-Desk::Preview Desk::preview(const Json& asked, const std::vector<std::string>& with,
-                            const std::stop_token& stop) {
+Session::Preview Session::preview(const Json& asked, const std::vector<std::string>& with,
+                                  const std::stop_token& stop) {
   Json steps = asked.value("steps", Json::array());
   std::string moved;
   if (steps.empty()) {
@@ -386,7 +386,7 @@ Desk::Preview Desk::preview(const Json& asked, const std::vector<std::string>& w
   return made;
 }
 
-Json Desk::object_json(const Snapshot& snapshot, const std::string& id) const {
+Json Session::object_json(const Snapshot& snapshot, const std::string& id) const {
   ObjectState state;
   state.id = id;
   if (const auto failed = snapshot.errors.find(id); failed != snapshot.errors.end())
@@ -397,7 +397,7 @@ Json Desk::object_json(const Snapshot& snapshot, const std::string& id) const {
   return print_record(state);
 }
 
-Json Desk::objects_json(const Plan& plan) const {
+Json Session::objects_json(const Plan& plan) const {
   Json list = Json::array();
   std::map<std::string, std::string> keys;
   if (!certified_.empty()) keys = keys_of(plan);
@@ -415,7 +415,7 @@ Json Desk::objects_json(const Plan& plan) const {
   return list;
 }
 
-Json Desk::state() const {
+Json Session::state() const {
   const std::lock_guard lock(mutex_);
   if (document_ == nullptr) return nullptr;
   const Plan& plan = *document_->plan();

@@ -16,7 +16,7 @@ namespace octotomy::verify {
 /// make() runs at the same time as take() for earlier items, so make() must not read what take() writes. It
 /// must set every item, because an item's memory is reused.
 template <typename Item, typename Make, typename Take>
-void in_order_by_batch(std::size_t count, const Make& make, const Take& take) {
+void ordered_parallel_by_batch(std::size_t count, const Make& make, const Take& take) {
   constexpr std::size_t block = std::size_t{1} << 14, grain = 256;
   std::array<std::vector<Item>, 2> items;
   items.fill(std::vector<Item>(std::min(count, block)));
@@ -41,8 +41,8 @@ void in_order_by_batch(std::size_t count, const Make& make, const Take& take) {
 
 /// The same with a make() for single items: item i is make(i).
 template <typename Item, typename Make, typename Take>
-void in_order(std::size_t count, const Make& make, const Take& take) {
-  in_order_by_batch<Item>(
+void ordered_parallel(std::size_t count, const Make& make, const Take& take) {
+  ordered_parallel_by_batch<Item>(
       count,
       [&](std::size_t first, std::size_t end, Item* items) {
         for (std::size_t i = first; i != end; ++i) *items++ = make(i);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/upright.h"
+#include "voxel/scan/tilt_correction.h"
 
 #include <gtest/gtest.h>
 
 namespace octotomy::voxel {
 namespace {
 
-TEST(Upright, LeaningSlicesOfALinearFunctionStayItOnPerpendicularAxes) {
+TEST(TiltCorrection, LeaningSlicesOfALinearFunctionStayItOnPerpendicularAxes) {
   for (const glm::dvec2& lean_px : {glm::dvec2(0.4, 0.0), {-0.3, 0.7}, {0.0, -1.25}}) {
     Scene leaning;
     leaning.lattice.dims = {9, 8, 7};
@@ -21,7 +21,7 @@ TEST(Upright, LeaningSlicesOfALinearFunctionStayItOnPerpendicularAxes) {
         for (int x = 0; x < 9; ++x)
           samples.push_back(static_cast<float>(value(leaning.lattice.lps_mm({x, y, z}))));
     leaning.samples = samples;
-    const Scene straight = upright(leaning);
+    const Scene straight = tilt_corrected(leaning);
     const glm::dmat3 axes(straight.lattice.lps_from_voxel);
     EXPECT_NEAR(glm::dot(axes[2], axes[0]), 0.0, 1e-12);
     EXPECT_NEAR(glm::dot(axes[2], axes[1]), 0.0, 1e-12);
@@ -41,7 +41,7 @@ TEST(Upright, LeaningSlicesOfALinearFunctionStayItOnPerpendicularAxes) {
   }
 }
 
-TEST(Upright, ASampleBetweenLeaningSlicesIsMadeOfBothOrIsTheFill) {
+TEST(TiltCorrection, ASampleBetweenLeaningSlicesIsMadeOfBothOrIsTheFill) {
   // Two slices of four pixels, the upper one 1.5 pixels aside, and one between them that no image has.
   const auto field = [](double x_px) { return 100.0 + 10.0 * x_px; };
   const std::vector<glm::dvec2> aside_px{{0.0, 0.0}, {1.5, 0.0}};
@@ -52,7 +52,7 @@ TEST(Upright, ASampleBetweenLeaningSlicesIsMadeOfBothOrIsTheFill) {
   plan.sources = {{0, 0, 0.0}, {0, 1, 0.5}, {1, 1, 0.0}};
   plan.size_px = {7, 1};
   plan.aside_px = aside_px;
-  const SceneSamples made = upright_samples(plan, {4, 1}, stored);
+  const SceneSamples made = tilt_corrected_samples(plan, {4, 1}, stored);
   const auto& samples = std::get<FloatSamples>(made);
   const float fill = stored.front();
   for (int x = 0; x < 7; ++x) {
@@ -67,11 +67,11 @@ TEST(Upright, ASampleBetweenLeaningSlicesIsMadeOfBothOrIsTheFill) {
   EXPECT_EQ(samples[14 + 6], fill);
 }
 
-TEST(Upright, SlicesThatStandStraightStayAsTheyAre) {
+TEST(TiltCorrection, SlicesThatStandStraightStayAsTheyAre) {
   Scene scene;
   scene.lattice.dims = {3, 2, 2};
   scene.samples = Int16Samples{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
-  const Scene straight = upright(scene);
+  const Scene straight = tilt_corrected(scene);
   EXPECT_EQ(straight.lattice, scene.lattice);
   EXPECT_EQ(std::get<Int16Samples>(straight.samples), std::get<Int16Samples>(scene.samples));
 }

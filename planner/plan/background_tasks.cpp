@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/plan/beside.h"
+#include "planner/plan/background_tasks.h"
 
 #include <deque>
 #include <tbb/task_arena.h>
@@ -8,21 +8,21 @@
 
 namespace octotomy::planner {
 
-struct Beside::Pieces {
-  explicit Pieces(const std::stop_token& asked) : with(asked, [this] { stop.request_stop(); }) {}
+struct BackgroundTasks::Tasks {
+  explicit Tasks(const std::stop_token& asked) : with(asked, [this] { stop.request_stop(); }) {}
 
   std::stop_source stop;
   std::stop_callback<std::function<void()>> with;
   std::deque<tbb::task_group> groups;  ///< one per task, so that each can be awaited separately
 };
 
-Beside::Beside(const std::stop_token& stop) : pieces_(std::make_unique<Pieces>(stop)) {}
+BackgroundTasks::BackgroundTasks(const std::stop_token& stop) : tasks_(std::make_unique<Tasks>(stop)) {}
 
-Beside::~Beside() {
-  pieces_->stop.request_stop();
+BackgroundTasks::~BackgroundTasks() {
+  tasks_->stop.request_stop();
   // No group is cancelled: TBB would skip parts of loops within a task, and the task would continue with
   // incomplete results.
-  for (tbb::task_group& group : pieces_->groups) {
+  for (tbb::task_group& group : tasks_->groups) {
     try {
       group.wait();
     } catch (...) {
@@ -31,19 +31,19 @@ Beside::~Beside() {
   }
 }
 
-void Beside::begin(std::function<void(const std::stop_token&)> piece) {
-  pieces_->groups.emplace_back().run([piece = std::move(piece), stop = pieces_->stop.get_token()] {
+void BackgroundTasks::begin(std::function<void(const std::stop_token&)> task) {
+  tasks_->groups.emplace_back().run([task = std::move(task), stop = tasks_->stop.get_token()] {
     // Isolated, so that a thread that waits within a task starts no other task, which would have to end
     // first.
-    tbb::this_task_arena::isolate([&] { piece(stop); });
+    tbb::this_task_arena::isolate([&] { task(stop); });
   });
 }
 
-void Beside::wait(std::size_t piece) {
-  pieces_->groups.at(piece).wait();
+void BackgroundTasks::wait(std::size_t task) {
+  tasks_->groups.at(task).wait();
 }
 
-void Beside::apart(const std::function<void()>& work) const {
+void BackgroundTasks::without_tasks(const std::function<void()>& work) const {
   tbb::this_task_arena::isolate([&] { work(); });
 }
 

@@ -10,7 +10,7 @@ namespace octotomy::planner {
 /// Returns the result of a step's work. Exceptions of the work are rethrown with the same type and the step's
 /// name: "step 'cut': ...".
 template <typename Work>
-auto in_step(const std::string& id, const Work& work) {
+auto name_step_in_errors(const std::string& id, const Work& work) {
   try {
     return work();
   } catch (const std::exception& error) {

@@ -4,7 +4,7 @@
 // the passage.
 // 3. At even steps, cut the plane perpendicular to the line in both kernels and keep the part around the
 // line.
-#include "planner/operation/measure/passage.h"
+#include "planner/operation/measure/airway_sections.h"
 
 #include <algorithm>
 #include <cmath>
@@ -159,8 +159,7 @@ Station fitted(const RawLine& line, double place) {
 }
 
 /// Adds the part of a voxel section around its middle.
-void cut_voxels(const voxel::Octree& octree, const brep::Plane& plane, double reach_mm,
-                PassageSection& made) {
+void cut_voxels(const voxel::Octree& octree, const brep::Plane& plane, double reach_mm, AirwaySection& made) {
   const glm::dvec3 spacing_mm = octree.universe().lattice().spacing_mm();
   voxel::Sheet sheet;
   sheet.pixel_mm = 0.25 * std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
@@ -233,10 +232,10 @@ std::optional<double> cut_mesh(const brep::Solid& solid, const brep::Plane& plan
 
 }  // namespace
 
-Passage passage(const voxel::Octree& octree, const std::optional<brep::Solid>& solid,
-                const glm::dvec3& from_mm, const glm::dvec3& to_mm, double step_mm) {
+AirwaySections airway_sections(const voxel::Octree& octree, const std::optional<brep::Solid>& solid,
+                               const glm::dvec3& from_mm, const glm::dvec3& to_mm, double step_mm) {
   const RawLine line = raw_line(octree, from_mm, to_mm);
-  Passage made;
+  AirwaySections made;
   std::vector<Station> stations;
   const double step = std::min(1.0, 0.1 * step_mm / line.apart_mm);
   for (double place = 0.0; place <= static_cast<double>(line.points_mm.size() - 1); place += step)
@@ -246,7 +245,7 @@ Passage passage(const voxel::Octree& octree, const std::optional<brep::Solid>& s
     if (i > 0) along_mm += glm::distance(stations[i].at_mm, stations[i - 1].at_mm);
     if (along_mm - last_mm < step_mm * (1.0 - 1e-9)) continue;
     last_mm = along_mm;
-    PassageSection section{along_mm, stations[i].at_mm, stations[i].direction, 0.0, 0.0, {}};
+    AirwaySection section{along_mm, stations[i].at_mm, stations[i].direction, 0.0, 0.0, {}};
     const brep::Plane plane = brep::plane_through(section.at_mm, section.direction);
     cut_voxels(octree, plane, 3.0 * line.width_mm, section);
     if (!(section.voxel_mm2 > 0.0)) continue;
@@ -256,7 +255,7 @@ Passage passage(const voxel::Octree& octree, const std::optional<brep::Solid>& s
   made.length_mm = along_mm;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < made.sections.size(); ++i) {
-    const PassageSection& section = made.sections[i];
+    const AirwaySection& section = made.sections[i];
     const double radius_mm = std::sqrt(section.area_mm2() / std::numbers::pi);
     if (std::min(section.along_mm, along_mm - section.along_mm) < radius_mm) continue;
     if (section.area_mm2() < least) least = section.area_mm2(), made.narrowest = i;
@@ -266,7 +265,7 @@ Passage passage(const voxel::Octree& octree, const std::optional<brep::Solid>& s
   return made;
 }
 
-HalfWidth section_half_width(const PassageSection& section, const Digitised& digitised) {
+HalfWidth section_half_width(const AirwaySection& section, const Digitised& digitised) {
   HalfWidth width;
   // 99 % of a normal distribution are within 2.576 deviations; a uniform position within a step has a twelfth
   // of the step's square as variance.

@@ -16,18 +16,18 @@ namespace octotomy::planner {
 
 /// Prepares files of a plan's result on a thread of its own, started as soon as the files' objects exist, in
 /// parallel with their certificates. The destructor stops the work and waits for it.
-class Ahead {
+class FilePreparation {
  public:
   using Kept = std::map<std::string, std::shared_ptr<const void>>;
 
   /// Runs the actions in order. Each may leave values in `kept` for the next. `objects` are those made so
-  /// far, including those of the actions. Precondition: the operations have an `ahead` function.
-  Ahead(std::vector<Action> actions, const voxel::Universe& universe, Objects objects,
-        const std::stop_token& stop);
+  /// far, including those of the actions. Precondition: the operations have a `prepare_file` function.
+  FilePreparation(std::vector<Action> actions, const voxel::Universe& universe, Objects objects,
+                  const std::stop_token& stop);
 
-  ~Ahead() { stop_.request_stop(); }
-  Ahead(const Ahead&) = delete;
-  Ahead& operator=(const Ahead&) = delete;
+  ~FilePreparation() { stop_.request_stop(); }
+  FilePreparation(const FilePreparation&) = delete;
+  FilePreparation& operator=(const FilePreparation&) = delete;
 
   /// Waits for the work and reports its progress to `progress`, which may be empty. Adds the values in `kept`
   /// for writing and, at the first call, the time to `timings`. Rethrows exceptions of the work; throws

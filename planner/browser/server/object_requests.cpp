@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/browser/server/answers.h"
+#include "planner/browser/server/object_requests.h"
 
 #include <algorithm>
 #include <array>
@@ -10,15 +10,15 @@
 #include <utility>
 
 #include "brep/io/read_mesh.h"
+#include "planner/browser/server/measurement_message.h"
 #include "planner/browser/server/new_files.h"
 #include "planner/browser/server/pane_fields.h"
-#include "planner/browser/server/told_measurement.h"
 #include "planner/operation/anatomy/movement.h"
 #include "planner/operation/file/mesh_in.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/json_file.h"
-#include "planner/plan/answers.h"
 #include "planner/plan/dependence.h"
+#include "planner/plan/plan_results.h"
 #include "planner/result/outcome/outcome.h"
 #include "planner/result/report/report.h"
 #include "voxel/filter/components.h"
@@ -41,12 +41,12 @@ constexpr double snap_mm = 8.0;
 }
 
 /// The result of an additional measuring step in the plan; without a "do" it is a measure step.
-Json measured(Desk& desk, Json step, const std::vector<std::string>& needed, bool certify,
+Json measured(Session& session, Json step, const std::vector<std::string>& needed, bool certify,
               const Watched& watched) {
   step["id"] = asked_step;
   if (!step.contains("do")) step["do"] = "measure";
-  const Plan plan =
-      desk.with_document([&](const Document& document) { return document.with_steps(Json::array({step})); });
+  const Plan plan = session.with_document(
+      [&](const Document& document) { return document.with_steps(Json::array({step})); });
   std::vector<std::string> wanted = needed;
   Plan alone = plan;
   // If no objects are needed, evaluates only the step itself.
@@ -57,7 +57,7 @@ Json measured(Desk& desk, Json step, const std::vector<std::string>& needed, boo
       return each.action.operation().makes == Makes::Measurement && each.id != asked_step;
     });
   if (wanted.empty()) wanted = {asked_step};
-  const Evaluation evaluation = desk.evaluate(alone, wanted, certify, watched);
+  const Evaluation evaluation = session.evaluate(alone, wanted, certify, watched);
   alone.steps = {plan.steps.back()};
   return measurements_json(alone, evaluation).front();
 }
@@ -123,26 +123,27 @@ std::optional<glm::dvec3> snapped(const Evaluation& evaluation, const glm::dvec3
 
 }  // namespace
 
-fs::path files_folder(const Desk& desk) {
-  const fs::path plan = desk.with_document([](const Document& document) { return document.path(); });
+fs::path files_folder(const Session& session) {
+  const fs::path plan = session.with_document([](const Document& document) { return document.path(); });
   return plan.parent_path() / (plain_stem(plan) + " files");
 }
 
-Json measure(Desk& desk, const Json& said, const Watched& watched) {
+Json measure(Session& session, const Json& said, const Watched& watched) {
   const std::string kind = said.at("kind");
   if (kind == "volume" || kind == "area") {
     const std::string object = said.at("object");
-    const Json json = measured(desk, {{"object", object}}, {object}, true, watched);
+    const Json json = measured(session, {{"object", object}}, {object}, true, watched);
     const Json& number = json.at(kind);
-    return told(number.at("value"), number.at("unit"), number.at("half_width"),
-                (kind == "volume" ? "Volume of " : "Surface area of ") + object);
+    return number_message(number.at("value"), number.at("unit"), number.at("half_width"),
+                          (kind == "volume" ? "Volume of " : "Surface area of ") + object);
   }
   const Json& points = said.at("points");
   if (kind == "surface_distance") {
     const std::string object = said.at("object");
     const Json typed =
-        desk.with_document([&](const Document& document) { return points_mm(points, *document.plan()); });
-    return told_measurement(measured(desk, {{"object", object}, {"along", typed}}, {object}, true, watched));
+        session.with_document([&](const Document& document) { return points_mm(points, *document.plan()); });
+    return measurement_message(
+        measured(session, {{"object", object}, {"along", typed}}, {object}, true, watched));
   }
   if (kind != "distance" && kind != "angle")
     refuse("kind: must be distance, angle, surface_distance, volume or area");
@@ -153,14 +154,14 @@ Json measure(Desk& desk, const Json& said, const Watched& watched) {
     const std::string name = point;
     if (const auto at = name.find('@'); at != std::string::npos) needed.push_back(name.substr(at + 1));
   }
-  return told_measurement(measured(desk, {{"points_mm", points}}, needed, false, watched));
+  return measurement_message(measured(session, {{"points_mm", points}}, needed, false, watched));
 }
 
-Json certify(Desk& desk, const Json& said, const Watched& watched) {
+Json certify(Session& session, const Json& said, const Watched& watched) {
   const std::string id = said.at("object");
-  const Snapshot made = desk.evaluate({id}, true, watched);
+  const Snapshot made = session.evaluate({id}, true, watched);
   if (const auto failed = made.errors.find(id); failed != made.errors.end()) refuse(failed->second);
-  const Json json = desk.object_json(made, id);
+  const Json json = session.object_json(made, id);
   if (!json.contains("certificate"))
     return {{"verdict", nullptr},
             {"sentence", json.value("findings", Json::array()).empty()
@@ -175,10 +176,10 @@ Json certify(Desk& desk, const Json& said, const Watched& watched) {
           {"rows", certificate.at("comparisons")}, {"certificate", certificate}};
 }
 
-Json overlap(Desk& desk, const Json& said, const Watched& watched) {
-  const Desk::Preview preview = desk.preview(said, names_of(said.at("with")), watched.stop);
+Json overlap(Session& session, const Json& said, const Watched& watched) {
+  const Session::Preview preview = session.preview(said, names_of(said.at("with")), watched.stop);
   for (const Object& object : preview.evaluation->objects)
-    if (object.id == Desk::Preview::overlap) return {{"mm3", object.voxel.measures.volume_mm3}};
+    if (object.id == Session::Preview::overlap) return {{"mm3", object.voxel.measures.volume_mm3}};
   refuse("with: name at least one other object");
 }
 
@@ -225,10 +226,10 @@ std::optional<std::pair<glm::ivec3, voxel::Octree>> part_near(const voxel::Octre
 
 }  // namespace
 
-Json part(Desk& desk, const Json& said, const Watched&) {
+Json part(Session& session, const Json& said, const Watched&) {
   const std::string id = said.at("object");
   const auto near_mm = point_of(said, "near_mm");
-  const Snapshot snapshot = desk.snapshot();
+  const Snapshot snapshot = session.snapshot();
   if (snapshot.evaluation)
     for (const Object& object : snapshot.evaluation->objects) {
       if (object.id != id) continue;
@@ -251,14 +252,14 @@ Json part(Desk& desk, const Json& said, const Watched&) {
   refuse("'" + id + "' is not evaluated yet");
 }
 
-Json try_steps(Desk& desk, const Json& said, const Watched& watched) {
+Json try_steps(Session& session, const Json& said, const Watched& watched) {
   const Json& steps = said.at("steps");
   std::vector<std::string> wanted;
   for (const Json& step : steps) wanted.push_back(step.at("id"));
   if (wanted.empty()) refuse("steps: name at least one");
-  const Evaluation made =
-      desk.evaluate(desk.with_document([&](const Document& document) { return document.with_steps(steps); }),
-                    wanted, false, watched);
+  const Evaluation made = session.evaluate(
+      session.with_document([&](const Document& document) { return document.with_steps(steps); }), wanted,
+      false, watched);
   const auto is_wanted = [&](const std::string& id) {
     return std::find(wanted.begin(), wanted.end(), id) != wanted.end();
   };
@@ -276,8 +277,8 @@ Json try_steps(Desk& desk, const Json& said, const Watched& watched) {
   return {{"objects", objects}, {"scans", scans}};
 }
 
-Json movement(Desk& desk, const Json& said, const Watched&) {
-  const Snapshot snapshot = desk.snapshot();
+Json movement(Session& session, const Json& said, const Watched&) {
+  const Snapshot snapshot = session.snapshot();
   if (!snapshot.evaluation) refuse("nothing is evaluated yet");
   const std::string id = said.value("object", "");
   Json rows = Json::array();
@@ -286,16 +287,16 @@ Json movement(Desk& desk, const Json& said, const Watched&) {
   return {{"rows", rows}};
 }
 
-Json mesh_audit(Desk& desk, const Json& said, const Watched&) {
+Json mesh_audit(Session& session, const Json& said, const Watched&) {
   const fs::path folder =
-      desk.with_document([](const Document& document) { return document.path().parent_path(); });
-  const fs::path path = desk.folders.need_readable(folder / said.at("path").get<std::string>());
+      session.with_document([](const Document& document) { return document.path().parent_path(); });
+  const fs::path path = session.folders.need_readable(folder / said.at("path").get<std::string>());
   const auto word = [&](const char* name) -> std::optional<std::string> {
     if (!said.contains(name) || said[name].is_null()) return std::nullopt;
     return said[name].get<std::string>();
   };
   brep::MeshFile file = brep::read_mesh(path, {word("frame"), word("unit")});
-  const Json scans = desk.state().at("scans");
+  const Json scans = session.state().at("scans");
   if (!scans.empty()) {
     const auto bounds = scans.front().at("bounds_mm").get<std::array<std::array<double, 3>, 2>>();
     const auto corner = [&](std::size_t i) { return glm::dvec3(bounds[i][0], bounds[i][1], bounds[i][2]); };
@@ -308,39 +309,39 @@ Json mesh_audit(Desk& desk, const Json& said, const Watched&) {
   return {{"audit", audit}};
 }
 
-Json place_landmark(Desk& desk, const Json& said, const Watched&) {
+Json place_landmark(Session& session, const Json& said, const Watched&) {
   const std::string name = said.at("name");
   const auto asked = point_of(said, "point");
   if (!asked) refuse("point: is missing");
   std::optional<glm::dvec3> on_bone;
-  const Snapshot snapshot = desk.snapshot();
+  const Snapshot snapshot = session.snapshot();
   if (said.value("snap", false) && snapshot.evaluation)
     on_bone = snapped(*snapshot.evaluation, *asked, said.value("object", ""));
   glm::dvec3 p_mm = on_bone.value_or(*asked);
   for (int axis = 0; axis < 3; ++axis) p_mm[axis] = std::round(p_mm[axis] * 1e4) / 1e4;
-  desk.with_document([&](Document& document) { document.place_landmark(name, planner::to_json(p_mm)); });
+  session.with_document([&](Document& document) { document.place_landmark(name, planner::to_json(p_mm)); });
   return {{"point", planner::to_json(p_mm)}, {"snapped", on_bone.has_value()}};
 }
 
-Json find_landmarks(Desk& desk, const Json& said, const Watched& watched) {
+Json find_landmarks(Session& session, const Json& said, const Watched& watched) {
   const std::string object = said.at("object");
-  return measured(desk, {{"do", "find_landmarks"}, {"object", object}}, {object}, true, watched);
+  return measured(session, {{"do", "find_landmarks"}, {"object", object}}, {object}, true, watched);
 }
 
-Json export_file(Desk& desk, const Json& said, const Watched& watched) {
+Json export_file(Session& session, const Json& said, const Watched& watched) {
   const std::string object = said.at("object");
   const std::string kind = said.value("kind", "stl");
-  const fs::path folder = files_folder(desk);
+  const fs::path folder = files_folder(session);
   const fs::path asked =
       need_plain_name(said.contains("path") ? said["path"].get<std::string>() : object + "." + kind);
-  const fs::path path = desk.folders.need_within(unused_export(folder / asked));
+  const fs::path path = session.folders.need_within(unused_export(folder / asked));
   const Json step{
       {"id", asked_step}, {"do", "export"}, {"object", object}, {"path", path.filename().string()}};
-  Plan plan =
-      desk.with_document([&](const Document& document) { return document.with_steps(Json::array({step})); });
+  Plan plan = session.with_document(
+      [&](const Document& document) { return document.with_steps(Json::array({step})); });
   const Step last = plan.steps.back();
   plan.steps.pop_back();
-  const Evaluation evaluation = desk.evaluate(plan, {object}, true, watched);
+  const Evaluation evaluation = session.evaluate(plan, {object}, true, watched);
   plan.steps.push_back(last);
   Timings timings;
   std::map<std::string, std::shared_ptr<const void>> kept;
@@ -379,9 +380,9 @@ Plan with_answers(const Snapshot& made, std::vector<voxel::Finding>& findings) {
 
 }  // namespace
 
-Json report(Desk& desk, const Json& said, const Watched& watched) {
-  const fs::path folder = desk.folders.need_within(unused(files_folder(desk) / "report"));
-  const Snapshot made = desk.evaluate({}, true, watched);
+Json report(Session& session, const Json& said, const Watched& watched) {
+  const fs::path folder = session.folders.need_within(unused(files_folder(session) / "report"));
+  const Snapshot made = session.evaluate({}, true, watched);
   Result result;
   result.plan = with_answers(made, result.findings);
   result.evaluation = *made.evaluation;
@@ -403,10 +404,10 @@ Json report(Desk& desk, const Json& said, const Watched& watched) {
           {"left_out", left_out}};
 }
 
-Json outcome(Desk& desk, const Json& said, const Watched& watched) {
-  const fs::path path = desk.folders.need_within(said.at("path").get<std::string>());
-  need_readable_samples(desk.folders, path);
-  const Snapshot made = desk.evaluate({}, true, watched);
+Json outcome(Session& session, const Json& said, const Watched& watched) {
+  const fs::path path = session.folders.need_within(said.at("path").get<std::string>());
+  need_readable_samples(session.folders, path);
+  const Snapshot made = session.evaluate({}, true, watched);
   std::vector<voxel::Finding> left_out;
   const Plan plan = with_answers(made, left_out);
   const Evaluation& before = *made.evaluation;
@@ -479,9 +480,9 @@ std::string python_of(const Json& value) {
 
 }  // namespace
 
-Json command_of_step(Desk& desk, const Json& said, const Watched&) {
+Json command_of_step(Session& session, const Json& said, const Watched&) {
   const std::string id = said.at("step");
-  return desk.with_document([&](const Document& document) -> Json {
+  return session.with_document([&](const Document& document) -> Json {
     const Json whole = document.json();
     for (const Json& step : whole.at("steps")) {
       if (step.value("id", "") != id) continue;

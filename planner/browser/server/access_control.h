@@ -40,11 +40,11 @@ std::string token_in(const std::filesystem::path& path);
 
 /// Checks requests. A page of another site can make a browser send requests here, even under its own name for
 /// this machine; it does not have the token, and its Host or Origin differs.
-class Gate {
+class AccessControl {
  public:
   /// `hosts` are the accepted values of the Host header: "127.0.0.1:8080". Empty: any, if the server listens
   /// on other interfaces.
-  Gate(std::string token, std::vector<std::string> hosts)
+  AccessControl(std::string token, std::vector<std::string> hosts)
       : token_(std::move(token)), hosts_(std::move(hosts)) {}
 
   const std::string& token() const { return token_; }
