@@ -50,6 +50,17 @@ double two_decimals_error() {
   return 0.01 * std::sqrt(3.0);
 }
 
+/// Along the normal of the first.
+std::optional<double> mean_distance_mm(const std::vector<DicomSlice>& slices) {
+  if (slices.size() < 2) return {};
+  const glm::dvec3 normal = glm::cross(slices.front().along_row, slices.front().along_column);
+  const auto [low, high] =
+      std::minmax_element(slices.begin(), slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
+        return glm::dot(a.first_mm, normal) < glm::dot(b.first_mm, normal);
+      });
+  return glm::dot(high->first_mm - low->first_mm, normal) / static_cast<double>(slices.size() - 1);
+}
+
 class SeriesAssembler {
  public:
   SeriesAssembler(fs::path path, const ReadOptions& options, std::vector<Finding>& audit)
@@ -62,7 +73,8 @@ class SeriesAssembler {
         const DicomSlice& first = series.stacks[i].slices.front();
         entries.push_back({first.series_uid, first.series_description, first.modality, first.series_number,
                            series.stacks[i].slices.size(), first.size_px, series.choice(i),
-                           series.stacks[i].words});
+                           series.stacks[i].words, first.spacing_mm,
+                           mean_distance_mm(series.stacks[i].slices), first.identity.study_date});
       }
     return entries;
   }

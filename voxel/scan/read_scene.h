@@ -80,9 +80,12 @@ struct SeriesEntry {
   int number = 0;  ///< the scanner's series number
   std::size_t slices = 0;
   glm::ivec2 size_px{0};
-  std::string choice = {};  ///< for ReadOptions::series
-  std::string stack = {};   ///< the attributes in which it differs from the series' other stacks: "kernel
-                            ///< H60s"
+  std::string choice = {};     ///< for ReadOptions::series
+  std::string stack = {};      ///< the attributes in which it differs from the series' other stacks: "kernel
+                               ///< H60s"
+  glm::dvec2 spacing_mm{0.0};  ///< between columns, between rows
+  std::optional<double> slice_mm = {};  ///< mean distance of neighbouring images; none of a single image
+  std::string study_date = {};          ///< as the header states it: "20240131"; may be empty
 };
 /// The series of a folder and its subfolders, most slices first. A series with several images at one position
 /// is listed by its stacks, which differ in kernel, acquisition or phase. Throws as read_scene() does if

@@ -119,7 +119,7 @@ export async function greet(): Promise<void> {
   for (const go_on of waiting) go_on();
 }
 
-export async function open_plan(what: {path?: string; phantom?: string}): Promise<void> {
+export async function open_plan(what: {path?: string; phantom?: string; series?: string}): Promise<void> {
   set({plan: null, page: "start"});
   const key = busy("Opening");
   const plan = await try_to<PlanState>("open", what);

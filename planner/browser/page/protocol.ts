@@ -198,7 +198,8 @@ export interface PaneRequest {
   window?: [number, number];
   threshold?: [number, number];
   objects: DrawnObject[];
-  preview?: {object: string; of: string; move: Motion; against: string[]};
+  preview?: {object: string; of: string; move: Motion; against: string[]; steps?: undefined}|
+      {object: string; steps: Step[]; move?: undefined};
   overlap?: boolean;
   colour_by?: {object: string; reference: string; range_mm: number; mutual?: boolean};
   cut_planes?: [number, number, number, number][];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What this window shows: the server's plan, and how this window looks at it. One value, changed by set(),
 // watched by key.
-import {Hello, Job, LandmarkGuess, Motion, Notice, PlanState, Step} from "./protocol";
+import {Hello, Job, LandmarkGuess, Notice, PaneRequest, PlanState, Step} from "./protocol";
 import {Vec3} from "./base/vector";
 import {PlaneName, Turned, View} from "./base/view_frame";
 
@@ -21,11 +21,23 @@ export interface ObjectLook {
   opacity?: number;
   behind?: string;  // a step whose objects stand in this one's place, as long as the plan has that step
 }
-export interface Preview {
+/// What is drawn in an object's place: the object `of` moved, or what the last of steps makes that are not in the
+/// plan.
+export type Preview = PaneRequest["preview"]&{};
+/// What cleans an object, to look at and to do; none of it is done by itself.
+export interface Cleaning {
   object: string;
-  of: string;
-  move: Motion;
-  against: string[];
+  of: string;  // what the proposals were computed of, as a text
+  is_looking: boolean;
+  proposals: Proposal[];
+  dismissed: string[];  // names of proposals
+}
+export interface Proposal {
+  name: string;
+  title: string;
+  says: string;
+  doubts: string[];
+  made: Step;  // the step that a click adds
 }
 /// A window that is being set and is no step yet; where it changes a step, that one is not drawn.
 export interface DraftWindow {
@@ -65,6 +77,7 @@ export interface State {
   draft_step: Step|null;  // a step that is being filled in and is not in the plan yet
   preview: Preview|null;
   overlap_mm3: number|null;
+  cleaning: Cleaning|null;
   compare: Compare|null;
   cut_plane: CutPlane|null;
   arch_mm: Vec3[];                           // points of the panoramic sheet, left to right
@@ -108,6 +121,7 @@ const without_plan = () => ({
   draft_step: null,
   preview: null,
   overlap_mm3: null,
+  cleaning: null,
   compare: null,
   cut_plane: null,
   arch_mm: [],
@@ -186,7 +200,15 @@ export function leave_plan(): void {
 /// drafts. How objects are shown stays.
 export function leave_scan(): void {
   for (const call of plan_leavers) call();
-  set({draft_window: null, draft_step: null, preview: null, overlap_mm3: null, marked: null, guesses: []});
+  set({
+    draft_window: null,
+    draft_step: null,
+    preview: null,
+    overlap_mm3: null,
+    cleaning: null,
+    marked: null,
+    guesses: []
+  });
 }
 
 // How a window looks at a plan is kept in the browser, by the plan's path; the plan itself is the server's.

@@ -21,13 +21,13 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Whether a plan's only scan is this one.
-bool is_plan_of(const fs::path& plan, const fs::path& scan) {
+bool is_plan_of(const fs::path& plan, const fs::path& scan, const std::string& series) {
   std::ifstream file = voxel::opened(plan);
   const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("scans") || json["scans"].size() != 1) return false;
   const Json& entry = json["scans"].front();
-  return entry.is_object() && entry.value("path", "") == scan.string();
+  return entry.is_object() && entry.value("path", "") == scan.string() && entry.value("series", "") == series;
 }
 
 }  // namespace
@@ -42,16 +42,20 @@ double bone_low(const voxel::Scene& scene) {
   }
 }
 
-fs::path plan_of_scan(const fs::path& scan, const fs::path& folder, const voxel::Progress& progress) {
+fs::path plan_of_scan(const fs::path& scan, const fs::path& folder, const voxel::Progress& progress,
+                      const std::string& series) {
   const fs::path place = folder / (plain_stem(scan) + ".plan.json");
-  if (is_plan_of(place, scan)) return place;
+  if (is_plan_of(place, scan, series)) return place;
   voxel::ReadOptions options;
   options.progress = progress;
+  options.series = series;
   const voxel::Scene scene = voxel::read_scene(scan, options);
+  Json entry{{"path", scan.string()}};
+  if (!series.empty()) entry["series"] = series;
   const Json plan{
       {"octotomy_plan", 1},
       {"name", plain_stem(scan)},
-      {"scans", {{"ct", {{"path", scan.string()}}}}},
+      {"scans", {{"ct", entry}}},
       {"steps", Json::array({{{"id", "bone"}, {"do", "window"}, {"scan", "ct"}, {"low", bone_low(scene)}}})}};
   const fs::path path = unused(place);
   write_json(plan, path);

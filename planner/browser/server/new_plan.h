@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
@@ -14,9 +15,10 @@ double bone_low(const voxel::Scene& scene);
 
 /// An initial plan for a scan: the scan "ct", and its bone from bone_low() on as the object "bone". Writes it
 /// as NAME.plan.json in `folder`. If a plan of that name for this scan exists, uses that one; does not
-/// replace any other file. Returns the plan's path. Throws as voxel::read_scene() does.
+/// replace any other file. Returns the plan's path. `series` as in voxel::ReadOptions. Throws as
+/// voxel::read_scene() does.
 std::filesystem::path plan_of_scan(const std::filesystem::path& scan, const std::filesystem::path& folder,
-                                   const voxel::Progress& progress = {});
+                                   const voxel::Progress& progress = {}, const std::string& series = {});
 
 /// Writes the head phantom as a scan to `path` if it does not exist. Returns the path.
 std::filesystem::path phantom_at(const std::filesystem::path& path, const voxel::Progress& progress = {});

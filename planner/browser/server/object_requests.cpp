@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "brep/io/read_mesh.h"
 #include "planner/browser/server/measurement_message.h"
@@ -175,26 +177,104 @@ Json certify(Session& session, const Json& said, const Watched& watched) {
 }
 
 Json overlap(Session& session, const Json& said, const Watched& watched) {
-  const Session::Preview preview =
-      session.preview(said.at("object"), said.at("move"), names_of(said.at("with")), watched.stop);
+  const Session::Preview preview = session.preview(said, names_of(said.at("with")), watched.stop);
   for (const Object& object : preview.evaluation->objects)
     if (object.id == Session::Preview::overlap) return {{"mm3", object.voxel.measures.volume_mm3}};
   refuse("with: name at least one other object");
 }
 
-Json largest_part(Session& session, const Json& said, const Watched&) {
+namespace {
+
+/// A voxel of the part of an object that a person has pointed at: of the part's voxels near the nearest one, one
+/// that lies deeper than its surface, if there is one. None if no voxel is near.
+std::optional<std::pair<glm::ivec3, voxel::Octree>> part_near(const voxel::Octree& whole,
+                                                              const glm::dvec3& p_mm) {
+  constexpr int reach = 2;
+  static const std::array<glm::ivec3, 6> faces{
+      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+  const glm::dvec3 p = whole.universe().lattice().voxel(p_mm);
+  const int side = whole.universe().side();
+  const auto holds = [&](const voxel::Octree& part, const glm::ivec3& at) {
+    return glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) &&
+           glm::all(glm::lessThan(at, glm::ivec3(side))) && part.contains(at);
+  };
+  const auto nearest = [&](const voxel::Octree& part, bool is_deep) {
+    std::optional<glm::ivec3> found;
+    double least = std::numeric_limits<double>::infinity();
+    for (int z = -reach; z <= reach; ++z)
+      for (int y = -reach; y <= reach; ++y)
+        for (int x = -reach; x <= reach; ++x) {
+          const glm::ivec3 at = glm::ivec3(glm::round(p)) + glm::ivec3(x, y, z);
+          const double distance = glm::length(glm::dvec3(at) - p);
+          if (distance >= least || !holds(part, at)) continue;
+          if (is_deep && !std::all_of(faces.begin(), faces.end(),
+                                      [&](const glm::ivec3& face) { return holds(part, at + face); }))
+            continue;
+          least = distance;
+          found = at;
+        }
+    return found;
+  };
+  const double most = 2.0 * side;  // rounded to an integer below
+  if (!glm::all(glm::lessThan(glm::abs(p), glm::dvec3(most)))) return {};
+  const std::optional<glm::ivec3> seed = nearest(whole, false);
+  if (!seed) return {};
+  voxel::Octree part = voxel::components_at(whole, {*seed});
+  const glm::ivec3 deep = nearest(part, true).value_or(*seed);
+  return std::pair{deep, std::move(part)};
+}
+
+}  // namespace
+
+Json part(Session& session, const Json& said, const Watched&) {
   const std::string id = said.at("object");
+  const auto near_mm = point_of(said, "near_mm");
   const Snapshot snapshot = session.snapshot();
   if (snapshot.evaluation)
     for (const Object& object : snapshot.evaluation->objects) {
       if (object.id != id) continue;
-      const voxel::Components parts = voxel::components(object.voxel.octree);
+      const voxel::Octree& whole = object.voxel.octree;
+      const voxel::Components parts = voxel::components(whole);
+      Json told{{"parts", parts.voxel_counts.size()}, {"whole_mm3", object.voxel.measures.volume_mm3}};
+      if (near_mm) {
+        const auto near = part_near(whole, *near_mm);
+        if (!near) refuse("no part of '" + id + "' lies there: click on one of its parts");
+        told.update(
+            {{"mm3", voxel::measure(near->second).volume_mm3},
+             {"at_mm", planner::to_json(whole.universe().lattice().lps_mm(glm::dvec3(near->first)))}});
+        return told;
+      }
       const voxel::Measures largest = voxel::measure(parts.largest);
-      return {{"parts", parts.voxel_counts.size()},
-              {"mm3", largest.volume_mm3},
-              {"at_mm", largest.centroid_mm ? planner::to_json(*largest.centroid_mm) : Json(nullptr)}};
+      told.update({{"mm3", largest.volume_mm3},
+                   {"at_mm", largest.centroid_mm ? planner::to_json(*largest.centroid_mm) : Json(nullptr)}});
+      return told;
     }
   refuse("'" + id + "' is not evaluated yet");
+}
+
+Json try_steps(Session& session, const Json& said, const Watched& watched) {
+  const Json& steps = said.at("steps");
+  std::vector<std::string> wanted;
+  for (const Json& step : steps) wanted.push_back(step.at("id"));
+  if (wanted.empty()) refuse("steps: name at least one");
+  const Evaluation made = session.evaluate(
+      session.with_document([&](const Document& document) { return document.with_steps(steps); }), wanted,
+      false, watched);
+  const auto is_wanted = [&](const std::string& id) {
+    return std::find(wanted.begin(), wanted.end(), id) != wanted.end();
+  };
+  Json objects = Json::array(), scans = Json::array();
+  for (const Object& object : made.objects)
+    if (is_wanted(object.id))
+      objects.push_back({{"id", object.id}, {"mm3", object.voxel.measures.volume_mm3}});
+  for (const ScanRecord& scan : made.scans) {
+    if (!is_wanted(scan.name)) continue;
+    Json findings = Json::array();
+    for (const voxel::Finding& finding : scan.audit)
+      if (scan.made_by.starts_with(finding.check + " of ")) findings.push_back(finding.detail);
+    scans.push_back({{"id", scan.name}, {"details", scan.details}, {"findings", findings}});
+  }
+  return {{"objects", objects}, {"scans", scans}};
 }
 
 Json movement(Session& session, const Json& said, const Watched&) {

@@ -14,9 +14,13 @@ Json measure(Session& session, const Json& said, const Watched& watched);
 Json certify(Session& session, const Json& said, const Watched& watched);
 /// {"object", "with", "move"} -> {"mm3"}, in voxels.
 Json overlap(Session& session, const Json& said, const Watched& watched);
-/// {"object"} -> {"parts", "mm3", "at_mm"}: its connected parts, and the centroid of the largest; null where
-/// it is empty.
-Json largest_part(Session& session, const Json& said, const Watched& watched);
+/// {"object", "near_mm"} -> {"parts", "whole_mm3", "mm3", "at_mm"}: the number of its connected parts, and of the
+/// part at a point its volume and the centre of a voxel in it; without a point those of the largest part, and its
+/// centroid, null where the object is empty.
+Json part(Session& session, const Json& said, const Watched& watched);
+/// {"steps"} -> {"objects": [{"id", "mm3"}], "scans": [{"id", "details", "findings"}]}: what steps would make
+/// after those of the plan, which stays as it is; in voxels.
+Json try_steps(Session& session, const Json& said, const Watched& watched);
 /// {"path", "frame", "unit"} -> {"audit"}: a mesh file's statements on its frame and unit, and how its size
 /// and position fit the plan's first scan. The path is relative as in a plan.
 Json mesh_audit(Session& session, const Json& said, const Watched& watched);

@@ -17,6 +17,7 @@
 #include "planner/procedure/template/chain.h"
 #include "planner/procedure/template/procedure.h"
 #include "voxel/filter/tissue.h"
+#include "voxel/scan/read_scene.h"
 #include "voxel/space/error.h"
 #include "voxel/space/write_whole.h"
 
@@ -77,9 +78,35 @@ Json open(Session& session, const Json& said, const Watched& watched) {
     const fs::path place = session.folders.need_within(session.working_folder() / "head_phantom.nrrd");
     session.open(phantom_at(place, progress), watched);
   } else {
-    session.open(session.folders.need_within(said.at("path").get<std::string>()), watched);
+    session.open(session.folders.need_within(said.at("path").get<std::string>()), watched,
+                 said.value("series", ""));
   }
   return nullptr;
+}
+
+/// The DICOM series of a folder, for a person to pick one; none of anything else. What is no readable scan is
+/// refused when it is opened.
+Json series(Session& session, const Json& said, const Watched&) {
+  const fs::path path = session.folders.need_within(said.at("path").get<std::string>());
+  Json list = Json::array();
+  if (!fs::is_directory(path)) return {{"series", list}};
+  try {
+    for (const voxel::SeriesEntry& entry : voxel::list_series(path))
+      list.push_back(
+          {{"choice", entry.choice},
+           {"name", entry.description},
+           {"stack", entry.stack},
+           {"number", entry.number},
+           {"modality", entry.modality},
+           {"slices", entry.slices},
+           {"size", {entry.size_px.x, entry.size_px.y}},
+           {"spacing_mm",
+            {entry.spacing_mm.x, entry.spacing_mm.y, entry.slice_mm ? Json(*entry.slice_mm) : Json(nullptr)}},
+           {"study_date", entry.study_date}});
+  } catch (const voxel::Error& error) {
+    if (error.code() != voxel::ErrorCode::Input) throw;
+  }
+  return {{"series", list}};
 }
 
 /// Whether a file is not a scan: a plan's history, or another JSON file.
@@ -324,6 +351,7 @@ const std::vector<RequestKind>& request_kinds() {
       {"hello", Lane::Session, false, hello},
       {"open", Lane::Long, true, open},
       {"list", Lane::Session, false, list},
+      {"series", Lane::Long, false, series},
       {"recent", Lane::Session, false, recent},
       {"save", Lane::Session, false, save},
       {"edit", Lane::Session, true,
@@ -346,7 +374,8 @@ const std::vector<RequestKind>& request_kinds() {
       {"command", Lane::Session, false, command_of_step},
       {"evaluate", Lane::Evaluate, false, evaluate, true},
       {"overlap", Lane::Overlap, false, overlap},
-      {"largest_part", Lane::Long, false, largest_part},
+      {"part", Lane::Long, false, part},
+      {"try", Lane::Long, false, try_steps},
       {"measure", Lane::Long, false, measure},
       {"movement", Lane::Long, false, movement},
       {"mesh_audit", Lane::Long, false, mesh_audit},

@@ -187,12 +187,12 @@ Session::Session(fs::path working_folder)
   folders.open(working_folder_);
 }
 
-void Session::open(const fs::path& path, const Watched& watched) {
+void Session::open(const fs::path& path, const Watched& watched, const std::string& series) {
   const voxel::Progress progress{watched.stop, [&](double share) {
                                    if (watched.progress) watched.progress("read " + path.string(), share);
                                  }};
   if (!is_plan(path)) need_readable_samples(folders, path);
-  const fs::path plan = is_plan(path) ? path : plan_of_scan(path, working_folder_, progress);
+  const fs::path plan = is_plan(path) ? path : plan_of_scan(path, working_folder_, progress, series);
   auto document = std::make_unique<Document>(plan, folders);
   folders.open(plan);
   {
@@ -355,16 +355,20 @@ voxel::GreyOctree Session::alone(const Snapshot& snapshot, const std::string& sc
   return alone_->second;
 }
 
-Session::Preview Session::preview(const std::string& object, const Json& move,
-                                  const std::vector<std::string>& with, const std::stop_token& stop) {
-  Json step = move;
-  step["id"] = Preview::moved;
-  step["do"] = "move";
-  step["object"] = object;
-  Json steps = Json::array({step});
+Session::Preview Session::preview(const Json& asked, const std::vector<std::string>& with,
+                                  const std::stop_token& stop) {
+  Json steps = asked.value("steps", Json::array());
+  std::string moved;
+  if (steps.empty()) {
+    moved = asked.contains("of") ? asked["of"] : asked.at("object");
+    steps.push_back(asked.at("move"));
+    steps.back()["do"] = "move";
+    steps.back()["object"] = moved;
+  }
+  steps.back()["id"] = Preview::moved;
   std::string others;
   for (const std::string& name : with)
-    if (name != object) others += (others.empty() ? "" : " | ") + name;
+    if (name != moved) others += (others.empty() ? "" : " | ") + name;
   if (!others.empty())
     steps.push_back({{"id", Preview::overlap},
                      {"do", "combine"},

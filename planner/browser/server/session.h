@@ -50,8 +50,9 @@ class Session {
   ObjectCache cache;
 
   const std::filesystem::path& working_folder() const { return working_folder_; }
-  /// Opens a plan, or a scan with a plan of its own (new_plan.h), and closes the open one.
-  void open(const std::filesystem::path& path, const Watched& watched);
+  /// Opens a plan, or a scan with a plan of its own (new_plan.h), and closes the open one. `series` as in
+  /// voxel::ReadOptions; a plan states its own.
+  void open(const std::filesystem::path& path, const Watched& watched, const std::string& series = {});
 
   /// Closes the document after the current edit has ended, so that its history is complete. Does nothing if
   /// that takes longer than `most`.
@@ -79,14 +80,16 @@ class Session {
   /// Caches the newest one.
   voxel::GreyOctree alone(const Snapshot& snapshot, const std::string& scan);
 
-  /// A plan's object moved as by a step "move", in voxels only, and its overlap with other objects.
+  /// An object after a change that is not in the plan, in voxels only: moved, or made by further steps; and its
+  /// overlap with other objects.
   struct Preview {
     std::shared_ptr<const Evaluation> evaluation;
     static constexpr const char* moved = "dragged_piece";
     static constexpr const char* overlap = "dragged_overlap";
   };
-  Preview preview(const std::string& object, const Json& move, const std::vector<std::string>& with,
-                  const std::stop_token& stop);
+  /// `asked` is {"object", "of", "move"}: `of`, or else `object`, moved as by a step "move"; or {"steps"}: the
+  /// last of steps that follow the plan's.
+  Preview preview(const Json& asked, const std::vector<std::string>& with, const std::stop_token& stop);
 
   /// The plan's state for a page; null if none is open.
   Json state() const;

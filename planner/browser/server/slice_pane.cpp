@@ -112,8 +112,8 @@ Message draw_slice(Session& session, const Request& request, const std::stop_tok
   if (const Json asked = said.value("preview", Json()); asked.is_object()) {
     replaced = asked.at("object");
     const auto against = asked.value("against", std::vector<std::string>{});
-    preview = session.preview(asked.value("of", replaced), asked.at("move"),
-                              said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
+    preview =
+        session.preview(asked, said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
   }
   std::vector<Outlined> outlined, hatched;
   std::vector<std::string> hatch_colours;

@@ -246,8 +246,8 @@ void ViewPane::add_objects(Session& session, const Json& said, Drawing& drawing,
   if (const Json asked = said.value("preview", Json()); !asked.is_null()) {
     dragged = asked.at("object");
     const auto against = asked.value("against", std::vector<std::string>{});
-    preview = session.preview(asked.value("of", dragged), asked.at("move"),
-                              said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
+    preview =
+        session.preview(asked, said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
     drawing.is_of_plan = false;
   }
   const Object* moved = preview.evaluation ? find(*preview.evaluation, Session::Preview::moved) : nullptr;

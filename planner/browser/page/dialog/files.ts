@@ -15,7 +15,7 @@ interface Entry {
 /// The folder picker: the server shows only folders that were opened with it. What is chosen is opened,
 /// unless it is wanted for something else.
 export function open_picker(
-    title = "Open a scan or plan", take: (path: string) => void = (path) => void open_plan({path})): void {
+    title = "Open a scan or plan", take: (path: string) => void = (path) => void open_found(path)): void {
   const dialog = open_dialog(title, "picker");
   const choose = (path: string): void => {
     dialog.close();
@@ -49,6 +49,55 @@ export function open_picker(
            entries.length ? null : el("p", {class: "says"}, "No scan or plan lies here.")));
   };
   void first_greeting().then(() => show(state.hello?.folders[0] ?? "."));
+}
+
+interface Series {
+  choice: string;
+  name: string;
+  stack: string;
+  number: number;
+  modality: string;
+  slices: number;
+  size: [number, number];
+  spacing_mm: [number, number, number|null];
+  study_date: string;
+}
+
+/// Opens a plan or a scan; of a folder with several DICOM series the one that the person picks.
+async function open_found(path: string): Promise<void> {
+  const key = busy("Looking for series");
+  const answer = await try_to<{series: Series[]}>("series", {path});
+  done(key);
+  if (!answer) return;
+  const {series} = answer;
+  if (series.length < 2) return open_plan({path});
+  const dialog = open_dialog(`Which of ${series.length} series?`, "picker");
+  dialog.refill(
+      el("p", {class: "says"}, "This folder holds several DICOM series. A plan is of one of them."),
+      el("div", {class: "files", role: "list"},
+         series.map(
+             (one) => el(
+                 "div", {class: "file-row", role: "listitem"},
+                 el("button", {
+                   type: "button",
+                   class: "file series",
+                   onclick: () => {
+                     dialog.close();
+                     void open_plan({path, series: one.choice});
+                   }
+                 },
+                    icon("file", 16),
+                    el("span", {}, [one.name || `Series ${one.number}`, one.stack].filter(Boolean).join(", ")),
+                    el("small", {}, series_words(one)))))));
+}
+/// "CT · 90 slices of 512 × 512 · 0.98 × 0.98 × 3.00 mm · 1998-01-31"
+function series_words({modality, slices, size, spacing_mm, study_date}: Series): string {
+  const spacing = spacing_mm.filter((mm): mm is number => mm !== null).map((mm) => mm.toFixed(2)).join(" × ");
+  const date = study_date.replace(/^(\d{4})(\d\d)(\d\d)$/, "$1-$2-$3");
+  return [
+    modality, `${slices} ${slices === 1 ? "slice" : "slices"} of ${size.join(" × ")}`, `${spacing} mm`,
+    date || "no date"
+  ].join(" · ");
 }
 
 function row(kind: string, name: string, size: string, open: () => void, as_scan?: () => void): Child {
@@ -170,7 +219,7 @@ export async function send(given: Given[]): Promise<void> {
     };
     await Promise.all(Array.from({length: sent_at_once}, send_next));
     const header = paths.find((path) => /\.(nhdr|mhd|hdr)$/i.test(path));
-    await open_plan({path: header ?? (folder ? paths[0]!.replace(/\/[^/]*$/, "") : paths[0]!)});
+    await open_found(header ?? (folder ? paths[0]!.replace(/\/[^/]*$/, "") : paths[0]!));
   } catch (error) {
     notify(error instanceof Error ? error.message : String(error), "error");
   } finally {

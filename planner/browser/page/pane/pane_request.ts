@@ -31,7 +31,7 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
     add_view(request, setting);
   if (state.preview && !is_elsewhere()) {
     request.preview = state.preview;
-    request.overlap = true;
+    if (state.preview.move) request.overlap = true;
     request.objects = shown.filter((object) => !object.id || !is_interference(object.id));
   }
   if (pane.is_slice) request.objects = request.objects.map(hatched_where_interfering);

@@ -4,6 +4,7 @@
 import {add_step, replace_step} from "../actions";
 import {mesh_audit} from "./audit";
 import {badge, judged, measured_text} from "./certificate_badge";
+import {cleaning_rows} from "./cleaning";
 import {is_piece} from "../drawn_objects";
 import {makes_body} from "../operations";
 import {button, Child, el, fill, fill_tabs} from "../base/html";
@@ -41,7 +42,7 @@ export function make_inspector(host: HTMLElement): void {
   watch(
       [
         "plan", "selected", "right_tab", "tool", "draft_window", "draft_step", "preview", "overlap_mm3",
-        "compare", "cut_plane", "arch_mm"
+        "cleaning", "compare", "cut_plane", "arch_mm"
       ],
       again);
   watch(["plan", "right_tab"], () => void fetch_movement());
@@ -106,7 +107,7 @@ function step_card(step: Step, has_motion: boolean): Child {
                           object.area ? `  ·  ${measured_text(object.area)}` : "") :
                                         null,
       found ? el("p", {class: "reading"}, el("b", {}, measured_text(found))) : null,
-      mirror_rows(step),
+      mirror_rows(step), cleaning_rows(step),
       certificate ? el("p", {class: `sentence ${certificate.verdict.toLowerCase()}`}, certificate.sentence) :
                     null,
       step_form(

@@ -68,7 +68,7 @@ export function numbers(): Child {
 
 /// Brings all panes to the largest place where two pieces lie in each other.
 async function show_largest(object: string): Promise<void> {
-  const part = await try_to<{parts: number; mm3: number; at_mm: Vec3 | null}>("largest_part", {object});
+  const part = await try_to<{parts: number; mm3: number; at_mm: Vec3 | null}>("part", {object});
   if (!part?.at_mm) return;
   const {looks} = state;
   set({selected: object, looks: {...looks, [object]: {...looks[object], visible: true}}});

@@ -2,6 +2,7 @@
 // The window tool: tissues and two sliders over the scan's samples, shown live in views and slices before it
 // is a step.
 import {add_step, replace_step, window_step} from "../actions";
+import {look_for_cleaning} from "./cleaning";
 import {button, Child, el} from "../base/html";
 import {ScanState, Step, Tissue} from "../protocol";
 import {bone_low, DraftWindow, first_scan, selected_step, set, state, step_of, steps} from "../state";
@@ -56,7 +57,8 @@ async function apply(): Promise<void> {
   const next: Step = {...kept, low: draft.low, ...(draft.high === undefined ? {} : {high: draft.high})} as
       Step;
   const what = `window from ${draft.low}${draft.high === undefined ? "" : ` to ${draft.high}`}`;
-  await (step ? replace_step(step.id, next, what) : add_step(next, what));
+  const is_made = await (step ? replace_step(step.id, next, what) : add_step(next, what));
+  if (is_made) void look_for_cleaning(next.id);
   if (state.draft_window === draft)
     take_tool("navigate");
   else if (state.draft_window)  // it was set further meanwhile

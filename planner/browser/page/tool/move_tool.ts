@@ -76,7 +76,7 @@ export const move_tool: Tool = {
   up() {
     if (!held) return;
     held = null;
-    if (state.preview) void commit_motion(state.preview.move);
+    if (state.preview?.move) void commit_motion(state.preview.move);
   },
   press(event) {
     const keys: {[key: string]: [Direction, number]} = {

@@ -127,7 +127,7 @@ TEST_F(SessionTest, TheLargestPartOfAnOverlapHasAPlace) {
   add({{"id", "none"}, {"do", "combine"}, {"expression", "bone - bone"}});
   session_->evaluate({}, false, {});
   const auto part = [&](const char* id) {
-    return find_request_kind("largest_part").answer(*session_, {{"object", id}}, {});
+    return find_request_kind("part").answer(*session_, {{"object", id}}, {});
   };
   const Json both = part("both");
   EXPECT_EQ(both["parts"], 1);
@@ -136,6 +136,82 @@ TEST_F(SessionTest, TheLargestPartOfAnOverlapHasAPlace) {
   EXPECT_NEAR(both["at_mm"][1].get<double>(), 0.0, 0.5);
   EXPECT_TRUE(part("none")["at_mm"].is_null());
   EXPECT_THROW(part("nobody"), voxel::Error);
+}
+
+TEST_F(SessionTest, APartIsFoundAtAPointOfItsSurface) {
+  voxel::write_scene(tests::ball_scene(3.0, 24), folder_ / "small.nrrd");
+  session_->open(folder_ / "small.nrrd", {});
+  add({{"id", "moved"}, {"do", "move"}, {"object", "bone"}, {"translate_mm", {8, 0, 0}}});
+  add({{"id", "two"}, {"do", "combine"}, {"expression", "bone | moved"}});
+  add({{"id", "one"}, {"do", "parts"}, {"object", "two"}, {"at_mm", {{0, 0, 0}}}});
+  session_->evaluate({}, false, {});
+  const auto part = [&](const char* id, const Json& near_mm) {
+    return find_request_kind("part").answer(*session_, {{"object", id}, {"near_mm", near_mm}}, {});
+  };
+  const double one_mm3 = part("one", {0, 0, 0})["mm3"];
+  const Json found = part("two", {0, 3.4, 0});
+  EXPECT_EQ(found["parts"], 2);
+  EXPECT_EQ(found["mm3"], one_mm3);
+  EXPECT_EQ(found["whole_mm3"], 2.0 * one_mm3) << "moved by whole voxels";
+  const glm::dvec3 at(found["at_mm"][0], found["at_mm"][1], found["at_mm"][2]);
+  EXPECT_LT(glm::length(at), 2.2) << "deeper than the surface, so that both kernels have the point within";
+  EXPECT_THROW(part("two", {0, 9, 0}), voxel::Error);
+  EXPECT_THROW(part("two", {1e300, 0, 0}), voxel::Error);
+}
+
+TEST_F(SessionTest, StepsAreTriedWithoutAChangeOfThePlan) {
+  session_->open(folder_ / "ball.nrrd", {});
+  session_->evaluate({}, false, {});
+  const Json before = session_->state()["plan"];
+  const double bone_mm3 = session_->state()["objects"][0]["volume"]["value"];
+  const Json held{{"id", "held"}, {"do", "clamp_streaks"}, {"scan", "ct"}, {"metal", 1}, {"low", -1},
+                  {"high", 1}};
+  const Json none{{"id", "none"}, {"do", "window"}, {"scan", "held"}, {"low", 300}};
+  const Json same{{"id", "same"}, {"do", "parts"}, {"object", "bone"}, {"largest", 1}};
+  const Json made = find_request_kind("try").answer(*session_, {{"steps", {held, none, same}}}, {});
+  ASSERT_EQ(made["scans"].size(), 1U);
+  EXPECT_EQ(made["scans"][0]["id"], "held");
+  EXPECT_GT(made["scans"][0]["details"]["lowered_samples"], 0);
+  EXPECT_EQ(made["objects"], Json({{{"id", "none"}, {"mm3", 0.0}}, {{"id", "same"}, {"mm3", bone_mm3}}}));
+  EXPECT_EQ(session_->state()["plan"], before);
+  const Session::Preview drawn = session_->preview({{"steps", {held, none}}}, {}, {});
+  ASSERT_EQ(drawn.evaluation->objects.size(), 1U);
+  EXPECT_EQ(drawn.evaluation->objects[0].id, Session::Preview::moved);
+  EXPECT_TRUE(drawn.evaluation->objects[0].voxel.octree.is_empty());
+  EXPECT_THROW(find_request_kind("try").answer(*session_, {{"steps", Json::array()}}, {}),
+               std::runtime_error);
+}
+
+TEST_F(SessionTest, AFoldersSeriesArePickedByThePerson) {
+  const fs::path scans = folder_ / "scans";
+  fs::create_directory(scans);
+  EXPECT_EQ(find_request_kind("series").answer(*session_, {{"path", (folder_ / "ball.nrrd").string()}},
+                                               {})["series"],
+            Json::array());
+  EXPECT_EQ(find_request_kind("series").answer(*session_, {{"path", scans.string()}}, {})["series"],
+            Json::array());
+  for (const int side : {24, 16}) {
+    voxel::Scene ball = tests::ball_scene(5.0, side);
+    ball.meaning = voxel::Meaning::Hounsfield;
+    ball.modality = "CT";
+    voxel::DicomOptions options;
+    options.series_description = "side " + std::to_string(side);
+    voxel::write_dicom_series(ball, scans / std::to_string(side), options);
+  }
+  const Json list = find_request_kind("series").answer(*session_, {{"path", scans.string()}}, {})["series"];
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[1]["name"], "side 16");
+  EXPECT_EQ(list[1]["slices"], 16);
+  EXPECT_EQ(list[1]["size"], Json({16, 16}));
+  EXPECT_EQ(list[1]["spacing_mm"], Json({1.0, 1.0, 1.0}));
+  const auto opened = [&](const Json& choice) {
+    find_request_kind("open").answer(*session_, {{"path", scans.string()}, {"series", choice}}, {});
+    return session_->state();
+  };
+  const Json second = opened(list[1]["choice"]);
+  EXPECT_EQ(second["scans"][0]["dims"], Json({16, 16, 16}));
+  EXPECT_EQ(opened(list[0]["choice"])["scans"][0]["dims"], Json({24, 24, 24}));
+  EXPECT_EQ(opened(list[1]["choice"])["path"], second["path"]) << "its own plan again";
 }
 
 TEST_F(SessionTest, ALandmarkFarFromBoneIsNotCalledSnapped) {
