@@ -231,13 +231,13 @@ TEST_F(SessionTest, APreviewIsTheMoveStepsObject) {
   session_->open(folder_ / "ball.nrrd", {});
   session_->evaluate({}, false, {});
   const Json move{{"translate_mm", {2, 0, 0}}};
-  const Session::Preview preview = session_->preview("bone", move, {"bone"}, {});
+  const Session::Preview preview = session_->preview({{"object", "bone"}, {"move", move}}, {"bone"}, {});
   add({{"id", "moved"}, {"do", "move"}, {"object", "bone"}, {"translate_mm", {2, 0, 0}}});
   const Snapshot made = session_->evaluate({}, false, {});
   EXPECT_TRUE(preview.evaluation->object(Session::Preview::moved).voxel.octree ==
               made.evaluation->object("moved").voxel.octree);
   EXPECT_EQ(session_->state()["plan"]["steps"].size(), 2u) << "a preview is no step";
-  const Session::Preview again = session_->preview("bone", move, {}, {});
+  const Session::Preview again = session_->preview({{"object", "bone"}, {"move", move}}, {}, {});
   EXPECT_EQ(again.evaluation->objects.size(), 2u) << "no overlap was asked for";
 }
 
