@@ -114,14 +114,15 @@ void add_specks(Certificate& certificate, const Specks& specks) {
 
 /// Compares area and distances; for a resolved object with a witness, at first on a sample of the surfaces'
 /// points. If a bound is exceeded, looks for parts thinner than a voxel. A resolved object that differs only
-/// by those is not resolved there, and the certificate states the lost area.
+/// by those is not resolved there, and the certificate states the lost area. Surfaces beside `lost_voxels`, which the
+/// certificate lists as lost by resampling, do not count for the mean and the percentile.
 void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
-                      const brep::Solid& solid) {
+                      const brep::Solid& solid, const std::vector<glm::ivec3>& lost_voxels) {
   const Specks specks = evidence.witnessed ? specks_of(solid, octree.universe().lattice()) : Specks();
   add_specks(certificate, specks);
   const bool is_strict = evidence.witnessed && certificate.resolved();
   const brep::Triangles& measured = specks.others.faces.empty() ? solid.triangles() : specks.others;
-  SurfaceDistances distances(octree, solid, measured, is_strict);
+  SurfaceDistances distances(octree, solid, measured, is_strict && lost_voxels.empty());
   certificate.hausdorff_mm = distances.largest_mm();
   certificate.hausdorff95_mm = distances.percentile95_mm();
   if (!certificate.worst) certificate.worst = distances.worst();
@@ -134,7 +135,9 @@ void compare_surfaces(Certificate& certificate, const Evidence& evidence, const 
     return area.difference <= *area.tolerance && distances.percentile95_mm() <= bounds.percentile95_mm &&
            distances.mean_mm() <= bounds.mean_mm && (is_strict || distances.largest_mm() <= far_mm);
   };
-  if (!are_within()) {
+  if (!lost_voxels.empty()) {
+    distances.leave_out_beside(lost_voxels);
+  } else if (!are_within()) {
     const double thin_mm2 = distances.leave_out_thin();
     area = area_of(evidence, thin_mm2);
     if (is_strict && are_within())
@@ -216,6 +219,19 @@ void judge_bridges(Certificate& certificate, const Places& places) {
     certificate.reasons.push_back(std::to_string(certificate.bridges.size() - most_told) +
                                   " more parts hang on by such bridges.");
   if (!certificate.bridges.empty() && !certificate.worst) certificate.worst = certificate.bridges.front();
+}
+
+/// Adds the parts that resampling lost as WARN. Each place was compared with the witness, which has the mesh's
+/// answer there, so that the mesh is right and the voxels are too large.
+void judge_lost(Certificate& certificate, const Evidence& evidence, const Places& places) {
+  if (!places.worst_lost) return;
+  const double lost_mm3 = static_cast<double>(places.lost.size()) * evidence.voxel_mm3;
+  lower(certificate, Verdict::Warn,
+        "At this voxel size resampling loses walls or gaps thinner than a voxel: voxels of " +
+            voxel::rounded(lost_mm3) + " mm3 lack or fill what this step made of them, most near " +
+            voxel::rounded(places.worst_lost->at_mm) +
+            ". The scan confirms the mesh there: take smaller voxels.");
+  if (!certificate.worst) certificate.worst = places.worst_lost;
 }
 
 /// Sets `unresolved` if the object is too small or too thin. Does not depend on the verdict.
@@ -411,10 +427,13 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   certificate.symmetric_difference_mm3 = static_cast<double>(either.voxel_count()) * evidence.voxel_mm3;
   if (evidence.voxels.centroid_mm && evidence.mesh.centroid_mm)
     certificate.centroid_distance_mm = glm::length(*evidence.voxels.centroid_mm - *evidence.mesh.centroid_mm);
+  std::vector<glm::ivec3> lost_voxels;
   if (evidence.witnessed) {
-    const Places places = judge_places(octree, digitised, solid, inputs.witness, {progress.stop, {}});
+    Places places = judge_places(octree, digitised, solid, inputs.witness, {progress.stop, {}});
     judge_by_witness(certificate, evidence, places);
     judge_bridges(certificate, places);
+    judge_lost(certificate, evidence, places);
+    lost_voxels = std::move(places.lost);
   }
   judge_volume(certificate, evidence);
   if (evidence.witnessed) compare_counted(certificate, evidence, digitised);
@@ -426,7 +445,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   judge_evidence(certificate);
   if (!octree.is_empty() && evidence.mesh.area_mm2 > 0.0) {
     progress.at(0.5);
-    compare_surfaces(certificate, evidence, octree, solid);
+    compare_surfaces(certificate, evidence, octree, solid, lost_voxels);
     progress.at(0.9);
     compare_inertia(certificate, evidence, solid);
     if (inputs.voxels_are_samples) compare_same_topology(certificate, octree, solid);

@@ -7,6 +7,8 @@
 // 3 Inside. A part that both kernels lack, or that both add, has no boundary, so step 1 does not compare it.
 //   So the witness is read at every eighth voxel wherever the object may be: at the voxels with x + 2y + 4z a
 //   multiple of 8, one in each block of two voxels a side.
+//   Voxels at which the kernels differ where the witness agrees with the mesh, and the voxels cannot have known,
+//   are listed as lost by resampling.
 // 4 Groups. Voxels that fail, joined by faces, edges and corners; the largest is the worst place.
 // 5 Limit. Errors are injected at random places of this object and judged as above: groups of voxels next to
 //   the boundary are removed and added, pieces of the mesh are removed, the whole is shifted along both
@@ -40,15 +42,18 @@ namespace octotomy::verify {
 namespace {
 
 /// The error of a kernel at a voxel. Apart: the kernels differ and the witness does not decide.
-enum class Fault : std::uint8_t { None, VoxelsLack, VoxelsHave, MeshLacks, MeshHas, Apart };
+/// Lost: no error, but resampling lost or filled a part that the mesh rightly has or lacks.
+enum class Fault : std::uint8_t { None, VoxelsLack, VoxelsHave, MeshLacks, MeshHas, Apart, Lost };
 
 /// Clauses of a WorstPlace, by Fault.
-constexpr std::array<const char*, 6> clauses{"",
-                                             "the scan has a part there that the voxels lack",
-                                             "the voxels have a part there that the scan lacks",
-                                             "the scan has a part there that the mesh lacks",
-                                             "the mesh has a part there that the scan lacks",
-                                             "only one kernel has a part there"};
+constexpr std::array<const char*, 7> clauses{
+    "",
+    "the scan has a part there that the voxels lack",
+    "the voxels have a part there that the scan lacks",
+    "the scan has a part there that the mesh lacks",
+    "the mesh has a part there that the scan lacks",
+    "only one kernel has a part there",
+    "walls or gaps thinner than a voxel were lost there by resampling"};
 
 Fault fault_of(const Reading& reading, bool in_voxels, bool in_mesh) {
   if (!reading.voxel.allows(in_voxels)) return in_voxels ? Fault::VoxelsHave : Fault::VoxelsLack;
@@ -59,6 +64,13 @@ Fault fault_of(const Reading& reading, bool in_voxels, bool in_mesh) {
   const bool told = reading.voxel != either_side || reading.mesh != either_side;
   return in_voxels == in_mesh || near || told ? Fault::None : Fault::Apart;
 }
+
+bool is_lost(const Reading& reading, bool in_voxels, bool in_mesh) {
+  return in_voxels != in_mesh && reading.voxel == either_side && reading.mesh != either_side &&
+         reading.mesh.allows(in_mesh);
+}
+/// Smaller groups of lost voxels are left to chance.
+constexpr std::size_t lost_voxels = 8;
 
 /// Where a part is connected by less than a voxel, as thin bone is, chance decides whether a kernel keeps it.
 /// So a group of Apart voxels is no fault if it has fewer voxels than a block of three a side and shares no
@@ -152,8 +164,10 @@ std::vector<FailedVoxel> failed_voxels(const voxel::Octree& octree, const voxel:
     if (progress.stop.stop_requested()) return;
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const glm::dvec3 p_mm(lps_from_voxel * glm::dvec4(glm::dvec3(voxels[i]), 1.0));
-      faults[i] =
-          fault_of(witness.allowed_sides(p_mm), octree.contains(voxels[i]), digitised.contains(voxels[i]));
+      const Reading reading = witness.allowed_sides(p_mm);
+      const bool in_voxels = octree.contains(voxels[i]), in_mesh = digitised.contains(voxels[i]);
+      faults[i] = fault_of(reading, in_voxels, in_mesh);
+      if (faults[i] == Fault::None && is_lost(reading, in_voxels, in_mesh)) faults[i] = Fault::Lost;
     }
   });
   progress.at(0.5);
@@ -319,6 +333,28 @@ WorstPlace place_of(const std::vector<FailedVoxel>& group, const voxel::Lattice&
   const double volume_mm3 = static_cast<double>(group.size()) * lattice.voxel_mm3();
   return {lattice.lps_mm(glm::dvec3(nearest->at)), std::cbrt(volume_mm3),
           clauses[static_cast<std::size_t>(fault)], volume_mm3};
+}
+
+/// Moves the lost voxels from `failed`, which are sorted, to `places.lost`.
+void take_lost(std::vector<FailedVoxel>& failed, const voxel::Octree& octree, Places& places) {
+  std::vector<FailedVoxel> lost, rest;
+  for (const FailedVoxel& voxel : failed) (voxel.fault == Fault::Lost ? lost : rest).push_back(voxel);
+  failed = std::move(rest);
+  std::vector<glm::ivec3> voxels;
+  for (const FailedVoxel& voxel : lost) voxels.push_back(voxel.at);
+  std::size_t largest = 0;
+  for (const std::vector<std::size_t>& members : groups_of(voxels)) {
+    if (members.size() < lost_voxels) continue;
+    std::vector<FailedVoxel> group;
+    for (const std::size_t i : members) {
+      group.push_back(lost[i]);
+      places.lost.push_back(lost[i].at);
+    }
+    if (group.size() <= largest) continue;
+    largest = group.size();
+    places.worst_lost = place_of(group, octree.universe().lattice());
+  }
+  std::sort(places.lost.begin(), places.lost.end(), before);
 }
 
 /// Joins the failed voxels, which are sorted, into groups. Leaves out groups that chance explains, moves
@@ -562,7 +598,9 @@ Places contradictions(const voxel::Octree& octree, const voxel::Octree& digitise
   Places places;
   const std::vector<glm::ivec3> voxels = compared_voxels(octree, digitised, boundary);
   progress.at(0.2);
-  add_groups(failed_voxels(octree, digitised, voxels, witness, progress), octree, digitised, witness, places);
+  std::vector<FailedVoxel> failed = failed_voxels(octree, digitised, voxels, witness, progress);
+  take_lost(failed, octree, places);
+  add_groups(failed, octree, digitised, witness, places);
   add_inside(failed_inside(octree, digitised, voxels, witness, progress), octree, places);
   add_stray_triangles(solid.triangles(), witness, progress, places);
   return places;
@@ -580,8 +618,10 @@ std::vector<OpenPart> open_parts(const voxel::Octree& octree, const brep::Solid&
   if (!witness) return {};
   const voxel::Octree digitised = convert::voxelise(octree.universe(), solid.linked());
   Places places;
-  add_groups(failed_voxels(octree, digitised, compared_voxels(octree, digitised, {}), witness, {}), octree,
-             digitised, witness, places);
+  std::vector<FailedVoxel> failed =
+      failed_voxels(octree, digitised, compared_voxels(octree, digitised, {}), witness, {});
+  take_lost(failed, octree, places);
+  add_groups(failed, octree, digitised, witness, places);
   return std::move(places.open);
 }
 

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "brep/mesh/distance.h"
+#include "verify/certificate/necks.h"
 #include "verify/phantom/chance.h"
 #include "voxel/measure/boundary_distance.h"
 #include "voxel/tree/voxel_boundary.h"
@@ -156,6 +157,34 @@ WorstPlace SurfaceDistances::worst() const {
       of_voxels ? solid_.tree().inside({p_mm}).front() != 0
                 : !octree_.contains(glm::ivec3(glm::round(octree_.universe().lattice().voxel(p_mm))));
   return {p_mm, farther.largest_mm, mesh_has_more ? part_of_mesh_only : part_of_voxels_only};
+}
+
+void SurfaceDistances::leave_out_beside(const std::vector<glm::ivec3>& voxels) {
+  const voxel::Lattice lattice = octree_.universe().lattice();
+  const auto is_beside = [&](const glm::dvec3& p_mm) {
+    const glm::ivec3 own(glm::round(lattice.voxel(p_mm)));
+    for (int i = 0; i < 27; ++i)
+      if (std::binary_search(voxels.begin(), voxels.end(), own + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1,
+                             before))
+        return true;
+    return false;
+  };
+  const auto leave_out = [&](Directed& directed, const std::vector<glm::dvec3>& p_mm) {
+    Directed kept;
+    for (std::size_t i = 0; i < directed.numbers.size(); ++i) {
+      const std::uint32_t number = directed.numbers[i];
+      if (is_beside(p_mm[number])) continue;
+      const double mm = directed.distances_mm[i];
+      kept.distances_mm.push_back(mm);
+      kept.areas_mm2.push_back(directed.areas_mm2[i]);
+      kept.numbers.push_back(number);
+      if (mm > kept.largest_mm) kept.largest_mm = mm, kept.farthest_mm = p_mm[number];
+    }
+    kept.sum_up();
+    directed = std::move(kept);
+  };
+  leave_out(from_voxels_, face_centres(octree_).p_mm);
+  leave_out(from_solid_, samples_.points_mm);
 }
 
 double SurfaceDistances::leave_out_thin() {

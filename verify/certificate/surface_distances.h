@@ -39,6 +39,9 @@ class SurfaceDistances {
   /// those. Returns the area in mm2 of such sheets and gaps, estimated if points were sampled. The largest
   /// distance then covers the points that mean and percentile use.
   double leave_out_thin();
+  /// Removes the points in or beside these voxels from both surfaces; one that leaves no point is 0 apart.
+  /// Precondition: the voxels are in the order of before().
+  void leave_out_beside(const std::vector<glm::ivec3>& voxels);
 
   /// Points of one surface.
   struct Points {

@@ -14,6 +14,12 @@
 //   witness An edge between voxels' centres meets the operand's surface between a place that is certainly
 //           inside and one that is certainly outside. The places between, h / 8 apart, are all taken. Any
 //           point of the surface is within 2/3 D of such an edge's crossing, as above.
+//   thin    A wall or gap that passes between voxels' centres has no such edge. The mesh kernel has it, and its
+//           operand's triangles that are farther than 5/6 of that from all crossings propose places. A place
+//           counts where the operand's witness has the surface within half a voxel along the normal: at the
+//           scan's samples, not at voxels. Points of a triangle are within 1/6 of the same length of a proposed
+//           one, so no surface is farther from both kinds of places than allowed. There the mesh kernel must
+//           have the wall, and the voxel kernel, which resampled it away, may answer either.
 // On the mean over the surface (offset_allowance_mm):
 //   voxels  On a plane a point is within D / sqrt(12) of a point that is measured to, on the mean of squares
 //           within a third of that squared: D^2 / 36. That lengthens d by D^2 / 72 (1 / d + 1 / r), r the
@@ -39,6 +45,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <tbb/parallel_for.h>
 #include <utility>
 #include <vector>
@@ -54,12 +61,19 @@ constexpr double mesh_error = 1.0 + 0.02 + 0.001;  ///< of a cell
 constexpr double sharp_rad = 0.5;
 constexpr int steps_a_voxel = 8;
 
+constexpr double thin_share = 5.0 / 6.0;  ///< of the witness's own error
+
 double diagonal_of(const voxel::Universe& universe) {
   return glm::length(universe.lattice().spacing_mm());
 }
 double longest_edge_of(const voxel::Universe& universe) {
   const glm::dvec3 spacing_mm = universe.lattice().spacing_mm();
   return std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+}
+
+/// How far a point of the surface is from the nearest place at a voxel's face.
+double own_error_mm(const voxel::Universe& universe) {
+  return cut_corner * diagonal_of(universe) + longest_edge_of(universe) / (2 * steps_a_voxel);
 }
 
 double whole_voxels_mm(const OffsetOperand& operand) {
@@ -192,26 +206,101 @@ SurfacePlaces places_of(const OffsetOperand& operand) {
   return all;
 }
 
+/// The points of a triangle that propose places: the centroids of equal parts with edges of at most `edge_mm`.
+template <typename Take>
+void for_parts(const std::array<glm::dvec3, 3>& corners_mm, double edge_mm, const Take& take) {
+  const auto& [p, q, r] = corners_mm;
+  const double longest_mm = std::max({glm::distance(p, q), glm::distance(q, r), glm::distance(r, p)});
+  const int parts = std::max(1, static_cast<int>(std::ceil(longest_mm / edge_mm)));
+  for (int i = 0; i < parts; ++i)
+    for (int j = 0; j < parts - i; ++j)
+      for (const double at : {1.0 / 3.0, 2.0 / 3.0}) {
+        if (at > 0.5 && i + j + 1 >= parts) continue;
+        take(p + (i + at) / parts * (q - p) + (j + at) / parts * (r - p));
+      }
+}
+
+/// Where the operand's witness has the surface near a point of the operand's mesh, along its outward normal.
+SurfacePlaces places_near(const glm::dvec3& p_mm, const glm::dvec3& normal, double step_mm,
+                          const Witness& witness) {
+  const auto at = [&](int step) { return p_mm + step * step_mm * normal; };
+  const auto allowed = [&](int step) { return witness.mesh_sides(at(step)); };
+  int in = 0, out = 0;
+  while (in > -steps_a_voxel && allowed(in).in && allowed(in).out) --in;
+  while (out < steps_a_voxel && allowed(out).in && allowed(out).out) ++out;
+  // A point that is certainly on one side has the surface on its other side.
+  if (allowed(0) == certainly_out)
+    while (in > -steps_a_voxel && allowed(in).out) --in;
+  if (allowed(0) == certainly_in)
+    while (out < steps_a_voxel && allowed(out).in) ++out;
+  SurfacePlaces places;
+  if (allowed(in) == certainly_in) places.in_mm.push_back(at(in));
+  if (allowed(out) == certainly_out) places.out_mm.push_back(at(out));
+  const bool has_both = !places.in_mm.empty() && !places.out_mm.empty();
+  if (!has_both && !allowed(0).near) return {};
+  places.between_mm.push_back(p_mm);
+  if (has_both)
+    for (int i = in; i <= out; ++i) places.between_mm.push_back(at(i));
+  return places;
+}
+
+/// Where walls and gaps are that pass between the voxels' centres, away from the places at voxels' faces.
+SurfacePlaces thin_places_of(const OffsetOperand& operand, const std::vector<glm::dvec3>& between_mm) {
+  const voxel::Universe& universe = operand.voxels.universe();
+  const voxel::Box world = voxel::bounds(universe.lattice());
+  const double error_mm = own_error_mm(universe);
+  const PointGrid known(between_mm, 2.0 * diagonal_of(universe));
+  const brep::Triangles& mesh = operand.mesh.triangles();
+  constexpr std::size_t some = 4096;
+  std::vector<SurfacePlaces> found((mesh.faces.size() + some - 1) / some);
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t part) {
+    for (std::size_t i = part * some; i < std::min(mesh.faces.size(), (part + 1) * some); ++i) {
+      const auto& [a, b, c] = mesh.faces[i];
+      const std::array<glm::dvec3, 3> corners_mm{mesh.points_mm[a], mesh.points_mm[b], mesh.points_mm[c]};
+      const glm::dvec3 across = glm::cross(corners_mm[1] - corners_mm[0], corners_mm[2] - corners_mm[0]);
+      const double length = glm::length(across);
+      if (!(length > 0.0)) continue;
+      // A point of a part is within 2/3 of its longest edge of its centroid.
+      for_parts(corners_mm, 1.5 * (1.0 - thin_share) * error_mm, [&](const glm::dvec3& p_mm) {
+        const bool is_here =
+            glm::all(glm::greaterThan(p_mm, world.low_mm)) && glm::all(glm::lessThan(p_mm, world.high_mm));
+        if (is_here && !known.has_within(p_mm, thin_share * error_mm))
+          found[part].add(places_near(p_mm, across / length, 0.5 * longest_edge_of(universe) / steps_a_voxel,
+                                      operand.witness));
+      });
+    }
+  });
+  SurfacePlaces all;
+  for (const SurfacePlaces& part : found) all.add(part);
+  return all;
+}
+
 class OffsetWitness {
  public:
-  OffsetWitness(const OffsetOperand& operand, const WitnessedOffset& asked, SurfacePlaces places)
+  OffsetWitness(const OffsetOperand& operand, const WitnessedOffset& asked, SurfacePlaces places,
+                SurfacePlaces thin)
       : operand_(operand.witness),
         voxel_from_lps_(glm::inverse(operand.voxels.universe().lps_from_voxel)),
         by_mm_(asked.by_mm),
         diagonal_mm_(diagonal_of(operand.voxels.universe())),
         whole_voxels_mm_(whole_voxels_mm(operand)),
         mesh_error_mm_(mesh_error * asked.cell_mm),
-        own_error_mm_(cut_corner * diagonal_mm_ +
-                      longest_edge_of(operand.voxels.universe()) / (2 * steps_a_voxel)),
+        own_error_mm_(own_error_mm(operand.voxels.universe())),
+        thin_error_mm_((1.0 - thin_share) * own_error_mm_ +
+                       longest_edge_of(operand.voxels.universe()) / (4 * steps_a_voxel)),
         in_(std::move(places.in_mm), grid_mm()),
         out_(std::move(places.out_mm), grid_mm()),
-        between_(std::move(places.between_mm), grid_mm()) {}
+        between_(std::move(places.between_mm), grid_mm()),
+        thin_in_(std::move(thin.in_mm), grid_mm()),
+        thin_out_(std::move(thin.out_mm), grid_mm()),
+        thin_between_(std::move(thin.between_mm), grid_mm()) {}
 
   Reading operator()(const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked) const {
     const Reading own = operand_(p_mm, slack_mm, ReadingNeeds::BothSides);
-    const AllowedSides voxel = needs_voxels(asked) ? allowed(own.voxel, p_mm, voxel_error_mm(p_mm) + slack_mm)
-                                                   : AllowedSides{},
-                       mesh = allowed(own.mesh, p_mm, mesh_error_mm_ + slack_mm);
+    const AllowedSides voxel = needs_voxels(asked)
+                                   ? voxel_sides(own.voxel, p_mm, voxel_error_mm(p_mm) + slack_mm)
+                                   : AllowedSides{},
+                       mesh = mesh_sides(own.mesh, p_mm, mesh_error_mm_ + slack_mm);
     // Where the surface may lie, a vertex of the mesh may, too.
     return {voxel, mesh, mesh.near ? 2 : 0};
   }
@@ -226,23 +315,38 @@ class OffsetWitness {
     return (is_centre ? cut_corner : cut_corner + 0.5) * diagonal_mm_ + whole_voxels_mm_;
   }
 
-  AllowedSides allowed(const AllowedSides& own, const glm::dvec3& p_mm, double error_mm) const {
-    const double most_mm = std::abs(by_mm_) - error_mm;
-    const double least_mm = std::abs(by_mm_) + error_mm + own_error_mm_;
-    if (by_mm_ > 0.0) {
-      if (own == certainly_in || in_.has_within(p_mm, most_mm)) return certainly_in;
-      if (own.near || between_.has_within(p_mm, least_mm)) return on_surface;
-      return own;
-    }
-    if (own == certainly_out || out_.has_within(p_mm, most_mm)) return certainly_out;
-    if (own.near || between_.has_within(p_mm, least_mm)) return on_surface;
-    return own;
+  /// The word by the places at voxels' faces. None: they do not move the surface to here.
+  std::optional<AllowedSides> allowed(const AllowedSides& own, const glm::dvec3& p_mm,
+                                      double error_mm) const {
+    const AllowedSides beyond = by_mm_ > 0.0 ? certainly_in : certainly_out;
+    const PointGrid& sure = by_mm_ > 0.0 ? in_ : out_;
+    if (own == beyond || sure.has_within(p_mm, std::abs(by_mm_) - error_mm)) return beyond;
+    if (own.near || between_.has_within(p_mm, std::abs(by_mm_) + error_mm + own_error_mm_)) return on_surface;
+    return std::nullopt;
+  }
+
+  bool is_near_thin(const glm::dvec3& p_mm, double error_mm) const {
+    return thin_between_.has_within(p_mm, std::abs(by_mm_) + error_mm + thin_error_mm_);
+  }
+
+  /// Of a wall or gap between its voxels' centres the voxel kernel cannot have the offset.
+  AllowedSides voxel_sides(const AllowedSides& own, const glm::dvec3& p_mm, double error_mm) const {
+    if (const std::optional<AllowedSides> known = allowed(own, p_mm, error_mm)) return *known;
+    return is_near_thin(p_mm, error_mm) ? either_side : own;
+  }
+
+  AllowedSides mesh_sides(const AllowedSides& own, const glm::dvec3& p_mm, double error_mm) const {
+    const PointGrid& thin = by_mm_ > 0.0 ? thin_in_ : thin_out_;
+    if (thin.has_within(p_mm, std::abs(by_mm_) - error_mm))
+      return by_mm_ > 0.0 ? certainly_in : certainly_out;
+    if (const std::optional<AllowedSides> known = allowed(own, p_mm, error_mm)) return *known;
+    return is_near_thin(p_mm, error_mm) ? on_surface : own;
   }
 
   Witness operand_;
   glm::dmat4 voxel_from_lps_;
-  double by_mm_, diagonal_mm_, whole_voxels_mm_, mesh_error_mm_, own_error_mm_;
-  PointGrid in_, out_, between_;
+  double by_mm_, diagonal_mm_, whole_voxels_mm_, mesh_error_mm_, own_error_mm_, thin_error_mm_;
+  PointGrid in_, out_, between_, thin_in_, thin_out_, thin_between_;
 };
 
 /// Half the sum of length times exterior angle over the sharp edges.
@@ -309,8 +413,9 @@ double thin_mm2(const OffsetOperand& operand) {
 Witness witness_of_offset(const OffsetOperand& operand, const WitnessedOffset& asked) {
   if (!operand.witness) return {};
   SurfacePlaces places = places_of(operand);
-  if (places.between_mm.empty()) return {};
-  const auto read = std::make_shared<const OffsetWitness>(operand, asked, std::move(places));
+  SurfacePlaces thin = thin_places_of(operand, places.between_mm);
+  if (places.between_mm.empty() && thin.between_mm.empty()) return {};
+  const auto read = std::make_shared<const OffsetWitness>(operand, asked, std::move(places), std::move(thin));
   return Witness([read](const glm::dvec3& p_mm, double slack_mm, ReadingNeeds needed) {
            return (*read)(p_mm, slack_mm, needed);
          })

@@ -25,7 +25,9 @@ struct WitnessedOffset {
 /// The points within by_mm of the operand, or deeper than that within it. Where the operand's surface lies is
 /// read from the operand's own witness, along the edges between voxels' centres at which one of the kernels
 /// has it; where that witness does not know the side, both kernels must have a voxel for it to count as
-/// inside. Distances are compared with every such place within reach, on a grid of this source's own. What
+/// inside. Where walls or gaps of the operand's mesh pass between voxels' centres, that witness is read beside
+/// the mesh's triangles: there the mesh's word is that of the moved wall, and the voxels' word is `untold`,
+/// because resampling lost the wall. Distances are compared with every such place within reach, on a grid of this source's own. What
 /// each kernel may answer beside the moved surface is derived in offset_witness.cpp: it is coarse, so that
 /// totals decide about errors below a voxel. Empty where the operand has no witness, or both answers are
 /// empty. Cost: some ten readings of the operand for each face of its voxels; of one reading that operand's

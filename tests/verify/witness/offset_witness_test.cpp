@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "verify/witness/offset_witness.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <memory>
 #include <numbers>
 
+#include "brep/boolean/boolean.h"
 #include "brep/shape/offset.h"
 #include "convert/surface/isosurface.h"
+#include "tests/brep/shapes.h"
 #include "verify/certificate/certify_bounded.h"
 #include "verify/witness/witness.h"
 #include "voxel/filter/offset.h"
@@ -145,6 +148,122 @@ TEST_F(OffsetOfABall, AnOperandOfWholeVoxelsAllowsHalfAVoxelMore) {
   EXPECT_NEAR(offset_allowance_mm(whole, {by_mm, cell_mm}, 2463.0) -
                   offset_allowance_mm(of.both, {by_mm, cell_mm}, 2463.0),
               0.25, 1e-12);
+}
+
+/// A block with a plate or a slot of a millimetre, in samples of a millimetre and voxels of two, whose centres
+/// lie half a millimetre off the plate and the slot.
+class OffsetOfAThinWall : public OffsetOfABall {
+ protected:
+  enum class Thin { None, Plate, Slot };
+  inline static const glm::dvec3 plate_low_mm{-10.0, -12.3, 0.0}, plate_high_mm{20.3, 12.4, 1.0};
+
+  static double depth_mm(const glm::dvec3& p_mm, const glm::dvec3& low_mm, const glm::dvec3& high_mm) {
+    const glm::dvec3 depths_mm = glm::min(p_mm - low_mm, high_mm - p_mm);
+    return std::min({depths_mm.x, depths_mm.y, depths_mm.z});
+  }
+  static std::shared_ptr<const voxel::Scene> block_with(Thin thin) {
+    voxel::Scene scene;
+    scene.lattice = voxel::axis_aligned_lattice(glm::ivec3(64), glm::dvec3(1.0), glm::dvec3(-31.5));
+    voxel::Int16Samples samples(scene.lattice.sample_count());
+    std::size_t i = 0;
+    for (int z = 0; z < 64; ++z)
+      for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+          const glm::dvec3 p_mm = scene.lattice.lps_mm({x, y, z});
+          double depth = depth_mm(p_mm, {-24.2, -14.3, -12.7}, {-4.1, 14.6, 13.2});
+          if (thin == Thin::Plate) depth = std::max(depth, depth_mm(p_mm, plate_low_mm, plate_high_mm));
+          if (thin == Thin::Slot) depth = std::min(depth, std::abs(p_mm.z - 0.5) - 0.5);
+          samples[i++] = static_cast<std::int16_t>(std::lround(2000.0 * std::clamp(depth, -0.5, 0.5)));
+        }
+    scene.samples = std::move(samples);
+    return std::make_shared<const voxel::Scene>(std::move(scene));
+  }
+  static Operand block(Thin thin) {
+    const auto scan = block_with(thin);
+    const voxel::Universe universe = {
+        6, voxel::axis_aligned_lattice(glm::ivec3(64), glm::dvec3(2.0), glm::dvec3(-62.5)).lps_from_voxel};
+    const voxel::GreyOctree grey = voxel::grey_octree_of(universe, *scan);
+    const voxel::Expression symbol(voxel::window_of(grey, 0.0));
+    return {symbol,
+            {witness_of_window(scan, 0.0, endless, universe), voxel::combine(universe, symbol),
+             brep::trusted_solid(convert::isosurface(*scan, 0.0, endless), brep::Proof::Construction)}};
+  }
+  static brep::Solid altered(const brep::Solid& solid, brep::Operation operation, const glm::dvec3& low_mm,
+                             const glm::dvec3& high_mm) {
+    const brep::Solid box =
+        brep::trusted_solid(brep::shapes::box(low_mm, high_mm), brep::Proof::Construction);
+    return brep::boolean(solid, operation, box).solid;
+  }
+  static bool tells_loss(const Certificate& certificate) {
+    return std::any_of(certificate.reasons.begin(), certificate.reasons.end(), [](const std::string& reason) {
+      return reason.find("resampling loses walls or gaps thinner than a voxel") != std::string::npos;
+    });
+  }
+  static double difference_of(const Certificate& certificate, const std::string& quantity) {
+    for (const Comparison& comparison : certificate.comparisons)
+      if (comparison.quantity == quantity) return comparison.difference;
+    return -1.0;
+  }
+  static double contradicted_mm3(const Certificate& certificate) {
+    return difference_of(certificate, "contradicted voxels");
+  }
+};
+
+TEST_F(OffsetOfAThinWall, APlateBetweenVoxelsCentresIsALossOfTheVoxels) {
+  const Operand of = block(Thin::Plate);
+  const voxel::Octree octree = voxels(of, by_mm);
+  const brep::Solid solid = mesh(of, by_mm);
+  const glm::ivec3 beside(glm::round(octree.universe().lattice().voxel({9.5, 0.0, 1.5})));
+  ASSERT_FALSE(octree.contains(beside)) << "the voxels have the plate";
+  const Certificate certificate = certified(of, by_mm, octree, solid);
+  EXPECT_EQ(certificate.verdict, Verdict::Warn) << told(certificate);
+  EXPECT_EQ(contradicted_mm3(certificate), 0.0);
+  EXPECT_TRUE(tells_loss(certificate)) << told(certificate);
+  ASSERT_TRUE(certificate.worst);
+  EXPECT_GT(certificate.worst->at_mm.x, -4.1);
+  EXPECT_NEAR(certificate.worst->at_mm.z, 0.5, 3.0);
+}
+
+TEST_F(OffsetOfAThinWall, AnErrorOfTheMeshFailsBesideThePlateAndAwayFromIt) {
+  const Operand of = block(Thin::Plate);
+  const voxel::Octree octree = voxels(of, by_mm);
+  const brep::Solid solid = mesh(of, by_mm);
+  struct Error {
+    const char* what;
+    brep::Operation operation;
+    glm::dvec3 low_mm, high_mm;
+  };
+  for (const Error& error : {
+           Error{"a hole in the plate", brep::Operation::Difference, {5.1, -4.9, -9.0}, {13.1, 5.1, 9.0}},
+           Error{"a post on the plate", brep::Operation::Union, {5.1, -4.9, 0.5}, {11.1, 3.1, 9.1}},
+           Error{"a hole in the block", brep::Operation::Difference, {-40.0, -4.9, -4.1}, {-18.1, 5.1, 5.3}},
+           Error{"a post on the block", brep::Operation::Union, {-20.1, -4.9, 9.3}, {-14.1, 3.1, 22.1}},
+       }) {
+    const Certificate certificate =
+        certified(of, by_mm, octree, altered(solid, error.operation, error.low_mm, error.high_mm));
+    EXPECT_EQ(certificate.verdict, Verdict::Fail) << error.what << told(certificate);
+    EXPECT_GT(contradicted_mm3(certificate) + difference_of(certificate, "stray surface"), 0.0) << error.what;
+  }
+}
+
+/// The operand's mesh proposes the plate, and the scan does not confirm it.
+TEST_F(OffsetOfAThinWall, APlateThatTheScanLacksFails) {
+  Operand of = block(Thin::None);
+  of.both.mesh = block(Thin::Plate).both.mesh;
+  const Certificate certificate = certified(of, by_mm, voxels(of, by_mm), mesh(of, by_mm));
+  EXPECT_EQ(certificate.verdict, Verdict::Fail) << told(certificate);
+  EXPECT_GT(contradicted_mm3(certificate), 0.0);
+}
+
+TEST_F(OffsetOfAThinWall, ASlotBetweenVoxelsCentresIsALossOfTheVoxels) {
+  const Operand of = block(Thin::Slot);
+  const voxel::Octree octree = voxels(of, -by_mm);
+  const Certificate certificate = certified(of, -by_mm, octree, mesh(of, -by_mm));
+  EXPECT_EQ(certificate.verdict, Verdict::Warn) << told(certificate);
+  EXPECT_EQ(contradicted_mm3(certificate), 0.0);
+  EXPECT_TRUE(tells_loss(certificate)) << told(certificate);
+  const Certificate unmoved = certified(of, -by_mm, octree, mesh(block(Thin::None), -by_mm));
+  EXPECT_EQ(unmoved.verdict, Verdict::Fail) << told(unmoved);
 }
 
 }  // namespace
