@@ -90,7 +90,10 @@ class Forger:
 def move_a_vertex(forger):
     name = forger.ending("/points.npy")
     points = array_of(forger.entries[name])
-    points[forger.chance.randrange(len(points)), forger.chance.randrange(3)] += 10 ** forger.chance.uniform(-2, 1)
+    # In a direction by chance: within a plane of triangles a vertex can be moved without any effect.
+    direction = np.array([forger.chance.gauss(0, 1) for _ in range(3)])
+    points[forger.chance.randrange(len(points))] += (
+        10 ** forger.chance.uniform(-1, 1) * direction / np.linalg.norm(direction))
     forger.entries[name] = bytes_of(points)
 
 
