@@ -402,6 +402,20 @@ void compare_with_lines(Certificate& certificate, const Evidence& evidence, cons
          evidence.mesh.volume_mm3);
 }
 
+/// Lowers the verdict to WARN where an answer or both are empty, because no surfaces were compared.
+void judge_emptiness(Certificate& certificate, const voxel::Octree& octree, const brep::Solid& solid,
+                     double missed_mm3) {
+  judge_emptiness(certificate, missed_mm3);
+  if (octree.is_empty() == solid.empty()) return;
+  lower(certificate, Verdict::Warn,
+        octree.is_empty()
+            ? "No voxel holds the object, of which the mesh has " +
+                  voxel::rounded(certificate.mesh.volume_mm3) +
+                  " mm3, so that no surfaces were compared: take smaller voxels."
+            : "The mesh is empty, and the voxels have " + voxel::rounded(certificate.voxel.volume_mm3) +
+                  " mm3, so that no surfaces were compared.");
+}
+
 }  // namespace
 
 Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& solid, const BoundInputs& inputs,
@@ -453,7 +467,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   // The search for parts that both kernels lack samples one voxel in each block of two voxels a side, so it
   // may miss a part of up to eight voxels.
   if (!inputs.is_surely_empty)
-    judge_emptiness(certificate, 8.0 * evidence.voxel_mm3);
+    judge_emptiness(certificate, octree, solid, 8.0 * evidence.voxel_mm3);
   else if (!octree.is_empty() || !solid.empty())
     lower(certificate, Verdict::Fail, "The object must be empty, and an answer is not.");
   const auto has_place = [&](const std::string& reason) { return reason.rfind("The two surfaces", 0) == 0; };

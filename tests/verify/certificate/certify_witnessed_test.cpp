@@ -11,6 +11,7 @@
 #include "brep/mesh/triangles.h"
 #include "convert/surface/isosurface.h"
 #include "convert/voxel/voxelise.h"
+#include "tests/brep/shapes.h"
 #include "verify/certificate/certify_bounded.h"
 #include "verify/witness/witness.h"
 #include "voxel/filter/components.h"
@@ -135,6 +136,16 @@ TEST_F(Witnessed, TwoEmptyAnswersFailWhereTheScanHasAnObjectAndElseProveNothing)
   EXPECT_FALSE(right.resolved());
   ASSERT_EQ(right.reasons.size(), 1U);
   EXPECT_NE(right.reasons.front().find("8 mm3"), std::string::npos) << right.reasons.front();
+}
+
+TEST_F(Witnessed, AnObjectThatNoVoxelHoldsIsNoPass) {
+  inputs_.witness = {};
+  const brep::Triangles between = brep::shapes::box({20.2, 20.2, 20.2}, {20.8, 20.8, 20.8});
+  const Certificate lost = certified(voxel::Octree::empty(universe_), between);
+  EXPECT_NE(lost.verdict, Verdict::Pass);
+  EXPECT_TRUE(std::any_of(lost.reasons.begin(), lost.reasons.end(), [](const std::string& reason) {
+    return reason.find("No voxel holds the object, of which the mesh has 0.216 mm3") == 0;
+  })) << lost.reasons.back();
 }
 
 TEST_F(Witnessed, APartThatTheMeshHasSeveralTimesFails) {
