@@ -2,17 +2,18 @@
 //
 // 1 Voxels. A kernel's answer at a voxel's centre must be one that the witness allows for this kernel. Where
 //   the witness cannot decide the side away from any surface, the kernels must agree.
+//   Voxels at which the witness agrees with the mesh alone, where the voxel kernel could not know better, are
+//   listed as lost by resampling.
 // 2 Triangles. A triangle's centroid must lie where the witness has a surface, each vertex where a surface
 //   has a vertex of its own or two surfaces cross.
 // 3 Inside. A part that both kernels lack, or that both add, has no boundary, so step 1 does not compare it.
 //   So the witness is read at every eighth voxel wherever the object may be: at the voxels with x + 2y + 4z a
 //   multiple of 8, one in each block of two voxels a side.
-//   Voxels at which the kernels differ where the witness agrees with the mesh, and the voxels cannot have known,
-//   are listed as lost by resampling.
 // 4 Groups. Voxels that fail, joined by faces, edges and corners; the largest is the worst place.
 // 5 Limit. Errors are injected at random places of this object and judged as above: groups of voxels next to
 //   the boundary are removed and added, pieces of the mesh are removed, the whole is shifted along both
 //   directions of three axes. The limit is the smallest size from which every such error is detected.
+// One source, because step 5 judges its errors by the functions of the steps before it.
 #include "verify/certificate/places.h"
 
 #include <algorithm>
