@@ -221,16 +221,26 @@ void judge_bridges(Certificate& certificate, const Places& places) {
   if (!certificate.bridges.empty() && !certificate.worst) certificate.worst = certificate.bridges.front();
 }
 
-/// Adds the parts that resampling lost as WARN. Each place was compared with the witness, which has the mesh's
-/// answer there, so that the mesh is right and the voxels are too large.
+/// Share of an object that resampling may lose before the verdict is WARN. The rest is stated alone.
+constexpr double stated_share = 0.002;
+
+/// Adds the volume of the parts that resampling lost, as WARN if it is more than stated_share of the object. Each
+/// place was compared with the witness, which has the mesh's answer there, so that the mesh is right and the
+/// voxels are too large.
 void judge_lost(Certificate& certificate, const Evidence& evidence, const Places& places) {
   if (!places.worst_lost) return;
-  const double lost_mm3 = static_cast<double>(places.lost.size()) * evidence.voxel_mm3;
-  lower(certificate, Verdict::Warn,
-        "At this voxel size resampling loses walls or gaps thinner than a voxel: voxels of " +
-            voxel::rounded(lost_mm3) + " mm3 lack or fill what this step made of them, most near " +
-            voxel::rounded(places.worst_lost->at_mm) +
-            ". The scan confirms the mesh there: take smaller voxels.");
+  const std::string near = voxel::rounded(places.worst_lost->at_mm);
+  add_comparison(
+      certificate,
+      {.quantity = "lost by resampling",
+       .unit = "mm3",
+       .difference = static_cast<double>(places.lost.size()) * evidence.voxel_mm3,
+       .tolerance = stated_share * certificate.larger_mm3(),
+       .formula = "0.002 V; voxels that lack or fill walls or gaps thinner than a voxel, most near " + near,
+       .statement = "At this voxel size resampling loses walls or gaps thinner than a voxel: voxels of % "
+                    "lack or fill what this step made of them, most near " +
+                    near + ". The scan confirms the mesh there: take smaller voxels"},
+      Verdict::Warn);
   if (!certificate.worst) certificate.worst = places.worst_lost;
 }
 
