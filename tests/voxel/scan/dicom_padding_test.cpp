@@ -151,53 +151,6 @@ TEST(DicomPadding, OfSomeSlicesLeavesTheOthersAloneWhereTheyHoldNone) {
   EXPECT_FALSE(tests::finding(scene, "unstated_padding"));
 }
 
-/// Twelve slices of samples from 1 upward, with a rim of padding 0, and the samples `inner` of every slice 0, too.
-Scene read_dark(const ScratchFolder& folder, const std::vector<glm::ivec2>& inner) {
-  std::vector<SpoiledImage> images = tests::sound_series();
-  for (SpoiledImage& image : images) {
-    std::vector<int> values(columns * rows);
-    for (int y = 0; y < rows; ++y)
-      for (int x = 0; x < columns; ++x)
-        values[static_cast<std::size_t>(y * columns + x)] = x < 2 ? 0 : 1 + (x + 3 * y) % 50;
-    for (const glm::ivec2& at : inner) values[static_cast<std::size_t>(at.y * columns + at.x)] = 0;
-    std::string pixels;
-    for (const int value : values) pixels += DicomBytes::number(static_cast<std::uint32_t>(value), 2);
-    image.text(0x7fe00010, "OW", pixels);
-    image.text(0x00281052, "DS", "0");
-    image.text(0x00280120, "US", DicomBytes::number(0, 2));
-    std::ofstream(folder / image.name, std::ios::binary) << image.bytes();
-  }
-  return read_scene(folder.path());
-}
-
-TEST(DicomPadding, ScatteredInsideOfImagesIsMeasuredAndAtTheRimIsNot) {
-  const ScratchFolder folder;
-  const Scene scene = read_dark(folder, {{8, 5}, {12, 9}, {13, 9}, {18, 15}});
-  ASSERT_TRUE(scene.padding);
-  EXPECT_LT(*scene.padding, 0.0);
-  EXPECT_EQ(range(scene).low, 0.0);
-  for (std::size_t k = 0; k < 12; ++k) EXPECT_EQ(padded_in(scene, k), 2U * rows) << k;
-  EXPECT_EQ(std::count(std::get<Int16Samples>(scene.samples).begin(),
-                       std::get<Int16Samples>(scene.samples).end(), std::int16_t{0}),
-            12 * 4);
-  EXPECT_EQ(tests::verdict(scene, "padding"), Verdict::Warn);
-  const std::string detail = tests::finding(scene, "padding")->detail;
-  EXPECT_NE(detail.find("480 samples"), std::string::npos) << detail;
-  EXPECT_NE(detail.find("48 more lie scattered inside of the images"), std::string::npos) << detail;
-}
-
-TEST(DicomPadding, ThatFillsAnAreaInsideOfImagesStaysPadding) {
-  const ScratchFolder folder;
-  std::vector<glm::ivec2> block;
-  for (int y = 6; y < 12; ++y)
-    for (int x = 8; x < 14; ++x) block.emplace_back(x, y);
-  const Scene scene = read_dark(folder, block);
-  ASSERT_TRUE(scene.padding);
-  EXPECT_EQ(range(scene).low, 1.0);
-  for (std::size_t k = 0; k < 12; ++k) EXPECT_EQ(padded_in(scene, k), 2U * rows + block.size()) << k;
-  EXPECT_EQ(tests::finding(scene, "padding")->detail.find("scattered"), std::string::npos);
-}
-
 TEST(DicomPadding, IsEachSlicesOwn) {
   const ScratchFolder folder;
   std::vector<std::optional<std::int16_t>> padding(12);
