@@ -369,14 +369,14 @@ class SeriesReader {
            });
   }
 
-  /// Whether most of some padded samples have measured ones on two sides or more. Padding fills areas.
-  template <typename Samples, typename Chosen>
-  bool is_scattered(const Samples& samples, const glm::ivec2& size_px, const Chosen& is_chosen) const {
+  /// Whether most padded samples have measured ones on two sides or more. Padding fills areas.
+  template <typename Samples>
+  bool is_scattered(const Samples& samples, const glm::ivec2& size_px) const {
     const std::size_t width = static_cast<std::size_t>(size_px.x),
                       area = width * static_cast<std::size_t>(size_px.y);
     std::size_t padded = 0, lonely = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (!is_padding(static_cast<double>(samples[i])) || !is_chosen(i)) continue;
+      if (!is_padding(static_cast<double>(samples[i]))) continue;
       const std::size_t x = i % width, place = i % area;
       const auto is_measured = [&](bool is_inside, std::size_t at) {
         return is_inside && !is_padding(static_cast<double>(samples[at]));
@@ -431,29 +431,6 @@ class SeriesReader {
       if (y > 0) reach(at - columns);
       if (y + 1 < rows) reach(at + columns);
     }
-    return count;
-  }
-
-  /// Replaces padding by `value` where it is scattered inside of the images: a measured sample may be as dark
-  /// as the padding at the rims. Returns the number of such samples; none if padding inside of the images
-  /// fills areas.
-  template <typename Samples>
-  std::size_t take_scattered_inside(Samples& samples, const glm::ivec2& size_px, double value) const {
-    using Sample = typename Samples::value_type;
-    const auto mark = static_cast<Sample>(*scene_.padding), at_rim = static_cast<Sample>(mark + 1);
-    const std::size_t area = static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y);
-    std::vector<bool> is_inner(samples.size(), false);
-    std::size_t count = 0;
-    for (std::size_t first = 0; first < samples.size(); first += area) {
-      const auto begin = samples.begin() + static_cast<std::ptrdiff_t>(first);
-      std::vector<Sample> image(begin, begin + static_cast<std::ptrdiff_t>(area));
-      mark_from_rim(std::span<Sample>(image), size_px.x, {*scene_.padding, *scene_.padding}, at_rim);
-      for (std::size_t i = 0; i < area; ++i)
-        if (image[i] == mark) is_inner[first + i] = true, ++count;
-    }
-    if (count == 0 || !is_scattered(samples, size_px, [&](std::size_t i) { return is_inner[i]; })) return 0;
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      if (is_inner[i]) samples[i] = static_cast<Sample>(value);
     return count;
   }
 
@@ -514,7 +491,7 @@ class SeriesReader {
                                   : print("values %g to %g", values->low, values->high) +
                                         (is_padding_mixed(stack) ? ", each slice's own," : "");
     const auto mark = static_cast<Sample>(*scene_.padding);
-    auto count = std::count(samples.begin(), samples.end(), mark);
+    const auto count = std::count(samples.begin(), samples.end(), mark);
     if (count == 0) {
       scene_.padding.reset();
       return take_other_padding(stack, "no sample has the padding " + named);
@@ -522,8 +499,7 @@ class SeriesReader {
     const Range measured = range_of_slices();
     const double least_step = std::abs(stack.first().slope.value_or(1.0));
     if (values && values->low == values->high && values->low < measured.high + 1.5 * least_step &&
-        values->low > measured.low - 1.5 * least_step &&
-        is_scattered(samples, stack.first().size_px, [](std::size_t) { return true; })) {
+        values->low > measured.low - 1.5 * least_step && is_scattered(samples, stack.first().size_px)) {
       std::replace(samples.begin(), samples.end(), mark, static_cast<Sample>(values->low));
       scene_.padding.reset();
       return find(
@@ -532,18 +508,12 @@ class SeriesReader {
                 "value: they are taken as measurements",
                 count, values->low));
     }
-    // Right below all measured samples, so that the darkest of them may have the same value.
-    const std::size_t inner_count = values && values->low == values->high && values->low < measured.low &&
-                                            values->low > measured.low - 1.5 * least_step
-                                        ? take_scattered_inside(samples, stack.first().size_px, values->low)
-                                        : 0;
-    if (inner_count == 0 && values && values->low < measured.low &&
+    if (values && values->low < measured.low &&
         values->low >= static_cast<double>(std::numeric_limits<Sample>::lowest()) &&
         static_cast<double>(static_cast<Sample>(values->low)) == values->low) {
       scene_.padding = values->low;
       std::replace(samples.begin(), samples.end(), mark, static_cast<Sample>(values->low));
     }
-    count -= static_cast<std::ptrdiff_t>(inner_count);
     const double percent = 100.0 * static_cast<double>(count) / static_cast<double>(samples.size());
     find("padding", Verdict::Warn,
          print("%td samples (%.3g %%) hold the padding ", count, percent) + named +
@@ -551,12 +521,7 @@ class SeriesReader {
              (values && values->high >= measured.low && values->low <= measured.high
                   ? print("; measured values from %g to %g lie around it", measured.low, measured.high)
                   : "") +
-             ": no measurement, not used by windows and interpolation" +
-             (inner_count > 0
-                  ? print("; %zu more lie scattered inside of the images, among measured samples, and "
-                          "are taken as measurements",
-                          inner_count)
-                  : ""));
+             ": no measurement, not used by windows and interpolation");
   }
 
   fs::path path_;
