@@ -18,6 +18,7 @@ import re
 import struct
 import sys
 import zipfile
+import zlib
 
 import numpy as np
 
@@ -107,19 +108,19 @@ class Archive:
             raise NoPack(f"the entry {name} is missing")
         try:
             return self.zip.read(name)
-        except (zipfile.BadZipFile, OSError, ValueError) as error:
+        except (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError, RuntimeError) as error:
             raise NoPack(f"the entry {name} is damaged: {error}") from error
 
     def json(self, name):
         try:
             return json.loads(self.bytes(name).decode("utf-8"))
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             raise NoPack(f"the entry {name} is no JSON: {error}") from error
 
     def array(self, name, columns):
         try:
             array = np.load(io.BytesIO(self.bytes(name)), allow_pickle=False)
-        except ValueError as error:
+        except (ValueError, EOFError, MemoryError) as error:
             raise NoPack(f"the entry {name} is no array: {error}") from error
         if array.ndim != 2 or array.shape[1] != columns:
             raise NoPack(f"the entry {name} has the shape {array.shape}, not rows of {columns}")
@@ -219,6 +220,17 @@ class Voxels:
         d = np.stack([np.abs(x - 0.5 - at[0]), np.maximum(np.abs(rows % side - at[1]) - 0.5, 0),
                       np.maximum(np.abs(rows // side - at[2]) - 0.5, 0)])
         return math.sqrt(min(best, float(((d * size[:, None]) ** 2).sum(axis=0).min())))
+
+    def slice(self, z):
+        """The voxels of a slice as truth values, y then x."""
+        side = self.universe.side
+        size = side * (side + 1)
+        first, end = np.searchsorted(self.borders, [z * size, (z + 1) * size])
+        borders = self.borders[first:end] - z * size
+        edges = np.zeros(size, dtype=np.int8)
+        edges[borders[0::2]] = 1
+        edges[borders[1::2]] -= 1
+        return np.cumsum(edges, dtype=np.int8).reshape(side, side + 1)[:, :side].astype(bool)
 
     def has(self, voxels):
         side = self.universe.side
@@ -537,6 +549,15 @@ class Checker:
         """Whether an object is what its step of the plan says."""
         step = self.steps.get(name, {})
         kind = step.get("do")
+        row = self.objects.get(name, (0, {}))[1]
+        # What a forger leaves out must not go unnoticed.
+        # Windows with an upper bound have no samples in the archive.
+        if kind == "window" and step.get("high") is None:
+            self.findings.claim("samples" in self.entries[name], f"{name}: the archive carries samples of its window")
+        if kind == "move" and motion_of(step) is not None:
+            self.findings.claim("image_of" in self.entries[name], f"{name}: the archive says whose image it is")
+        if kind != "mask" and row.get("mesh"):
+            self.findings.claim("points" in self.entries[name], f"{name}: the archive carries its surface")
         if "samples" in self.entries[name]:
             self.check_window(name, step)
         if kind == "mask" and set(step) <= {"id", "do", "regions", "note"}:
@@ -579,16 +600,12 @@ class Checker:
         if any(set(r) - {"view", "polygons_mm"} or r.get("view") not in VIEWS for r in regions):
             return
         voxels = self.voxels[name]
-        bits = np.zeros((side, side, side + 1), dtype=np.int8)
-        if voxels.sound and len(voxels.borders):
-            flat = bits.reshape(-1)
-            np.add.at(flat, voxels.borders[0::2], 1)
-            np.add.at(flat, voxels.borders[1::2], -1)
-        bits = np.cumsum(bits, axis=2, dtype=np.int8)[:, :, :side].astype(bool)
+        if not voxels.sound:
+            return
         x, y, z = (self.universe.lps_mm(np.eye(3)[axis] * np.arange(side)[:, None])[:, axis] for axis in range(3))
         if np.abs(self.universe.matrix[:3, :3] - np.diag(np.diag(self.universe.matrix[:3, :3]))).max() > 0:
             return
-        inside, near = np.ones_like(bits), np.zeros_like(bits)
+        hits = []
         for region in regions:
             right, up = VIEWS[region["view"]]
             axes = [int(np.argmax(np.abs(right))), int(np.argmax(np.abs(up)))]
@@ -603,9 +620,14 @@ class Checker:
                 hit, doubt = hit.T, doubt.T
             for place in order:
                 shape[place] = side
-            inside &= hit.reshape(shape)
-            near |= doubt.reshape(shape)
-        wrong = int(((bits != inside) & ~near).sum())
+            hits.append((hit.reshape(shape), doubt.reshape(shape)))
+        wrong = 0
+        for k in range(side):
+            inside, near = np.ones((side, side), dtype=bool), np.zeros((side, side), dtype=bool)
+            for hit, doubt in hits:
+                inside &= hit[k if hit.shape[0] > 1 else 0]
+                near |= doubt[k if doubt.shape[0] > 1 else 0]
+            wrong += int(((voxels.slice(k) != inside) & ~near).sum())
         self.findings.claim(wrong == 0, f"{name}: all voxels are those of the plan's polygons, but for {wrong}")
 
     def check_combination(self, name, step):
@@ -946,7 +968,7 @@ def main(arguments):
     except NoPack as error:
         print(f"check_pack.py: {error}", file=sys.stderr)
         return 2
-    except (KeyError, TypeError, AttributeError, IndexError, ValueError, OverflowError) as error:
+    except (KeyError, TypeError, AttributeError, IndexError, ValueError, OverflowError, RecursionError, MemoryError) as error:
         print(f"check_pack.py: {paths[0]}: its manifest or result is not as octotomy pack writes it: {error!r}",
               file=sys.stderr)
         return 2

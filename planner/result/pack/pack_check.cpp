@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/result/pack/pack_check.h"
 
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 
 #include "brep/io/zip_archive.h"
 #include "brep/mesh/error.h"
+#include "planner/operation/table/json_file.h"
 #include "planner/plan/sha256.h"
 #include "planner/result/pack/pack.h"
 #include "voxel/space/error.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner {
 namespace {
@@ -22,8 +22,13 @@ using Json = nlohmann::ordered_json;
 }
 
 Json parsed(const std::filesystem::path& path, const std::string& name, const std::string& text) {
-  Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded() || !json.is_object())
+  Json json;
+  try {
+    json = parse_json<Json>(text);
+  } catch (const std::runtime_error& error) {
+    refuse_pack(path, "its entry " + name + ": " + error.what());
+  }
+  if (!json.is_object())
     refuse_pack(path, "its entry " + name + " is not a JSON object: ask for the archive again");
   return json;
 }
@@ -83,7 +88,7 @@ void flatten(const Json& json, const std::string& where, std::map<std::string, s
       flatten(json[i], below(earlier == 0 ? name : name + " (" + std::to_string(earlier + 1) + ")"), values);
     }
   } else {
-    values[where] = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    values[where] = json_text(json);
   }
 }
 
@@ -98,9 +103,7 @@ Json comparable(Json result) {
 }  // namespace
 
 PackContents read_pack(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) refuse_pack(path, "cannot be read");
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string bytes = voxel::file_bytes(path);
   try {
     return read_entries(path, brep::ZipArchive(bytes));
   } catch (const brep::Error& error) {

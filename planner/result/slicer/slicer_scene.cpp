@@ -4,8 +4,6 @@
 #include <array>
 #include <cctype>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <vector>
 
@@ -16,6 +14,7 @@
 #include "voxel/archive/write_segmentation.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/space/error.h"
+#include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
 #include "voxel/space/unfinished_folder.h"
 #include "voxel/space/write_whole.h"
@@ -184,9 +183,7 @@ void write_bundle(const fs::path& folder, const fs::path& path) {
   voxel::StagedOutputs staged;
   ZipWriter zip(staged.beside(path));
   for (const fs::path& file : files) {
-    std::ifstream in(file, std::ios::binary);
-    zip.add((path.stem() / file.lexically_relative(folder)).generic_string(),
-            std::string{std::istreambuf_iterator<char>(in), {}});
+    zip.add((path.stem() / file.lexically_relative(folder)).generic_string(), voxel::file_bytes(file));
   }
   zip.close();
   staged.commit();

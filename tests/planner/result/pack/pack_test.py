@@ -35,6 +35,7 @@ PLAN = {
         {"id": "advanced", "do": "move", "object": "maxilla", "translate_mm": [0, -6, 2],
          "rotate": {"degrees": 5, "axis": [1, 0, 0], "about_mm": [0, -40, -30]}},
         {"id": "result", "do": "combine", "expression": "rest | advanced"},
+        {"id": "fat", "do": "window", "scan": "ct", "low": -190, "high": -30},
         {"id": "size", "do": "measure", "object": "maxilla"},
         {"id": "interference", "do": "measure", "object": "rest", "to": "advanced"},
         {"id": "width", "do": "measure", "points_mm": [[-40, -60, -25], [40, -60, -25]]},
@@ -266,6 +267,52 @@ class Pack(unittest.TestCase):
         self.assertEqual([value["where"] for value in pack["different_values"]],
                          ["objects / maxilla / voxel / volume_mm3"])
         self.assertEqual(pack["different_entries"], ["result/result.json"])
+
+    def test_a_replay_names_an_entry_that_was_changed_alone(self):
+        forger = Forger(self.archive, random.Random(2))
+        move_a_vertex(forger)
+        forger.write(self.folder / "forged.zip")
+        replayed = run(PROGRAM, "verify", self.folder / "forged.zip", "--scan", f"ct={self.scan}", "--json")
+        self.assertEqual(replayed.returncode, 1)
+        pack = json.loads(replayed.stdout)["pack"]
+        self.assertEqual(pack["different_values"], [])
+        self.assertEqual(len(pack["different_entries"]), 1)
+        self.assertIn("points.npy", pack["different_entries"][0])
+
+    def test_what_a_manifest_leaves_out_is_contradicted(self):
+        for key, kind in (("samples", "window"), ("points", "surface"), ("image_of", "image")):
+            with self.subTest(key=key):
+                forger = Forger(self.archive, random.Random(3))
+                manifest = json.loads(forger.entries["manifest.json"])
+                for row in manifest["objects"]:
+                    row.pop(key, None)
+                forger.entries["manifest.json"] = json.dumps(manifest).encode()
+                forger.write(self.folder / "forged.zip")
+                checked = self.check(self.folder / "forged.zip")
+                self.assertEqual(checked.returncode, 1, checked.stdout)
+                self.assertIn(kind, checked.stdout)
+
+    def test_hostile_entries_are_refused_in_one_line(self):
+        header = b"{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999, 3), }"
+        header += b" " * (117 - len(header)) + b"\n"
+        hostile = {"witness/0/points.npy": b"\x93NUMPY\x01\x00" + bytes([118, 0]) + header,
+                   "result/result.json": b"[" * 200000 + b"]" * 200000,
+                   "witness/0/runs.npy": b""}
+        for name, data in hostile.items():
+            with self.subTest(entry=name):
+                forger = Forger(self.archive, random.Random(4))
+                forger.entries[name] = data
+                manifest = json.loads(forger.entries["manifest.json"])
+                for file in manifest["files"]:
+                    entry = forger.entries[file["path"]]
+                    file.update(bytes=len(entry), sha256=hashlib.sha256(entry).hexdigest())
+                forger.entries["manifest.json"] = json.dumps(manifest).encode()
+                with zipfile.ZipFile(self.folder / "hostile.zip", "w") as archive:
+                    for entry, content in forger.entries.items():
+                        archive.writestr(entry, content)
+                checked = self.check(self.folder / "hostile.zip")
+                self.assertEqual(checked.returncode, 2, checked.stdout + checked.stderr)
+                self.assertEqual(len(checked.stderr.strip().splitlines()), 1, checked.stderr)
 
     def test_other_files_are_refused_in_one_line(self):
         with zipfile.ZipFile(self.folder / "other.zip", "w") as archive:
