@@ -551,8 +551,7 @@ class Checker:
         kind = step.get("do")
         row = self.objects.get(name, (0, {}))[1]
         # What a forger leaves out must not go unnoticed.
-        # Windows with an upper bound have no samples in the archive.
-        if kind == "window" and step.get("high") is None:
+        if kind == "window":
             self.findings.claim("samples" in self.entries[name], f"{name}: the archive carries samples of its window")
         if kind == "move" and motion_of(step) is not None:
             self.findings.claim("image_of" in self.entries[name], f"{name}: the archive says whose image it is")

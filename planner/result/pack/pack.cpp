@@ -2,8 +2,6 @@
 #include "planner/result/pack/pack.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include "planner/operation/measure/result_json.h"
@@ -14,6 +12,7 @@
 #include "planner/result/pack/zip_writer.h"
 #include "planner/result/report/report_page.h"
 #include "planner/result/report/result_tables.h"
+#include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
 #include "voxel/space/unfinished_folder.h"
 #include "voxel/space/write_whole.h"
@@ -52,11 +51,6 @@ void write_without_times(Result& result, Json json, const fs::path& folder) {
   for (const auto& [name, text] : result_tables(json)) voxel::write_file(folder / name, text);
 }
 
-std::string bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 /// Adds entries to an archive and lists them.
 class Listed {
  public:
@@ -82,17 +76,28 @@ void add_folder(Listed& archive, const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file()) paths.insert(entry.path());
   for (const fs::path& path : paths)
-    archive.add("result/" + path.lexically_relative(folder).generic_string(), bytes_of(path));
+    archive.add("result/" + path.lexically_relative(folder).generic_string(), voxel::file_bytes(path));
+}
+
+/// The scan that an object is a window of; nullptr for other objects.
+const voxel::Scene* scan_of_window(const Result& result, const Object& object) {
+  if (object.kind != "window") return nullptr;
+  const auto step = std::ranges::find(result.plan.steps, object.id, &Step::id);
+  if (step == result.plan.steps.end()) return nullptr;
+  const std::vector<std::string> scans = scans_used(step->action);
+  return scans.empty() ? nullptr : &result.evaluation.loaded.at(scans.front())->scene();
 }
 
 /// Adds each object's arrays; returns the list of the objects with the names of their entries.
-Json add_witnesses(Listed& archive, const Evaluation& evaluation, const ExportOptions& options) {
+Json add_witnesses(Listed& archive, const Result& result, const ExportOptions& options) {
+  const Evaluation& evaluation = result.evaluation;
   Json objects = Json::array();
   for (const Object& object : evaluation.objects) {
     if (options.stop.stop_requested()) throw Stopped("stopped before the archive was written");
     Json row{{"id", object.id}};
     const std::string folder = "witness/" + std::to_string(objects.size()) + "/";
-    for (const auto& [name, bytes] : witness_arrays(object, evaluation.universe)) {
+    for (const auto& [name, bytes] :
+         witness_arrays(object, evaluation.universe, scan_of_window(result, object))) {
       archive.add(folder + name + ".npy", bytes);
       row[name] = folder + name + ".npy";
     }
@@ -129,7 +134,7 @@ Json write_pack(Result& result, const fs::path& path, const ExportOptions& optio
   manifest["universe"] = {{"side", result.evaluation.universe.side()},
                           {"lps_from_voxel", to_json(result.evaluation.universe.lps_from_voxel)}};
   manifest["scans"] = scans_json(result.evaluation);
-  manifest["objects"] = add_witnesses(archive, result.evaluation, options);
+  manifest["objects"] = add_witnesses(archive, result, options);
   manifest["libraries"] = library_versions();
   archive.close(manifest);
   staged.commit();

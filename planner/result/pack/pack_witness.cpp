@@ -92,10 +92,10 @@ std::vector<glm::ivec3> chosen_voxels(const Rows& runs, int side) {
   return voxels;
 }
 
-std::vector<double> sample_rows(const Object& object, const voxel::Universe& universe, const Rows& runs) {
+std::vector<double> sample_rows(const voxel::Scene& scan, const voxel::Universe& universe, const Rows& runs) {
   std::vector<double> rows;
   for (const glm::ivec3& at : chosen_voxels(runs, universe.side())) {
-    const auto found = cell_at(*object.shown->samples, universe.lattice().lps_mm(glm::dvec3(at)));
+    const auto found = cell_at(scan, universe.lattice().lps_mm(glm::dvec3(at)));
     if (!found) continue;
     for (int axis = 0; axis < 3; ++axis) rows.push_back(at[axis]);
     for (int axis = 0; axis < 3; ++axis) rows.push_back(found->cell[axis]);
@@ -106,7 +106,8 @@ std::vector<double> sample_rows(const Object& object, const voxel::Universe& uni
 
 }  // namespace
 
-std::map<std::string, std::string> witness_arrays(const Object& object, const voxel::Universe& universe) {
+std::map<std::string, std::string> witness_arrays(const Object& object, const voxel::Universe& universe,
+                                                  const voxel::Scene* window_of) {
   std::map<std::string, std::string> arrays;
   const Rows runs = runs_of(object.voxel.octree);
   arrays["runs"] = numpy_array(runs, 4);
@@ -123,8 +124,7 @@ std::map<std::string, std::string> witness_arrays(const Object& object, const vo
     arrays["points"] = numpy_array(points, 3);
     arrays["triangles"] = numpy_array(faces, 3);
   }
-  if (object.kind == "window" && object.shown && object.shown->samples)
-    arrays["samples"] = numpy_array(sample_rows(object, universe, runs), 14);
+  if (window_of != nullptr) arrays["samples"] = numpy_array(sample_rows(*window_of, universe, runs), 14);
   return arrays;
 }
 
