@@ -4,9 +4,11 @@
 // the bytes between them. Every 64th text is stored whole, so that reading one takes at most 64 reads. A
 // change of state consists of
 //   1 one transaction of the database: the edit and the current state; 2 the plan's file, as a whole; 3 a
-//   record of the checksum of the file written in step 2. On opening, the file's checksum is compared with
-//   that record. If they are equal but differ from the current state's checksum, step 2 was not reached and
-//   is done then. If they differ, another program wrote the file.
+//   record of the checksum of the file written in step 2.
+// Steps 2 and 3 and every opening make file and state agree (settle()). Whoever comes first does it, also for
+// a process that was killed after step 1. If the file's checksum is the recorded one but not the current
+// state's, step 2 is due. If it is neither, another program wrote the file, and its text becomes an edit. Two
+// writers' steps may alternate in any order: tests/planner/plan/history_model_test.cpp goes through all orders.
 //
 // The journal is deleted at each commit, so that between edits the history is complete in one file and can be
 // copied. A write-ahead log would make edits a third faster but store the newest ones in a second file.
@@ -374,16 +376,26 @@ class PlanHistory::Database {
 
   void open() {
     locked([&] {
-      const std::string text = read_text(plan_), sum = sha256_of(text);
+      const std::string text = read_text(plan_);
       if (need_known_layout() == 0) begin(text);
-      read_state();
-      if (sum == sum_of(current_)) return;
-      if (sum == written_) return write_file();
-      add(text, "changed outside", current_);
-      written_ = sum;
-      query("UPDATE branches SET tip = ? WHERE name = ?", current_, branch_).next();
-      query("UPDATE state SET current = ?, written = ?", current_, written_).next();
+      settle(text);
     });
+  }
+  /// Makes the plan's file, which has this text, and the database's current state agree.
+  void settle(const std::string& text) {
+    read_state();
+    const std::string sum = sha256_of(text), current_sum = sum_of(current_);
+    if (sum != current_sum && sum != written_) {
+      add(text, "changed outside", current_);
+      query("UPDATE branches SET tip = ? WHERE name = ?", current_, branch_).next();
+      query("UPDATE state SET current = ?", current_).next();
+    } else if (sum != current_sum) {
+      voxel::write_whole(plan_, text_of(current_));
+    }
+    if (const std::string now = sum_of(current_); now != written_) {
+      query("UPDATE state SET written = ?", now).next();
+      written_ = now;
+    }
   }
   /// The layout version of the file; 0: it is new.
   int need_known_layout() {
@@ -425,14 +437,12 @@ class PlanHistory::Database {
       branch_ = branch;
       throw;
     }
-    locked([&] { write_file(); });
-  }
-  void write_file() {
-    const std::string text = text_of(current_), sum = sha256_of(text);
-    if (sum == written_ && sha256_of(read_text(plan_)) == sum) return;
-    voxel::write_whole(plan_, text);
-    written_ = sum;
-    query("UPDATE state SET written = ?", written_).next();
+    // Another writer may be ahead by now. This one stays where it is, so that its next change is refused.
+    const std::int64_t made = current_;
+    const std::string made_on = branch_;
+    locked([&] { settle(read_text(plan_)); });
+    current_ = made;
+    branch_ = made_on;
   }
 
   /// Adds an edit and makes it current.
