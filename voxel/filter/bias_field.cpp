@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1. The scan is averaged to samples of about 4 mm: the field changes over centimetres.
-// 2. ITK's N4 fits the logarithm of the field to the averaged samples above the threshold.
+// 1. Of the scan only every few samples are taken: the field changes over centimetres. They are not averaged,
+//    which would mix tissues and blur the histogram that N4 sharpens.
+// 2. ITK's N4 fits the logarithm of the field to those above the threshold.
 // 3. The spline of the last level is evaluated at the scan's own samples, slice by slice in parallel.
 #include "voxel/filter/bias_field.h"
 
@@ -19,9 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "voxel/filter/crop.h"
 #include "voxel/filter/histogram.h"
-#include "voxel/filter/measured.h"
 #include "voxel/filter/otsu.h"
 #include "voxel/filter/slice_work.h"
 #include "voxel/space/error.h"
@@ -76,7 +75,7 @@ class OneThread {
   itk::ThreadIdType before_;
 };
 
-// The logarithm of the field as a uniform cubic B-spline over the averaged scan. A position is in its samples.
+// The logarithm of the field as a uniform cubic B-spline over the thinned scan. A position is in its samples.
 class Spline {
  public:
   Spline(const N4::BiasFieldControlPointLatticeType& lattice, const glm::ivec3& dims) {
@@ -123,33 +122,41 @@ class Spline {
   std::vector<double> points_;
 };
 
-// The averaged scan, and which of its samples determine the field.
-struct Averaged {
-  Scene scene;
+// Every few samples of the scan, and which of them determine the field.
+struct Thinned {
+  Lattice lattice;
+  FloatSamples values;
   std::vector<unsigned char> chosen;
   std::size_t count = 0;
 };
 
-Averaged averaged(const Scene& scene, const glm::ivec3& factor, double threshold) {
-  Averaged small{average_down(scene, factor), {}};
-  small.chosen.assign(small.scene.lattice.sample_count(), 0);
+Thinned thinned(const Scene& scene, const glm::ivec3& every, const glm::ivec3& first, double threshold) {
+  Thinned thin;
+  thin.lattice = scene.lattice;
+  thin.lattice.dims = (scene.lattice.dims - 1 - first) / every + 1;
+  for (int axis = 0; axis < 3; ++axis) thin.lattice.lps_from_voxel[axis] *= static_cast<double>(every[axis]);
+  thin.lattice.lps_from_voxel[3] = glm::dvec4(scene.lattice.lps_mm(glm::dvec3(first)), 1.0);
+  const glm::ivec3 dims = thin.lattice.dims;
   std::visit(
       [&](const auto& samples) {
-        FloatSamples values(samples.begin(), samples.end());
-        for (std::size_t i = 0; i < values.size(); ++i) {
-          const auto value = static_cast<double>(values[i]);
-          const bool is_measured = !small.scene.padding || value != *small.scene.padding;
-          small.chosen[i] = std::isfinite(value) && is_measured && value > threshold ? 1 : 0;
-          small.count += small.chosen[i];
-        }
-        small.scene.samples = std::move(values);
+        for (int z = 0; z < dims.z; ++z)
+          for (int y = 0; y < dims.y; ++y)
+            for (int x = 0; x < dims.x; ++x) {
+              const auto value = static_cast<double>(
+                  samples[sample_index(scene.lattice.dims, first + every * glm::ivec3(x, y, z))]);
+              const bool is_measured = std::isfinite(value) && !(scene.padding && value == *scene.padding);
+              const bool is_chosen = is_measured && value > threshold;
+              thin.values.push_back(is_measured ? static_cast<float>(value) : 0.0F);
+              thin.chosen.push_back(is_chosen ? 1 : 0);
+              thin.count += is_chosen ? 1 : 0;
+            }
       },
-      Scene(small.scene).samples);
-  if (small.count < 100)
-    throw Error(ErrorCode::Geometry, "only " + std::to_string(small.count) +
-                                         " averaged samples are above the threshold of " +
+      scene.samples);
+  if (thin.count < 100)
+    throw Error(ErrorCode::Geometry, "only " + std::to_string(thin.count) +
+                                         " of the samples that are fitted are above the threshold of " +
                                          std::to_string(threshold) + ": choose a lower one");
-  return small;
+  return thin;
 }
 
 template <typename Image, typename Sample>
@@ -167,13 +174,13 @@ typename Image::Pointer image_on(Sample* samples, const Lattice& lattice) {
   return image;
 }
 
-Spline fitted(Averaged& small, const BiasFieldOptions& options) {
-  const Lattice& lattice = small.scene.lattice;
+Spline fitted(Thinned& thin, const BiasFieldOptions& options) {
+  const Lattice& lattice = thin.lattice;
   const OneThread one;
   auto filter = N4::New();
   filter->SetNumberOfWorkUnits(1);
-  filter->SetInput(image_on<Values>(std::get<FloatSamples>(small.scene.samples).data(), lattice));
-  filter->SetMaskImage(image_on<Mask>(small.chosen.data(), lattice));
+  filter->SetInput(image_on<Values>(thin.values.data(), lattice));
+  filter->SetMaskImage(image_on<Mask>(thin.chosen.data(), lattice));
   filter->SetUseMaskLabel(false);
   N4::ArrayType points, levels;
   for (unsigned axis = 0; axis < 3; ++axis) {
@@ -205,34 +212,34 @@ BiasCorrection correct_bias_field(const Scene& scene, const BiasFieldOptions& op
   BiasCorrection made;
   made.threshold =
       options.threshold ? *options.threshold : std::max(0.0, otsu_thresholds(histogram(scene), 2).front());
-  // Samples of about 4 mm are fine enough for knots that lie centimetres apart.
-  constexpr double averaged_mm = 4.0;
+  // Four samples between the finest knots determine the spline; beyond 8 mm thin tissues would be missed.
+  const double apart_mm = std::min(8.0, options.knots_mm / std::ldexp(4.0, options.levels - 1));
   const glm::ivec3 dims = scene.lattice.dims;
-  glm::ivec3 factor(1);
+  glm::ivec3 every(1);
   for (int axis = 0; axis < 3; ++axis)
-    factor[axis] = std::clamp(static_cast<int>(averaged_mm / scene.lattice.spacing_mm()[axis]), 1,
-                              std::max(1, dims[axis] / 4));
-  Averaged small = averaged(scene, factor, made.threshold);
-  made.fitted = small.count;
+    every[axis] = std::clamp(static_cast<int>(std::lround(apart_mm / scene.lattice.spacing_mm()[axis])), 1,
+                             std::max(1, dims[axis] / 4));
+  const glm::ivec3 first = (every - 1) / 2;
+  Thinned thin = thinned(scene, every, first, made.threshold);
+  made.fitted = thin.count;
   options.progress.at(0.1);
-  const Spline spline = fitted(small, options);
-  const glm::ivec3 coarse = small.scene.lattice.dims;
+  const Spline spline = fitted(thin, options);
+  const glm::ivec3 coarse = thin.lattice.dims;
   double sum = 0.0, low = std::numeric_limits<double>::infinity(), high = -low;
   std::size_t at = 0;
   for (int z = 0; z < coarse.z; ++z)
     for (int y = 0; y < coarse.y; ++y)
       for (int x = 0; x < coarse.x; ++x, ++at) {
-        if (small.chosen[at] == 0) continue;
+        if (thin.chosen[at] == 0) continue;
         const double value = spline({x, y, z});
         sum += value;
         low = std::min(low, value);
         high = std::max(high, value);
       }
-  const double mean = sum / static_cast<double>(small.count);
+  const double mean = sum / static_cast<double>(thin.count);
   made.field_low = std::exp(low - mean);
   made.field_high = std::exp(high - mean);
   made.scene = empty_scene_like(scene, scene.lattice);
-  const glm::dvec3 blocks(factor);
   std::visit(
       [&](const auto& samples) {
         FloatSamples corrected(samples.size());
@@ -245,8 +252,7 @@ BiasCorrection correct_bias_field(const Scene& scene, const BiasFieldOptions& op
                 corrected[i] = static_cast<float>(sample);
                 continue;
               }
-              // The middle of a block of n samples is (n - 1) / 2.
-              const glm::dvec3 position = (glm::dvec3(x, y, z) - 0.5 * (blocks - 1.0)) / blocks;
+              const glm::dvec3 position = glm::dvec3(glm::ivec3(x, y, z) - first) / glm::dvec3(every);
               corrected[i] = static_cast<float>(sample / std::exp(spline(position) - mean));
             }
         });

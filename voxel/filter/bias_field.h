@@ -24,14 +24,15 @@ struct BiasCorrection {
   Scene scene;                               ///< in float: each sample divided by the field at its place
   double threshold = 0.0;                    ///< that determined the field's samples
   double field_low = 1.0, field_high = 1.0;  ///< of the field at these samples; its geometric mean there is 1
-  std::size_t fitted = 0;                    ///< number of averaged samples to which the field was fitted
+  std::size_t fitted = 0;                    ///< number of samples to which the field was fitted
 };
 
-/// N4 (Tustison et al., IEEE Trans. Medical Imaging 29, 2010) by ITK, on a scan averaged to samples of about
-/// 4 mm; the field, a cubic B-spline, is evaluated at every sample of the scan. Departure: the field is scaled
+/// N4 (Tustison et al., IEEE Trans. Medical Imaging 29, 2010) by ITK, on every few samples, four between
+/// the finest knots; the field, a cubic B-spline, is evaluated at every sample of the scan. Departure: the
+/// field is scaled
 /// to a geometric mean of 1, so that samples keep their level. Throws std::invalid_argument for label maps,
 /// for Hounsfield units, which no magnetic field changes, and for options out of range; Error, Geometry, if
-/// fewer than 100 averaged samples are above the threshold; Stopped. Same bits on any thread count: the fit
+/// fewer than 100 of these samples are above the threshold; Stopped. Same bits on any thread count: the fit
 /// runs in one thread, because ITK sums it by threads. Memory: the result.
 BiasCorrection correct_bias_field(const Scene& scene, const BiasFieldOptions& options);
 

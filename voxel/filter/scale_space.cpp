@@ -31,21 +31,25 @@ std::vector<double> stack_of(double coarsest_mm, double voxel_mm) {
   return sigmas;
 }
 
+/// Whether a sample without a higher neighbour ascends to an equal one of lower index, so that a flat top is
+/// one maximum, or is a maximum of its own.
+enum class Flat { OneMaximum, EachItsOwn };
+
 /// The maximum to which each sample ascends.
-Numbers ascended(const FloatSamples& samples, const glm::ivec3& dims, const Progress& progress) {
+Numbers ascended(const FloatSamples& samples, const glm::ivec3& dims, Flat flat, const Progress& progress) {
   Numbers next(samples.size());
   for_each_slice(dims.z, progress, [&](int z) {
     std::size_t at = sample_index(dims, {0, 0, z});
     for (int y = 0; y < dims.y; ++y)
       for (int x = 0; x < dims.x; ++x, ++at) {
         std::size_t highest = at;
-        // Neighbours in ascending index: of equal ones the first is kept.
+        // Neighbours in ascending index: of equal ones above the sample the first is kept.
         for (int k = std::max(0, z - 1); k <= std::min(dims.z - 1, z + 1); ++k)
           for (int j = std::max(0, y - 1); j <= std::min(dims.y - 1, y + 1); ++j)
             for (int i = std::max(0, x - 1); i <= std::min(dims.x - 1, x + 1); ++i) {
               const std::size_t other = sample_index(dims, {i, j, k});
               if (samples[other] > samples[highest] ||
-                  (samples[other] == samples[highest] && other < highest))
+                  (flat == Flat::OneMaximum && samples[other] == samples[highest] && other < highest))
                 highest = other;
             }
         next[at] = static_cast<std::uint32_t>(highest);
@@ -129,7 +133,8 @@ ScaleSpace scale_space(const Scene& scene, const ScaleSpaceOptions& options) {
     const double sigma = made.sigmas_mm[level];
     const Scene blurred = sigma > 0.0 ? gaussian(exact, sigma, part_of(here, 0.0, 0.7)) : Scene{};
     const FloatSamples& samples = std::get<FloatSamples>(sigma > 0.0 ? blurred.samples : exact.samples);
-    Numbers top = ascended(samples, dims, part_of(here, 0.7, 1.0));
+    Numbers top =
+        ascended(samples, dims, level == 0 ? Flat::OneMaximum : Flat::EachItsOwn, part_of(here, 0.7, 1.0));
     std::size_t maxima = 0;
     for (std::size_t at = 0; at < top.size(); ++at) maxima += top[at] == at ? 1 : 0;
     made.maxima.push_back(maxima);

@@ -31,7 +31,8 @@ struct ScaleSpace {
 /// highest of its 26 neighbours. Each maximum of the coarsest blur is a label; from there to the scan, each
 /// maximum of a finer level takes the label of the coarser level at its place, and its samples take it, too.
 /// So touching objects part where brightness falls between them, and noise, which the coarsest blur removes,
-/// makes no objects. Equal samples ascend to the one of lower index. Throws std::invalid_argument for label
+/// makes no objects. A flat top of the coarsest blur is one maximum; of a finer level each of its samples is
+/// one, so that a saturated object does not lead across a neck. Throws std::invalid_argument for label
 /// maps, a window without numbers, and as gaussian(); Error, Geometry, if no sample is in the window, or more
 /// than 32767 regions are; Stopped. Same bits on any thread count. Memory: 16 bytes per sample.
 ScaleSpace scale_space(const Scene& scene, const ScaleSpaceOptions& options);
