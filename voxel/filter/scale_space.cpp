@@ -96,6 +96,8 @@ ScaleSpace scale_space(const Scene& scene, const ScaleSpaceOptions& options) {
   check_values(scene, "a label map has no scale space");
   if (std::isnan(options.low) || std::isnan(options.high))
     throw InvalidInput("a bound of the window is not a number");
+  if (!(options.sigma_mm > 0.0))
+    throw InvalidInput("the coarsest blur must be wider than 0 mm, not " + std::to_string(options.sigma_mm));
   if (scene.lattice.sample_count() > std::numeric_limits<std::uint32_t>::max())
     throw InvalidInput("the scan has more than 2^32 samples: crop it first");
   const glm::ivec3 dims = scene.lattice.dims;

@@ -505,7 +505,7 @@ Operation segment_operation() {
       .takes(
           field("clusters", &Segment::clusters,
                 "Number of clusters of the samples by density and gradient; the object is one of them. Edges "
-                "between tissues are a class of their own: three tissues need four.")
+                "between tissues are classes of their own: three tissues need five.")
               .from(2)
               .to(8))
       .takes(field("class", &Segment::otsu_class, "The class, from 1, the darkest. Default: the brightest.")

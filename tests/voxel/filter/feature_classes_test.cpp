@@ -34,8 +34,8 @@ Scene scan() {
 
 TEST(FeatureClasses, PartATissueFromTheEdgeOfAnotherThatHasItsDensity) {
   const Scene scene = scan();
-  const FeatureClasses classes = feature_classes(scene, 4);
-  ASSERT_EQ(classes.centres.size(), 4u);
+  const FeatureClasses classes = feature_classes(scene, 5);
+  ASSERT_EQ(classes.centres.size(), 5u);
   const std::size_t tissue = classes.nearest(500.0, 0.0);
   EXPECT_NE(tissue, classes.nearest(500.0, 250.0));
   EXPECT_NE(tissue, classes.nearest(0.0, 0.0));

@@ -69,6 +69,7 @@ TEST(RegionGrow, ByItsRunningMeanFollowsARampToTheStep) {
 
 TEST(RegionGrow, ByItsRunningMeanIsThatOfAPlainFloodInRounds) {
   const Universe universe{4, glm::dmat4(1.0)};
+  std::uint64_t most = 0;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     SCOPED_TRACE(seed);
     Scene scene;
@@ -115,8 +116,9 @@ TEST(RegionGrow, ByItsRunningMeanIsThatOfAPlainFloodInRounds) {
     tests::Dense expected(16);
     for (std::size_t i = 0; i < in.size(); ++i) expected.voxels[i] = static_cast<std::uint8_t>(in[i]);
     EXPECT_TRUE(grown == tests::octree_of(universe, expected));
-    EXPECT_GT(grown.voxel_count(), 1U);
+    most = std::max(most, grown.voxel_count());
   }
+  EXPECT_GT(most, 1000U) << "no region grew";
 }
 
 TEST(RegionGrow, OfAirEndsWithTheScan) {
