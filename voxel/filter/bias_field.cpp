@@ -213,12 +213,13 @@ BiasCorrection correct_bias_field(const Scene& scene, const BiasFieldOptions& op
   made.threshold =
       options.threshold ? *options.threshold : std::max(0.0, otsu_thresholds(histogram(scene), 2).front());
   // Four samples between the finest knots determine the spline; beyond 8 mm thin tissues would be missed.
+  // A small scan keeps 16 along each axis.
   const double apart_mm = std::min(8.0, options.knots_mm / std::ldexp(4.0, options.levels - 1));
   const glm::ivec3 dims = scene.lattice.dims;
   glm::ivec3 every(1);
   for (int axis = 0; axis < 3; ++axis)
     every[axis] = std::clamp(static_cast<int>(std::lround(apart_mm / scene.lattice.spacing_mm()[axis])), 1,
-                             std::max(1, dims[axis] / 4));
+                             std::max(1, dims[axis] / 16));
   const glm::ivec3 first = (every - 1) / 2;
   Thinned thin = thinned(scene, every, first, made.threshold);
   made.fitted = thin.count;

@@ -175,12 +175,13 @@ TEST(SegmentStep, ClassesAndRegionsByARunningMeanHaveAWitnessOfTheirOwn) {
   const ScratchFolder folder;
   const Evaluation evaluation = evaluate(two_balls(folder, R"(
       {"id": "class", "do": "segment", "scan": "ct", "clusters": 3, "class": 3},
-      {"id": "largest", "do": "segment", "scan": "ct", "clusters": 2, "largest": true, "fill": true},
+      {"id": "largest", "do": "segment", "scan": "ct", "clusters": 2, "largest": true},
       {"id": "mean", "do": "segment", "scan": "ct", "tolerance": 900, "running_mean": true,
        "seeds_mm": [[-14, 0, 0]]})"));
   for (const char* id : {"class", "largest", "mean"}) {
     const Object& object = evaluation.object(id);
     const Witnessed count = witnessed(object);
+    // Of chosen parts the witness is certain of the outside alone.
     EXPECT_GT(count.certain, 200000u) << id;
     EXPECT_EQ(count.wrong, 0u) << id;
     EXPECT_FALSE(object.mesh.whole) << id;
@@ -191,7 +192,6 @@ TEST(SegmentStep, ClassesAndRegionsByARunningMeanHaveAWitnessOfTheirOwn) {
   EXPECT_GT(witnessed(evaluation.object("mean")).inside, 1000u);
   EXPECT_EQ(evaluation.object("class").mesh.details["centres"].size(), 3u);
   EXPECT_NEAR(evaluation.object("mean").voxel.measures.volume_mm3 / ball_mm3(8), 1.0, 0.1);
-  EXPECT_NEAR(evaluation.object("largest").voxel.measures.volume_mm3 / ball_mm3(10), 1.0, 0.1);
 }
 
 TEST(SegmentStep, AWitnessSeesAVoxelThatIsWrong) {
