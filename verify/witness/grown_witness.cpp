@@ -11,14 +11,13 @@
 #include <utility>
 #include <variant>
 
+#include "verify/witness/sample_sides.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::verify {
 namespace {
 
 constexpr std::uint8_t may_belong = 1, surely_belongs = 2;
-/// How far a point may lie from a sample and still be it, in samples: the rounding of coordinates.
-constexpr double same_place = 1e-6;
 
 /// The samples of a scan, with what of them was reached.
 class Grown {
@@ -38,25 +37,10 @@ class Grown {
   }
 
   AllowedSides allowed(const glm::dvec3& p_mm) const {
-    const glm::dvec3 place = place_of(p_mm);
-    const glm::dvec3 nearest = glm::floor(place + 0.5);
-    if (glm::any(glm::greaterThan(glm::abs(place - glm::dvec3(dims_ - 1) * 0.5),
-                                  glm::dvec3(dims_) * 0.5 + same_place)))
-      return certainly_out;
-    // Of the samples about the point: along an axis on which it lies at a sample, that one alone.
-    glm::ivec3 low(glm::floor(place)), high = low + 1;
-    for (int axis = 0; axis < 3; ++axis)
-      if (std::abs(place[axis] - nearest[axis]) <= same_place)
-        low[axis] = high[axis] = static_cast<int>(nearest[axis]);
-    bool all_in = true, all_out = true;
-    for (int z = low.z; z <= high.z; ++z)
-      for (int y = low.y; y <= high.y; ++y)
-        for (int x = low.x; x <= high.x; ++x) {
-          const std::uint8_t state = has({x, y, z}) ? reached_[index({x, y, z})] : std::uint8_t{0};
-          all_in = all_in && (state & surely_belongs) != 0;
-          all_out = all_out && state == 0;
-        }
-    return all_in ? certainly_in : all_out ? certainly_out : either_side;
+    return sides_by_samples(place_of(p_mm), dims_, [&](const glm::ivec3& sample) {
+      const std::uint8_t state = has(sample) ? reached_[index(sample)] : std::uint8_t{0};
+      return SampleSide{(state & surely_belongs) != 0, state == 0};
+    });
   }
 
  private:
@@ -76,6 +60,8 @@ class Grown {
   template <typename Samples>
   void grow(const Samples& samples, const voxel::Scene& scan, const GrownFrom& from,
             const std::vector<glm::ivec3>& seeds) {
+    reached_.assign(samples.size(), 0);
+    if (from.tolerance && from.mean_of_steps) return grow_by_mean(samples, scan, from, seeds);
     double low = from.low, high = from.high;
     if (from.tolerance) {
       low = std::numeric_limits<double>::infinity();
@@ -91,9 +77,59 @@ class Grown {
       if (scan.padding && sample <= static_cast<double>(*scan.padding)) return false;
       return sample >= low - by && sample <= high + by;
     };
-    reached_.assign(samples.size(), 0);
     flood(seeds, from.neighbours, may_belong, [&](std::size_t i) { return belongs(i, from.rounding); });
     flood(seeds, from.neighbours, surely_belongs, [&](std::size_t i) { return belongs(i, -from.rounding); });
+  }
+
+  /// Every round compares all neighbours of the region with its mean, also those that an earlier one refused.
+  template <typename Samples>
+  void grow_by_mean(const Samples& samples, const voxel::Scene& scan, const GrownFrom& from,
+                    const std::vector<glm::ivec3>& seeds) {
+    const double step = *from.mean_of_steps;
+    const auto steps_at = [&](std::size_t i) {
+      return std::floor(static_cast<double>(samples[i]) / step + 0.5);
+    };
+    const auto is_measured = [&](std::size_t i) {
+      const auto sample = static_cast<double>(samples[i]);
+      return !std::isnan(sample) && !(scan.padding && sample <= static_cast<double>(*scan.padding));
+    };
+    const int most_axes = from.neighbours == 6 ? 1 : from.neighbours == 18 ? 2 : 3;
+    constexpr std::uint8_t is_met = 4;
+    double count = 0.0, sum = 0.0;  // whole numbers below 2^53
+    std::vector<glm::ivec3> joined, refused;
+    const auto join = [&](const glm::ivec3& sample) {
+      const std::size_t i = index(sample);
+      if ((reached_[i] & surely_belongs) != 0) return;
+      reached_[i] = is_met | may_belong | surely_belongs;
+      count += 1.0;
+      sum += steps_at(i);
+      joined.push_back(sample);
+    };
+    for (const glm::ivec3& seed : seeds) join(seed);
+    while (!joined.empty()) {
+      for (const glm::ivec3& at : std::exchange(joined, {}))
+        for (int z = -1; z <= 1; ++z)
+          for (int y = -1; y <= 1; ++y)
+            for (int x = -1; x <= 1; ++x) {
+              const glm::ivec3 sample = at + glm::ivec3(x, y, z);
+              if (std::abs(x) + std::abs(y) + std::abs(z) > most_axes || !has(sample)) continue;
+              const std::size_t i = index(sample);
+              if (reached_[i] != 0 || !is_measured(i)) continue;
+              reached_[i] = is_met;
+              refused.push_back(sample);
+            }
+      const double count_before = count, sum_before = sum;
+      std::vector<glm::ivec3> still;
+      for (const glm::ivec3& sample : std::exchange(refused, {}))
+        if (std::abs(steps_at(index(sample)) * count_before - sum_before) <=
+            *from.tolerance / step * count_before)
+          join(sample);
+        else
+          still.push_back(sample);
+      refused = std::move(still);
+    }
+    for (std::uint8_t& state : reached_)
+      state = static_cast<std::uint8_t>(state & (may_belong | surely_belongs));
   }
 
   template <typename Belongs>

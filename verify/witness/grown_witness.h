@@ -22,6 +22,11 @@ struct GrownFrom {
   /// By how much a kernel may have rounded a sample, in the scan's unit. Samples that near a bound may belong
   /// or not, and so may all that hangs on them.
   double rounding = 0.0;
+  /// With a tolerance: grows in rounds. In each, all neighbours join whose samples lie within the tolerance of
+  /// the mean of the region's samples before the round. Samples count as their nearest multiples of this,
+  /// halves upwards: a mean depends on all samples, so that their rounding belongs to the definition. None:
+  /// the seeds alone fix the range.
+  std::optional<double> mean_of_steps = {};
 };
 
 /// The samples that a path of neighbours joins to a seed, by a flood of this source's own. For voxels whose

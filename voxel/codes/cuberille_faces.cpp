@@ -72,6 +72,10 @@ glm::ivec3 step(Direction direction) {
   return result;
 }
 
+std::string name_of(Direction direction) {
+  return std::string(names[static_cast<std::size_t>(direction)]);
+}
+
 std::size_t CuberilleFaces::face_count() const {
   std::size_t count = 0;
   for (const auto& list : lists) count += list.size();

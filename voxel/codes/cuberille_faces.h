@@ -18,6 +18,8 @@ inline constexpr int direction_count = 6;
 
 /// The unit step along a direction in index space.
 glm::ivec3 step(Direction direction);
+/// "x+", "z-".
+std::string name_of(Direction direction);
 
 /// The cuberille (thesis 3.1.2.2): for each of the six directions, a list of the object's voxels whose
 /// neighbour in that direction is outside the object or the universe. Each list is in ascending order, x

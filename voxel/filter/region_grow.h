@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <stop_token>
 #include <vector>
 
 #include "voxel/filter/components.h"
@@ -14,6 +15,7 @@ struct GrowOptions {
   /// tolerance at both ends.
   double tolerance = 0.0;
   Neighbours neighbours = Neighbours::Faces;
+  std::stop_token stop{};  ///< of grow_by_running_mean()
 };
 
 /// The voxels that a path of neighbours with samples within the tolerance connects to a seed, seeds included.
@@ -21,5 +23,15 @@ struct GrowOptions {
 /// negative or not finite. Cost: a window and its components. Source: Adams and Bischof, IEEE PAMI 16, 1994.
 /// Departure: the seeds alone fix the window, so that the result does not depend on the order of growth.
 Octree grow_region(const GreyOctree& grey, const GrowOptions& options);
+
+/// The voxels that a region reaches that grows in rounds. In each round all its neighbours join whose samples
+/// lie within the tolerance of the mean of the region's samples before the round; the growth ends with the
+/// first round that adds none. The region follows a slow change of brightness and ends at a step of it. Seeds
+/// belong to the region in any case. Independent of the order of seeds; sums are exact. Throws as
+/// grow_region(); Stopped. Source: thesis 2.3.3; Zucker, Computer Graphics and Image Processing 5, 1976.
+/// Departure: rounds, because a mean after every voxel depends on the order of voxels. Cost: the region and
+/// its rejected neighbours, and per round the tolerance in steps. Memory: two bits per voxel of the
+/// universe, 12 bytes per rejected neighbour.
+Octree grow_by_running_mean(const GreyOctree& grey, const GrowOptions& options);
 
 }  // namespace octotomy::voxel

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Writes contours on a scan's slices as a file that masks read: traced, thinned, smoothed, moved outwards or
 // inwards, edited.
+#include <cmath>
+
 #include "brep/contour/contour.h"
 #include "planner/operation/file/outputs.h"
 #include "planner/operation/file/path_checks.h"
 #include "planner/operation/file/region_file.h"
+#include "planner/operation/file/seed_contours.h"
 #include "planner/operation/file/slice_contours.h"
 #include "planner/operation/file/step_on_files.h"
 #include "planner/operation/measure/result_json.h"
@@ -19,6 +22,7 @@ struct Contours {
   ScanName scan;
   std::filesystem::path out;
   std::optional<SampleWindow> window;
+  std::vector<glm::dvec3> seeds_mm;
   double least_area_mm2 = 0.0, thin_mm = 0.0, by_mm = 0.0;
   std::optional<int> harmonics;
   // Of the command only.
@@ -35,12 +39,31 @@ bool is_json(const std::filesystem::path& path) {
 void check(const Contours& contours, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   check_output_path(contours.out, {".json"}, place.at("path"));
-  if (!contours.window) place.refuse("'window' is missing: add it, for example \"bone\"");
+  if (contours.window && !contours.seeds_mm.empty())
+    place.at("seeds_mm").refuse("choose the thresholds themselves: leave 'window' out");
+  if (!contours.window && contours.seeds_mm.empty())
+    place.refuse("'window' is missing: add it, for example \"bone\", or 'seeds_mm'");
 }
 
-voxel::SliceMask followed(const Contours& asked, const voxel::Scene& scene, Timings& timings) {
-  need_hounsfield(*asked.window, scene);
+/// Follows the contours on a scan. Those of seeds add what each led to.
+voxel::SliceMask followed(const Contours& asked, const voxel::Scene& scene, Timings& timings, Json& of_seeds,
+                          std::vector<std::string>& findings) {
   const Stopwatch watch(timings, "follow");
+  if (!asked.seeds_mm.empty()) {
+    SeedContours made = contours_at_seeds(scene, asked.seeds_mm);
+    for (const SeedContour& seed : made.seeds) {
+      of_seeds.push_back({{"seed_mm", {seed.seed_mm.x, seed.seed_mm.y, seed.seed_mm.z}},
+                          {"threshold", seed.threshold},
+                          {"position_mm", seed.position_mm},
+                          {"away_mm", seed.away_mm}});
+      if (seed.is_far)
+        findings.push_back("a seed lies " + plain(std::round(100.0 * seed.away_mm) / 100.0) +
+                           " mm from the contour at its threshold of " + plain(seed.threshold) +
+                           ", on no edge: the nearest contour is a guess, choose a seed on the edge");
+    }
+    return std::move(made.mask);
+  }
+  need_hounsfield(*asked.window, scene);
   return slice_contours(scene, asked.window->low, asked.window->high_or_infinity());
 }
 
@@ -90,16 +113,24 @@ FileAnswer on_files(const Contours& asked, const FileBench& bench) {
   need_extension(asked.out, {".json"}, "contours are");
   if (!asked.codes.empty()) need_extension(asked.codes, {".json"}, "chain codes are");
   need_outputs({asked.out, asked.codes}, {file, asked.edits});
+  if (asked.window && !asked.seeds_mm.empty())
+    throw std::runtime_error("--seed: chooses the threshold itself: leave --window out");
+  if (is_json(file) && !asked.seeds_mm.empty())
+    throw std::runtime_error(file.string() + ": holds contours already: leave --seed out");
   if (is_json(file) && asked.window)
     throw std::runtime_error(file.string() + ": holds contours already: leave --window out");
-  if (!is_json(file) && !asked.window)
+  if (!is_json(file) && !asked.window && asked.seeds_mm.empty())
     throw std::runtime_error(
-        "--window: what are the contours of? for example --window 300: or --window skin");
+        "--window: what are the contours of? for example --window 300: or --window skin, or --seed X,Y,Z on "
+        "an "
+        "edge");
   std::vector<std::string> findings;
-  const voxel::SliceMask mask = finished(
-      asked,
-      is_json(file) ? read_slices(file, {}, findings) : followed(asked, bench.read_scan(file), bench.timings),
-      bench.timings, findings);
+  Json of_seeds = Json::array();
+  const voxel::SliceMask mask =
+      finished(asked,
+               is_json(file) ? read_slices(file, {}, findings)
+                             : followed(asked, bench.read_scan(file), bench.timings, of_seeds, findings),
+               bench.timings, findings);
   Outputs outputs;
   const auto put = [&](const Json& json, const std::filesystem::path& out) {
     outputs.write(out, [&](const std::filesystem::path& hidden) { write_json(json, hidden); });
@@ -108,18 +139,23 @@ FileAnswer on_files(const Contours& asked, const FileBench& bench) {
   if (!asked.codes.empty()) put(chain_codes(mask, asked.code_spacing_mm), asked.codes);
   outputs.commit();
   const Sizes sizes = sizes_of(mask);
-  return {{{"path", asked.out.string()},
-           {"contours", sizes.contours},
-           {"points", sizes.points},
-           {"slices", sizes.slices},
-           {"findings", findings}},
-          {{"written", asked.out.string()},
-           {"slices", grouped(static_cast<double>(mask.slices.size()), 0)},
-           {"contours", grouped(static_cast<double>(sizes.contours), 0)},
-           {"points", grouped(static_cast<double>(sizes.points), 0)},
-           {"area of all", grouped(sizes.area_mm2, 1) + " mm\u00b2"},
-           {"length of all", grouped(sizes.perimeter_mm, 1) + " mm"}},
-          findings};
+  FileAnswer answer{{{"path", asked.out.string()},
+                     {"contours", sizes.contours},
+                     {"points", sizes.points},
+                     {"slices", sizes.slices},
+                     {"findings", findings}},
+                    {{"written", asked.out.string()},
+                     {"slices", grouped(static_cast<double>(mask.slices.size()), 0)},
+                     {"contours", grouped(static_cast<double>(sizes.contours), 0)},
+                     {"points", grouped(static_cast<double>(sizes.points), 0)},
+                     {"area of all", grouped(sizes.area_mm2, 1) + " mm\u00b2"},
+                     {"length of all", grouped(sizes.perimeter_mm, 1) + " mm"}},
+                    findings};
+  for (const Json& seed : of_seeds)
+    answer.rows.emplace_back("threshold", plain(seed["threshold"].get<double>()) + " at " +
+                                              plain(seed["position_mm"].get<double>()) + " mm");
+  if (!of_seeds.empty()) answer.json["seeds"] = std::move(of_seeds);
+  return answer;
 }
 
 }  // namespace
@@ -135,6 +171,13 @@ Operation contours_operation() {
                  .required()
                  .called("out"))
       .takes(field("window", &Contours::window, "Of a scan: LOW:HIGH or LOW: in sample units, or a tissue."))
+      .takes(
+          field(
+              "seeds_mm", &Contours::seeds_mm,
+              "Of a scan, in place of a window: pixels on edges, LPS. Each gives its slice the threshold of "
+              "its sample, and the contour nearest to it.")
+              .repeated()
+              .called("seed"))
       .takes(field("least_area_mm2", &Contours::least_area_mm2, "Leaves contours out that enclose less.")
                  .from(0.0)
                  .to(1e9))
@@ -160,6 +203,7 @@ Operation contours_operation() {
         "window": "300:", "by_mm": 2})")
       .on_files(
           "octotomy contours head.nrrd --window 300: --least-area 20 --thin 0.2 -o bone.json\n"
+          "  octotomy contours head.nrrd --seed 0,-62,10 --seed 0,-60,30 -o profile.json\n"
           "  octotomy contours bone.json --by 2 --edits mine.json -o margin.json\n"
           "  octotomy mask --slices margin.json --like head.nrrd -o margin.octree\n"
           "Edits: {\"edits\": [{\"slice\": 3, \"contour\": 0, \"do\": \"move\", \"point\": 7, \"to_mm\": "

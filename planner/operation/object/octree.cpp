@@ -12,8 +12,11 @@
 #include "planner/operation/file/step_on_files.h"
 #include "planner/operation/measure/octree_summary.h"
 #include "planner/operation/table/json_file.h"
+#include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "planner/operation/table/plan_universe.h"
+#include "voxel/codes/cuberille_faces.h"
+#include "voxel/codes/surface_tracking.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/expression.h"
 #include "voxel/space/error.h"
@@ -35,6 +38,8 @@ struct Build {
   std::optional<double> voxel_mm;
   std::string as, from;
   std::optional<int> depth;
+  std::optional<glm::dvec3> seed_face_mm;
+  int neighbours = 6;
 
   fs::path in() const { return file.name; }
   std::vector<std::string> inputs() const { return {file.name}; }
@@ -108,6 +113,25 @@ voxel::OctreeFile from_scan(const FileBench& bench, const Build& asked) {
   return {windowed(grey, *window), name, json_text(made)};
 }
 
+/// The connected surface from the face nearest to the seed, as lists of faces. Adds its figures.
+std::string tracked(const Build& asked, const voxel::Octree& octree, Json& json) {
+  const glm::dvec3 p_mm = *asked.seed_face_mm;
+  const std::optional<voxel::SurfaceFace> seed =
+      voxel::nearest_face(octree, octree.universe().lattice().voxel(p_mm), 1.5);
+  if (!seed)
+    throw std::runtime_error(
+        asked.file.name + ": no face of the surface lies within one and a half voxels of " + plain(p_mm.x) +
+        "," + plain(p_mm.y) + "," + plain(p_mm.z) + " mm: choose a point on it");
+  const voxel::TrackedSurface surface = voxel::track_surface(
+      octree, *seed, asked.neighbours == 6 ? voxel::Joined::ByFaces : voxel::Joined::ByEdges);
+  json["seed_face"] = {{"voxel", {seed->voxel.x, seed->voxel.y, seed->voxel.z}},
+                       {"direction", voxel::name_of(seed->direction)}};
+  json["faces"] = surface.faces.face_count();
+  json["faces_of_all"] = voxel::cuberille_faces(octree).face_count();
+  json["enclosed_voxels"] = surface.enclosed_voxels;
+  return voxel::text(surface.faces);
+}
+
 FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::OctreeFile& file) {
   Timings& timings = bench.timings;
   const auto* octree = std::get_if<voxel::Octree>(&file.tree);
@@ -117,9 +141,10 @@ FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::Oc
                                   ? ": choose an object of the samples with --window LOW:HIGH"
                                   : ": this one holds fractions, digitise it as centre or half"));
   std::string content;
+  Json of_surface = Json::object();
   {
     const Stopwatch watch(timings, "represent");
-    content = represented(*octree, asked.as);
+    content = asked.seed_face_mm ? tracked(asked, *octree, of_surface) : represented(*octree, asked.as);
   }
   if (bench.stop.stop_requested())
     throw voxel::Stopped("stopped before " + asked.out.string() + " was written");
@@ -131,11 +156,18 @@ FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::Oc
   json["path"] = asked.out.string();
   json["as"] = asked.as;
   json["bytes_representation"] = content.size();
-  return {std::move(json),
-          {{"written", asked.out.string()},
-           {"form", asked.as},
-           {"depth", std::to_string(octree->universe().depth)},
-           {"bytes", std::to_string(content.size())}}};
+  FileAnswer answer{std::move(json),
+                    {{"written", asked.out.string()},
+                     {"form", asked.as},
+                     {"depth", std::to_string(octree->universe().depth)},
+                     {"bytes", std::to_string(content.size())}}};
+  if (asked.seed_face_mm) {
+    answer.rows.emplace_back("faces",
+                             of_surface["faces"].dump() + " of " + of_surface["faces_of_all"].dump());
+    answer.rows.emplace_back("enclosed voxels", of_surface["enclosed_voxels"].dump());
+    answer.json["tracked"] = std::move(of_surface);
+  }
+  return answer;
 }
 
 /// The other forms of octrees have no extension of their own. The extension of another kind of file is a
@@ -152,6 +184,8 @@ void need_form_name(const Build& asked) {
 }
 
 void check(const Build& asked, const FieldLocation& place) {
+  if (asked.neighbours != 6 && asked.neighbours != 18)
+    place.at("neighbours").refuse("must be 6 (faces) or 18 (edges)");
   if (place.scope == nullptr) return;
   if (!asked.as.empty()) need_form_name(asked);
   check_output_path(asked.out, {asked.as.empty() ? ".octree" : asked.out.extension().string()},
@@ -205,6 +239,15 @@ Operation octree_operation() {
               "Writes treecode, linear, explicit, runs, segments, marginal, faces or array (text), packed or "
               "bits (bytes).")
               .one_of(representation_names()))
+      .takes(field("seed_face_mm", &Build::seed_face_mm,
+                   "Writes only the connected surface from the face nearest to this point, LPS: of one part, "
+                   "without its cavities, or of one cavity.")
+                 .read_if<Build>([](const Build& build) { return build.as == "faces"; },
+                                 "tracks a surface's faces: add 'as' with faces"))
+      .takes(field("neighbours", &Build::neighbours,
+                   "Voxels of the tracked surface are joined by faces (6) or also by edges (18).")
+                 .read_if<Build>([](const Build& build) { return build.seed_face_mm.has_value(); },
+                                 "is of 'seed_face_mm': add it"))
       .verb_takes(field("from", &Build::from, "Reads the file as such a representation.")
                       .one_of(representation_names()))
       .verb_takes(
@@ -217,6 +260,7 @@ Operation octree_operation() {
       .on_files(
           "octotomy octree head.nrrd -o skull.octree --window 300:\n"
           "  octotomy octree skull.octree -o skull.txt --as linear\n"
+          "  octotomy octree skull.octree -o outside.txt --as faces --seed-face 0,-62,10\n"
           "  octotomy octree skull.txt -o skull.octree --from linear --depth 8",
           on_files)
       .check(check)

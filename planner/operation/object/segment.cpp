@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <set>
 
 #include "brep/mesh/triangles.h"
@@ -19,11 +18,11 @@
 #include "planner/operation/object/part_choice.h"
 #include "planner/operation/object/parts.h"
 #include "planner/operation/object/provenance.h"
+#include "planner/operation/object/segment_witness.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "planner/operation/table/same_patient.h"
-#include "verify/witness/grown_witness.h"
 #include "verify/witness/witness.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/label_map.h"
@@ -143,6 +142,7 @@ class Segmenter {
   std::string name() const {
     if (segment_.named) return *segment_.named;
     if (segment_.label) return "label " + std::to_string(*segment_.label);
+    if (segment_.clusters) return "class " + std::to_string(segment_.otsu_class.value_or(*segment_.clusters));
     return segment_.window ? words_of(*segment_.window) : "grown";
   }
 
@@ -163,11 +163,21 @@ class Segmenter {
       return become(voxel::octree_of_label(source_.universe, source_.scene, *segment_.label),
                     {{"do", "label"}, {"label", *segment_.label}});
     }
+    if (segment_.clusters) {
+      const int which = segment_.otsu_class.value_or(*segment_.clusters);
+      const voxel::Scene map = voxel::class_map(source_.scene, segment_.classes, {source_.stop, {}});
+      return become(voxel::octree_of_label(source_.universe, map, which),
+                    {{"do", "cluster"}, {"clusters", *segment_.clusters}, {"class", which}});
+    }
     if (segment_.tolerance) {
       voxel::GrowOptions options;
       options.seeds = seed_voxels(segment_, source_.universe);
       options.tolerance = *segment_.tolerance;
       options.neighbours = neighbours_of(segment_);
+      options.stop = source_.stop;
+      if (segment_.running_mean)
+        return become(voxel::grow_by_running_mean(source_.grey(), options),
+                      {{"do", "grow"}, {"tolerance", *segment_.tolerance}, {"running_mean", true}});
       return become(voxel::grow_region(source_.grey(), options),
                     {{"do", "grow"}, {"tolerance", *segment_.tolerance}});
     }
@@ -229,10 +239,11 @@ class Segmenter {
 };
 
 void check(const Segment& segment, const FieldLocation& place) {
-  const int ways = (segment.window ? 1 : 0) + (segment.otsu ? 1 : 0) + (segment.tolerance ? 1 : 0) +
-                   (segment.label ? 1 : 0) + (segment.named ? 1 : 0);
+  const int ways = (segment.window ? 1 : 0) + (segment.otsu ? 1 : 0) + (segment.clusters ? 1 : 0) +
+                   (segment.tolerance ? 1 : 0) + (segment.label ? 1 : 0) + (segment.named ? 1 : 0);
   if (ways != 1 && place.scope != nullptr)
-    place.refuse("needs one of 'window', 'otsu', 'tolerance' with 'seeds_mm', 'label' and 'named'");
+    place.refuse(
+        "needs one of 'window', 'otsu', 'clusters', 'tolerance' with 'seeds_mm', 'label' and 'named'");
   if (!segment.names.empty() && !segment.named)
     place.at("names").refuse("is the table of a label that is 'named'");
   if (segment.regions.empty() && !segment.structure.empty())
@@ -241,8 +252,9 @@ void check(const Segment& segment, const FieldLocation& place) {
     place.at("other_identity").refuse("is about a structure set: add the set as 'regions'");
   if (segment.tolerance && segment.seeds_mm.empty())
     place.at("tolerance").refuse("grows from seeds: add 'seeds_mm'");
-  if (segment.otsu_class && (!segment.otsu || *segment.otsu_class > *segment.otsu))
-    place.at("class").refuse("is one of the classes of 'otsu', from 1, the darkest");
+  const std::optional<int>& classes = segment.otsu ? segment.otsu : segment.clusters;
+  if (segment.otsu_class && (!classes || *segment.otsu_class > *classes))
+    place.at("class").refuse("is one of the classes of 'otsu' or 'clusters', from 1, the darkest");
   if (bridges_of(segment).any() && !chooses_parts(segment))
     place.refuse(
         "has 'keep_bridges_mm' or 'cut_bridges_mm', which decide among connected parts: add "
@@ -259,6 +271,11 @@ Segment settle(const Segment& segment, const SettleBench& bench) {
     settled.label = label_of_name(segment, scene.source, scene, bench.folder, bench.findings);
     bench.details["label"] = *settled.label;
   }
+  if (segment.clusters) {
+    Clusters found = clusters_of(bench.scan(segment.scan.name).scene(), *segment.clusters, bench.progress);
+    settled.classes = std::move(found.classes);
+    bench.details["centres"] = found.suggestion["centres"];
+  }
   if (!segment.otsu) return settled;
   OtsuWindow found = otsu_window(bench.scan(segment.scan.name).scene(), *segment.otsu,
                                  segment.otsu_class.value_or(*segment.otsu));
@@ -274,7 +291,11 @@ std::string definition(const Segment& segment, const Objects&) {
     text += ", '" + *segment.named + "'";
   else if (segment.label)
     text += ", label " + std::to_string(*segment.label);
+  if (segment.clusters)
+    text += ", class " + std::to_string(segment.otsu_class.value_or(*segment.clusters)) + " of " +
+            std::to_string(*segment.clusters) + " by density and gradient";
   if (segment.tolerance) text += " grown within " + plain(*segment.tolerance);
+  if (segment.running_mean) text += " of its running mean";
   if (!segment.regions.empty()) text += ", within " + segment.regions.filename().string();
   if (segment.open_mm) text += ", opened by " + plain(*segment.open_mm) + " mm";
   if (!segment.seeds_mm.empty() && !segment.tolerance) text += ", parts at seeds";
@@ -288,6 +309,7 @@ std::string definition(const Segment& segment, const Objects&) {
 /// The reason why the object has no mesh; null where the mesh kernel can make one.
 const char* why_voxels_alone(const Segment& segment) {
   if (segment.label || segment.named) return "a label map has no samples for an isosurface to run between";
+  if (segment.clusters) return "classes by density and gradient are of voxels";
   if (segment.tolerance) return "growing from seeds goes from voxel to voxel";
   if (!segment.regions.empty()) return "regions on slices choose voxels";
   if (segment.open_mm || segment.close_mm) return "opening and closing go by voxels";
@@ -381,47 +403,6 @@ void settle_parts(const Segment& segment, const LoadedScan& scan, const voxel::U
                 universe, segment.largest || segment.components ? std::nullopt : segment.at_least_mm3, made);
 }
 
-/// The largest rounding of a sample by a grey octree of this step: 0 where all samples are whole multiples of
-/// it.
-double rounding_of(const voxel::Scene& scene, double step) {
-  const auto* const samples = std::get_if<voxel::FloatSamples>(&scene.samples);
-  if (samples == nullptr) return 0.0;
-  const bool is_rounded = std::any_of(samples->begin(), samples->end(), [&](float sample) {
-    const double steps = static_cast<double>(sample) / step;
-    return std::isfinite(steps) && steps != std::floor(steps);
-  });
-  return is_rounded ? step : 0.0;
-}
-
-/// The samples that seeds select, in a window or by growing. Empty where other selections of voxels precede
-/// them, and where voxels are not samples: the connection of parts then depends on the resampling.
-verify::Witness witness_of_seeds(const Segment& segment, const LoadedScan& scan, bool voxels_are_samples) {
-  if (segment.seeds_mm.empty() || !voxels_are_samples || chooses_parts(segment) || segment.label ||
-      segment.named || !segment.regions.empty() || segment.open_mm || segment.close_mm)
-    return {};
-  verify::GrownFrom from{.seeds_mm = segment.seeds_mm, .tolerance = segment.tolerance};
-  if (segment.window) {
-    from.low = segment.window->low;
-    from.high = segment.window->high_or_infinity();
-  }
-  from.neighbours = segment.neighbours;
-  // The flood runs when the witness is first read: an evaluation without certificates does not need it.
-  struct Flood {
-    std::once_flag once;
-    verify::Witness witness;
-  };
-  verify::Witness grown = [samples = scan.shared, step = scan.grey.step(), from,
-                           flood = std::make_shared<Flood>()](const glm::dvec3& p_mm, double slack_mm) {
-    std::call_once(flood->once, [&] {
-      verify::GrownFrom exact = from;
-      exact.rounding = rounding_of(*samples, step);
-      flood->witness = verify::witness_of_grown(*samples, exact);
-    });
-    return flood->witness(p_mm, slack_mm);
-  };
-  return segment.fill ? verify::witness_of_filled(std::move(grown)) : std::move(grown);
-}
-
 void bound(const Segment& segment, const BoundBench& bench, Object& made) {
   const LoadedScan& scan = bench.scan(segment.scan.name);
   const voxel::Lattice& lattice = scan.scene().lattice;
@@ -431,7 +412,7 @@ void bound(const Segment& segment, const BoundBench& bench, Object& made) {
   made.bound.voxels_are_samples =
       voxels_are_samples && !(segment.window && on_both_sides(scan.scene(), segment.window->low,
                                                               segment.window->high_or_infinity()));
-  made.witness = witness_of_seeds(segment, scan, voxels_are_samples);
+  made.witness = witness_of_samples(segment, scan, voxels_are_samples);
   // The depth is interpolated where samples cross the lower bound. An upper bound inside the object would
   // make it wrong.
   if (!segment.window || why_voxels_alone(segment) != nullptr) return;
@@ -484,6 +465,17 @@ OtsuWindow otsu_window(const voxel::Scene& scene, int classes, int number) {
   return otsu;
 }
 
+Clusters clusters_of(const voxel::Scene& scene, int classes, const voxel::Progress& progress) {
+  Clusters made{voxel::feature_classes(scene, classes, progress), {}};
+  Json centres = Json::array();
+  for (const voxel::FeatureCentre& centre : made.classes.centres)
+    centres.push_back(
+        {{"density", centre.density}, {"gradient_per_mm", centre.gradient}, {"share", centre.share}});
+  made.suggestion = {{"method", "k-means, " + std::to_string(classes) + " classes by density and gradient"},
+                     {"centres", std::move(centres)}};
+  return made;
+}
+
 int label_of_name(const Segment& segment, const std::filesystem::path& label_map, const voxel::Scene& scene,
                   const std::filesystem::path& folder, std::vector<std::string>& findings) {
   if (!segment.names.empty()) {
@@ -510,6 +502,12 @@ Operation segment_operation() {
                    "of them.")
                  .from(2)
                  .to(8))
+      .takes(
+          field("clusters", &Segment::clusters,
+                "Number of clusters of the samples by density and gradient; the object is one of them. Edges "
+                "between tissues are classes of their own: three tissues need five.")
+              .from(2)
+              .to(8))
       .takes(field("class", &Segment::otsu_class, "The class, from 1, the darkest. Default: the brightest.")
                  .from(1)
                  .to(8))
@@ -517,6 +515,10 @@ Operation segment_operation() {
                    "Grows from the seeds through samples no farther from theirs.")
                  .from(0)
                  .to(65535))
+      .takes(field("running_mean", &Segment::running_mean,
+                   "Grows in rounds through samples within the tolerance of the mean of the region so far.")
+                 .read_if<Segment>([](const Segment& segment) { return segment.tolerance.has_value(); },
+                                   "is about how a region grows: add 'tolerance' and 'seeds_mm'"))
       .takes(field("label", &Segment::label, "The object of that number in a label map.")
                  .from(1)
                  .to(voxel::most_label))
@@ -590,6 +592,8 @@ Operation segment_operation() {
           "  octotomy segment head.nrrd -o tissues.nii.gz --window bone --window soft_tissue --window fat\n"
           "  octotomy segment dicom_folder -o tissues.dcm --window bone --window soft_tissue\n"
           "  octotomy segment head.nrrd --otsu 3 --json\n"
+          "  octotomy segment head.nrrd --clusters 4 --class 3 -o tissue.octree\n"
+          "  octotomy segment mr.nrrd --seed 10,-20,5 --tolerance 30 --running-mean -o brain.octree\n"
           "  octotomy segment tissues.nii.gz -o fat.octree --label 3\n"
           "  octotomy segment organs.nii.gz -o mandible.octree --named mandible --names organs.json\n"
           "  octotomy segment head.nrrd --window bone --contours skull.json",

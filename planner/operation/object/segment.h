@@ -10,21 +10,23 @@
 #include <vector>
 
 #include "planner/operation/table/bench.h"
+#include "voxel/filter/feature_classes.h"
 #include "voxel/space/progress.h"
 #include "voxel/tree/grey_octree.h"
 #include "voxel/tree/octree.h"
 
 namespace octotomy::planner {
 
-/// An object of a scan. A window, a suggested threshold, seeds or a label select its voxels; the fields that
-/// follow then reduce or fill that selection, in their order.
+/// An object of a scan. A window, a suggested threshold, a cluster, seeds or a label select its voxels; the
+/// fields that follow then reduce or fill that selection, in their order.
 struct Segment {
   ScanName scan;
   std::optional<SampleWindow> window;
-  std::optional<int> otsu, otsu_class, label;
+  std::optional<int> otsu, clusters, otsu_class, label;
   std::optional<std::string> named;  ///< the label's name; `names` is the file with the table of names
   std::filesystem::path names;
   std::optional<double> tolerance;
+  bool running_mean = false;      ///< the tolerance is from the mean of the region as it grows
   std::filesystem::path regions;  ///< contours on slices; `structure` is the name of the contoured structure
                                   ///< in a structure set
   std::string structure;
@@ -39,6 +41,7 @@ struct Segment {
   std::vector<glm::dvec3> keep_bridges_mm, cut_bridges_mm;  ///< as BridgeDecisions
   double bridge_mm = 5.0;
   std::vector<glm::dvec3> agreed_mm = {};  ///< as BridgeDecisions
+  voxel::FeatureClasses classes = {};      ///< computed where `clusters` is given
   // Of the verb, which makes an object for each window and octree.
   std::vector<std::string> windows, objects;
   std::filesystem::path out, contours;
@@ -71,7 +74,8 @@ struct Segmented {
   std::vector<std::string> findings = {};
 };
 
-/// The voxel kernel's answer. Precondition: `window` in place of `otsu`, see otsu_window(). Throws
+/// The voxel kernel's answer. Precondition: `window` in place of `otsu`, see otsu_window(), and `classes` where
+/// there are `clusters`, see clusters_of(). Throws
 /// std::runtime_error where nothing is left or a seed lies outside; Stopped between choices.
 Segmented segmented(const Segment& segment, const SegmentSource& source);
 
@@ -94,5 +98,12 @@ struct OtsuWindow {
   nlohmann::ordered_json suggestion;
 };
 OtsuWindow otsu_window(const voxel::Scene& scene, int classes, int number);
+
+/// The clusters of the samples' densities and gradients, and the same for people.
+struct Clusters {
+  voxel::FeatureClasses classes;
+  nlohmann::ordered_json suggestion;
+};
+Clusters clusters_of(const voxel::Scene& scene, int classes, const voxel::Progress& progress);
 
 }  // namespace octotomy::planner

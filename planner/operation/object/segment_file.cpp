@@ -75,6 +75,7 @@ std::vector<Named> segments_of(const FileBench& bench, Segment asked, const voxe
         asked, {asked.scan.name, scene, own, grey_in(own, own_grey), {}, stop}, segments.back().made);
   };
   if (asked.otsu) add("class " + std::to_string(asked.otsu_class.value_or(*asked.otsu)), false);
+  if (asked.clusters) add("class " + std::to_string(asked.otsu_class.value_or(*asked.clusters)), false);
   if (asked.label)
     add(asked.named ? *asked.named : "label " + std::to_string(*asked.label), asked.named.has_value());
   if (asked.tolerance) add("grown", false);
@@ -208,17 +209,17 @@ std::map<int, std::string> write_segments(const FileBench& bench, const Segment&
 
 /// Refuses contradictory options before anything is read.
 void check_asked(const Segment& asked) {
-  const int ways = (asked.windows.empty() ? 0 : 1) + (asked.otsu ? 1 : 0) + (asked.tolerance ? 1 : 0) +
-                   (asked.label ? 1 : 0) + (asked.named ? 1 : 0);
+  const int ways = (asked.windows.empty() ? 0 : 1) + (asked.otsu ? 1 : 0) + (asked.clusters ? 1 : 0) +
+                   (asked.tolerance ? 1 : 0) + (asked.label ? 1 : 0) + (asked.named ? 1 : 0);
   if (ways > 1)
     throw std::runtime_error(
-        "--window: give one of --window, --otsu, --tolerance with --seed, --label, --named");
+        "--window: give one of --window, --otsu, --clusters, --tolerance with --seed, --label, --named");
   if (ways == 0 && asked.objects.empty())
     throw std::runtime_error(
-        "--window: choose the objects: --window bone, --otsu 3, --seed X,Y,Z --tolerance T, "
+        "--window: choose the objects: --window bone, --otsu 3, --clusters 4, --seed X,Y,Z --tolerance T, "
         "--label N, --named NAME or --object FILE");
-  if (asked.out.empty() && asked.contours.empty() && !asked.otsu)
-    throw std::runtime_error("--out: only --otsu and --contours need none");
+  if (asked.out.empty() && asked.contours.empty() && !asked.otsu && !asked.clusters)
+    throw std::runtime_error("--out: only --otsu, --clusters and --contours need none");
   if (is_octree(asked.out) && asked.windows.size() + asked.objects.size() > 1)
     throw std::runtime_error("--out: an .octree holds one object: write several as a label map, .nrrd");
   if (!asked.out.empty() && !is_octree(asked.out) && !is_dicom_seg(asked.out) &&
@@ -262,6 +263,12 @@ FileAnswer segment_file(const Segment& given, const FileBench& bench) {
     answer.json["suggestion"] = std::move(otsu.suggestion);
     first = asked.window = otsu.window;
   }
+  if (asked.clusters) {
+    const Stopwatch watch(bench.timings, "clusters");
+    Clusters found = clusters_of(scene, *asked.clusters, bench.progress("clusters"));
+    asked.classes = std::move(found.classes);
+    answer.json["suggestion"] = std::move(found.suggestion);
+  }
   std::string written;
   std::map<int, std::string> names;
   Outputs outputs;
@@ -295,8 +302,11 @@ FileAnswer segment_file(const Segment& given, const FileBench& bench) {
   findings = std::move(all);
   for (const char* common : {"octotomy", "timings_ms"}) answer.json.erase(common);
   if (!written.empty()) answer.rows.emplace_back("written", written);
-  if (answer.json.contains("suggestion"))
-    answer.rows.emplace_back("thresholds", answer.json["suggestion"]["thresholds"].dump());
+  if (asked.otsu) answer.rows.emplace_back("thresholds", answer.json["suggestion"]["thresholds"].dump());
+  for (const voxel::FeatureCentre& centre : asked.classes.centres)
+    answer.rows.emplace_back("class of", grouped(100.0 * centre.share, 1) + " %: density " +
+                                             grouped(centre.density, 1) + ", gradient " +
+                                             grouped(centre.gradient, 1) + " / mm");
   answer.rows.insert(answer.rows.end(), sizes.begin(), sizes.end());
   return answer;
 }

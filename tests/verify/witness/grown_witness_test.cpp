@@ -72,6 +72,28 @@ TEST(GrownWitness, SamplesWithinRoundingOfABoundMayBelongOrNot) {
   EXPECT_EQ(witness.allowed_sides(sample_mm(scene, 0)).voxel, certainly_out);
 }
 
+TEST(GrownWitness, ARunningMeanFollowsARampThatTheSeedAloneDoesNot) {
+  voxel::Scene scene = two_cubes();
+  auto& samples = std::get<voxel::Int16Samples>(scene.samples);
+  // A ramp of 10 along x, and a step of 100 at x = 8.
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i] = static_cast<std::int16_t>(10 * (i % 12) + (i % 12 >= 8 ? 100 : 0));
+  const auto along = [&](const GrownFrom& from) {
+    const Witness witness = witness_of_grown(scene, from);
+    std::string sides;
+    for (int x = 0; x < 12; ++x) {
+      const AllowedSides side = witness.allowed_sides(scene.lattice.lps_mm({x, 5, 5})).voxel;
+      sides += side == certainly_in ? 'i' : side == certainly_out ? 'o' : '?';
+    }
+    return sides;
+  };
+  const GrownFrom fixed{.seeds_mm = {scene.lattice.lps_mm({0, 5, 5})}, .tolerance = 45.0};
+  EXPECT_EQ(along(fixed), "iiiiiooooooo");
+  GrownFrom running = fixed;
+  running.mean_of_steps = 1.0;
+  EXPECT_EQ(along(running), "iiiiiiiioooo");
+}
+
 TEST(GrownWitness, BetweenSamplesThatDifferTheSideIsUnknown) {
   const voxel::Scene scene = two_cubes();
   const Witness witness = witness_of_grown(scene, {.seeds_mm = {sample_mm(scene, 2)}, .tolerance = 10.0});

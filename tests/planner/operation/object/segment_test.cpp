@@ -150,6 +150,66 @@ TEST(SegmentStep, WhatOnlyVoxelsKnowHasNoMeshAndSaysWhy) {
   EXPECT_NEAR(evaluation.object("seeded").voxel.measures.volume_mm3 / ball_mm3(8), 1.0, 0.03);
 }
 
+/// How many of the voxels a witness is certain about, and how many of those the kernel has otherwise.
+struct Witnessed {
+  std::size_t certain = 0, wrong = 0, inside = 0;
+};
+Witnessed witnessed(const Object& object) {
+  Witnessed count;
+  if (!object.witness) return count;
+  const voxel::Universe& universe = object.voxel.octree.universe();
+  for (int z = 0; z < 64; ++z)
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x) {
+        const verify::AllowedSides sides =
+            object.witness.allowed_sides(universe.lattice().lps_mm({x, y, z})).voxel;
+        const bool is_inside = object.voxel.octree.contains({x, y, z});
+        count.certain += !(sides.in && sides.out);
+        count.wrong += !sides.allows(is_inside);
+        count.inside += is_inside && !sides.out;
+      }
+  return count;
+}
+
+TEST(SegmentStep, ClassesAndRegionsByARunningMeanHaveAWitnessOfTheirOwn) {
+  const ScratchFolder folder;
+  const Evaluation evaluation = evaluate(two_balls(folder, R"(
+      {"id": "class", "do": "segment", "scan": "ct", "clusters": 3, "class": 3},
+      {"id": "largest", "do": "segment", "scan": "ct", "clusters": 2, "largest": true},
+      {"id": "mean", "do": "segment", "scan": "ct", "tolerance": 900, "running_mean": true,
+       "seeds_mm": [[-14, 0, 0]]})"));
+  for (const char* id : {"class", "largest", "mean"}) {
+    const Object& object = evaluation.object(id);
+    const Witnessed count = witnessed(object);
+    // Of chosen parts the witness is certain of the outside alone.
+    EXPECT_GT(count.certain, 200000u) << id;
+    EXPECT_EQ(count.wrong, 0u) << id;
+    EXPECT_FALSE(object.mesh.whole) << id;
+    ASSERT_EQ(object.findings.size(), 1u) << id;
+    EXPECT_NE(object.findings[0].find("voxel"), std::string::npos) << object.findings[0];
+  }
+  EXPECT_GT(witnessed(evaluation.object("class")).inside, 2000u);
+  EXPECT_GT(witnessed(evaluation.object("mean")).inside, 1000u);
+  EXPECT_EQ(evaluation.object("class").mesh.details["centres"].size(), 3u);
+  EXPECT_NEAR(evaluation.object("mean").voxel.measures.volume_mm3 / ball_mm3(8), 1.0, 0.1);
+}
+
+TEST(SegmentStep, AWitnessSeesAVoxelThatIsWrong) {
+  const ScratchFolder folder;
+  const Evaluation evaluation = evaluate(two_balls(folder, R"(
+      {"id": "class", "do": "segment", "scan": "ct", "clusters": 3, "class": 3},
+      {"id": "other", "do": "segment", "scan": "ct", "clusters": 3, "class": 2},
+      {"id": "mean", "do": "segment", "scan": "ct", "tolerance": 900, "running_mean": true,
+       "seeds_mm": [[-14, 0, 0]]},
+      {"id": "narrow", "do": "segment", "scan": "ct", "tolerance": 300, "running_mean": true,
+       "seeds_mm": [[-14, 0, 0]]})"));
+  for (const auto& [truth, spoiled] : {std::pair{"class", "other"}, std::pair{"mean", "narrow"}}) {
+    Object wrong = evaluation.object(truth);
+    wrong.voxel.octree = evaluation.object(spoiled).voxel.octree;
+    EXPECT_GT(witnessed(wrong).wrong, 100u) << truth;
+  }
+}
+
 TEST(SegmentStep, OtsuSettlesTheWindowThatBothKernelsTake) {
   const ScratchFolder folder;
   const Evaluation evaluation =
@@ -179,6 +239,10 @@ TEST(SegmentStep, WhatCannotBeMeantIsRefused) {
   EXPECT_NE(refusal(R"(, "window": "0:", "label": 2)").find("needs one of"), std::string::npos);
   EXPECT_NE(refusal(R"(, "tolerance": 3)").find("seeds_mm"), std::string::npos);
   EXPECT_NE(refusal(R"(, "otsu": 2, "class": 3)").find("one of the classes"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "clusters": 3, "class": 4)").find("one of the classes"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "clusters": 9)").find("8"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "clusters": 3, "otsu": 3)").find("needs one of"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "window": "0:", "running_mean": true)").find("'tolerance'"), std::string::npos);
   EXPECT_NE(refusal(R"(, "window": "bonne")").find("did you mean 'bone'"), std::string::npos);
   EXPECT_NE(refusal(R"(, "window": "0:", "neighbours": 7)").find("18"), std::string::npos);
 }

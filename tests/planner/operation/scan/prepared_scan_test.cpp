@@ -122,6 +122,54 @@ TEST(PreparedScan, TakesOutABoardThatIsFlushWithTheHead) {
   EXPECT_LT(step(R"(, "board_mm": 3)").scans[1].details["volume_removed_mm3"].get<double>(), 70 * 8 * 40);
 }
 
+TEST(PreparedScan, ScaleSpacePartsBallsThatTouchIntoLabels) {
+  const ScratchFolder folder;
+  voxel::write_scene(
+      tests::ct_scene(
+          {64, 40, 40}, {1, 1, 1}, {-31.5, -19.5, -19.5},
+          [](const glm::ivec3&, const glm::dvec3& p) {
+            const bool is_in = glm::distance(p, {-10, 0, 0}) < 12.0 || glm::distance(p, {12, 0, 0}) < 11.0;
+            return is_in ? 1000 : -1000;
+          }),
+      folder / "ct.nrrd");
+  const Evaluation evaluation =
+      evaluate(parse_plan(R"({"octotomy_plan": 1, "name": "n", "scans": {"ct": {"path": "ct.nrrd"}},
+      "universe": {"voxel_mm": 1.0}, "steps": [
+        {"id": "regions", "do": "scale_space", "scan": "ct", "sigma_mm": 5, "window": "0:"},
+        {"id": "left", "do": "segment", "scan": "regions", "label": 1},
+        {"id": "right", "do": "segment", "scan": "regions", "label": 2}]})",
+                          folder.path()));
+  EXPECT_EQ(evaluation.scans[1].details["regions"], 2);
+  EXPECT_EQ(evaluation.scans[1].meaning, voxel::Meaning::Label);
+  EXPECT_NEAR(evaluation.object("left").voxel.measures.volume_mm3, ball_mm3(12), 0.06 * ball_mm3(12));
+  EXPECT_NEAR(evaluation.object("right").voxel.measures.volume_mm3, ball_mm3(11), 0.06 * ball_mm3(11));
+}
+
+TEST(PreparedScan, AGuessedThresholdOfTheFieldIsAWarningOfTheAudit) {
+  const ScratchFolder folder;
+  voxel::Scene scene = ball_scene(20.0, 48);
+  scene.meaning = voxel::Meaning::Raw;
+  scene.modality = "MR";
+  for (std::int16_t& sample : std::get<voxel::Int16Samples>(scene.samples))
+    sample = static_cast<std::int16_t>((sample + 1000) / 8 + 5);
+  voxel::write_scene(scene, folder / "mr.nrrd");
+  const auto step = [&](const std::string& more) {
+    return evaluate(parse_plan(R"({"octotomy_plan": 1, "name": "n", "scans": {"mr": {"path": "mr.nrrd"}},
+      "steps": [{"id": "even", "do": "n4_bias_field", "scan": "mr", "levels": 1, "iterations": 2)" +
+                                   more +
+                                   R"(},
+                {"id": "ball", "do": "window", "scan": "even", "low": 100}]})",
+                               folder.path()));
+  };
+  const Evaluation guessed = step("");
+  ASSERT_FALSE(guessed.scans[1].audit.empty());
+  EXPECT_EQ(guessed.scans[1].audit.back().verdict, voxel::Verdict::Warn);
+  EXPECT_NE(guessed.scans[1].audit.back().detail.find("Otsu"), std::string::npos);
+  EXPECT_NEAR(guessed.object("ball").voxel.measures.volume_mm3 / ball_mm3(20), 1.0, 0.05);
+  for (const voxel::Finding& finding : step(R"(, "threshold": 60)").scans[1].audit)
+    EXPECT_EQ(finding.detail.find("Otsu"), std::string::npos) << finding.detail;
+}
+
 TEST(PreparedScan, NamesAndValuesThatCannotBeAreRefused) {
   const ScratchFolder folder;
   EXPECT_NE(

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "voxel/solid/slice_mask.h"
+#include "voxel/space/scene.h"
+
+// Contours whose thresholds come from seed pixels (thesis 2.3.2.2.1).
+namespace octotomy::planner {
+
+/// What a seed led to.
+struct SeedContour {
+  glm::dvec3 seed_mm{0.0};   ///< as given, LPS
+  double threshold = 0.0;    ///< the sample nearest to it
+  double position_mm = 0.0;  ///< of its slice, in the view of the contours
+  double away_mm = 0.0;      ///< of the contour from that sample's middle, within the slice
+  bool is_far = false;       ///< farther than the diagonal of a pixel: the seed lies on no edge
+};
+
+struct SeedContours {
+  voxel::SliceMask mask;
+  std::vector<SeedContour> seeds;  ///< in the order of the seeds
+};
+
+/// For each seed, the contour nearest to it among those of its slice at the threshold of its own sample;
+/// seeds that lead to the same contour give it once. The mask has the seeds' slices, and where the scan goes
+/// on an empty one at either end. Throws std::runtime_error naming the seed if it lies outside of the scan or
+/// on padding, or if its slice has no contour at its threshold; if two contours of a slice cross, which is
+/// possible where seeds there have different samples; and as slice_contours().
+SeedContours contours_at_seeds(const voxel::Scene& scene, const std::vector<glm::dvec3>& seeds_mm);
+
+}  // namespace octotomy::planner

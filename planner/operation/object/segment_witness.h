@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "planner/operation/object/segment.h"
+#include "verify/witness/reading.h"
+
+namespace octotomy::planner {
+
+/// The third reading of an object whose samples were chosen one by one: grown from seeds, parts of a window at
+/// seeds, or a class by density and gradient. Empty for other objects, where other choices of voxels precede,
+/// and for grown ones where voxels are not samples: the connection of parts then depends on the resampling.
+verify::Witness witness_of_samples(const Segment& segment, const LoadedScan& scan, bool voxels_are_samples);
+
+}  // namespace octotomy::planner

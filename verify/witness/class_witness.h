@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "verify/witness/reading.h"
+#include "voxel/space/scene.h"
+
+namespace octotomy::verify {
+
+/// Classes of samples by density, x, in the scan's unit, and length of the gradient, y, in that unit per
+/// millimetre; and the class that is meant.
+struct ClassedBy {
+  std::vector<glm::dvec2> centres;
+  glm::dvec2 scale{1.0};  ///< both features are divided by it before distances are compared
+  std::size_t meant = 0;
+};
+
+/// The samples whose features lie nearest to the centre that is meant, by gradients of this source's own. At a
+/// sample both sides are certain, unless two centres are equally near within rounding, or padding lies beside
+/// it; beyond the scan all is outside. Elsewhere a point is certain where the eight samples about it agree.
+/// Shares the scan. Throws std::invalid_argument if the class that is meant is none.
+Witness witness_of_class(std::shared_ptr<const voxel::Scene> scan, const ClassedBy& by);
+
+}  // namespace octotomy::verify

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "voxel/space/progress.h"
+#include "voxel/space/scene.h"
+
+namespace octotomy::voxel {
+
+struct BiasFieldOptions {
+  /// Samples above it determine the field, in the scan's unit; at least 0. None: Otsu's threshold between two
+  /// classes, which is a guess.
+  std::optional<double> threshold = {};
+  double knots_mm = 200.0;  ///< largest distance of the first level's knots; the field is as smooth as that
+  int levels = 4;           ///< 1 to 6; each halves the distance of the knots
+  int iterations = 50;      ///< most iterations of a level, 1 to 1000
+  double noise = 0.01;      ///< of Wiener's filter that sharpens the histogram, above 0
+  Progress progress{};
+};
+
+/// A scan without the slow change of brightness that an inhomogeneous magnetic field causes.
+struct BiasCorrection {
+  Scene scene;                               ///< in float: each sample divided by the field at its place
+  double threshold = 0.0;                    ///< that determined the field's samples
+  double field_low = 1.0, field_high = 1.0;  ///< of the field at these samples; its geometric mean there is 1
+  std::size_t fitted = 0;                    ///< number of samples to which the field was fitted
+};
+
+/// N4 (Tustison et al., IEEE Trans. Medical Imaging 29, 2010) by ITK, on every few samples, four between
+/// the finest knots; the field, a cubic B-spline, is evaluated at every sample of the scan. Departure: the
+/// field is scaled
+/// to a geometric mean of 1, so that samples keep their level. Throws std::invalid_argument for label maps,
+/// for Hounsfield units, which no magnetic field changes, and for options out of range; Error, Geometry, if
+/// fewer than 100 of these samples are above the threshold; Stopped. Same bits on any thread count: the fit
+/// runs in one thread, because ITK sums it by threads. Memory: the result.
+BiasCorrection correct_bias_field(const Scene& scene, const BiasFieldOptions& options);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "voxel/space/progress.h"
+#include "voxel/space/scene.h"
+
+// Clusters of samples in the plane of density and gradient (thesis 2.3.4; Trivedi et al. 1986 after Panda and
+// Rosenfeld, IEEE Trans. Computers 27, 1978). A sample between two tissues has a density of neither, but a
+// gradient that no tissue of that density has inside: it falls into another class than that tissue.
+namespace octotomy::voxel {
+
+/// A cluster's middle: density in the scan's unit, and the length of the gradient in that unit per millimetre.
+struct FeatureCentre {
+  double density = 0.0, gradient = 0.0;
+  double share = 0.0;  ///< of the scan's measured samples, 0 to 1
+};
+
+/// The classes, by density from the lowest, and the scale that makes the two features comparable: both are
+/// divided by their standard deviation.
+struct FeatureClasses {
+  std::vector<FeatureCentre> centres;
+  double density_scale = 1.0, gradient_scale = 1.0;
+
+  /// The number of the centre nearest to a sample; of several the first.
+  std::size_t nearest(double density, double gradient) const;
+};
+
+/// The length of the gradient by central differences between neighbours, in sample units per millimetre;
+/// beyond the scene and in its padding the border samples repeat. Exact for linear fields on any lattice.
+/// Throws std::invalid_argument for label maps; Stopped. Parallel, same bits on any thread count.
+Scene gradient_length(const Scene& scene, const Progress& progress = {});
+
+/// K-means clusters of the samples' densities and gradients, on a histogram of 256 by 256 bins between the
+/// features' 0.1st and 99.9th percentiles, which also bound what a far sample weighs. Starts with one cluster,
+/// and splits the one of greatest variance at its middle, across the feature in which it varies most, until
+/// there are enough; after each split the means are iterated until no bin changes its cluster. Edges are
+/// classes of their own, one or two by their height: three tissues need five. Throws std::invalid_argument unless there are 2 to 8
+/// classes, and as gradient_length(); Error, Geometry, if all samples or all gradients are equal, or fewer
+/// clusters exist; Stopped. Same bits on any thread count.
+FeatureClasses feature_classes(const Scene& scene, int classes, const Progress& progress = {});
+
+/// The class of each sample, from 1, as a label map; padding is 0. Throws as gradient_length().
+Scene class_map(const Scene& scene, const FeatureClasses& classes, const Progress& progress = {});
+
+}  // namespace octotomy::voxel
