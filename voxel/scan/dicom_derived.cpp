@@ -52,6 +52,9 @@ void put_study(DicomAttributes& attributes, const DicomOptions& options, const D
                                         "' cannot be converted to UTF-8: choose a label in ASCII");
     attributes.put(tag, text.vr.c_str(), *value);
   }
+  if (options.source->attributes.contains(identity_removed_tag))
+    attributes.put_sequence(0x00120064,
+                            {dicom_code("113100", "DCM", "Basic Application Confidentiality Profile")});
 }
 
 void put_source_images(DicomAttributes& attributes, const std::vector<DicomSource::Image>& images) {
