@@ -9,7 +9,7 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr std::size_t most_header = 1 << 13, most_boundary = 70;
+constexpr std::size_t most_header = 1 << 13, most_boundary = 70, most_beside = 1 << 17;
 
 std::string boundary_of(const std::string& type) {
   std::string lower = type;
@@ -51,7 +51,10 @@ bool Multipart::step() {
     case Place::Part: {
       const std::size_t tail = boundary_.size() - 1;
       const std::size_t before = at != std::string::npos ? at : held_.size() - std::min(held_.size(), tail);
-      if (part_) part_->write(std::string_view(held_).substr(0, before));
+      if (part_)
+        part_->write(std::string_view(held_).substr(0, before));
+      else
+        need_end(before);
       held_.erase(0, before);
       if (at == std::string::npos) return false;
       // Two bytes more tell whether another part follows.
@@ -75,10 +78,16 @@ bool Multipart::step() {
       return true;
     }
     case Place::After:
+      need_end(held_.size());
       held_.clear();
       return false;
   }
   return false;
+}
+
+void Multipart::need_end(std::size_t more) {
+  beside_ += more;
+  if (beside_ > most_beside) throw PeerError("the archive's answer goes on without objects");
 }
 
 void Multipart::finish() const {

@@ -24,10 +24,13 @@ class Multipart {
   enum class Place { Before, Header, Part, After };
   /// Takes what it can of `held_`; false if it needs more.
   bool step();
+  /// Throws PeerError if too many bytes belong to no part.
+  void need_end(std::size_t more);
 
   ReceivedFiles& folder_;
   std::string boundary_, held_;
   Place place_ = Place::Before;
+  std::size_t beside_ = 0;  ///< bytes before the first and after the last part
   std::optional<ReceivedFiles::Part> part_;
 };
 

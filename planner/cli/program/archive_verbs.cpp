@@ -209,6 +209,8 @@ void listen(Program& program, const ReceiveText& text, ReceivedFiles& folder) {
       throw std::runtime_error("--tls: a receiver shows a certificate: give --certificate and --key");
     options.tls = text.tls;
   }
+  if (!text.with_tls && text.on != "127.0.0.1" && text.on != "::1" && text.on != "localhost")
+    warn("--listen " + text.on + ": everybody on this network can send and listen in; --tls protects both");
   options.patience = std::chrono::seconds(text.timeout_s);
   options.associations = text.associations;
   options.objects = text.objects;
@@ -219,8 +221,8 @@ void listen(Program& program, const ReceiveText& text, ReceivedFiles& folder) {
 
 int receive(Program& program, const ReceiveText& text) {
   if (!text.port && text.address.empty())
-    throw std::runtime_error("give --listen PORT to wait for objects, or --from URL to fetch them");
-  if (text.port && !text.address.empty()) throw std::runtime_error("give one of --listen and --from");
+    throw std::runtime_error("give --port N to wait for objects, or --from URL to fetch them");
+  if (text.port && !text.address.empty()) throw std::runtime_error("give one of --port and --from");
   if (!text.address.empty() && !is_web(text.address))
     throw std::runtime_error(text.address + ": objects are fetched by DICOMweb: give http:// or https://");
   if (!text.find.empty()) {
@@ -300,7 +302,7 @@ void add_archive_verbs(Program& program) {
       "Receives DICOM objects into a folder, under names that are computed from their bytes: waits for "
       "C-STORE, or "
       "fetches by DICOMweb (QIDO-RS, WADO-RS)",
-      "octotomy receive -o inbox --listen 11112\n"
+      "octotomy receive -o inbox --port 11112\n"
       "  octotomy receive --from http://localhost:8042/dicom-web --find PatientID=17\n"
       "  octotomy receive -o study --from http://localhost:8042/dicom-web --study 1.2.840.113619.2.1",
       [&program, got] { return receive(program, *got); });
@@ -310,9 +312,9 @@ void add_archive_verbs(Program& program) {
   receives.add_option("--series", got->series, "Only this series of it");
   receives.add_option("--instance", got->instance, "Only this instance of the series");
   receives.add_option("--find", got->find, "Lists studies: KEY=VALUE, again for more, as PatientID=17");
-  receives.add_option("--listen", got->port, "Waits for C-STORE on this port; 0: any free one")
+  receives.add_option("--port", got->port, "Waits for C-STORE on this port; 0: any free one")
       ->check(CLI::Range(0, 65535));
-  receives.add_option("--on", got->on, "The address to wait on. Default: 127.0.0.1, this machine alone");
+  receives.add_option("--listen", got->on, "The address to wait on. Default: 127.0.0.1, this machine alone");
   receives.add_flag("--tls", got->with_tls, "Waits for TLS, with --certificate and --key");
   receives.add_flag("--any-title", got->any_title, "Accepts associations for any title, not only --title");
   receives.add_option("--objects", got->objects, "Ends after so many objects. Default: when it is stopped")
