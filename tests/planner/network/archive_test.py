@@ -87,8 +87,7 @@ class Archive(unittest.TestCase):
     def setUpClass(cls):
         cls.work = tempfile.TemporaryDirectory()
         cls.folder = Path(cls.work.name)
-        scan = cls.folder / "ball.nrrd"
-        run(PROGRAM, "phantom", "sphere", "--voxels", "32", "--radius", "10", "-o", cls.folder / "ball.octree")
+        scan = cls.folder / "head.nrrd"
         run(PROGRAM, "phantom", "head", "--voxel", "12", "-o", scan)
         run(PROGRAM, "convert", scan, "--dicom", "-o", cls.folder / "series")
         run(PROGRAM, "segment", cls.folder / "series", "--window", "bone", "-o", cls.folder / "bone.dcm")
