@@ -187,7 +187,7 @@ int Association::read_unit(std::size_t most) {
               std::to_string(most) + " allowed");
   unit_.resize(length);
   connection_.read(unit_.data(), length);
-  at_ = 0;
+  at_ = length;
   return kind;
 }
 
@@ -206,8 +206,9 @@ void Association::abort() {
 }
 
 Association Association::request(Connection connection, const AssociationTitles& titles,
-                                 const std::vector<PresentationContext>& contexts) {
-  Association made(std::move(connection));
+                                 const std::vector<PresentationContext>& contexts,
+                                 std::chrono::milliseconds patience) {
+  Association made(std::move(connection), patience);
   std::string text = big(1, 2) + big(0, 2) + padded_title(titles.called) + padded_title(titles.calling) +
                      std::string(32, '\0') + item(0x10, application_context);
   int number = 1;
@@ -245,8 +246,9 @@ Association Association::request(Connection connection, const AssociationTitles&
 
 Association Association::answer(
     Connection connection, const std::string& title,
-    const std::function<bool(const std::string& class_uid, const std::string& syntax)>& accepts) {
-  Association made(std::move(connection));
+    const std::function<bool(const std::string& class_uid, const std::string& syntax)>& accepts,
+    std::chrono::milliseconds patience) {
+  Association made(std::move(connection), patience);
   if (made.read_unit(most_negotiation) != asks || made.unit_.size() < 68)
     made.break_off("does not ask for an association");
   const std::string_view asked = made.unit_;
@@ -285,7 +287,7 @@ Association Association::answer(
 }
 
 void Association::refuse_for_now(Connection connection) {
-  Association made(std::move(connection));
+  Association made(std::move(connection), std::chrono::milliseconds(200));
   try {
     made.connection_.set_deadline(std::chrono::milliseconds(200));
     made.connection_.write(unit(rejects, std::string("\0\2\3\2", 4)));
@@ -303,9 +305,10 @@ int Association::context_of(const std::string& class_uid, const std::string& syn
 void Association::send_fragment(int context, bool is_command, bool is_last, std::string_view bytes) {
   const int flags = (is_command ? 1 : 0) | (is_last ? 2 : 0);
   connection_.set_deadline(patience_);
-  connection_.write(big(data, 1) + '\0' + big(bytes.size() + 6, 4) + big(bytes.size() + 2, 4) +
-                    static_cast<char>(context) + static_cast<char>(flags));
-  connection_.write(bytes);
+  std::string whole = big(data, 1) + '\0' + big(bytes.size() + 6, 4) + big(bytes.size() + 2, 4) +
+                      static_cast<char>(context) + static_cast<char>(flags);
+  whole.append(bytes);
+  connection_.write(whole);
 }
 
 void Association::send(int context, const DicomCommand& command) {
@@ -330,6 +333,7 @@ bool Association::next_fragment(Fragment& fragment) {
     }
     if (kind == aborts) throw PeerError(peer() + ": broke the association off");
     if (kind != data) break_off("sends a unit out of order");
+    at_ = 0;
   }
   const std::string_view left = std::string_view(unit_).substr(at_);
   if (left.size() < 6) break_off("sends a damaged fragment");

@@ -42,14 +42,16 @@ struct DicomCommand {
 /// An association over a connection, of which it takes hold.
 class Association {
  public:
-  /// Asks for one. Throws PeerError, with the reason that the other side states. Precondition: at most 128 contexts.
+  /// Asks for one. `patience` is the time for each message or part of one. Throws PeerError, with the reason that the other side states. Precondition: at most 128 contexts.
   static Association request(Connection connection, const AssociationTitles& titles,
-                             const std::vector<PresentationContext>& contexts);
+                             const std::vector<PresentationContext>& contexts,
+                             std::chrono::milliseconds patience);
   /// Answers a request: accepts contexts that `accepts` allows. A request for another title than `title` is refused
   /// unless that is empty. Throws PeerError if the other side breaks the protocol, after an abort.
   static Association answer(
       Connection connection, const std::string& title,
-      const std::function<bool(const std::string& class_uid, const std::string& syntax)>& accepts);
+      const std::function<bool(const std::string& class_uid, const std::string& syntax)>& accepts,
+      std::chrono::milliseconds patience);
   /// Refuses the next request for the time being, because there are too many.
   static void refuse_for_now(Connection connection);
 
@@ -57,9 +59,6 @@ class Association {
   int context_of(const std::string& class_uid, const std::string& syntax) const;
   const PresentationContext& context(int number) const { return accepted_.at(number); }
   const std::string& peer() const { return connection_.peer(); }
-
-  /// Time for each following message or part of it.
-  void set_patience(std::chrono::milliseconds patience) { patience_ = patience; }
 
   void send(int context, const DicomCommand& command);
   /// Sends a part of a message's data.
@@ -74,7 +73,8 @@ class Association {
   void abort();
 
  private:
-  explicit Association(Connection connection) : connection_(std::move(connection)) {}
+  Association(Connection connection, std::chrono::milliseconds patience)
+      : connection_(std::move(connection)), patience_(patience) {}
 
   struct Fragment {
     int context = 0;
@@ -91,7 +91,7 @@ class Association {
   Connection connection_;
   std::map<int, PresentationContext> accepted_;
   std::size_t most_sent_ = 16384;
-  std::chrono::milliseconds patience_{30000};
+  std::chrono::milliseconds patience_;
   std::string unit_;
   std::size_t at_ = 0;  ///< of the next fragment in `unit_`
 };

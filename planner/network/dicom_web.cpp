@@ -190,8 +190,8 @@ void store_by_web(const WebArchive& archive, const fs::path& path, const std::st
     if (said.size() + bytes.size() > most_answer) throw PeerError(archive.url + ": answers without end");
     said.append(bytes);
   });
-  // The sequence of instances that were not stored (PS3.18, I.2).
-  if (status != 200 || said.find("00081198") != std::string::npos)
+  // The reason of a failure stands in the items of instances that were not stored (PS3.18, I.2).
+  if (status != 200 || said.find("00081197") != std::string::npos)
     refuse(path.string() + ": not stored", status, status == 200 ? said.substr(0, 200) : request.reason());
 }
 
@@ -225,7 +225,7 @@ void retrieve_by_web(const WebArchive& archive, const std::string& resource, Rec
 std::string web_text(const std::string& text) {
   std::string made;
   for (const unsigned char c : text)
-    if (std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_' || c == '~') {
+    if (std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_' || c == '~' || c == '*' || c == '?') {
       made += static_cast<char>(c);
     } else {
       std::array<char, 4> coded{};

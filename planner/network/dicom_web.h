@@ -33,7 +33,7 @@ std::string search_by_web(const WebArchive& archive, const std::string& query,
 void retrieve_by_web(const WebArchive& archive, const std::string& resource, ReceivedFiles& folder,
                      const std::stop_token& stop = {});
 
-/// A text as a part of an address, with percent signs.
+/// A text as a value in an address, with percent signs. The wildcards * and ? stay, as some archives expect.
 std::string web_text(const std::string& text);
 
 }  // namespace octotomy::planner

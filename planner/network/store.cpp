@@ -8,6 +8,7 @@
 #include <fstream>
 #include <list>
 #include <map>
+#include <mutex>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -119,7 +120,6 @@ class Receiver {
       : folder_(folder), options_(options), count_(count) {}
 
   void serve(Association association) const {
-    association.set_patience(options_.patience);
     DicomCommand command;
     for (int context = 0; association.receive(command, context);) {
       DicomCommand answer;
@@ -203,8 +203,8 @@ OutgoingFile outgoing_file(const fs::path& path) {
 }
 
 void echo(const StorePeer& peer) {
-  Association association =
-      Association::request(connected(peer), peer.titles, {{verification_class, {implicit_little_endian}}});
+  Association association = Association::request(
+      connected(peer), peer.titles, {{verification_class, {implicit_little_endian}}}, peer.timeout);
   const int context = association.context_of(verification_class, implicit_little_endian);
   if (context == 0) throw PeerError(association.peer() + ": does not answer echoes");
   DicomCommand command;
@@ -231,8 +231,7 @@ std::vector<std::string> store(const StorePeer& peer, const std::vector<Outgoing
     }
     std::vector<PresentationContext> contexts;
     for (const auto& [class_uid, syntax] : kinds) contexts.push_back({class_uid, {syntax}});
-    Association association = Association::request(connected(peer), peer.titles, contexts);
-    association.set_patience(peer.timeout);
+    Association association = Association::request(connected(peer), peer.titles, contexts, peer.timeout);
     for (std::uint16_t message = 1; first < last; ++first, ++message) {
       if (stop.stop_requested()) {
         association.abort();
@@ -250,7 +249,9 @@ void receive_by_store(ReceivedFiles& folder, const ReceiveOptions& options, cons
   if (options.listening) options.listening(listener.port());
   std::atomic<std::size_t> count = 0;
   const Receiver receiver(folder, options, count);
+  std::mutex saying;
   const auto refused = [&](const std::string& what) {
+    const std::lock_guard lock(saying);
     if (options.refused) options.refused(what);
   };
   std::list<Served> served;
@@ -280,7 +281,7 @@ void receive_by_store(ReceivedFiles& folder, const ReceiveOptions& options, cons
       try {
         connection->set_deadline(options.patience);
         listener.handshake(*connection);
-        receiver.serve(Association::answer(std::move(*connection), options.title, accepts));
+        receiver.serve(Association::answer(std::move(*connection), options.title, accepts, options.patience));
       } catch (const std::exception& error) {
         const std::string what = error.what();
         refused(what.starts_with(peer) ? what : peer + ": " + what);

@@ -49,7 +49,7 @@ struct ReceiveOptions {
   int associations = 8;                       ///< most at a time; others are refused for the time being
   std::optional<std::size_t> objects = std::nullopt;  ///< ends after so many; none: until it is stopped
   std::function<void(int port)> listening = {};
-  std::function<void(const std::string&)> refused = {};  ///< what a peer did wrong; called by any thread
+  std::function<void(const std::string&)> refused = {};  ///< what a peer did wrong; one call at a time
 };
 
 /// Receives objects by C-STORE, and answers C-ECHO, until it is stopped. An object is acknowledged when it is in the

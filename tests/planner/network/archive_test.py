@@ -149,7 +149,7 @@ class Archive(unittest.TestCase):
         receiver = Receiver(self.folder / "from_dcmtk", "--objects", len(files))
         run("echoscu", "-aec", "OCTOTOMY", "127.0.0.1", receiver.port)
         for file in files:
-            run("storescu", "-aec", "OCTOTOMY", "127.0.0.1", receiver.port, *(["-xi"] if file.name == "rt.dcm" else []),
+            run("storescu", "-R", "-aec", "OCTOTOMY", "127.0.0.1", receiver.port, *(["-xi"] if file.name == "rt.dcm" else []),
                 file)
         receiver.end()
         self.assertEqual(len(list((self.folder / "from_dcmtk").iterdir())), len(files))
