@@ -219,7 +219,7 @@ class Receiver(unittest.TestCase):
                     stored += element(0x900, b"\0\0") in one_unit(peer)
                 except OSError:
                     pass
-        self.assertEqual(stored, 5, "of 6.6 MB each, 4 fit into 32 MB beside the first")
+        self.assertEqual(stored, 6, "of 6.6 MB each, 5 fit into 32 MB beside the first")
         self.need_unharmed(stored + 1)
 
     def test_a_thousand_associations(self):
