@@ -42,7 +42,8 @@ struct DicomCommand {
 /// An association over a connection, of which it takes hold.
 class Association {
  public:
-  /// Asks for one. `patience` is the time for each message or part of one. Throws PeerError, with the reason that the other side states. Precondition: at most 128 contexts.
+  /// Asks for one. `patience` is the time for each message or part of one. Throws PeerError, with the reason that
+  /// the other side states. Precondition: at most 128 contexts.
   static Association request(Connection connection, const AssociationTitles& titles,
                              const std::vector<PresentationContext>& contexts,
                              std::chrono::milliseconds patience);

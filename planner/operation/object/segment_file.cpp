@@ -12,10 +12,10 @@
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/plan_universe.h"
+#include "voxel/archive/source_identity.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/filter/slice_contour.h"
 #include "voxel/filter/tissue.h"
-#include "voxel/archive/source_identity.h"
 #include "voxel/scan/write_dicom_seg.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/volume/volume_header.h"
@@ -31,7 +31,7 @@ struct Named {
   Segmented made;
   std::optional<voxel::Octree> on_samples = std::nullopt;
   bool is_of_file = false;  ///< the name stands in a file or is a file's
-  bool is_named = true;  ///< the name is a word, not the two numbers of a window
+  bool is_named = true;     ///< the name is a word, not the two numbers of a window
 };
 
 bool is_dicom_seg(const fs::path& path) {
