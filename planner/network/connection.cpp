@@ -19,21 +19,17 @@
 #include <utility>
 
 namespace octotomy::planner {
-namespace {
-
-using Context = std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)>;
-using Session = std::unique_ptr<SSL, decltype(&SSL_free)>;
 
 /// A file descriptor that is closed at the end.
-class Socket {
+class ConnectionSocket {
  public:
-  explicit Socket(int number = -1) : number_(number) {}
-  Socket(Socket&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Socket& operator=(Socket&& other) noexcept {
+  explicit ConnectionSocket(int number = -1) : number_(number) {}
+  ConnectionSocket(ConnectionSocket&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  ConnectionSocket& operator=(ConnectionSocket&& other) noexcept {
     std::swap(number_, other.number_);
     return *this;
   }
-  ~Socket() {
+  ~ConnectionSocket() {
     if (number_ >= 0) ::close(number_);
   }
   int number() const { return number_; }
@@ -41,6 +37,11 @@ class Socket {
  private:
   int number_;
 };
+
+namespace {
+
+using Context = std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)>;
+using Session = std::unique_ptr<SSL, decltype(&SSL_free)>;
 
 std::string tls_reason() {
   std::array<char, 256> text{};
@@ -109,7 +110,7 @@ Addresses addresses_of(const std::string& host, int port, int flags) {
 }  // namespace
 
 struct Connection::State {
-  Socket socket{};
+  ConnectionSocket socket{};
   Context context{nullptr, &SSL_CTX_free};
   Session session{nullptr, &SSL_free};
   Clock::time_point deadline = Clock::now() + std::chrono::seconds(30);
@@ -168,7 +169,7 @@ Connection::Connection(const std::string& host, int port, const std::optional<Tl
   const Addresses found = addresses_of(host, port, 0);
   int error = EHOSTUNREACH;
   for (const addrinfo* each = found.get(); each != nullptr && error != 0; each = each->ai_next) {
-    state_->socket = Socket(::socket(each->ai_family, each->ai_socktype, each->ai_protocol));
+    state_->socket = ConnectionSocket(::socket(each->ai_family, each->ai_socktype, each->ai_protocol));
     if (state_->socket.number() < 0) continue;
     make_ready(state_->socket.number());
     error = ::connect(state_->socket.number(), each->ai_addr, each->ai_addrlen) == 0 ? 0 : errno;
@@ -236,7 +237,7 @@ const std::string& Connection::peer() const {
 }
 
 struct Listener::State {
-  Socket socket{};
+  ConnectionSocket socket{};
   Context context{nullptr, &SSL_CTX_free};
 };
 
@@ -245,7 +246,7 @@ Listener::Listener(const std::string& address, int port, const std::optional<Tls
   ::signal(SIGPIPE, SIG_IGN);
   if (tls) state_->context = context_of(*tls, true);
   const Addresses found = addresses_of(address, port, AI_PASSIVE);
-  state_->socket = Socket(::socket(found->ai_family, found->ai_socktype, found->ai_protocol));
+  state_->socket = ConnectionSocket(::socket(found->ai_family, found->ai_socktype, found->ai_protocol));
   const int yes = 1;
   ::setsockopt(state_->socket.number(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   if (::bind(state_->socket.number(), found->ai_addr, found->ai_addrlen) != 0 ||
@@ -270,7 +271,7 @@ std::optional<Connection> Listener::accept(std::chrono::milliseconds wait) {
   if (::poll(&one, 1, static_cast<int>(wait.count())) <= 0) return std::nullopt;
   sockaddr_storage other{};
   socklen_t length = sizeof other;
-  Socket socket(::accept(state_->socket.number(), reinterpret_cast<sockaddr*>(&other), &length));
+  ConnectionSocket socket(::accept(state_->socket.number(), reinterpret_cast<sockaddr*>(&other), &length));
   if (socket.number() < 0) return std::nullopt;
   make_ready(socket.number());
   auto made = std::make_unique<Connection::State>();
