@@ -9,7 +9,7 @@ configure_options=()
 # What a build of the program takes, on Debian 12.
 build_packages=(
   ca-certificates cmake esbuild g++ ninja-build pkg-config
-  libboost-dev libcgal-dev libcli11-dev libeigen3-dev libexpat1-dev libgdcm-dev libglm-dev libinsighttoolkit5-dev libisal-dev liblz4-dev libjpeg62-turbo-dev
+  libboost-dev libcgal-dev libcli11-dev libcurl4-openssl-dev libeigen3-dev libexpat1-dev libgdcm-dev libglm-dev libinsighttoolkit5-dev libisal-dev liblz4-dev libjpeg62-turbo-dev
   libminizip-dev libnifti-dev libopenimageio-dev libopenmesh-dev libsqlite3-dev libssl-dev libtbb-dev libtet1.5-dev libzstd-dev nlohmann-json3-dev zlib1g-dev
 )
 

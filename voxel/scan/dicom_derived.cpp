@@ -52,6 +52,12 @@ void put_study(DicomAttributes& attributes, const DicomOptions& options, const D
                                         "' cannot be converted to UTF-8: choose a label in ASCII");
     attributes.put(tag, text.vr.c_str(), *value);
   }
+  if (!options.source->attributes.contains(identity_removed_tag)) return;
+  DicomAttributes profile(attributes.coding());
+  profile.put(0x00080100, "SH", "113100");
+  profile.put(0x00080102, "SH", "DCM");
+  profile.put(0x00080104, "LO", "Basic Application Confidentiality Profile");
+  attributes.put_sequence(0x00120064, {profile});
 }
 
 void put_source_images(DicomAttributes& attributes, const std::vector<DicomSource::Image>& images) {

@@ -7,6 +7,7 @@
 #include "planner/cli/program/convert_source.h"
 #include "planner/cli/program/verbs.h"
 #include "planner/cli/verb/octree_out.h"
+#include "planner/cli/verb/plan_in.h"
 #include "planner/cli/verb/scan_in.h"
 #include "planner/operation/file/label_table.h"
 #include "planner/operation/file/write_label_table.h"
@@ -82,7 +83,7 @@ int convert_octree(const Program& program, const ConvertText& text) {
   json["path"] = text.out.string();
   json["label"] = options.label;
   json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
-  tell(findings, json);
+  tell(text, findings, json);
   program.say(json, lines({{"written", text.out.string()},
                            {"segment", options.label},
                            {"voxels", std::to_string(object.object.voxel_count())}}));
@@ -123,7 +124,7 @@ int convert_labels(const Program& program, const ConvertText& text) {
   json["path"] = text.out.string();
   json["segments"] = std::move(said);
   json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
-  tell(findings, json);
+  tell(text, findings, json);
   program.say(json, lines(rows));
   return done;
 }
@@ -158,6 +159,23 @@ std::optional<int> convert_as(const Program& program, const ConvertText& text) {
   return std::nullopt;
 }
 
+/// Leaves out what a scan's file may state of anybody beside its samples: names of labels, and words that the
+/// standard does not define.
+void leave_out_words(voxel::Scene& scene, LabelTable& table, std::vector<std::string>& changes) {
+  constexpr std::array<const char*, 3> units{"HU", "US", "OD"};
+  if (!table.names.empty()) changes.emplace_back("Names of labels: removed");
+  table.names.clear();
+  if (std::string kept = voxel::defined_modality(scene.modality); kept != scene.modality) {
+    changes.emplace_back("Modality (0008,0060): written as OT, as it is no word of the standard");
+    scene.modality = "OT";
+  }
+  if (!scene.declared_unit.empty() &&
+      std::find(units.begin(), units.end(), scene.declared_unit) == units.end()) {
+    changes.emplace_back("Rescale Type (0028,1054): removed, as it is no word of the standard");
+    scene.declared_unit.clear();
+  }
+}
+
 int convert(const Program& program, const ConvertText& text) {
   if (const std::optional<int> status = convert_as(program, text)) return *status;
   if (is_octree(text.in)) return convert_octree(program, text);
@@ -169,10 +187,11 @@ int convert(const Program& program, const ConvertText& text) {
   need_used(text, folder, false);
   need_folder_of(text.out, folder ? OutputKind::Folder : OutputKind::File);
   Timings timings;
-  const voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
+  voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
   if (program.stop.stop_requested()) throw Stopped("stopped before " + text.out.string() + " was written");
-  const LabelTable table = names_of_labels(scene, text.in);
+  LabelTable table = names_of_labels(scene, text.in);
   std::vector<std::string> findings = table.passed_over;
+  if (!text.keeps_identity()) leave_out_words(scene, table, *text.changes);
   if (!folder && !table.names.empty()) need_label_table(text.out, table.names);
   {
     const Stopwatch watch(timings, "write");
@@ -189,12 +208,17 @@ int convert(const Program& program, const ConvertText& text) {
         findings.push_back("the modality " + scene.modality + " is written as Secondary Capture images" +
                            (scene.declared_unit.empty() ? "" : " with the unit " + scene.declared_unit) +
                            ": the attributes of its own kind of image are left out");
-      options.source = source_of(program, text, is_dicom(scene), scene.identity, findings);
+      {
+        std::vector<std::string> words = std::move(*text.changes);
+        options.source = source_of(program, text, is_dicom(scene), scene.identity, findings);
+        text.changes->insert(text.changes->end(), words.begin(), words.end());
+      }
       if (options.source && !text.source.empty())
         need_on_source(text, *options.source, corners_of(scene.lattice), findings);
       if (!options.source) {
-        options.patient_name =
-            scene.identity.patient_name.empty() ? "Anonymous" : scene.identity.patient_name;
+        options.patient_name = scene.identity.patient_name.empty() || !text.keeps_identity()
+                                   ? "Anonymous"
+                                   : scene.identity.patient_name;
         findings.push_back("no --source: the series is of '" + options.patient_name +
                            "', in a study of its own, and refers to no images");
       }
@@ -211,7 +235,7 @@ int convert(const Program& program, const ConvertText& text) {
   }
   Json json = scan_answer(scene, timings);
   json["path"] = text.out.string();
-  tell(findings, json);
+  tell(text, findings, json);
   program.say(json, lines({{"written", text.out.string()}, {"samples", dims_text(scene.lattice.dims)}}));
   return done;
 }
@@ -261,6 +285,12 @@ void add_convert(Program& program) {
   verb.add_flag("--other-identity", text->other_identity,
                 "Accept a source that states another patient, study or frame of reference than the scan, or "
                 "whose images lie elsewhere, and report a FAIL");
+  add_identity(
+      verb, text->identity,
+      "The patient and study of written DICOM: keep those of --source (default); remove them by the Basic "
+      "Application Level Confidentiality Profile of PS3.15, also names of labels and files; or new, a "
+      "patient "
+      "without a name in a study of its own");
   verb.add_option("--label", text->label,
                   "Label of the DICOM object; default: the octree's or the file's name");
   add_scan_options(verb, text->scan);

@@ -12,6 +12,7 @@
 #include "planner/operation/measure/octree_summary.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/number_format.h"
+#include "planner/result/report/pdf.h"
 #include "voxel/archive/occupancy.h"
 #include "voxel/archive/write_dicom_document.h"
 #include "voxel/archive/write_rtstruct.h"
@@ -173,8 +174,10 @@ bool holds_shares(const voxel::Scene& scene) {
          });
 }
 
+/// The label of --label, else the file's name, which may name the patient.
 std::string label_of(const ConvertText& text) {
-  return text.label.empty() ? text.in.stem().string().substr(0, 64) : text.label;
+  if (!text.label.empty()) return text.label;
+  return text.keeps_identity() ? text.in.stem().string().substr(0, 64) : "Object";
 }
 
 /// The voxels of a universe around an object as a lattice, and the first of them.
@@ -334,7 +337,7 @@ int convert_structures(const Program& program, const ConvertText& text) {
           " planes of voxels have none; --planes voxels draws on these planes");
   }
   json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
-  tell(findings, json);
+  tell(text, findings, json);
   program.say(json, lines(rows));
   return done;
 }
@@ -378,7 +381,7 @@ int convert_fractions(const Program& program, const ConvertText& text) {
                                                     " voxels partly filled");
   }
   json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
-  tell(findings, json);
+  tell(text, findings, json);
   program.say(json, lines(rows));
   return done;
 }
@@ -391,6 +394,13 @@ int convert_report(const Program& program, const ConvertText& text) {
         text.in.string() +
         ": is no whole PDF: it has to begin with %PDF- and to end with %%EOF; octotomy run "
         "--pdf writes one");
+  if (!text.keeps_identity() &&
+      bytes.find(anonymous_pdf_mark, bytes.size() - std::min<std::size_t>(bytes.size(), 2048)) ==
+          std::string::npos)
+    throw std::runtime_error(text.in.string() + ": --identity " + text.identity +
+                             " takes only a PDF whose pages name nobody, because pages cannot be changed "
+                             "here: octotomy run --pdf --identity "
+                             "remove writes one");
   Timings timings;
   std::vector<std::string> findings;
   voxel::DicomDocumentOptions options;
@@ -411,7 +421,7 @@ int convert_report(const Program& program, const ConvertText& text) {
   json["label"] = options.label;
   json["bytes"] = bytes.size();
   json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
-  tell(findings, json);
+  tell(text, findings, json);
   program.say(json, lines({{"written", text.out.string()}, {"report", options.label}}));
   return done;
 }
@@ -452,7 +462,7 @@ int convert_model(const Program& program, const ConvertText& text) {
   json["vertices"] = triangles.points_mm.size();
   json["faces"] = triangles.faces.size();
   json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
-  tell(findings, json);
+  tell(text, findings, json);
   program.say(json, lines({{"written", text.out.string()},
                            {"model", options.label},
                            {"faces", grouped(static_cast<double>(triangles.faces.size()), 0)}}));

@@ -26,7 +26,12 @@ std::optional<voxel::DicomSource> source_of(const Program& program, const Conver
   if (text.source.empty() && !reads_dicom) return std::nullopt;
   voxel::DicomSource source =
       voxel::dicom_source(text.source.empty() ? text.in : text.source, read_options(program, text.scan));
-  if (text.source.empty()) return source;
+  const auto decided = [&] {
+    voxel::DecidedIdentity made = voxel::decide_identity(source, *voxel::identity_choice(text.identity));
+    *text.changes = std::move(made.changes);
+    return made.source;
+  };
+  if (text.source.empty()) return decided();
   for (const voxel::Finding& line : source.audit)
     if (line.verdict != voxel::Verdict::Pass)
       findings.push_back(text.source.string() + ": " + to_string(line.verdict) + ", " + line.check + ": " +
@@ -35,7 +40,7 @@ std::optional<voxel::DicomSource> source_of(const Program& program, const Conver
        need_same_patient({text.source.string(), source.identity}, {text.in.string(), identity},
                          text.other_identity, "--other-identity"))
     findings.push_back(std::move(finding));
-  return source;
+  return decided();
 }
 
 std::vector<glm::dvec3> corners_of(const voxel::Lattice& lattice) {
@@ -100,7 +105,8 @@ void need_on_source(const ConvertText& text, const voxel::DicomSource& source,
   }
 }
 
-void tell(const std::vector<std::string>& findings, Json& json) {
+void tell(const ConvertText& text, const std::vector<std::string>& findings, Json& json) {
+  json["identity"] = {{"choice", text.identity}, {"changes", *text.changes}};
   json["findings"] = findings;
   for (const std::string& finding : findings) warn_finding(finding);
 }
@@ -127,7 +133,7 @@ LabelObjects read_label_objects(const Program& program, const ConvertText& text,
   for (std::string& line : findings_of_labels(read.labels)) findings.push_back(std::move(line));
   const voxel::Universe universe = voxel::universe_on(read.scene.lattice);
   for (const voxel::Label& label : read.labels) {
-    const auto named = table.names.find(label.number);
+    const auto named = text.keeps_identity() ? table.names.find(label.number) : table.names.end();
     read.objects.push_back(
         {named == table.names.end() ? "label " + std::to_string(label.number) : named->second.substr(0, 64),
          voxel::octree_of_label(universe, read.scene, label.number)});
@@ -141,7 +147,8 @@ voxel::DicomSegment binary_object(const ConvertText& text, const voxel::OctreeFi
     throw std::runtime_error(text.in.string() +
                              ": only a binary octree is a segmentation: choose an object of the samples with "
                              "octotomy octree --window LOW:HIGH");
-  return {!text.label.empty() ? text.label : file.name.empty() ? "Object" : file.name.substr(0, 64), *octree};
+  const bool has_own = text.keeps_identity() && !file.name.empty();
+  return {!text.label.empty() ? text.label : has_own ? file.name.substr(0, 64) : "Object", *octree};
 }
 
 }  // namespace octotomy::planner::cli

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "planner/cli/verb/scan_in.h"
+#include "voxel/archive/source_identity.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/scan/dicom_source.h"
 #include "voxel/scan/write_dicom_seg.h"
@@ -19,10 +21,15 @@ struct ConvertText {
   std::string label, as, planes = "images";
   ScanIn scan;
   bool dicom = false, other_identity = false;
+  std::string identity = "keep";
+  /// What source_of() changed in the source's identity.
+  std::shared_ptr<std::vector<std::string>> changes = std::make_shared<std::vector<std::string>>();
+
+  bool keeps_identity() const { return identity == "keep"; }
 };
 
-/// The DICOM series to which the output refers; none if it was not made from one. Refuses a series of another
-/// patient than the input. Adds findings on values that could not be compared and, for --source, each WARN
+/// The DICOM series to which the output refers, with the identity that --identity chooses; none if it was not made
+/// from one. Refuses a series of another patient than the input. Adds findings on values that could not be compared and, for --source, each WARN
 /// and FAIL of its audit.
 std::optional<voxel::DicomSource> source_of(const Program& program, const ConvertText& text, bool reads_dicom,
                                             const voxel::Identity& identity,
@@ -39,8 +46,8 @@ std::vector<glm::dvec3> corners_of(const voxel::Lattice& lattice);
 void need_on_source(const ConvertText& text, const voxel::DicomSource& source,
                     const std::vector<glm::dvec3>& points_mm, std::vector<std::string>& findings);
 
-/// Adds findings to the JSON and prints them as warnings.
-void tell(const std::vector<std::string>& findings, Json& json);
+/// Adds findings and what was done to the identity to the JSON; prints findings as warnings.
+void tell(const ConvertText& text, const std::vector<std::string>& findings, Json& json);
 
 /// The labels of a label map as objects on its own lattice, with their names.
 struct LabelObjects {
@@ -48,11 +55,11 @@ struct LabelObjects {
   std::vector<voxel::Label> labels;
   std::vector<voxel::DicomSegment> objects;  ///< one for each label
 };
-/// Reads a label map. Adds findings on its labels and names. Throws std::runtime_error if it is none.
+/// Reads a label map; names are left out if --identity removes or replaces it, as anything may stand there. Adds findings on its labels and names. Throws std::runtime_error if it is none.
 LabelObjects read_label_objects(const Program& program, const ConvertText& text, Timings& timings,
                                 std::vector<std::string>& findings);
 
-/// The binary octree of a file, with the name of --label, else its own. Throws std::runtime_error if the file
+/// The binary octree of a file, with the name of --label, else its own unless --identity leaves it out. Throws std::runtime_error if the file
 /// holds another kind of octree.
 voxel::DicomSegment binary_object(const ConvertText& text, const voxel::OctreeFile& file);
 

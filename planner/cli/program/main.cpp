@@ -245,6 +245,7 @@ int parse_and_run(int count, char** arguments) {
   cli::add_outcome(program);
   cli::add_pack(program);
   cli::add_scene(program);
+  cli::add_archive_verbs(program);
   cli::add_serve(program);
   cli::group_verbs(app);
   try {

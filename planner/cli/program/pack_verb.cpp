@@ -6,6 +6,7 @@
 #include "planner/operation/file/output_path.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/result/pack/pack.h"
+#include "planner/result/report/patient.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 struct PackText : PlanIn {
   std::filesystem::path out;
   bool anonymous = false;
+  std::string identity = "keep";
 };
 
 int pack(Program& program, const PackText& text) {
@@ -20,12 +22,14 @@ int pack(Program& program, const PackText& text) {
   need_folder_of(text.out);
   Result result;
   result.plan = plan_of(program, text);
-  result.anonymous = text.anonymous;
+  result.anonymous = text.anonymous || text.identity == "remove";
   EvaluateOptions options = evaluate_options(program);
   options.prepares_files = true;
   options.keep_scans = true;
   result.evaluation = evaluated(program, result.plan, options);
   result.pictures = plan_pictures(result.plan, result.evaluation);
+  std::vector<std::string> changes;
+  if (text.identity == "remove") changes = leave_out_names(result);
   Timings timings = result.evaluation.timings;
   Json manifest;
   {
@@ -39,6 +43,7 @@ int pack(Program& program, const PackText& text) {
   json["path"] = text.out.string();
   json["bytes"] = bytes;
   json["counts"] = to_json(verdict_counts(result.evaluation));
+  if (!changes.empty()) json["identity"] = {{"choice", text.identity}, {"changes", changes}};
   json.update(manifest);
   program.say(json, verdict_text(result.evaluation) +
                         lines({{"written", text.out.string()},
@@ -61,6 +66,7 @@ void add_pack(Program& program) {
   add_plan_options(verb, *text);
   verb.add_option("-o,--out", text->out, "The .zip to write")->required();
   add_anonymous(verb, text->anonymous);
+  add_result_identity(verb, text->identity);
 }
 
 }  // namespace octotomy::planner::cli

@@ -9,6 +9,7 @@
 #include "planner/operation/file/output_path.h"
 #include "planner/operation/file/path_checks.h"
 #include "planner/operation/table/number_format.h"
+#include "planner/result/report/patient.h"
 #include "planner/result/report/pdf.h"
 #include "planner/result/report/preview.h"
 #include "planner/result/report/report.h"
@@ -96,7 +97,7 @@ int run(Program& program, const RunText& text, Plan plan, const std::function<vo
   Result result;
   result.plan = std::move(plan);
   result.as_pdf = text.as_pdf;
-  result.anonymous = text.anonymous;
+  result.anonymous = text.anonymous || text.identity == "remove";
   if (text.as_pdf) need_pdf_printer();
   need_result_folder(text.out, result_names(result.plan));
   EvaluateOptions options = evaluate_options(program);
@@ -104,6 +105,9 @@ int run(Program& program, const RunText& text, Plan plan, const std::function<vo
   options.prepares_files = true;
   need_disk_of_label_maps(result.plan, text.out, options);
   result.evaluation = evaluated(program, result.plan, options);
+  const Plan plan_as_read = result.plan;
+  std::vector<std::string> changes;
+  if (text.identity == "remove") changes = leave_out_names(result);
   if (!options.certify)
     result.findings.push_back(
         {"certificates", voxel::Verdict::Warn,
@@ -119,9 +123,11 @@ int run(Program& program, const RunText& text, Plan plan, const std::function<vo
     warn("written without certificates: " + (text.out / "report.html").string() + "; they follow");
     result.findings.pop_back();
     options.certify = true;
-    result.evaluation = evaluate(result.plan, options);
+    result.evaluation = evaluate(plan_as_read, options);
+    if (text.identity == "remove") leave_out_names(result);
     json = written(program, result, text.out);
   }
+  if (!changes.empty()) json["identity"] = {{"choice", text.identity}, {"changes", changes}};
   program.say(json,
               verdict_text(result.evaluation) + "written: " + (text.out / "report.html").string() + "\n");
   return status_of(result.evaluation);
@@ -145,6 +151,21 @@ void add_anonymous(CLI::App& verb, bool& anonymous) {
                 "report states name, number, birth date and study date if the scan does");
 }
 
+void add_identity(CLI::App& verb, std::string& identity, const std::string& does) {
+  verb.add_option("--identity", identity, does)
+      ->check(CLI::IsMember({"keep", "remove", "new"}))
+      ->type_name("WORD");
+}
+
+void add_result_identity(CLI::App& verb, std::string& identity) {
+  verb.add_option(
+          "--identity", identity,
+          "remove: the patient, the paths of scans, details of their audits, the plan's name and signatures "
+          "are left out; a replay then needs --scan. Default: keep")
+      ->check(CLI::IsMember({"keep", "remove"}))
+      ->type_name("WORD");
+}
+
 void add_plan_verbs(Program& program) {
   program.verb("schema", "The JSON schema of plans, from the table of operations",
                "octotomy schema > plan.schema.json", [&program] {
@@ -165,6 +186,7 @@ void add_plan_verbs(Program& program) {
   add_certify(verb, text->certify);
   verb.add_flag("--pdf", text->as_pdf, "Also print the report as report.pdf; needs Chromium on the PATH");
   add_anonymous(verb, text->anonymous);
+  add_result_identity(verb, text->identity);
   const auto seen = std::make_shared<PreviewText>();
   CLI::App& draws =
       program.verb("preview", "Draws one step of a plan, without certificates",

@@ -11,6 +11,7 @@ namespace {
 
 struct SceneText : PlanIn {
   std::filesystem::path out;
+  std::string identity = "keep";
 };
 
 std::string names(const Json& list) {
@@ -58,6 +59,7 @@ void add_scene(Program& program) {
   add_plan_options(verb, *text);
   verb.add_option("-o,--out", text->out, "One .mrb, or a new folder for scene.mrml and its files")
       ->required();
+  add_result_identity(verb, text->identity);
 }
 
 }  // namespace octotomy::planner::cli

@@ -25,11 +25,12 @@ constexpr std::string_view shaping = "Change surfaces and forms";
 constexpr std::string_view measuring = "Measure and compare";
 constexpr std::string_view elements = "Finite elements";
 constexpr std::string_view checking = "Check the kernels";
+constexpr std::string_view exchanging = "Exchange with an archive";
 constexpr std::string_view many = "Many scans";
 
 /// The groups in their order in the help.
-constexpr std::array group_order{looking,  planning,  scans,    cutting, shaping,
-                                 elements, measuring, checking, many};
+constexpr std::array group_order{looking,  planning,  scans,      cutting,  shaping,
+                                 elements, measuring, exchanging, checking, many};
 
 constexpr std::array verb_table{
     GroupedVerb{looking, "look"},
@@ -78,6 +79,8 @@ constexpr std::array verb_table{
     GroupedVerb{measuring, "compare"},
     GroupedVerb{measuring, "printable"},
     GroupedVerb{measuring, "cephalometry"},
+    GroupedVerb{exchanging, "send"},
+    GroupedVerb{exchanging, "receive"},
     GroupedVerb{checking, "verify"},
     GroupedVerb{checking, "phantom"},
     GroupedVerb{many, "cohort"},

@@ -23,6 +23,7 @@ void add_cephalometry(Program& program);
 void add_outcome(Program& program);
 void add_pack(Program& program);
 void add_scene(Program& program);
+void add_archive_verbs(Program& program);  ///< send, receive
 void add_serve(Program& program);
 
 }  // namespace octotomy::planner::cli

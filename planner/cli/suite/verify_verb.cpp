@@ -7,6 +7,7 @@
 #include "planner/operation/table/number_format.h"
 #include "planner/result/pack/pack.h"
 #include "planner/result/pack/pack_check.h"
+#include "planner/result/report/patient.h"
 #include "planner/result/report/result_folder.h"
 #include "planner/result/report/verification.h"
 #include "voxel/space/unfinished_folder.h"
@@ -62,6 +63,10 @@ SuiteAnswer verify_pack(Program& program, const VerifyText& text, const std::fil
   answer.timings = result.evaluation.timings;
   answer.counts = verdict_counts(result.evaluation);
   const voxel::UnfinishedFolder work(std::filesystem::temp_directory_path(), "octotomy-replay-");
+  if (packed.manifest.value("identity", "") == "removed") {
+    result.anonymous = true;
+    leave_out_names(result);
+  }
   write_pack(result, work.path() / "replayed.zip", {program.stop.get_token(), program.progress()});
   const PackContents replayed = read_pack(work.path() / "replayed.zip");
   const PackComparison comparison = compare_packs(packed, replayed);

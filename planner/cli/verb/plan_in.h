@@ -47,6 +47,7 @@ struct RunText : PlanIn {
   Certify certify = Certify::Now;
   bool as_pdf = false;
   bool anonymous = false;
+  std::string identity = "keep";
 };
 /// Replays a plan into a result's folder and prints a summary; returns the exit status.
 int run(Program& program, const RunText& text);
@@ -55,6 +56,10 @@ int run(Program& program, const RunText& text);
 int run(Program& program, const RunText& text, Plan plan, const std::function<void()>& beside = {});
 /// Adds --anonymous to a verb that writes a report.
 void add_anonymous(CLI::App& verb, bool& anonymous);
+/// Adds --identity keep|remove to a verb that writes results.
+void add_result_identity(CLI::App& verb, std::string& identity);
+/// Adds --identity keep|remove|new to a verb that writes files for others.
+void add_identity(CLI::App& verb, std::string& identity, const std::string& does);
 /// Adds --certify to a verb that replays a plan.
 void add_certify(CLI::App& verb, Certify& certify);
 

@@ -586,6 +586,13 @@ Operation segment_operation() {
                         "Edge of the voxels that choose parts, and of an octree's. Default: as fine as the "
                         "scan, at most 512 a side.")
                       .greater_than(0.0))
+      .verb_takes(
+          field(
+              "identity", &Segment::identity,
+              "The patient and study of a DICOM segmentation: keep the scan's; remove them by the Basic "
+              "Application Level Confidentiality Profile of PS3.15, also names from files; or new, a patient "
+              "without a name in a study of its own.")
+              .one_of({"keep", "remove", "new"}))
       .reads_scans()
       .on_files(
           "octotomy segment head.nrrd -o skull.octree --window bone --largest\n"

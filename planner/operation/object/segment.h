@@ -46,6 +46,7 @@ struct Segment {
   std::vector<std::string> windows, objects;
   std::filesystem::path out, contours;
   std::optional<double> voxel_mm;
+  std::string identity = "keep";  ///< of a DICOM segmentation: voxel::IdentityChoice
 };
 
 /// The verb on files: an octree, a label map or a DICOM segmentation of the objects, and contours of the first

@@ -12,6 +12,7 @@
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/plan_universe.h"
+#include "voxel/archive/source_identity.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/filter/slice_contour.h"
 #include "voxel/filter/tissue.h"
@@ -29,7 +30,8 @@ struct Named {
   std::string name;
   Segmented made;
   std::optional<voxel::Octree> on_samples = std::nullopt;
-  bool is_named = true;  ///< the name is a word, not the two numbers of a window
+  bool is_of_file = false;  ///< the name stands in a file or is a file's
+  bool is_named = true;     ///< the name is a word, not the two numbers of a window
 };
 
 bool is_dicom_seg(const fs::path& path) {
@@ -66,7 +68,7 @@ std::vector<Named> segments_of(const FileBench& bench, Segment asked, const voxe
   std::vector<Named> segments;
   const auto add = [&](const std::string& name, bool is_named) {
     const Stopwatch watch(timings, "segment");
-    segments.push_back({name, segmented(asked, source), {}, is_named});
+    segments.push_back({name, segmented(asked, source), {}, asked.named.has_value(), is_named});
     // If the voxels are the scan's samples, the label map uses them directly.
     if (is_octree(asked.out)) return;
     if (!is_dicom_seg(asked.out) && on_samples(scene.lattice, universe.lattice())) return;
@@ -92,7 +94,9 @@ std::vector<Named> segments_of(const FileBench& bench, Segment asked, const voxe
     if (octree->is_empty()) throw std::runtime_error(path.string() + ": holds no voxel");
     segments.push_back(
         {path.stem().string(),
-         {*octree, {{{"do", "read"}, {"path", path.string()}, {"voxels", octree->voxel_count()}}}}});
+         {*octree, {{{"do", "read"}, {"path", path.string()}, {"voxels", octree->voxel_count()}}}},
+         {},
+         true});
   }
   return segments;
 }
@@ -144,7 +148,8 @@ void write_seg(const FileBench& bench, const Segment& asked, const voxel::Scene&
   for (const Named& segment : segments) {
     const voxel::Octree& voxels = segment.made.octree;
     written.push_back(
-        {segment.name.substr(0, 64),
+        {asked.identity == "keep" || !segment.is_of_file ? segment.name.substr(0, 64)
+                                                         : "Object " + std::to_string(written.size() + 1),
          segment.on_samples
              ? *segment.on_samples
              : voxel::chosen_samples(scene.lattice, none, voxel::Octree::empty(voxels.universe()), voxels)});
@@ -158,7 +163,11 @@ void write_seg(const FileBench& bench, const Segment& asked, const voxel::Scene&
   options.label = written.size() == 1 ? written.front().label : "Objects";
   options.series_description = "Octotomy, segmented";
   options.progress.stop = bench.stop;
-  if (const auto source = bench.dicom_source(asked.scan.name, scene)) options.source = *source;
+  voxel::DecidedIdentity decided;
+  if (const auto source = bench.dicom_source(asked.scan.name, scene))
+    decided = voxel::decide_identity(*source, *voxel::identity_choice(asked.identity));
+  options.source = std::move(decided.source);
+  json["identity"] = {{"choice", asked.identity}, {"changes", decided.changes}};
   json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
   outputs.write(asked.out, [&](const fs::path& file) { voxel::write_dicom_seg(written, file, options); });
 }

@@ -10,6 +10,7 @@
 #include "planner/result/pack/library_versions.h"
 #include "planner/result/pack/pack_witness.h"
 #include "planner/result/pack/zip_writer.h"
+#include "planner/result/report/patient.h"
 #include "planner/result/report/report_page.h"
 #include "planner/result/report/result_tables.h"
 #include "voxel/space/file_text.h"
@@ -131,6 +132,7 @@ Json write_pack(Result& result, const fs::path& path, const ExportOptions& optio
   archive.add("NOTICE.txt", notice);
   add_folder(archive, work.path());
   Json manifest{{"octotomy_pack", pack_format}, {"octotomy", OCTOTOMY_VERSION}};
+  if (names_nobody(result)) manifest["identity"] = "removed";
   manifest["universe"] = {{"side", result.evaluation.universe.side()},
                           {"lps_from_voxel", to_json(result.evaluation.universe.lps_from_voxel)}};
   manifest["scans"] = scans_json(result.evaluation);

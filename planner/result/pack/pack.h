@@ -19,6 +19,7 @@ inline constexpr int pack_format = 1;
 /// - NOTICE.txt: licences, and what the archive does not contain;
 /// - manifest.json, last: every other entry with its length and SHA-256; the objects with their entries; the scans
 ///   with their lattice and SHA-256; the versions of the program and its libraries.
+/// A result after leave_out_names() is marked "identity": "removed", so that a replay leaves out the same.
 /// The scans' samples are not in it, except for the cells of witness_arrays(). Precondition: the evaluation has
 /// stored its scans (EvaluateOptions::keep_scans), and a pdf is not wanted. Returns the manifest. Throws as
 /// write_result_files(), and voxel::Error (Resource) if the disk is full; then `path` is as before.

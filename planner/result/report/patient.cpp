@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "planner/operation/table/json_file.h"
 #include "planner/operation/table/same_patient.h"
 
 namespace octotomy::planner {
@@ -134,6 +135,40 @@ void leave_out_patients(Result& result) {
           finding = finding.substr(0, at + check.size()) + left_out;
       hide_quoted(values, finding);
     }
+}
+
+std::vector<std::string> leave_out_names(Result& result) {
+  std::vector<std::string> changes;
+  leave_out_patients(result);
+  changes.emplace_back("patient: removed");
+  for (ScanRecord& scan : result.evaluation.scans) {
+    scan.path = scan.name;
+    changes.push_back("scan '" + scan.name + "': path removed");
+    for (voxel::Finding& finding : scan.audit) {
+      finding.files.clear();
+      if (finding.verdict != voxel::Verdict::Pass)
+        changes.push_back("scan '" + scan.name + "': details of its audit, '" + finding.check + "', removed");
+      finding.detail = "left out as requested; octotomy info prints it";
+    }
+  }
+  result.plan.name = "Plan";
+  changes.emplace_back("plan: name removed");
+  result.plan.file.clear();
+  for (auto& [name, scan] : result.plan.scans) scan.path = name;
+  if (result.plan.text.empty()) return changes;
+  PatientJson plan = PatientJson::parse(result.plan.text);
+  plan["name"] = result.plan.name;
+  if (plan.contains("scans"))
+    for (auto& [name, scan] : plan["scans"].items()) scan["path"] = name;
+  if (plan.erase("signatures") > 0) changes.emplace_back("plan: signatures removed");
+  result.plan.text = json_text(plan, 2) + "\n";
+  return changes;
+}
+
+bool names_nobody(const Result& result) {
+  const auto& scans = result.evaluation.scans;
+  return result.anonymous && std::all_of(scans.begin(), scans.end(),
+                                         [](const ScanRecord& scan) { return scan.path == scan.name; });
 }
 
 }  // namespace octotomy::planner

@@ -3,8 +3,12 @@
 
 #include <filesystem>
 #include <stop_token>
+#include <string_view>
 
 namespace octotomy::planner {
+
+/// The line after the end of a PDF whose pages were made without names (leave_out_names()).
+inline constexpr std::string_view anonymous_pdf_mark = "%octotomy: names nobody\n";
 
 /// Throws std::runtime_error, with what to install, if no Chromium is on the PATH.
 void need_pdf_printer();

@@ -248,7 +248,11 @@ Json write_result_files(Result& result, const std::filesystem::path& folder, con
       voxel::write_file(folder / "views/cephalogram.png",
                         {result.cephalogram.begin(), result.cephalogram.end()});
     voxel::write_file(folder / "report.html", report_html(result));
-    if (result.as_pdf) print_pdf(folder / "report.html", folder / "report.pdf", options.stop);
+    if (result.as_pdf) {
+      print_pdf(folder / "report.html", folder / "report.pdf", options.stop);
+      if (names_nobody(result))
+        std::ofstream(folder / "report.pdf", std::ios::binary | std::ios::app) << anonymous_pdf_mark;
+    }
   }
   Json json = result_json(result);
   for (const auto& [name, text] : result_tables(json)) {

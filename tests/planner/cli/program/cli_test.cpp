@@ -49,7 +49,7 @@ TEST_F(CommandLine, HelpListsEveryVerbInExactlyOneGroup) {
       ++lines[line.substr(2, line.find(' ', 2) - 2)];
     }
   }
-  EXPECT_EQ(groups, 9);
+  EXPECT_EQ(groups, 10);
   // The words of the last case of the completion: all verbs, then options.
   const std::string completion = run("--manual bash").out, start = "    *) words='";
   const std::size_t at = completion.find(start);

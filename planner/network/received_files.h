@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace octotomy::planner {
+
+struct ReceiveLimits {
+  std::uint64_t object_bytes = std::uint64_t{4} << 30;  ///< most bytes of an object
+  std::uint64_t total_bytes = std::uint64_t{64} << 30;  ///< most bytes of all
+};
+
+/// An object that was received whole.
+struct ReceivedFile {
+  std::string name;  ///< SHA-256 of its bytes, and .dcm
+  std::uint64_t bytes = 0;
+  std::string class_uid, instance_uid;
+};
+
+/// The folder of received objects. Names are computed from the content alone, so nothing that a peer states can choose
+/// a path. May be used by several threads.
+class ReceivedFiles {
+ public:
+  /// Makes the folder. Throws std::runtime_error with path and reason.
+  ReceivedFiles(std::filesystem::path folder, const ReceiveLimits& limits);
+
+  /// An object on its way, in a file that is removed unless finish() succeeds.
+  class Part {
+   public:
+    explicit Part(ReceivedFiles& owner);
+    Part(const Part&) = delete;
+    Part& operator=(const Part&) = delete;
+    ~Part();
+    /// Throws PeerError beyond the limits, std::runtime_error if the disk is full.
+    void write(std::string_view bytes);
+    /// Checks that the bytes are a DICOM file whose attributes lie within it and, unless empty, of that class and
+    /// instance; renames it into place. Throws PeerError.
+    ReceivedFile finish(const std::string& class_uid, const std::string& instance_uid);
+
+   private:
+    struct State;
+    ReceivedFiles& owner_;
+    std::unique_ptr<State> state_;
+  };
+
+  /// In the order in which they arrived.
+  std::vector<ReceivedFile> files() const;
+
+ private:
+  std::filesystem::path folder_;
+  ReceiveLimits limits_;
+  mutable std::mutex mutex_;
+  std::uint64_t bytes_ = 0, parts_ = 0;
+  std::vector<ReceivedFile> files_;
+};
+
+}  // namespace octotomy::planner

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "voxel/scan/dicom_source.h"
+
+namespace octotomy::voxel {
+
+/// Whose a written DICOM object is.
+enum class IdentityChoice {
+  Keep,  ///< patient and study of the source
+  Remove,  ///< none: the source's, de-identified by the Basic Application Level Confidentiality Profile of PS3.15
+  New      ///< a patient without a name, in a study of its own
+};
+/// keep, remove, new.
+std::optional<IdentityChoice> identity_choice(std::string_view word);
+std::string_view word_of(IdentityChoice choice);
+
+/// The source that writers copy, and what was changed in it: "Patient's Name (0010,0010): emptied".
+struct DecidedIdentity {
+  std::optional<DicomSource> source;
+  std::vector<std::string> changes;
+};
+
+/// The one place that decides whose a written object is. Remove empties, removes or replaces attributes as PS3.15,
+/// table E.1-1, states for its profile, and keeps of the others only numbers and the words that the standard
+/// defines, because free text may name anybody. Remove and New replace the unique identifiers of study, series,
+/// images and frame of reference by ones that are computed from these: objects of one source stay together, and
+/// whoever has the source can recompute them. Keep changes nothing.
+DecidedIdentity decide_identity(std::optional<DicomSource> source, IdentityChoice choice);
+
+/// The modality if the standard defines it, else none.
+std::string defined_modality(const std::string& modality);
+
+}  // namespace octotomy::voxel
