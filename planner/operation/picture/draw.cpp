@@ -258,7 +258,7 @@ void add_slices(const Draw& asked, const voxel::Scene& scene, const FileBench& b
           if (inside[i] == 0) sheet.is_shown[i] = 0;
       }
       drawing.items.push_back(
-          {cut.said["plane"].get<std::string>() + " " + grouped(position_mm, 1),
+          {cut.said["plane"].get<std::string>() + " " + Json(position_mm).dump(),
            "slice",
            std::nullopt,
            {{"position_mm", position_mm},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "planner/operation/file/path_checks.h"
 #include "planner/operation/file/step_on_files.h"
@@ -31,6 +32,13 @@ struct Montage {
 
   std::vector<std::string> inputs() const { return {}; }
 };
+
+/// A position to a tenth of a millimetre, in letters that pictures have: "-19", "2.5".
+std::string rounded_text(double position_mm) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", std::round(10.0 * position_mm) / 10.0 + 0.0);
+  return text;
+}
 
 /// An axis of the patient and the positions of the scan's own slices along it, ascending.
 struct Stack {
@@ -131,7 +139,7 @@ FileAnswer on_files(const Montage& asked, const FileBench& bench) {
       plane.size_px = tile.size_px;
       plane.pixel_mm = tile.sheet.pixel_mm;
       voxel::Annotation annotation;
-      annotation.title = grouped(positions[i], 1);
+      annotation.title = rounded_text(positions[i]);
       annotation.letters = voxel::edge_letters(tile.sheet);
       annotation.sides = annotation.scale = i == 0;
       voxel::annotate(tile.rgb, plane, annotation);

@@ -85,7 +85,8 @@ TEST(DrawFacets, GouraudMixesTheCornersTonesAndPhongTheirNormals) {
     // Four points a pixel, at quarters; both models are nearly linear over a pixel.
     const double part = (column + 0.5 - 2.0) / 8.0;  // 0 at the foot, 1 at the ridge
     const double mixed = std::sqrt(0.5) * (1 - part) + part;
-    const glm::dvec2 normal = glm::normalize(glm::dvec2(-std::sqrt(0.5), -std::sqrt(0.5)) * (1 - part) + glm::dvec2(0, -1) * part);
+    const glm::dvec2 normal =
+        glm::normalize(glm::dvec2(-std::sqrt(0.5), -std::sqrt(0.5)) * (1 - part) + glm::dvec2(0, -1) * part);
     EXPECT_NEAR(gouraud.rgb[3 * pixel(column, 9)], srgb_byte(static_cast<float>(mixed)), 1) << column;
     EXPECT_NEAR(phong.rgb[3 * pixel(column, 9)], srgb_byte(static_cast<float>(-normal.y)), 1) << column;
     EXPECT_EQ(flat.rgb[3 * pixel(column, 9)], srgb_byte(std::sqrt(0.5f))) << column;
@@ -126,10 +127,13 @@ TEST(DrawFacets, AWireFrameShowsItsEdgesAndHidesWhatIsBehindOnlyIfAsked) {
 
 TEST(DrawLines, ALineOnASurfaceShowsAndOneBehindItDoesNot) {
   const Triangles wall = square(-8, 8, 0);
-  const auto line_at = [](double depth) { return std::vector<glm::dvec3>{{-4, depth, 0.5}, {4, depth, 0.5}}; };
+  const auto line_at = [](double depth) {
+    return std::vector<glm::dvec3>{{-4, depth, 0.5}, {4, depth, 0.5}};
+  };
   const auto line_pixels = [&](double depth) {
     const DrawnPicture picture =
-        draw({{{&wall, glm::vec3(1.0f)}}, {{{line_at(depth)}, glm::vec3(0.0f), 1.0}}, {}}, small_picture(FacetShading::Flat));
+        draw({{{&wall, glm::vec3(1.0f)}}, {{{line_at(depth)}, glm::vec3(0.0f), 1.0}}, {}},
+             small_picture(FacetShading::Flat));
     return std::count(picture.item.begin(), picture.item.end(), 1);
   };
   EXPECT_EQ(line_pixels(0.0), 9);  // from -4 to 4 with round ends of half a pixel
@@ -166,9 +170,12 @@ TEST(DrawFacets, AnObserverSeesNearThingsLargerAndNothingBehind) {
   options.camera.observer = Observer{20.0, 6.0};
   // Rays that touch the ball lie on a cone: their radius in the plane through the middle.
   const double radius = 6 * 20 / std::sqrt(400.0 - 36.0);
-  EXPECT_NEAR(static_cast<double>(draw(scene, options).lit_pixels) * 0.01, radius * radius * std::numbers::pi, 0.4);
+  EXPECT_NEAR(static_cast<double>(draw(scene, options).lit_pixels) * 0.01, radius * radius * std::numbers::pi,
+              0.4);
   const glm::dvec3 p(1.2, -3.0, 2.5);
-  EXPECT_LT(glm::distance(options.camera.lps_mm(options.camera.position_px(p), options.camera.depth_mm(p)), p), 1e-12);
+  EXPECT_LT(
+      glm::distance(options.camera.lps_mm(options.camera.position_px(p), options.camera.depth_mm(p)), p),
+      1e-12);
   // From inside, all rays end on the ball.
   options.camera.observer = Observer{3.0, 6.0};
   const DrawnPicture inside = draw(scene, options);

@@ -36,8 +36,8 @@ Scene altered(const Scene& scene, int first_slice, const std::function<double(do
   for (int z = 0; z < fewer.z; ++z)
     for (int y = 0; y < fewer.y; ++y)
       for (int x = 0; x < fewer.x; ++x)
-        kept.push_back(static_cast<std::int16_t>(std::lround(
-            value(samples[static_cast<std::size_t>(2 * x + dims.x * (2 * y + dims.y * (z + first_slice)))]))));
+        kept.push_back(static_cast<std::int16_t>(std::lround(value(
+            samples[static_cast<std::size_t>(2 * x + dims.x * (2 * y + dims.y * (z + first_slice)))]))));
   made.samples = std::move(kept);
   return made;
 }
@@ -59,7 +59,8 @@ double corner_error_mm(const Scene& scene, const glm::dmat4& found, const glm::d
 }
 
 /// Of the scan moved by a known motion, laid back.
-double error_of(Scene moved, const glm::dmat4& moved_from_still, const ScanFitOptions& options, ScanFit& fit) {
+double error_of(Scene moved, const glm::dmat4& moved_from_still, const ScanFitOptions& options,
+                ScanFit& fit) {
   const glm::dmat4 still = moved.lattice.lps_from_voxel;
   moved.lattice.lps_from_voxel = moved_from_still * still;
   fit = register_scans(moved, real_head(), options);
@@ -71,7 +72,8 @@ TEST(RegisterScans, ARealHeadIsLaidBackByCorrelationFromKnownMotions) {
   ScanFitOptions options;
   options.by = ScanLikeness::Correlation;
   const Scene fewer = altered(real_head(), 0, [](double v) { return v; });
-  for (const glm::dmat4& moved : {motion({12, -7, 9}, 8, {1, 2, -1}), motion({-40, 25, 60}, 25, {0.2, -0.3, 1})}) {
+  for (const glm::dmat4& moved :
+       {motion({12, -7, 9}, 8, {1, 2, -1}), motion({-40, 25, 60}, 25, {0.2, -0.3, 1})}) {
     ScanFit fit;
     EXPECT_LT(error_of(fewer, moved, options, fit), 0.5);
     EXPECT_EQ(fit.verdict, Verdict::Pass) << testing::PrintToString(fit.findings);
@@ -108,14 +110,16 @@ TEST(RegisterScans, ScansWithoutAnythingInCommonFail) {
     const glm::ivec3 dims = waves.lattice.dims;
     const auto n = static_cast<int>(i);
     const glm::dvec3 p = waves.lattice.lps_mm({n % dims.x, n / dims.x % dims.y, n / (dims.x * dims.y)});
-    samples[i] = static_cast<std::int16_t>(500 * std::sin(p.x / 6.4) * std::sin(p.y / 6.4 + 1) * std::sin(p.z / 6.4));
+    samples[i] =
+        static_cast<std::int16_t>(500 * std::sin(p.x / 6.4) * std::sin(p.y / 6.4 + 1) * std::sin(p.z / 6.4));
   }
   for (const ScanLikeness by : {ScanLikeness::Correlation, ScanLikeness::MutualInformation}) {
     ScanFitOptions options;
     options.by = by;
     const ScanFit fit = register_scans(waves, real_head(), options);
     EXPECT_EQ(fit.verdict, Verdict::Fail) << fit.likeness;
-    EXPECT_NE(testing::PrintToString(fit.findings).find("no motion makes the scans alike"), std::string::npos);
+    EXPECT_NE(testing::PrintToString(fit.findings).find("no motion makes the scans alike"),
+              std::string::npos);
   }
 }
 

@@ -29,11 +29,12 @@ TEST(Representation, OfSeveralObjectsIsMultivaluedAndEachReadsBack) {
   const std::string content = represented({first, second}, "multivalued");
   EXPECT_TRUE(octree_of_representation(universe, "multivalued", content) == first);
   // A voxel of both belongs to the first.
-  const voxel::Octree rest =
-      voxel::combine(universe, voxel::Expression(second) - voxel::Expression(first));
+  const voxel::Octree rest = voxel::combine(universe, voxel::Expression(second) - voxel::Expression(first));
   EXPECT_TRUE(octree_of_representation(universe, "multivalued", content, 2) == rest);
   EXPECT_TRUE(octree_of_representation(universe, "multivalued", content, 3).is_empty());
-  EXPECT_NE(tests::refusal([&] { represented({first, second}, "linear"); }).find("several are of multivalued"),
+  EXPECT_NE(tests::refusal([&] {
+              represented({first, second}, "linear");
+            }).find("several are of multivalued"),
             std::string::npos);
 }
 
@@ -69,7 +70,8 @@ TEST(Representation, ThatHoldsEveryVoxelIsRefusedForTheLargestUniverse) {
   const voxel::Octree octree = voxel::Octree::empty(tests::universe_of(12));
   for (const char* name : {"explicit", "array", "bits", "bitree"})
     EXPECT_THROW(represented({octree}, name), std::length_error) << name;
-  for (const char* name : {"treecode", "linear", "masked", "multivalued", "runs", "segments", "marginal", "faces", "packed"})
+  for (const char* name :
+       {"treecode", "linear", "masked", "multivalued", "runs", "segments", "marginal", "faces", "packed"})
     EXPECT_TRUE(octree_of_representation(octree.universe(), name, represented({octree}, name)) == octree)
         << name;
 }

@@ -48,7 +48,8 @@ TEST(DrawStep, SurfacesContoursAndSlicesOfAPlanStandInOnePicture) {
 
 TEST(DrawStep, ALampOnTheOtherSideAndAPickedPixelAreReported) {
   const ScratchFolder folder;
-  const auto said = drawn_details(folder, R"({"id": "d", "do": "draw", "objects": ["ball"], "light": [1, 0, 1],
+  const auto said =
+      drawn_details(folder, R"({"id": "d", "do": "draw", "objects": ["ball"], "light": [1, 0, 1],
       "ambient": 0, "gloss": 0.5, "size": "101x101", "width_mm": 50.5, "centre_mm": [0, 0, 0], "path": "d.png",
       "picks": ["50,50", "0,0"]})");
   EXPECT_NEAR(said["picks"][0]["point_mm"][1].get<double>(), -20.0, 0.6);
@@ -103,15 +104,19 @@ Differences compare(const voxel::Octree& octree, const brep::Triangles& triangle
   of_voxels.algorithm = voxel::Algorithm::RayCast;
   const voxel::Picture voxels = voxel::render({{"box", octree}}, of_voxels);
   brep::DrawOptions of_facets;
-  of_facets.camera = {of_voxels.view.right, of_voxels.view.up, of_voxels.view.look, of_voxels.size_px,
-                      *of_voxels.centre_mm, 0.25,              voxels.nearest_mm,   {}};
+  of_facets.camera = {of_voxels.view.right, of_voxels.view.up,
+                      of_voxels.view.look,  of_voxels.size_px,
+                      *of_voxels.centre_mm, 0.25,
+                      voxels.nearest_mm,    {}};
   const brep::DrawnPicture facets = brep::draw({{{&triangles, glm::vec3(1.0f)}}, {}, {}}, of_facets);
   Differences differences;
   for (std::size_t i = 0; i < facets.item.size(); ++i) {
     const bool a = voxels.object[i] >= 0, b = facets.item[i] >= 0;
     differences.of_lit += a != b;
     differences.lit += a;
-    if (a && b) differences.depth_mm = std::max<double>(differences.depth_mm, std::abs(voxels.depth_mm[i] - facets.depth_mm[i]));
+    if (a && b)
+      differences.depth_mm =
+          std::max<double>(differences.depth_mm, std::abs(voxels.depth_mm[i] - facets.depth_mm[i]));
   }
   return differences;
 }
@@ -119,8 +124,8 @@ Differences compare(const voxel::Octree& octree, const brep::Triangles& triangle
 TEST(DrawFacets, AMeshAndItsOctreeLieOverEachOtherPixelByPixel) {
   voxel::Universe universe{6, glm::dmat4(1.0)};
   universe.lps_from_voxel[3] = glm::dvec4(-31.5, -31.5, -31.5, 1.0);
-  const voxel::Octree octree = voxel::digitise(universe, voxel::Expression(voxel::Ellipsoid{{0, 0, 0}, {22, 12, 17}}),
-                                               voxel::Digitisation::Centre);
+  const voxel::Octree octree = voxel::digitise(
+      universe, voxel::Expression(voxel::Ellipsoid{{0, 0, 0}, {22, 12, 17}}), voxel::Digitisation::Centre);
   const brep::Triangles triangles = convert::triangles_of(convert::cuberille(octree));
   for (const char* view : {"anterior", "posterior", "left", "right", "superior", "inferior"}) {
     const Differences found = compare(octree, triangles, view);

@@ -10,7 +10,8 @@ namespace {
 using namespace tests;
 
 Exported montage_of(const ScratchFolder& folder, const std::string& rest) {
-  const Plan plan = ball_plan(folder, R"({"id": "s", "do": "montage", "scan": "ct", "path": "s.png")" + rest + "}");
+  const Plan plan =
+      ball_plan(folder, R"({"id": "s", "do": "montage", "scan": "ct", "path": "s.png")" + rest + "}");
   const Evaluation evaluation = evaluate(plan);
   Timings timings;
   std::vector<Exported> files = write_files(plan, evaluation, folder.path(), timings);
@@ -35,7 +36,8 @@ TEST(MontageStep, TheMiddleSlicesOfTheScanStandSideBySide) {
 
 TEST(MontageStep, AFirstPositionAndADistanceAreTakenAsTheyAre) {
   const ScratchFolder folder;
-  const Exported made = montage_of(folder, R"(, "plane": "sagittal", "count": 3, "first_mm": -10.5, "apart_mm": 10)");
+  const Exported made =
+      montage_of(folder, R"(, "plane": "sagittal", "count": 3, "first_mm": -10.5, "apart_mm": 10)");
   ASSERT_TRUE(made.written) << testing::PrintToString(made.findings);
   EXPECT_EQ(made.details["positions_mm"], (nlohmann::ordered_json{-10.5, -0.5, 9.5}));
   EXPECT_EQ(made.details["columns"], 2);
