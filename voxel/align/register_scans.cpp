@@ -61,16 +61,16 @@ class Search {
     fit.likeness_there = best.likeness;
     fit.rival_mm = coarsest_mm;
     Parameters at = best.at;
-    is_watched_ = true;
-    step_of_watch(best.at, best.likeness, coarsest_mm);
+    show(best);
     for (double resolution_mm = coarsest_mm / 2.0;; resolution_mm /= 2.0) {
       resolution_mm = std::max(resolution_mm, options_.finest_mm);
       const ScanPair pair(moving_, fixed_, resolution_mm, fine_points, options_.by);
       options_.progress.at(0.5 + 0.4 * options_.finest_mm / resolution_mm);
       const bool is_last = resolution_mm <= options_.finest_mm;
-      at = improved(pair, resolution_mm, at, resolution_mm,
-                    is_last ? resolution_mm / 64.0 : resolution_mm / 8.0)
-               .at;
+      const Found finer = improved(pair, resolution_mm, at, resolution_mm,
+                                   is_last ? resolution_mm / 64.0 : resolution_mm / 8.0);
+      show(finer);
+      at = finer.at;
       if (!is_last) continue;
       const Likeness answer = pair.likeness(motion(at));
       fit.likeness = answer.value;
@@ -78,7 +78,7 @@ class Search {
       fit.least_drop = least_drop(pair, at, answer.value, fit.probe_mm);
       break;
     }
-    fit.fixed_from_moving = glm::inverse(motion(at));
+    fit.fixed_from_moving = fixed_from_moving(at);
     fit.motions = motions_;
     judge(fit);
     options_.progress.at(1.0);
@@ -89,6 +89,7 @@ class Search {
   struct Found {
     Parameters at{};
     double likeness = 0.0;
+    std::vector<ScanFitStep> trail = {};  ///< from the start on, if steps are watched
   };
 
   glm::dmat4 motion(const Parameters& at) const {
@@ -122,33 +123,50 @@ class Search {
   Found improved(const ScanPair& pair, double resolution_mm, const Parameters& from, double first_mm,
                  double last_mm) {
     Found best{from, value(pair, from)};
+    keep_step(best, resolution_mm);
     for (double step_mm = first_mm; step_mm >= last_mm;) {
       if (options_.progress.stop.stop_requested()) options_.progress.at(0.0);
-      Found next = best;
+      Parameters at = best.at;
+      double reached = best.likeness;
       for (std::size_t k = 0; k < 6; ++k)
         for (const double sign : {1.0, -1.0}) {
-          Parameters trial = next.at;
+          Parameters trial = at;
           trial[k] += sign * step_of(k, step_mm);
           const double likeness = value(pair, trial);
-          if (!(likeness > next.likeness)) continue;
-          next = {trial, likeness};
+          if (!(likeness > reached)) continue;
+          at = trial;
+          reached = likeness;
           break;
         }
-      if (!(next.likeness > best.likeness)) {
+      if (!(reached > best.likeness)) {
         step_mm *= 0.5;
         continue;
       }
       Parameters further;
-      for (std::size_t k = 0; k < 6; ++k) further[k] = 2.0 * next.at[k] - best.at[k];
-      best = next;
-      if (const double likeness = value(pair, further); likeness > best.likeness) best = {further, likeness};
-      if (is_watched_) step_of_watch(best.at, best.likeness, resolution_mm);
+      for (std::size_t k = 0; k < 6; ++k) further[k] = 2.0 * at[k] - best.at[k];
+      best.at = at;
+      best.likeness = reached;
+      if (const double likeness = value(pair, further); likeness > reached) {
+        best.at = further;
+        best.likeness = likeness;
+      }
+      keep_step(best, resolution_mm);
     }
     return best;
   }
 
-  void step_of_watch(const Parameters& at, double likeness, double resolution_mm) const {
-    if (options_.watch) options_.watch({resolution_mm, glm::inverse(motion(at)), likeness});
+  /// Without the sign of -0, which matrices' products leave.
+  glm::dmat4 fixed_from_moving(const Parameters& at) const {
+    glm::dmat4 matrix = glm::inverse(motion(at));
+    for (int column = 0; column < 4; ++column) matrix[column] += 0.0;
+    return matrix;
+  }
+
+  void keep_step(Found& found, double resolution_mm) const {
+    if (options_.watch) found.trail.push_back({resolution_mm, fixed_from_moving(found.at), found.likeness});
+  }
+  void show(const Found& found) const {
+    for (const ScanFitStep& step : found.trail) options_.watch(step);
   }
 
   /// The best starts, refined at the coarsest resolution, the best first.
@@ -177,7 +195,9 @@ class Search {
     found.resize(std::min(found.size(), most_refined));
     fit.refined = found.size();
     for (Found& each : found) {
-      each = improved(pair, coarsest_mm, each.at, 0.5 * coarsest_mm, coarsest_mm / 16.0);
+      Found refined = improved(pair, coarsest_mm, each.at, 0.5 * coarsest_mm, coarsest_mm / 16.0);
+      refined.trail.insert(refined.trail.begin(), each.trail.begin(), each.trail.end());
+      each = std::move(refined);
       options_.progress.at(0.5);
     }
     std::stable_sort(found.begin(), found.end(), by_likeness);
@@ -228,7 +248,6 @@ class Search {
   glm::dvec3 middle_mm_{0.0};
   std::array<glm::dvec3, 8> corners_mm_;
   double radius_mm_ = 1.0;
-  bool is_watched_ = false;
   std::size_t motions_ = 0;
 };
 

@@ -16,7 +16,7 @@ namespace octotomy::voxel {
 /// two modalities or contrasts; its value is the entropy correlation coefficient.
 enum class ScanLikeness { Correlation, MutualInformation };
 
-/// A motion that is better than those before.
+/// A motion that is at least as good as those before it at its resolution; the first is the start.
 struct ScanFitStep {
   double resolution_mm = 8.0;
   glm::dmat4 fixed_from_moving{1.0};
@@ -30,7 +30,8 @@ struct ScanFitOptions {
   double least_overlap = 0.3;
   /// The resolution at which the search ends, mm. Lower: slower; a scan's own spacing is the limit.
   double finest_mm = 2.0;
-  std::function<void(const ScanFitStep&)> watch = {};  ///< called at each step of the last search
+  std::function<void(const ScanFitStep&)> watch = {};  ///< called with each step of the best search, from its
+                                                       ///< start on, while it is refined
   Progress progress = {};
 };
 

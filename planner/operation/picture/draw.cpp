@@ -87,8 +87,10 @@ struct Drawing {
   std::vector<Item> items;  ///< in the scene's numbers
 };
 
-glm::vec3 colour_of_item(const Draw& asked, std::size_t number) {
-  return number < asked.colours.size() ? need_colour(asked.colours[number]) : colour_of(number);
+/// The first of the colours without a stated one is bone's, which suits areas and is too pale for lines.
+glm::vec3 colour_of_item(const Draw& asked, std::size_t number, bool is_of_lines) {
+  return number < asked.colours.size() ? need_colour(asked.colours[number])
+                                       : colour_of(is_of_lines ? number + 1 : number);
 }
 
 void add_surfaces(const Draw& asked, const FileBench& bench, Drawing& drawing) {
@@ -97,7 +99,7 @@ void add_surfaces(const Draw& asked, const FileBench& bench, Drawing& drawing) {
     drawing.triangles.push_back(triangles_named(object.name, bench));
     const brep::Triangles& triangles = drawing.triangles.back();
     if (triangles.faces.empty()) throw std::runtime_error(object.name + ": has no triangles to be drawn");
-    const glm::vec3 colour = colour_of_item(asked, drawing.items.size());
+    const glm::vec3 colour = colour_of_item(asked, drawing.items.size(), asked.shading == "wire");
     drawing.scene.surfaces.push_back({&triangles, colour});
     drawing.items.push_back(
         {name_of(object.name), "surface", colour, {{"triangles", triangles.faces.size()}}});
@@ -164,9 +166,7 @@ void add_contours(const Draw& asked, const FileBench& bench, Drawing& drawing,
     if (lines.lines_mm.empty())
       throw std::runtime_error(object.name +
                                ": no plane at a multiple of --apart cuts it: choose a smaller one");
-    // On a surface of the same number bone would not show: lines begin with the next colour.
-    const std::size_t number = drawing.items.size();
-    lines.colour = number < asked.colours.size() ? need_colour(asked.colours[number]) : colour_of(number + 1);
+    lines.colour = colour_of_item(asked, drawing.items.size(), true);
     drawing.items.push_back({name_of(object.name),
                              "contours",
                              lines.colour,
@@ -397,7 +397,7 @@ FileAnswer on_files(const Draw& asked, const FileBench& bench) {
   }
   RenderedPicture made{camera.size_px, std::move(picture.rgb), camera.pixel_mm, {}, {}};
   made.said = {{"view", asked.view},
-               {"shading", asked.shading},
+               {"shading", asked.objects.empty() ? Json(nullptr) : Json(asked.shading)},
                {"size_px", {camera.size_px.x, camera.size_px.y}},
                {"pixel_mm", camera.pixel_mm},
                {"lit_pixels", picture.lit_pixels},

@@ -136,8 +136,8 @@ TEST(DrawLines, ALineOnASurfaceShowsAndOneBehindItDoesNot) {
              small_picture(FacetShading::Flat));
     return std::count(picture.item.begin(), picture.item.end(), 1);
   };
-  EXPECT_EQ(line_pixels(0.0), 9);  // from -4 to 4 with round ends of half a pixel
-  EXPECT_EQ(line_pixels(-3.0), 9);
+  EXPECT_EQ(line_pixels(0.0), 10);  // from -4 to 4, and half a pixel at either end
+  EXPECT_EQ(line_pixels(-3.0), 10);
   EXPECT_EQ(line_pixels(3.0), 0);
 }
 

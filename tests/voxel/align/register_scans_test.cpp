@@ -132,10 +132,11 @@ TEST(RegisterScans, TheAnswerIsTheSameOnOneThreadAndOnManyAndEachStepIsWatched) 
   std::vector<ScanFitStep> steps;
   options.watch = [&](const ScanFitStep& step) { steps.push_back(step); };
   const ScanFit many = register_scans(moved, real_head(), options);
-  ASSERT_GT(steps.size(), 1u);
+  ASSERT_GT(steps.size(), 5u);
+  EXPECT_LT(steps.front().likeness, 0.8 * steps.back().likeness);
   for (std::size_t i = 1; i < steps.size(); ++i) {
     if (steps[i].resolution_mm != steps[i - 1].resolution_mm) continue;
-    EXPECT_GT(steps[i].likeness, steps[i - 1].likeness);
+    EXPECT_GE(steps[i].likeness, steps[i - 1].likeness);
   }
   EXPECT_EQ(steps.back().fixed_from_moving, many.fixed_from_moving);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
