@@ -44,7 +44,7 @@ struct Draw {
   std::string view = "anterior", size = "512x512", shading = "phong";
   std::optional<double> width_mm, eye_mm;
   std::optional<glm::dvec3> centre_mm, light;
-  double ambient = brep::Lighting{}.ambient, gloss = brep::Lighting{}.gloss;
+  double ambient = 0.06, gloss = 0.06;  ///< as brep::Lighting has them
   bool cull = false, hide = false, box = false;
   double apart_mm = 5.0;
   ScanName scan;
