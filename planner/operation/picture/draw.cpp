@@ -453,8 +453,6 @@ void check(const Draw& asked, const FieldLocation& place) {
     refuse("light", "has no direction: for example -1,1,2");
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".png", ".jpg", ".webp"}, place.at("path"));
-  for (const ObjectName& name : asked.contours)
-    if (is_contour_file(name.name)) refuse("contours", "of a plan are those of objects, not of files");
   try {
     voxel::parse_view(asked.view);
     size_of(asked);
