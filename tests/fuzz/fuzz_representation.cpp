@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const octotomy::voxel::Octree octree =
         octotomy::planner::octree_of_representation(universe, name, content);
-    const std::string written = octotomy::planner::represented(octree, name);
+    const std::string written = octotomy::planner::represented({octree}, name);
     if (!(octotomy::planner::octree_of_representation(universe, name, written) == octree)) std::abort();
   } catch (const std::invalid_argument&) {
     return 0;

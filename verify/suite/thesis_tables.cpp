@@ -215,7 +215,8 @@ const std::vector<ThesisGap>& thesis_gaps() {
   static const std::vector<ThesisGap> gaps{
       {"tables 3.1 and A.1, chequered sphere", "the rows are not in the text at hand"},
       {"table A.1, sphere", "the row is not in the text at hand; render --count computes it"},
-      {"tables 7.2, 7.4 and 7.6", "times of two computers of 1989"},
+      {"tables 7.2, 7.4 and 7.6",
+       "times of two computers of 1989; what the operations make is compared, and counted"},
       {"table 4.3", "the order of a quadtree's children is any"},
       {"tables 7.3 and 7.7", "trees of volumes of interest drawn by hand"},
       {"equations 8.9 to 8.12", "definitions of motions without an example in numbers"}};

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 
+#include "voxel/space/text_cursor.h"
 #include "voxel/tree/level_tally.h"
 #include "voxel/tree/logical_build.h"
 
@@ -75,6 +76,74 @@ class MaskedSource {
   std::vector<MaskedNode>::const_iterator node_;
 };
 
+constexpr std::string_view hex_digits = "0123456789abcdef";
+
+char letter_of(Status status) {
+  return status == Status::Partial ? 'P' : status == Status::Full ? 'F' : 'E';
+}
+
+/// Returns the number of the node behind the subtree.
+std::size_t append_text(const std::vector<MaskedNode>& nodes, std::size_t number, std::string& text) {
+  const MaskedNode& node = nodes[number];
+  text += letter_of(node.status);
+  text += hex_digits[node.covered >> 4];
+  text += hex_digits[node.covered & 15];
+  std::size_t next = number + 1;
+  if (node.status != Status::Partial) return next;
+  text += '(';
+  for (int k = 0; k < 8; ++k) next = append_text(nodes, next, text);
+  text += ')';
+  return next;
+}
+
+/// Reads nodes, and keeps where each stands in the text.
+class MaskedReader {
+ public:
+  MaskedReader(int depth, std::string_view text) : depth_(depth), cursor_("masked octree", text) {}
+
+  void read(std::vector<MaskedNode>& nodes, std::vector<std::size_t>& positions) {
+    cursor_.skip_spaces();
+    node(0, nodes, positions);
+    cursor_.expect_end();
+  }
+  [[noreturn]] void refuse_at(std::size_t position, const std::string& why) const {
+    cursor_.refuse_at(position, why);
+  }
+
+ private:
+  void node(int level, std::vector<MaskedNode>& nodes, std::vector<std::size_t>& positions) {
+    const std::size_t number = nodes.size(), position = cursor_.position();
+    MaskedNode read;
+    if (cursor_.accept("P"))
+      read.status = Status::Partial;
+    else if (cursor_.accept("F"))
+      read.status = Status::Full;
+    else if (!cursor_.accept("E"))
+      cursor_.refuse_unexpected("a node, E, F or P");
+    const int high = digit(), low = digit();
+    read.covered = static_cast<FaceSet>(16 * high + low);
+    nodes.push_back(read);
+    positions.push_back(position);
+    if (read.status != Status::Partial) return;
+    if (level == depth_) cursor_.refuse_at(position, "a voxel has no children");
+    cursor_.expect("(");
+    for (int k = 0; k < 8; ++k) node(level + 1, nodes, positions);
+    cursor_.expect(")");
+    nodes[number].size = static_cast<std::uint32_t>(nodes.size() - number);
+  }
+
+  int digit() {
+    const std::size_t at = hex_digits.find(cursor_.peek());
+    if (cursor_.at_end() || at == std::string_view::npos)
+      cursor_.refuse_unexpected("a digit of its faces, 0 to f");
+    cursor_.advance();
+    return static_cast<int>(at);
+  }
+
+  int depth_;
+  TextCursor cursor_;
+};
+
 class Painter {
  public:
   Painter(const MaskedOctree& masked, FaceSet seen, bool is_masked)
@@ -140,6 +209,29 @@ MaskedOctree masked_octree(const Octree& octree) {
 Octree octree_of(const MaskedOctree& masked) {
   MaskedSource source(masked.nodes);
   return LogicalBuild(masked.universe, source).octree();
+}
+
+std::string text(const MaskedOctree& masked) {
+  std::string text;
+  append_text(masked.nodes, 0, text);
+  return text;
+}
+
+MaskedOctree parse_masked_octree(const Universe& universe, std::string_view text) {
+  MaskedOctree masked{universe, {}};
+  std::vector<std::size_t> positions;
+  MaskedReader reader(universe.depth, text);
+  reader.read(masked.nodes, positions);
+  const MaskedOctree right = masked_octree(octree_of(masked));
+  for (std::size_t i = 0; i < masked.nodes.size(); ++i) {
+    if (i >= right.nodes.size() || masked.nodes[i].status != right.nodes[i].status)
+      reader.refuse_at(positions[i], "eight equal children are one node");
+    if (masked.nodes[i].covered != right.nodes[i].covered)
+      reader.refuse_at(positions[i], std::string("the faces of this node are ") +
+                                         hex_digits[right.nodes[i].covered >> 4] +
+                                         hex_digits[right.nodes[i].covered & 15] + " by the nodes beside it");
+  }
+  return masked;
 }
 
 FaceSet view_code(int octant) {

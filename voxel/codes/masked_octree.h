@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "voxel/codes/cuberille_faces.h"
@@ -38,6 +39,13 @@ struct MaskedOctree {
 MaskedOctree masked_octree(const Octree& octree);
 /// The same object without masks. Precondition: made by masked_octree().
 Octree octree_of(const MaskedOctree& masked);
+
+/// The nodes as one word: a status, E, F or P, its covered faces as two hexadecimal digits, and the eight children of
+/// a P in parentheses: `P00(E02F1f...)`.
+std::string text(const MaskedOctree& masked);
+/// The inverse of text(). Throws std::invalid_argument with the position of the character that is wrong, or of the
+/// node whose faces are not those that the other nodes cover. Cost: that of masked_octree().
+MaskedOctree parse_masked_octree(const Universe& universe, std::string_view text);
 
 /// The faces that an observer beyond an octant sees (table 4.1). Precondition: the octant is in 0..7.
 FaceSet view_code(int octant);

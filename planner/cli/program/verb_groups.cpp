@@ -37,6 +37,8 @@ constexpr std::array verb_table{
     GroupedVerb{looking, "info"},
     GroupedVerb{looking, "render"},
     GroupedVerb{looking, "slice"},
+    GroupedVerb{looking, "montage"},
+    GroupedVerb{looking, "draw"},
     GroupedVerb{looking, "mark"},
     GroupedVerb{planning, "procedure"},
     GroupedVerb{planning, "find_landmarks"},

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "planner/cli/suite/suites.h"
+#include "verify/suite/manipulation_study.h"
 #include "verify/suite/representation_study.h"
 #include "verify/suite/thesis_tables.h"
 
@@ -20,6 +21,9 @@ SuiteAnswer run_thesis(Program&, const VerifyText&) {
   {
     const Stopwatch watch(answer.timings, "study");
     study = verify::representation_study();
+    const verify::RepresentationStudy more = verify::manipulation_study();
+    study.entries.insert(study.entries.end(), more.entries.begin(), more.entries.end());
+    study.beside.insert(study.beside.end(), more.beside.begin(), more.beside.end());
   }
   entries.insert(entries.end(), study.entries.begin(), study.entries.end());
   Json tables = Json::array(), beside = Json::array(), gaps = Json::array();

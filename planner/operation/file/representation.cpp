@@ -6,11 +6,14 @@
 #include <stdexcept>
 
 #include "planner/operation/table/nearest_name.h"
+#include "voxel/codes/bi_tree.h"
 #include "voxel/codes/binary_array.h"
 #include "voxel/codes/cuberille_faces.h"
 #include "voxel/codes/explicit_octree.h"
 #include "voxel/codes/linear_octree.h"
 #include "voxel/codes/marginal_index.h"
+#include "voxel/codes/masked_octree.h"
+#include "voxel/codes/multivalued_octree.h"
 #include "voxel/codes/run_length.h"
 #include "voxel/codes/segment_index.h"
 #include "voxel/space/error.h"
@@ -53,7 +56,9 @@ Octree octree_of_bits(const Universe& universe, std::string_view content) {
   return octree_of(voxel::BinaryArray{universe, {bytes.begin(), bytes.end()}});
 }
 
-constexpr std::array<Codec, 10> codecs{{
+constexpr std::string_view multivalued = "multivalued";
+
+constexpr std::array<Codec, 13> codecs{{
     {"treecode", [](const Octree& octree) { return closed(voxel::treecode(octree)); },
      voxel::octree_of_treecode},
     {"linear", [](const Octree& octree) { return closed(text(voxel::linear_octree(octree))); },
@@ -63,6 +68,18 @@ constexpr std::array<Codec, 10> codecs{{
     {"explicit", [](const Octree& octree) { return closed(text(voxel::explicit_octree(octree))); },
      [](const Universe& universe, std::string_view content) {
        return octree_of(voxel::parse_explicit_octree(universe, content));
+     }},
+    {"masked", [](const Octree& octree) { return closed(text(voxel::masked_octree(octree))); },
+     [](const Universe& universe, std::string_view content) {
+       return octree_of(voxel::parse_masked_octree(universe, content));
+     }},
+    {"bitree", [](const Octree& octree) { return closed(text(voxel::bi_tree(octree))); },
+     [](const Universe& universe, std::string_view content) {
+       return octree_of(voxel::parse_bi_tree(universe, content));
+     }},
+    {multivalued, [](const Octree& octree) { return closed(text(voxel::multivalued_octree({octree}))); },
+     [](const Universe& universe, std::string_view content) {
+       return object_of(voxel::parse_multivalued_octree(universe, content), 1);
      }},
     {"runs", [](const Octree& octree) { return closed(text(voxel::run_length(octree))); },
      [](const Universe& universe, std::string_view content) {
@@ -107,13 +124,20 @@ std::vector<std::string> representation_names() {
   return names;
 }
 
-std::string represented(const voxel::Octree& octree, std::string_view name) {
-  return codec(name).encode(octree);
+std::string represented(const std::vector<voxel::Octree>& objects, std::string_view name) {
+  const Codec& known = codec(name);
+  if (objects.size() == 1) return known.encode(objects.front());
+  if (name != multivalued)
+    throw voxel::InvalidInput("the form " + std::string(name) +
+                              " has one object; several are of multivalued");
+  return closed(text(voxel::multivalued_octree(objects)));
 }
 
 voxel::Octree octree_of_representation(const voxel::Universe& universe, std::string_view name,
-                                       std::string_view content) {
-  return codec(name).decode(universe, content);
+                                       std::string_view content, int number) {
+  const Codec& known = codec(name);
+  if (name == multivalued) return object_of(voxel::parse_multivalued_octree(universe, content), number);
+  return known.decode(universe, content);
 }
 
 }  // namespace octotomy::planner

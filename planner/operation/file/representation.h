@@ -9,18 +9,19 @@
 
 namespace octotomy::planner {
 
-/// The representations of chapter 3 by the names that `octotomy octree --as` and `--from` know: treecode,
-/// linear, explicit, runs, segments, marginal, faces, array (text), packed, bits (bytes).
+/// The representations of chapter 3 by the names that `octotomy octree --as` and `--from` know: treecode, linear,
+/// explicit, masked, bitree, multivalued, runs, segments, marginal, faces, array (text), packed, bits (bytes).
 std::vector<std::string> representation_names();
 
-/// The octree as that representation's file: a line end closes a text. Throws std::invalid_argument for a
-/// name that is none, with the nearest; std::length_error where the universe is too deep for a representation
-/// that holds every voxel, saying which depth is not.
-std::string represented(const voxel::Octree& octree, std::string_view name);
+/// The octree as that representation's file: a line end closes a text. Multivalued codes take several objects of one
+/// universe, numbered from 1 in their order; a voxel of several belongs to the first. Throws std::invalid_argument
+/// for a name that is none, with the nearest, and for several objects of another code; std::length_error where the
+/// universe is too deep for a representation that holds every voxel, saying which depth is not.
+std::string represented(const std::vector<voxel::Octree>& objects, std::string_view name);
 
-/// The inverse, in a universe that the representation does not tell. Throws std::invalid_argument with the
-/// position of what is wrong.
+/// The inverse, in a universe that the representation does not tell: of a multivalued code the object of this number.
+/// Throws std::invalid_argument with the position of what is wrong.
 voxel::Octree octree_of_representation(const voxel::Universe& universe, std::string_view name,
-                                       std::string_view content);
+                                       std::string_view content, int number = 1);
 
 }  // namespace octotomy::planner

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Registers an object to another one by a rigid motion, from surfaces, named landmarks or both. The motion is
-// determined first, so that both kernels use the same motion.
+// Registers an object to another one by a rigid motion, from surfaces, named landmarks or both, or from the samples of
+// two scans. The motion is determined first, so that both kernels use the same motion.
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
@@ -12,9 +12,12 @@
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/motion/fit_rows.h"
 #include "planner/operation/motion/move.h"
+#include "planner/operation/motion/scan_fit.h"
 #include "planner/operation/object/provenance.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
+#include "voxel/scan/write_scene.h"
+#include "voxel/volume/volume_header.h"
 
 namespace octotomy::planner {
 namespace {
@@ -28,7 +31,9 @@ struct Register {
   int samples = static_cast<int>(brep::SurfaceFitOptions{}.samples);
   int rounds = brep::SurfaceFitOptions{}.max_rounds;
   std::optional<double> rest_mm;
-  std::filesystem::path out;         ///< of the command only
+  std::string by;  ///< empty: surfaces, and mutual information of two scans' files
+  double least_overlap = ScanFitAsked{}.least_overlap, finest_mm = ScanFitAsked{}.finest_mm;
+  std::filesystem::path out, watch;  ///< of the command only
   glm::dmat4 onto_from_object{1.0};  ///< determined before the kernels run
   std::vector<Caveat> doubts;        ///< of that motion
 };
@@ -104,7 +109,7 @@ constexpr auto members_of(const FitDetails&) {
 /// The resulting motion, with its results for the report.
 struct Laid {
   glm::dmat4 onto_from_object{1.0};
-  double rms_mm = 0.0;
+  std::optional<double> rms_mm;  ///< none of scans, which have no points to be apart
   FitDetails details = {};
   std::vector<std::string> findings = {};
 };
@@ -217,6 +222,40 @@ void by_surfaces(const brep::Mesh& moving, const brep::Mesh& fixed, const Regist
   laid.findings.insert(laid.findings.end(), fit.findings.begin(), fit.findings.end());
 }
 
+bool is_by_samples(const Register& asked) {
+  return asked.by == "correlation" || asked.by == "mutual_information";
+}
+
+ScanFitAsked scan_fit_asked(const Register& asked) {
+  return {asked.by == "correlation", asked.least_overlap, asked.finest_mm, asked.watch};
+}
+
+/// The scan that an object was made of, and the object's motion since.
+const Shown& shown_of(const Objects& objects, const std::string& name) {
+  const Object& object = objects.at(name);
+  if (!object.shown || !object.shown->samples)
+    throw std::runtime_error("'" + name +
+                             "' comes from no scan whose samples could be compared: register it by "
+                             "surfaces or landmarks");
+  return *object.shown;
+}
+
+/// Objects move as their scans do. The scans are compared where they were read.
+FittedScans by_scans_of(const Register& asked, const SettleBench& bench, Laid& laid) {
+  const Shown& moving = shown_of(bench.objects, asked.object.name);
+  const Shown& fixed = shown_of(bench.objects, asked.onto.name);
+  if (moving.scan == fixed.scan)
+    throw std::runtime_error("'" + asked.object.name + "' and '" + asked.onto.name +
+                             "' come from one scan, '" + moving.scan +
+                             "', which already lies on itself: register them by surfaces");
+  FittedScans fitted =
+      fit_scans(*moving.samples, *fixed.samples, scan_fit_asked(asked), bench.progress, bench.timings);
+  laid.onto_from_object =
+      fixed.moved_from_still * fitted.fixed_from_moving * glm::inverse(moving.moved_from_still);
+  laid.findings = fitted.findings;
+  return fitted;
+}
+
 void check(const Register& asked, const FieldLocation& place) {
   if (asked.landmarks_only && asked.landmarks.empty())
     place.at("landmarks_only").refuse("takes the motion of landmarks: add 'landmarks', two files");
@@ -226,14 +265,19 @@ void check(const Register& asked, const FieldLocation& place) {
 
 Register settle(const Register& asked, const SettleBench& bench) {
   Laid laid;
-  if (!asked.landmarks.empty())
+  Json of_scans = Json::object();
+  if (is_by_samples(asked))
+    of_scans = by_scans_of(asked, bench, laid).details;
+  else if (!asked.landmarks.empty())
     laid = by_landmarks(bench.folder / asked.landmarks[0], bench.folder / asked.landmarks[1], asked.motion,
                         bench.timings);
-  if (!asked.landmarks_only)
+  if (!asked.landmarks_only && !is_by_samples(asked))
     by_surfaces(bench.object(asked.object.name), bench.object(asked.onto.name), asked,
                 !asked.landmarks.empty(), bench.progress, bench.timings, laid);
-  bench.details = {{"transform", to_json(laid.onto_from_object)}, {"rms_mm", laid.rms_mm}};
-  bench.details.update(print_record(laid.details));
+  bench.details = {{"transform", to_json(laid.onto_from_object)}};
+  if (laid.rms_mm) bench.details["rms_mm"] = *laid.rms_mm;
+  // Of scans there is no record of a fit of surfaces.
+  bench.details.update(is_by_samples(asked) ? of_scans : print_record(laid.details));
   bench.findings.insert(bench.findings.end(), laid.findings.begin(), laid.findings.end());
   Register settled = asked;
   settled.onto_from_object = laid.onto_from_object;
@@ -269,6 +313,80 @@ void write_moved(const Register& asked, const glm::dmat4& moved_from_still, Timi
   write_surface(mesh, asked.out, timings);
 }
 
+/// The answer of all ways, with the motion and what it is.
+FileAnswer answer_of(const Register& asked, const Laid& laid, const Json& details) {
+  FileAnswer answer;
+  answer.json = {{"transform", to_json(laid.onto_from_object)},
+                 {"rms_mm", laid.rms_mm ? Json(*laid.rms_mm) : Json(nullptr)},
+                 {"definition", "transform takes A's points, LPS mm, to B's place; row by row"}};
+  answer.json.update(details);
+  answer.findings = laid.findings;
+  const glm::dvec3 shift(laid.onto_from_object[3]);
+  const Turn turn = turn_of(laid.onto_from_object);
+  answer.json.update({{"path", asked.out.empty() ? Json(nullptr) : Json(asked.out.string())},
+                      {"findings", laid.findings},
+                      {"rotation", {{"degrees", turn.degrees}, {"axis", to_json(turn.axis)}}}});
+  answer.rows = {
+      {"rotation", grouped(turn.degrees, 3) + "\u00b0 about (" + grouped(turn.axis.x, 4) + ", " +
+                       grouped(turn.axis.y, 4) + ", " + grouped(turn.axis.z, 4) + ")"},
+      {"translation", grouped(shift.x, 2) + ", " + grouped(shift.y, 2) + ", " + grouped(shift.z, 2) + " mm"},
+      {"written", asked.out.empty() ? "nothing, see -o" : asked.out.string()}};
+  return answer;
+}
+
+/// Two scans. What moves keeps its samples: the written scan has another frame.
+FileAnswer scans_on_files(const Register& asked, const FileBench& bench) {
+  if (!asked.landmarks.empty() || asked.landmarks_only)
+    throw std::runtime_error("--landmarks: of two scans it is their samples that are compared: leave it out");
+  // The options of surfaces, which a folder of DICOM does not show to be of none.
+  const Register fresh;
+  if (asked.overlap != fresh.overlap || asked.samples != fresh.samples || asked.rounds != fresh.rounds ||
+      asked.rest_mm)
+    throw std::runtime_error(
+        "--overlap, --samples, --rounds and --rest are of surfaces: leave them out of scans");
+  if (!asked.out.empty()) {
+    if (!voxel::volume_format(asked.out))
+      throw std::runtime_error(asked.out.string() +
+                               ": a scan is written as .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd");
+    need_folder_of(asked.out);
+  }
+  voxel::Scene moving = bench.read_scan(asked.object.name);
+  const voxel::Scene fixed = bench.read_scan(asked.onto.name);
+  const FittedScans fitted =
+      fit_scans(moving, fixed, scan_fit_asked(asked), bench.progress("register"), bench.timings);
+  const Laid laid{fitted.fixed_from_moving, {}, {}, fitted.findings};
+  if (!asked.out.empty()) {
+    moving.lattice.lps_from_voxel = laid.onto_from_object * moving.lattice.lps_from_voxel;
+    const Stopwatch watch(bench.timings, "write");
+    voxel::write_scene(moving, asked.out);
+  }
+  FileAnswer answer = answer_of(asked, laid, fitted.details);
+  answer.json["definition"] =
+      "transform takes A's points, LPS mm, to B's place; row by row; rms_mm is null, because scans have no "
+      "points to "
+      "be apart";
+  answer.rows.insert(answer.rows.begin(), {"verdict", fitted.summary});
+  return answer;
+}
+
+/// Files that are neither surfaces nor landmarks.
+bool are_scans(const Register& asked) {
+  const auto is_scan = [](const std::string& name) {
+    return !is_mesh(name) && !is_json(name) && !is_octree(name);
+  };
+  const bool a = is_scan(asked.object.name), b = is_scan(asked.onto.name);
+  if (a != b)
+    throw std::runtime_error(
+        (a ? asked.object.name : asked.onto.name) +
+        ": is a scan and the other file is none: give two scans, or make a surface of this one "
+        "by octotomy mesh");
+  if (!a && is_by_samples(asked))
+    throw std::runtime_error("--by: " + asked.by + " is of two scans: leave it out");
+  if (a && asked.by == "surfaces")
+    throw std::runtime_error("--by: two scans have no surfaces: make them by octotomy mesh");
+  return a;
+}
+
 FileAnswer on_files(const Register& asked, const FileBench& bench) {
   const std::filesystem::path a = asked.object.name, b = asked.onto.name;
   const bool points_only = is_json(a) || is_json(b);
@@ -276,6 +394,7 @@ FileAnswer on_files(const Register& asked, const FileBench& bench) {
     throw std::runtime_error(
         "one of A and B is a file of landmarks and the other is not: give two of a kind, and landmarks "
         "beside meshes by --landmarks A.json B.json");
+  if (are_scans(asked)) return scans_on_files(asked, bench);
   if (points_only && (!asked.out.empty() || !asked.landmarks.empty()))
     throw std::runtime_error("with two files of landmarks there is no mesh for -o or --landmarks");
   if (!asked.out.empty()) {
@@ -292,23 +411,8 @@ FileAnswer on_files(const Register& asked, const FileBench& bench) {
                 read_surface(b, bench.timings, &laid.findings), asked, !asked.landmarks.empty(),
                 bench.progress("register"), bench.timings, laid);
   if (!asked.out.empty()) write_moved(asked, laid.onto_from_object, bench.timings);
-  FileAnswer answer;
-  answer.json = {{"transform", to_json(laid.onto_from_object)},
-                 {"rms_mm", laid.rms_mm},
-                 {"definition", "transform takes A's points, LPS mm, to B's place; row by row"}};
-  answer.json.update(print_record(laid.details));
-  answer.findings = laid.findings;
-  const glm::dvec3 shift(laid.onto_from_object[3]);
-  const Turn turn = turn_of(laid.onto_from_object);
-  answer.json.update({{"path", asked.out.empty() ? Json(nullptr) : Json(asked.out.string())},
-                      {"findings", laid.findings},
-                      {"rotation", {{"degrees", turn.degrees}, {"axis", to_json(turn.axis)}}}});
-  answer.rows = {
-      {"rms", grouped(laid.rms_mm, 3) + " mm"},
-      {"rotation", grouped(turn.degrees, 3) + "\u00b0 about (" + grouped(turn.axis.x, 4) + ", " +
-                       grouped(turn.axis.y, 4) + ", " + grouped(turn.axis.z, 4) + ")"},
-      {"translation", grouped(shift.x, 2) + ", " + grouped(shift.y, 2) + ", " + grouped(shift.z, 2) + " mm"},
-      {"written", asked.out.empty() ? "nothing, see -o" : asked.out.string()}};
+  FileAnswer answer = answer_of(asked, laid, print_record(laid.details));
+  answer.rows.insert(answer.rows.begin(), {"rms", grouped(*laid.rms_mm, 3) + " mm"});
   if (const std::optional<FitOfSurfaces>& fit = laid.details.surfaces) {
     const TrustOfFit& trust = *laid.details.trust;
     answer.rows.insert(answer.rows.begin() + 1,
@@ -320,13 +424,29 @@ FileAnswer on_files(const Register& asked, const FileBench& bench) {
   return answer;
 }
 
+// Conditions of fields. A folder of DICOM cannot be told from a plan's object by its name.
+bool is_of_samples(const Register& asked) {
+  return is_by_samples(asked) || (asked.by.empty() && voxel::volume_format(asked.object.name));
+}
+bool is_of_surfaces(const Register& asked) {
+  return !is_of_samples(asked);
+}
+bool may_be_of_samples(const Register& asked) {
+  return is_of_samples(asked) || (asked.by.empty() && !is_mesh(asked.object.name) &&
+                                  !is_json(asked.object.name) && std::filesystem::exists(asked.object.name));
+}
+constexpr const char* of_surfaces = "is of surfaces: leave it out of scans";
+constexpr const char* of_samples = "is of two scans, compared 'by' correlation or mutual_information";
+
 }  // namespace
 
 Operation register_operation() {
-  return Describe<Register>("register", "Lays an object on another one, by surfaces or named landmarks.",
-                            Makes::Object)
+  return Describe<Register>(
+             "register",
+             "Lays an object on another one, by surfaces, named landmarks or the samples of two scans.",
+             Makes::Object)
       .takes(field("object", &Register::object,
-                   "What moves: an object; of the verb a mesh or a .json of landmarks.")
+                   "What moves: an object; of the verb a mesh, a scan or a .json of landmarks.")
                  .required()
                  .positional("a"))
       .takes(field("onto", &Register::onto, "What stays.").required().positional("b"))
@@ -334,29 +454,64 @@ Operation register_operation() {
                    "Two files, the landmarks of what moves and of what stays, with which the search begins.")
                  .from(2)
                  .to(2)
-                 .a_file())
-      .takes(field("landmarks_only", &Register::landmarks_only, "Takes the landmarks' motion as it is."))
+                 .a_file()
+                 .read_if<Register>(is_of_surfaces, of_surfaces))
+      .takes(field("landmarks_only", &Register::landmarks_only, "Takes the landmarks' motion as it is.")
+                 .read_if<Register>(is_of_surfaces, of_surfaces))
       .takes(field("motion", &Register::motion,
                    "Of landmarks: rigid, three_points, which trusts the first most, or similarity, of meshes "
                    "only.")
-                 .one_of({"rigid", "similarity", "three_points"}))
+                 .one_of({"rigid", "similarity", "three_points"})
+                 .read_if<Register>(is_of_surfaces, of_surfaces))
       .takes(field("overlap", &Register::overlap, "Share of the moving surface that the other has too.")
                  .from(0.05)
-                 .to(1.0))
+                 .to(1.0)
+                 .read_if<Register>(is_of_surfaces, of_surfaces))
       .takes(field("samples", &Register::samples, "Points of the moving surface that are compared.")
                  .from(100)
-                 .to(1000000))
+                 .to(1000000)
+                 .read_if<Register>(is_of_surfaces, of_surfaces))
       .takes(field("rounds", &Register::rounds, "Of each of the last two refinements at most.")
                  .from(1)
-                 .to(100000))
+                 .to(100000)
+                 .read_if<Register>(is_of_surfaces, of_surfaces))
       .takes(
           field("rest_mm", &Register::rest_mm,
                 "A round that moves the samples by no more ends a refinement. Default: a millionth of their "
                 "spread.")
-              .greater_than(0.0))
-      .verb_takes(field("out", &Register::out, "A moved to B: a .stl, .ply, .obj, .off, .vtp or .glb file."))
+              .greater_than(0.0)
+              .read_if<Register>(is_of_surfaces, of_surfaces))
+      .takes(
+          field(
+              "by", &Register::by,
+              "surfaces, or the samples of the two scans: their correlation, for one kind of scan, or their "
+              "mutual_information, for any two. Default: surfaces; of two files of scans mutual_information.")
+              .one_of({"surfaces", "correlation", "mutual_information"}))
+      .takes(field("least_overlap", &Register::least_overlap,
+                   "Share of the smaller scan that the other one covers at least.")
+                 .from(0.05)
+                 .to(1.0)
+                 .read_if<Register>(may_be_of_samples, of_samples))
+      .takes(field("finest_mm", &Register::finest_mm,
+                   "The resolution of the last search among motions of scans.")
+                 .from(0.5)
+                 .to(8.0)
+                 .read_if<Register>(may_be_of_samples, of_samples))
+      .verb_takes(
+          field("out", &Register::out,
+                "A moved to B: a .stl, .ply, .obj, .off, .vtp or .glb file; of scans .nrrd, .nhdr, .nii, "
+                ".nii.gz, .mha or .mhd, with the samples as they are in another frame."))
+      .verb_takes(
+          field("watch", &Register::watch,
+                "A new folder for a picture of the difference of two scans at each step of the search: what "
+                "moves in magenta, what stays in green.")
+              .read_if<Register>(may_be_of_samples, of_samples))
+      .reads_scans()
       .example(R"({"id": "laid", "do": "register", "object": "maxilla", "onto": "skull", "overlap": 0.9})")
-      .on_files("octotomy register before.stl after.stl -o moved.stl --json", on_files)
+      .on_files(
+          "octotomy register before.stl after.stl -o moved.stl --json\n"
+          "  octotomy register before.nrrd after.nrrd --by correlation -o moved.nrrd --watch steps",
+          on_files)
       .motion()
       .check(check)
       .settle(settle)

@@ -37,12 +37,17 @@ struct Build {
   bool grey = false;
   std::optional<double> voxel_mm;
   std::string as, from;
-  std::optional<int> depth;
+  std::optional<int> depth, number;
   std::optional<glm::dvec3> seed_face_mm;
   int neighbours = 6;
+  std::vector<ObjectName> with;  ///< further objects of a multivalued code
 
   fs::path in() const { return file.name; }
-  std::vector<std::string> inputs() const { return {file.name}; }
+  std::vector<std::string> inputs() const {
+    std::vector<std::string> names{file.name};
+    for (const ObjectName& object : with) names.push_back(object.name);
+    return names;
+  }
 };
 
 voxel::Octree windowed(const voxel::GreyOctree& grey, const SampleWindow& window) {
@@ -72,7 +77,8 @@ voxel::OctreeFile from_representation(const Build& asked, Timings& timings) {
   }
   const Stopwatch watch(timings, "octree");
   try {
-    return {octree_of_representation(universe, asked.from, content), asked.in().stem().string(), ""};
+    return {octree_of_representation(universe, asked.from, content, asked.number.value_or(1)),
+            asked.in().stem().string(), ""};
   } catch (const voxel::InvalidInput& error) {
     throw std::runtime_error(asked.file.name + ": " + error.what());
   }
@@ -132,19 +138,40 @@ std::string tracked(const Build& asked, const voxel::Octree& octree, Json& json)
   return voxel::text(surface.faces);
 }
 
-FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::OctreeFile& file) {
-  Timings& timings = bench.timings;
+const voxel::Octree& binary_of(const Build& asked, const std::string& name, const voxel::OctreeFile& file) {
   const auto* octree = std::get_if<voxel::Octree>(&file.tree);
   if (octree == nullptr)
-    throw std::runtime_error(asked.file.name + ": only a binary octree has the form " + asked.as +
+    throw std::runtime_error(name + ": only a binary octree has the form " + asked.as +
                              (std::holds_alternative<voxel::GreyOctree>(file.tree)
                                   ? ": choose an object of the samples with --window LOW:HIGH"
                                   : ": this one holds fractions, digitise it as centre or half"));
+  return *octree;
+}
+
+/// The object, and those beside it in its universe.
+std::vector<voxel::Octree> objects_of(const FileBench& bench, const Build& asked,
+                                      const voxel::OctreeFile& file) {
+  std::vector<voxel::Octree> objects{binary_of(asked, asked.file.name, file)};
+  for (const ObjectName& other : asked.with) {
+    if (!names_octree(other.name, bench))
+      throw std::runtime_error("--with: " + other.name + ": is no .octree file");
+    objects.push_back(binary_of(asked, other.name, octree_named(other.name, bench)));
+    if (objects.back().universe() != objects.front().universe())
+      throw std::runtime_error("--with: " + other.name + ": has another universe than " + asked.file.name +
+                               ": build both of one scan, or one of them by octotomy mask --like");
+  }
+  return objects;
+}
+
+FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::OctreeFile& file) {
+  Timings& timings = bench.timings;
+  const std::vector<voxel::Octree> objects = objects_of(bench, asked, file);
   std::string content;
   Json of_surface = Json::object();
   {
     const Stopwatch watch(timings, "represent");
-    content = asked.seed_face_mm ? tracked(asked, *octree, of_surface) : represented(*octree, asked.as);
+    content =
+        asked.seed_face_mm ? tracked(asked, objects.front(), of_surface) : represented(objects, asked.as);
   }
   if (bench.stop.stop_requested())
     throw voxel::Stopped("stopped before " + asked.out.string() + " was written");
@@ -156,10 +183,11 @@ FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::Oc
   json["path"] = asked.out.string();
   json["as"] = asked.as;
   json["bytes_representation"] = content.size();
+  if (!asked.with.empty()) json["objects"] = objects.size();
   FileAnswer answer{std::move(json),
                     {{"written", asked.out.string()},
                      {"form", asked.as},
-                     {"depth", std::to_string(octree->universe().depth)},
+                     {"depth", std::to_string(objects.front().universe().depth)},
                      {"bytes", std::to_string(content.size())}}};
   if (asked.seed_face_mm) {
     answer.rows.emplace_back("faces",
@@ -233,12 +261,16 @@ Operation octree_operation() {
                       .read_if<Build>(
                           [](const Build& build) { return !build.from.empty() || !is_octree(build.in()); },
                           "an .octree file keeps its own voxels: leave it out"))
-      .takes(
-          field(
-              "as", &Build::as,
-              "Writes treecode, linear, explicit, runs, segments, marginal, faces or array (text), packed or "
-              "bits (bytes).")
-              .one_of(representation_names()))
+      .takes(field("as", &Build::as,
+                   "Writes treecode, linear, explicit, masked, bitree, multivalued, runs, segments, "
+                   "marginal, faces or "
+                   "array (text), packed or bits (bytes).")
+                 .one_of(representation_names()))
+      .takes(field("with", &Build::with,
+                   "Further objects of a multivalued code, from number 2 on, in the universe of the first.")
+                 .repeated()
+                 .read_if<Build>([](const Build& build) { return build.as == "multivalued"; },
+                                 "is of multivalued codes: add 'as' multivalued"))
       .takes(field("seed_face_mm", &Build::seed_face_mm,
                    "Writes only the connected surface from the face nearest to this point, LPS: of one part, "
                    "without its cavities, or of one cavity.")
@@ -255,6 +287,12 @@ Operation octree_operation() {
               .from(2)
               .to(voxel::Universe::max_depth)
               .read_if<Build>([](const Build& build) { return !build.from.empty(); }, "is of 'from': add it"))
+      .verb_takes(
+          field("number", &Build::number, "The object of a multivalued code that is read. Default: 1.")
+              .from(1)
+              .to(254)
+              .read_if<Build>([](const Build& build) { return build.from == "multivalued"; },
+                              "is of multivalued codes: add 'from' multivalued"))
       .reads_scans()
       .example(R"({"id": "tree", "do": "octree", "object": "skull", "path": "skull.octree"})")
       .on_files(

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <array>
 #include <fstream>
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include "tests/brep/told.h"
@@ -125,6 +128,74 @@ TEST(RegisterStep, AScaleIsRefused) {
       "motion": "similarity"})")
                 .find("scales"),
             std::string::npos);
+}
+
+/// Three balls of different size and density on 40 x 40 x 40 samples of 3 mm, in a frame.
+voxel::Scene three_balls(const glm::dmat4& moved_from_still) {
+  voxel::Scene scene;
+  scene.lattice = voxel::axis_aligned_lattice({40, 40, 40}, {3, 3, 3}, {-58.5, -58.5, -58.5});
+  const std::array<glm::dvec4, 3> balls{{{-15, 0, 5, 25}, {25, 12, -8, 16}, {5, -20, 32, 12}}};
+  voxel::Int16Samples samples;
+  for (int z = 0; z < 40; ++z)
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 40; ++x) {
+        double value = -1000.0;
+        for (std::size_t i = 0; i < balls.size(); ++i) {
+          const double depth_mm =
+              balls[i].w - glm::distance(glm::dvec3(balls[i]), scene.lattice.lps_mm({x, y, z}));
+          value =
+              std::max(value, std::clamp(200.0 * depth_mm, -1000.0, 300.0 + 400.0 * static_cast<double>(i)));
+        }
+        samples.push_back(static_cast<std::int16_t>(value));
+      }
+  scene.samples = std::move(samples);
+  scene.meaning = voxel::Meaning::Hounsfield;
+  scene.modality = "CT";
+  scene.lattice.lps_from_voxel = moved_from_still * scene.lattice.lps_from_voxel;
+  return scene;
+}
+
+TEST(RegisterStep, AnObjectFollowsItsScanOntoAnother) {
+  const ScratchFolder folder;
+  const glm::dmat4 moved = glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(8, -5, 3)), 0.15,
+                                       glm::normalize(glm::dvec3(1, 2, 3)));
+  voxel::write_scene(three_balls(glm::dmat4(1.0)), folder / "after.nrrd");
+  voxel::write_scene(three_balls(moved), folder / "before.nrrd");
+  const auto plan_with = [&](const std::string& steps) {
+    return parse_plan(R"({"octotomy_plan": 1, "name": "two", "scans": {"before": {"path": "before.nrrd"},
+        "after": {"path": "after.nrrd"}}, "universe": {"voxel_mm": 2.0}, "steps": [
+        {"id": "was", "do": "window", "scan": "before", "low": 0}, {"id": "is", "do": "window", "scan": "after", "low": 0},
+        )" + steps + "]}",
+                      folder.path());
+  };
+  for (const char* by : {"correlation", "mutual_information"}) {
+    const Evaluation evaluation =
+        evaluate(plan_with(R"({"id": "laid", "do": "register", "object": "was", "onto": "is", "by": ")" +
+                           std::string(by) + "\"}"));
+    const Object &is = evaluation.object("is"), &laid = evaluation.object("laid");
+    EXPECT_LT(
+        glm::distance(*laid.mesh.within->measures().centroid_mm, *is.mesh.within->measures().centroid_mm),
+        0.3)
+        << by;
+    ASSERT_TRUE(laid.moved);
+    EXPECT_EQ(laid.mesh.details["verdict"], "PASS") << laid.mesh.details.dump();
+    EXPECT_GT(laid.mesh.details["scans"]["likeness"].get<double>(), 0.5) << by;
+  }
+  const std::string same =
+      R"({"id": "laid", "do": "register", "object": "is", "onto": "is", "by": "correlation"})";
+  try {
+    evaluate(plan_with(same));
+    ADD_FAILURE() << "one scan was laid on itself";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("come from one scan"), std::string::npos) << error.what();
+  }
+  const auto refusal = [&](const std::string& rest) {
+    return ball_refusal(folder,
+                        R"({"id": "l", "do": "register", "object": "ball", "onto": "ball")" + rest + "}");
+  };
+  EXPECT_NE(refusal(R"(, "by": "correlation", "overlap": 0.5)").find("of surfaces"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "finest_mm": 4)").find("two scans"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "by": "guess")").find("mutual_information"), std::string::npos);
 }
 
 }  // namespace

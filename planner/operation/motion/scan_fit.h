@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "planner/operation/table/json.h"
+#include "planner/operation/table/stopwatch.h"
+#include "voxel/space/progress.h"
+#include "voxel/space/scene.h"
+
+namespace octotomy::planner {
+
+struct ScanFitAsked {
+  bool is_correlation = false;  ///< else mutual information
+  double least_overlap = 0.3, finest_mm = 2.0;
+  std::filesystem::path watch;  ///< a folder for a picture of the difference at each step; empty: none
+};
+
+struct FittedScans {
+  glm::dmat4 fixed_from_moving{1.0};
+  std::string verdict;  ///< PASS, WARN or FAIL
+  Json details = Json::object();
+  std::vector<std::string> findings;
+  std::string summary;  ///< of the verdict, for people
+};
+
+/// Lays a scan on another one by voxel::register_scans(), whose facts are the details. Pictures in the folder `watch`
+/// show the two scans in the middle planes of the one that stays: what moves in magenta, what stays in green, so that
+/// equal tones are grey. Throws as register_scans(), and voxel::Error if the folder is there or cannot be made.
+FittedScans fit_scans(const voxel::Scene& moving, const voxel::Scene& fixed, const ScanFitAsked& asked,
+                      const voxel::Progress& progress, Timings& timings);
+
+}  // namespace octotomy::planner
