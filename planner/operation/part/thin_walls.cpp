@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 Find the places on the mesh at which a ball that touches from inside is smaller than the least wall and
 //   touches the opposite side. 2 Put boxes around them, one about places that are near each other. 3 Within each
-//   box keep what balls hold that are wider than the least wall, a little within the solid. Balls are searched in the part of the solid in
+//   box keep what balls hold that are wider than the least wall. Balls are searched in the part of the solid in
 //   a larger box, so that its sides do not count. 4 Repeat: the rest of a wall that begins beside a box shows
 //   then.
 #include "planner/operation/part/thin_walls.h"
@@ -25,10 +25,10 @@
 namespace octotomy::planner {
 namespace {
 
-/// Diameter of the balls that must fit, as a share of the least wall; what they reach stays within the solid by
-/// 0.15 of their radius. Triangles lie within a 16th of a cell of 1.8 radii, 0.11 radii, so that nothing of a
-/// neighbouring wall beside a crack is kept. What is left is at least 1.19 least walls thick.
-constexpr double ball_share = 1.4, reach_share = 0.85, cell_share = 1.8;
+/// Diameter of the balls that must fit, as a share of the least wall. What they reach stands off from the solid by
+/// a tenth of their radius, more than triangles lie off it (a 16th of a cell), so that no films are left beside
+/// the boxes. Where sides converge by 30 degrees, a wall then ends at 1.69 radii, 1.06 least walls.
+constexpr double ball_share = 1.25, reach_share = 1.1, cell_share = 1.0;
 /// A ray straight inward is longer than the ball's diameter where sides converge: at 30 degrees by 1.08.
 constexpr double ray_share = 1.1;
 
@@ -131,7 +131,7 @@ brep::Solid without_thin_walls(const brep::Solid& solid, double least_mm, const 
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
   const double radius_mm = 0.5 * ball_share * least_mm;
   brep::Solid whole = solid;
-  constexpr int most_rounds = 6;
+  constexpr int most_rounds = 3;
   for (int round = 0; round <= most_rounds && !whole.empty(); ++round) {
     const std::vector<glm::dvec3> places_mm = thin_places(whole.triangles(), least_mm);
     if (places_mm.empty()) return whole;

@@ -10,7 +10,7 @@ namespace octotomy::planner {
 /// Takes the walls thinner than a length out of a part's mesh: where it has any, only what balls somewhat wider
 /// than that hold is left, and nothing changes elsewhere. Walls are what `printable` counts as such: two sides
 /// that converge by at most 30 degrees. They are looked for at places on each triangle that are about that
-/// length apart. A finding of `made` says where walls stay, after six rounds. Throws as
+/// length apart. A finding of `made` says where walls stay, after three rounds. Throws as
 /// brep::offset() and brep::boolean(); Stopped. Cost: about log n a triangle, and offsets of the parts about
 /// such walls.
 brep::Solid without_thin_walls(const brep::Solid& solid, double least_mm, const MeshBench& bench,

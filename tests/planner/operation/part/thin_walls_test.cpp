@@ -47,9 +47,9 @@ TEST(ThinWalls, ABlockKeepsEveryPointAndLosesItsFin) {
   const Trimmed found = trimmed(fin, 0.6);
   EXPECT_TRUE(found.findings.empty()) << testing::PrintToString(found.findings);
   EXPECT_GE(thinnest_mm(found.solid), 0.6);
-  // Near the fin the block's surface lies 0.06 mm deeper.
-  EXPECT_NEAR(brep::volume_mm3(found.solid), 14.0 * 8.0 * 12.0, 2.5);
-  EXPECT_LT(found.solid.size().high_mm.z, 8.05);
+  // What balls of 0.75 mm hold rises a little into the fin's foot.
+  EXPECT_NEAR(brep::volume_mm3(found.solid), 14.0 * 8.0 * 12.0, 0.5);
+  EXPECT_LT(found.solid.size().high_mm.z, 8.1);
 }
 
 TEST(ThinWalls, AWedgeEndsWhereItIsAsThickAsAsked) {
@@ -58,9 +58,10 @@ TEST(ThinWalls, AWedgeEndsWhereItIsAsThickAsAsked) {
   const Trimmed found = trimmed(swept({{0, 0}, {15, height_mm}, {15, 0}}), 0.6);
   EXPECT_TRUE(found.findings.empty()) << testing::PrintToString(found.findings);
   EXPECT_GE(thinnest_mm(found.solid), 0.6);
-  // Balls of a radius r have their centre r / sin 10 degrees from the edge, and 0.85 r about it stays.
-  const double radius_mm = 0.42, middle_mm = radius_mm / std::sin(10.0 * M_PI / 180.0);
-  EXPECT_NEAR(found.solid.size().low_mm.x, middle_mm * std::cos(10.0 * M_PI / 180.0) - 0.85 * radius_mm, 0.1);
+  // Balls of a radius r have their centre r / sin 10 degrees from the edge, and 1.1 r about it stays. The
+  // mesh cuts the sharp edge of those centres off.
+  const double radius_mm = 0.375, middle_mm = radius_mm / std::sin(10.0 * M_PI / 180.0);
+  EXPECT_NEAR(found.solid.size().low_mm.x, middle_mm * std::cos(10.0 * M_PI / 180.0) - 1.1 * radius_mm, 0.2);
   EXPECT_NEAR(found.solid.size().high_mm.x, 15.0, 1e-9);
 }
 
