@@ -400,7 +400,7 @@ Json report(Session& session, const Json& said, const Watched& watched) {
     if (!exported.written) left_out.push_back(exported.id);
   return {{"folder", folder.string()},
           {"file", folder.filename().string() + "/report.html"},
-          {"counts", planner::to_json(verdict_counts(result.evaluation))},
+          {"counts", counts_json(result)},
           {"left_out", left_out}};
 }
 

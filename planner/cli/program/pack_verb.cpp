@@ -42,14 +42,14 @@ int pack(Program& program, const PackText& text) {
   Json json = answer(timings);
   json["path"] = text.out.string();
   json["bytes"] = bytes;
-  json["counts"] = to_json(verdict_counts(result.evaluation));
+  json["counts"] = counts_json(result);
   if (!changes.empty()) json["identity"] = {{"choice", text.identity}, {"changes", changes}};
   json.update(manifest);
   program.say(json, verdict_text(result.evaluation) +
                         lines({{"written", text.out.string()},
                                {"entries", grouped(static_cast<double>(manifest["files"].size()), 0)},
                                {"size", grouped(static_cast<double>(bytes) / 1e6, 1) + " MB"}}));
-  return status_of(result.evaluation);
+  return status_of(result);
 }
 
 }  // namespace

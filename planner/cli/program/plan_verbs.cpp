@@ -130,7 +130,7 @@ int run(Program& program, const RunText& text, Plan plan, const std::function<vo
   if (!changes.empty()) json["identity"] = {{"choice", text.identity}, {"changes", changes}};
   program.say(json,
               verdict_text(result.evaluation) + "written: " + (text.out / "report.html").string() + "\n");
-  return status_of(result.evaluation);
+  return status_of(result);
 }
 
 void add_certify(CLI::App& verb, Certify& certify) {

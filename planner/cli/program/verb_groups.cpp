@@ -75,6 +75,7 @@ constexpr std::array verb_table{
     GroupedVerb{shaping, "shadow"},
     GroupedVerb{shaping, "splint"},
     GroupedVerb{shaping, "guide"},
+    GroupedVerb{shaping, "plate"},
     GroupedVerb{elements, "tet"},
     GroupedVerb{elements, "warp"},
     GroupedVerb{measuring, "measure"},

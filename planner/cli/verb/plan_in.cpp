@@ -82,12 +82,12 @@ std::string verdict_text(const Evaluation& evaluation) {
   return lines(rows);
 }
 
-int status_of(const Evaluation& evaluation) {
-  if (verdict_counts(evaluation).fail > 0) {
-    warn("the kernels disagree (a FAIL verdict)");
-    return disagreement;
-  }
-  return done;
+int status_of(const Result& result) {
+  const bool is_disputed = verdict_counts(result.evaluation).fail > 0;
+  if (is_disputed) warn("the kernels disagree (a FAIL verdict)");
+  const MeasuredVerdicts measured = measured_verdicts(result.measurements);
+  for (const std::string& failed : measured.failed) warn("a FAIL verdict of " + failed);
+  return is_disputed || measured.fail > 0 ? disagreement : done;
 }
 
 }  // namespace octotomy::planner::cli

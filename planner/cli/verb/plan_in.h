@@ -11,6 +11,10 @@
 #include "planner/plan/plan.h"
 
 // Common options and steps of verbs that replay a plan.
+namespace octotomy::planner {
+struct Result;
+}  // namespace octotomy::planner
+
 namespace octotomy::planner::cli {
 
 /// A plan on the command line, and options for its scans.
@@ -65,7 +69,8 @@ void add_certify(CLI::App& verb, Certify& certify);
 
 /// Text with one line per object: its verdict and both answers. Prints findings to standard error.
 std::string verdict_text(const Evaluation& evaluation);
-/// The exit status by the verdicts; prints a line to standard error if the kernels disagree.
-int status_of(const Evaluation& evaluation);
+/// The exit status by the verdicts of certificates and measurements; prints a line to standard error for a FAIL.
+/// Precondition: the result's measurements were made, as write_result() does.
+int status_of(const Result& result);
 
 }  // namespace octotomy::planner::cli

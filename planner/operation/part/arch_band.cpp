@@ -56,6 +56,37 @@ bool is_beyond_bend(const std::vector<glm::dvec2>& curve, std::size_t i, const g
   return false;
 }
 
+/// Adds the points between the ends of a half disc's arc that begins on the curve's left, or for the curve's
+/// first point on its right.
+void add_arc(const glm::dvec2& middle_mm, const glm::dvec2& from, std::vector<glm::dvec2>& outline_mm) {
+  constexpr int sides = 24;
+  for (int i = 1; i < sides; ++i) {
+    const double turn = std::acos(-1.0) * i / sides;
+    const glm::dvec2 onward(from.y, -from.x);
+    outline_mm.push_back(middle_mm + std::cos(turn) * from + std::sin(turn) * onward);
+  }
+}
+
+std::vector<glm::dvec2> outline_of(const std::vector<glm::dvec2>& curve, double width_mm, bool is_round) {
+  const double half_mm = 0.5 * width_mm;
+  std::vector<glm::dvec2> left, right;
+  const auto aside_at = [&](std::size_t i) {
+    const glm::dvec2 along =
+        glm::normalize(curve[std::min(i + 1, curve.size() - 1)] - curve[i == 0 ? 0 : i - 1]);
+    return glm::dvec2(-along.y, along.x);
+  };
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const glm::dvec2 aside = aside_at(i);
+    for (const auto& [side, sign] : {std::pair(&left, 1.0), std::pair(&right, -1.0)})
+      if (const glm::dvec2 p_mm = curve[i] + sign * half_mm * aside; !is_beyond_bend(curve, i, p_mm, half_mm))
+        side->push_back(p_mm);
+  }
+  if (is_round) add_arc(curve.back(), half_mm * aside_at(curve.size() - 1), left);
+  left.insert(left.end(), right.rbegin(), right.rend());
+  if (is_round) add_arc(curve.front(), -half_mm * aside_at(0), left);
+  return left;
+}
+
 }  // namespace
 
 ArchFrame arch_frame(const std::vector<glm::dvec3>& points_mm, const glm::dvec3& towards) {
@@ -90,19 +121,18 @@ ArchFrame arch_frame(const std::vector<glm::dvec3>& points_mm, const glm::dvec3&
 }
 
 std::vector<glm::dvec2> band_outline(const std::vector<glm::dvec2>& points_mm, double width_mm) {
+  return outline_of(curve_through(points_mm), width_mm, false);
+}
+
+std::vector<glm::dvec2> round_band_outline(const std::vector<glm::dvec2>& points_mm, double width_mm) {
+  return outline_of(curve_through(points_mm), width_mm, true);
+}
+
+double curve_length_mm(const std::vector<glm::dvec2>& points_mm) {
   const std::vector<glm::dvec2> curve = curve_through(points_mm);
-  const double half_mm = 0.5 * width_mm;
-  std::vector<glm::dvec2> left, right;
-  for (std::size_t i = 0; i < curve.size(); ++i) {
-    const glm::dvec2 along =
-        glm::normalize(curve[std::min(i + 1, curve.size() - 1)] - curve[i == 0 ? 0 : i - 1]);
-    const glm::dvec2 aside(-along.y, along.x);
-    for (const auto& [side, sign] : {std::pair(&left, 1.0), std::pair(&right, -1.0)})
-      if (const glm::dvec2 p_mm = curve[i] + sign * half_mm * aside; !is_beyond_bend(curve, i, p_mm, half_mm))
-        side->push_back(p_mm);
-  }
-  left.insert(left.end(), right.rbegin(), right.rend());
-  return left;
+  double length_mm = 0.0;
+  for (std::size_t i = 1; i < curve.size(); ++i) length_mm += glm::distance(curve[i - 1], curve[i]);
+  return length_mm;
 }
 
 std::vector<glm::dvec2> longer_by(std::vector<glm::dvec2> points_mm, double by_mm) {

@@ -30,6 +30,10 @@ ArchFrame arch_frame(const std::vector<glm::dvec3>& points_mm, const glm::dvec3&
 /// the curve is a Catmull-Rom spline with centripetal knots. Where the curve bends more sharply than half the
 /// width, the outline's inner side is cut short. Precondition: at least two points apart.
 std::vector<glm::dvec2> band_outline(const std::vector<glm::dvec2>& points_mm, double width_mm);
+/// The same with half discs about its ends.
+std::vector<glm::dvec2> round_band_outline(const std::vector<glm::dvec2>& points_mm, double width_mm);
+/// The length of the curve.
+double curve_length_mm(const std::vector<glm::dvec2>& points_mm);
 
 /// The points with both ends moved outward, straight on, by a length.
 std::vector<glm::dvec2> longer_by(std::vector<glm::dvec2> points_mm, double by_mm);

@@ -9,7 +9,8 @@
 //   that reach as far before the bone as the slot is deep: that shadow moved back along the saw; a rod for each
 //   sleeve. Edges of the walls are rounded.
 // 4 3 less 2, then less slots and holes.
-// 5 The largest piece, with points that files for printers can hold.
+// 5 Walls thinner than a printer's are cut off: slots and holes leave slivers at the edges of the bone.
+// 6 The largest piece, with points that files for printers can hold.
 //
 // 1 is settled once and is a shared value of both kernels.
 #include <algorithm>
@@ -71,8 +72,9 @@ struct Guide {
   double sleeve_radius_mm() const { return hole_radius_mm() + sleeve_wall_mm; }
 };
 
-/// Cells of the mesh's offsets: of the fitting surface, and of the outer one.
-constexpr double base_cell_mm = 0.5, outer_cell_mm = 2.0;
+/// Cells of the mesh's offsets: of the fitting surface, and of the outer one. Triangles of the fitting surface
+/// lie within a 16th of a cell of it, a third of a printer's error of 0.16 mm.
+constexpr double base_cell_mm = 1.0, outer_cell_mm = 2.0;
 /// Room about the region beyond what the guide needs.
 constexpr double room_mm = 1.0;
 /// How far rods and holes go on below the bone's surface, which is not known to a hair at a screw's point.
@@ -233,31 +235,6 @@ void voxels(const Guide& guide, const VoxelBench& bench, VoxelSide& made) {
   if (made.octree.is_empty()) has_none();
 }
 
-/// How far the hole in a mesh lies off a screw's axis: a circle's middle by least squares through the hole's
-/// points. None where too few are left to tell.
-std::optional<double> hole_off_mm(const brep::Solid& solid, const ScrewAxis& axis, double radius_mm) {
-  constexpr double near_mm = 0.05;  // the corners of the hole's prism and their rounding
-  const glm::dvec3 aside = std::abs(axis.along.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-  const glm::dvec3 u = glm::normalize(glm::cross(axis.along, aside)), v = glm::cross(axis.along, u);
-  // u^2 + v^2 = 2 a u + 2 b v + c, summed over the points.
-  glm::dmat3 sums(0.0);
-  glm::dvec3 right(0.0);
-  int count = 0;
-  for (const glm::dvec3& p_mm : solid.triangles().points_mm) {
-    const glm::dvec3 from = p_mm - axis.head_mm;
-    const glm::dvec2 q(glm::dot(from, u), glm::dot(from, v));
-    if (std::abs(glm::length(q) - radius_mm) > near_mm) continue;
-    const glm::dvec3 row(2.0 * q.x, 2.0 * q.y, 1.0);
-    sums += glm::outerProduct(row, row);
-    right += row * glm::dot(q, q);
-    ++count;
-  }
-  constexpr int least = 12;
-  if (count < least || !(std::abs(glm::determinant(sums)) > 0.0)) return std::nullopt;
-  const glm::dvec3 found = glm::inverse(sums) * right;
-  return std::hypot(found.x, found.y);
-}
-
 void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "guide");
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
@@ -289,7 +266,9 @@ void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
   for (const SawSlot& slot : guide.slots) {
     const brep::Solid walls = of(of(slot.walls.solid(guide.walls_width_mm(slot)), Intersection, base),
                                  Intersection, brep::moved(taken, to_rim(guide, slot)));
-    parts.push_back(timed("guide_rounding", [&] { return rounded(walls, guide.rounding_mm, bench, made); }));
+    parts.push_back(timed("guide_rounding", [&] {
+      return rounded(walls, {guide.rounding_mm, guide.rounding_mm}, bench, made);
+    }));
   }
   for (const Sleeve& sleeve : guide.sleeves)
     parts.push_back(rod(sleeve.outer_mm, sleeve.through_mm(below_mm), guide.sleeve_radius_mm()));
@@ -302,6 +281,7 @@ void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
     operands.push_back(rod(sleeve.through_mm(-beyond_mm(guide)), sleeve.through_mm(beyond_mm(guide)),
                            guide.hole_radius_mm()));
   if (operands.size() > 1) whole = noted(brep::boolean(operands, Difference, bench.progress.stop), made);
+  whole = largest_piece(whole, "guide", made);
   made.whole = timed("guide_printed", [&] { return printed(whole, "guide", made); });
   made.details["holes"] = nlohmann::ordered_json::array();
   for (const Sleeve& sleeve : guide.sleeves) {

@@ -40,8 +40,8 @@ glm::dvec3 way_of(const SiteAsked& asked, const SettleBench& bench) {
   const glm::dvec3 along = asked.direction ? glm::normalize(*asked.direction) : side.look;
   if (const double off_deg = turned_deg(along, side.look); off_deg > most_turned_deg)
     throw std::runtime_error("the direction lies " + three_figures(off_deg) + " degrees off the view from '" +
-                             asked.side +
-                             "', so that nobody on that side can put the guide on: turn 'direction', or "
+                             asked.side + "', so that nobody on that side can put the " + asked.part +
+                             " on: turn 'direction', or "
                              "choose another 'side'");
   if (asked.drawn) {
     const double off_deg = turned_deg(head_view(asked.drawn->view, bench).look, side.look);
@@ -111,7 +111,7 @@ void draw_outlines(const SiteAsked& asked, const SettleBench& bench, GuideSite& 
     for (std::size_t i = 1; i < frame.points_mm.size(); ++i)
       if (glm::distance(frame.points_mm[i - 1], frame.points_mm[i]) < least_apart_mm)
         throw std::runtime_error("points " + std::to_string(i) + " and " + std::to_string(i + 1) +
-                                 " lie behind each other as the guide is put on: leave one out");
+                                 " lie behind each other as the " + asked.part + " is put on: leave one out");
     site.base.outline_mm = outline_about(frame.points_mm, asked.radius_mm);
     site.near.outline_mm = outline_about(frame.points_mm, asked.radius_mm + asked.margin_mm);
   }
@@ -123,9 +123,10 @@ void draw_outlines(const SiteAsked& asked, const SettleBench& bench, GuideSite& 
     static_cast<void>(site.near.solid());
   } catch (const std::invalid_argument&) {
     throw std::runtime_error(
-        asked.drawn ? "the region's polygon crosses itself or has no area: draw a simple one"
-                    : "the region about the points crosses itself: take a smaller 'radius_mm', or points in "
-                      "their order along a line");
+        asked.drawn
+            ? "the region's polygon crosses itself or has no area: draw a simple one"
+            : "the region about the points crosses itself: make it narrower, or give points in their order "
+              "along a line");
   }
 }
 
@@ -146,15 +147,16 @@ void need_points_seen(const SiteAsked& asked, const brep::Solid& bone,
     if (feet[i].distance_mm > off_bone_mm)
       throw std::runtime_error(point + " lies " + three_figures(feet[i].distance_mm) +
                                " mm off the surface of '" + asked.bone + "': give points on the bone");
-    if (piece[feet[i].face] != piece[feet[0].face])
+    if (!asked.is_on_several && piece[feet[i].face] != piece[feet[0].face])
       throw std::runtime_error("points 1 and " + std::to_string(i + 1) + " lie on two bones, pieces of '" +
                                asked.bone +
                                "' that do not meet: a guide sits on one bone, so make a guide for each");
     const std::optional<Seen> seen = site.front.first(site.base.frame.project(feet[i].p_mm));
     const double behind_mm = seen ? glm::dot(feet[i].p_mm, site.base.frame.look) - seen->depth_mm : 0.0;
     if (behind_mm > hidden_mm)
-      throw std::runtime_error(point + " lies " + three_figures(behind_mm) +
-                               " mm behind other bone as the guide is put on: the surgeon reaches what is "
+      throw std::runtime_error(point + " lies " + three_figures(behind_mm) + " mm behind other bone as the " +
+                               asked.part +
+                               " is put on: the surgeon reaches what is "
                                "seen from the side alone, so move it or choose another 'side'");
   }
 }
@@ -209,8 +211,8 @@ void need_facing(const SiteAsked& asked, const SeenRegion& region, const GuideSi
   if (off_deg > most_turned_deg)
     throw std::runtime_error("the direction runs along the sides of '" + asked.bone + "': it lies " +
                              three_figures(off_deg) +
-                             " degrees off the mean normal of the region, so that nothing holds the guide; "
-                             "point it into the bone");
+                             " degrees off the mean normal of the region, so that nothing holds the " +
+                             asked.part + "; point it into the bone");
 }
 
 }  // namespace
@@ -224,7 +226,8 @@ std::optional<glm::dvec3> GuideSite::bone_at(const glm::dvec2& p_mm) const {
 
 GuideSite guide_site(const SiteAsked& asked, const SettleBench& bench) {
   const brep::Solid& bone = bench.object(asked.bone);
-  if (bone.empty()) throw std::runtime_error("'" + asked.bone + "' is empty: a guide needs bone");
+  if (bone.empty())
+    throw std::runtime_error("'" + asked.bone + "' is empty: a " + asked.part + " needs bone");
   GuideSite site;
   site.along = way_of(asked, bench);
   draw_outlines(asked, bench, site);

@@ -12,7 +12,7 @@
 #include "planner/operation/table/bench.h"
 #include "planner/operation/table/field.h"
 
-// The region of a bone on which a guide sits, and the side from which it is put on.
+// The region of a bone on which a guide or a plate sits, and the side from which it is put on.
 namespace octotomy::planner {
 
 /// A region drawn in a view.
@@ -28,9 +28,11 @@ struct SiteAsked {
   std::vector<glm::dvec3> points_mm;  ///< where nothing is drawn
   double radius_mm = 10.0;            ///< of the region about the points
   std::optional<DrawnSite> drawn;
-  double reach_mm = 25.0;  ///< behind the region's foremost bone
-  double before_mm = 5.0;  ///< how far the guide goes before the bone
-  double margin_mm = 5.0;  ///< how far beside the region bone counts
+  double reach_mm = 25.0;      ///< behind the region's foremost bone
+  double before_mm = 5.0;      ///< how far the guide goes before the bone
+  double margin_mm = 5.0;      ///< how far beside the region bone counts
+  std::string part = "guide";  ///< in messages
+  bool is_on_several = false;  ///< the part may lie on several pieces of the bone
 };
 
 struct GuideSite {
@@ -45,7 +47,7 @@ struct GuideSite {
   std::optional<glm::dvec3> bone_at(const glm::dvec2& p_mm) const;
 };
 
-/// Settles where a guide sits. Throws std::runtime_error in a sentence that says what to change: points off
+/// Settles where a part sits. Throws std::runtime_error in a sentence that says what to change: points off
 /// the bone, on two bones or hidden behind bone, a region on two bones or drawn from another side, a direction
 /// along the bone's sides or from another side.
 GuideSite guide_site(const SiteAsked& asked, const SettleBench& bench);

@@ -26,17 +26,17 @@ voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, cons
   const voxel::Octree cores = bench.combined(core);
   if (cores.is_empty()) return voxel::Expression(cores);
   return solid &
-         voxel::Expression(voxel::offset(cores, core, (1.0 + standing_off) * radius_mm, bench.progress));
+         voxel::Expression(voxel::offset(cores, core, radius_mm + standing_off * radius_mm, bench.progress));
 }
 
-brep::Solid rounded(const brep::Solid& solid, double radius_mm, const MeshBench& bench, MeshSide& made) {
+brep::Solid rounded(const brep::Solid& solid, const MeshRounding& rounding, const MeshBench& bench,
+                    MeshSide& made) {
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
+  const auto& [radius_mm, cell_mm] = rounding;
   if (solid.empty()) return solid;
-  // Flat parts lie within a 16th of a cell, which is less than cuts stand off.
-  const double cell_mm = radius_mm;
   const brep::Solid core = brep::offset(solid, {-radius_mm, cell_mm, progress});
   if (core.empty()) return core;
-  const brep::Solid reach = brep::offset(core, {(1.0 + standing_off) * radius_mm, cell_mm, progress});
+  const brep::Solid reach = brep::offset(core, {radius_mm + standing_off * radius_mm, cell_mm, progress});
   return noted(brep::boolean(solid, brep::Operation::Intersection, reach, bench.progress.stop), made);
 }
 
@@ -51,16 +51,20 @@ void keep_largest(const voxel::Expression& solid, const VoxelBench& bench, Voxel
                                               voxel::Expression(whole) - voxel::Expression(pieces.largest))));
 }
 
-brep::Solid printed(const brep::Solid& solid, const std::string& part, MeshSide& made) {
-  brep::Triangles triangles = solid.triangles();
+brep::Solid largest_piece(const brep::Solid& solid, const std::string& part, MeshSide& made) {
   const std::vector<brep::Component>& pieces = solid.components();
-  if (pieces.size() > 1) {
-    double dropped_mm3 = 0.0;
-    for (std::size_t i = 1; i < pieces.size(); ++i) dropped_mm3 += pieces[i].volume_mm3;
-    made.findings.push_back(std::to_string(pieces.size() - 1) + " pieces of " + three_figures(dropped_mm3) +
-                            " mm\u00b3 beside the " + part + " are left out");
-    triangles = brep::triangles_of(brep::part_of(solid.mesh(), pieces.front().faces));
-  }
+  if (pieces.size() < 2) return solid;
+  double dropped_mm3 = 0.0;
+  for (std::size_t i = 1; i < pieces.size(); ++i) dropped_mm3 += pieces[i].volume_mm3;
+  made.findings.push_back(std::to_string(pieces.size() - 1) + " pieces of " + three_figures(dropped_mm3) +
+                          " mm\u00b3 beside the " + part + " are left out");
+  return brep::trusted_solid(brep::part_of(solid.mesh(), pieces.front().faces),
+                             brep::proof_of_part(solid.proof()));
+}
+
+brep::Solid printed(const brep::Solid& solid, const std::string& part, MeshSide& made) {
+  const brep::Solid largest = largest_piece(solid, part, made);
+  brep::Triangles triangles = largest.triangles();
   // Thin triangles, where a Boolean's surfaces meet, would cross their neighbours when a file is written.
   constexpr int most_rounds = 4;
   for (int round = 0; round < most_rounds; ++round) {
@@ -73,7 +77,7 @@ brep::Solid printed(const brep::Solid& solid, const std::string& part, MeshSide&
   made.findings.push_back("triangles intersect where points of the " + part +
                           " are rounded to single precision: mend a file of it by octotomy repair --solid "
                           "before it is printed");
-  return solid;
+  return largest;
 }
 
 brep::Solid noted(const brep::BooleanResult& result, MeshSide& made) {

@@ -42,22 +42,14 @@ void check(const Screw& screw, const FieldLocation& place) {
       place.at("away_from").refuse("names '" + object.name + "', in which the screw sits");
 }
 
-/// How far the screw stays from one object, in both kernels.
-struct Clear {
-  std::string object;
-  bool is_cut = false;
-  double mesh_mm = 0.0;
-  std::optional<double> voxel_mm;
-};
-
 /// By voxels; none where the screw or the other object has none.
 std::optional<double> voxel_gap_mm(const voxel::Octree& screw, const voxel::Octree& other) {
   if (screw.is_empty() || other.is_empty()) return std::nullopt;
   return gap_between(screw, other, std::nullopt, std::nullopt).voxel_mm;
 }
 
-Clear clear_of_object(const Object& object, const brep::Solid& rod, const voxel::Octree& voxels) {
-  Clear clear{object.id, false, 0.0, voxel_gap_mm(voxels, object.voxel.octree)};
+ScrewClear clear_of_object(const Object& object, const brep::Solid& rod, const voxel::Octree& voxels) {
+  ScrewClear clear{object.id, false, 0.0, voxel_gap_mm(voxels, object.voxel.octree)};
   const brep::Solid& solid = *object.mesh.whole;
   const bool is_inside = solid.tree().is_inside(rod.triangles().points_mm.front());
   if (!is_inside) clear.mesh_mm = brep::gap(rod.triangles(), solid.triangles()).distance_mm;
@@ -65,8 +57,8 @@ Clear clear_of_object(const Object& object, const brep::Solid& rod, const voxel:
 }
 
 /// From the walls of a mask, on whichever side the screw is, or from what a saw takes away.
-Clear clear_of_cut(const Object& object, const Action& maker, const brep::Solid& rod,
-                   const voxel::Octree& voxels) {
+ScrewClear clear_of_cut(const Object& object, const Action& maker, const brep::Solid& rod,
+                        const voxel::Octree& voxels) {
   const voxel::Universe universe = voxels.universe();
   if (const Saw* saw = maker.get_if<Saw>()) {
     const brep::Solid blade = brep::saw_blade({saw->line_mm, saw->direction, saw->depth_mm, saw->kerf_mm});
@@ -78,7 +70,8 @@ Clear clear_of_cut(const Object& object, const Action& maker, const brep::Solid&
                 : brep::gap(rod.triangles(), blade.triangles()).distance_mm,
             voxel_gap_mm(voxels, taken)};
   }
-  Clear clear{object.id, true, brep::gap(rod.triangles(), object.mesh.whole->triangles()).distance_mm, {}};
+  ScrewClear clear{
+      object.id, true, brep::gap(rod.triangles(), object.mesh.whole->triangles()).distance_mm, {}};
   const voxel::Octree within =
       voxel::combine(universe, voxel::Expression(voxels) & voxel::Expression(object.voxel.octree));
   const bool is_inside = !within.is_empty();
@@ -88,22 +81,20 @@ Clear clear_of_cut(const Object& object, const Action& maker, const brep::Solid&
   return clear;
 }
 
-std::vector<Clear> clearances(const Screw& screw, const SettleBench& bench) {
+void need_mesh(const Object& object) {
+  if (!object.mesh.whole || object.mesh.whole->empty())
+    throw std::runtime_error("'" + object.id + "' has no mesh, so no distance to it can be measured");
+}
+
+std::vector<ScrewClear> clearances(const Screw& screw, const SettleBench& bench) {
   const Object& bone = bench.objects.at(screw.object.name);
   const brep::Solid body = rod(screw.head_mm, screw.tip_mm, 0.5 * screw.diameter_mm);
   const voxel::Octree voxels = voxel::combine(
       bone.voxel.octree.universe(),
       voxel::Expression(voxel::Cylinder{screw.head_mm, screw.tip_mm, 0.5 * screw.diameter_mm}));
-  std::vector<Clear> found;
-  const auto need_mesh = [&](const Object& object) {
-    if (!object.mesh.whole || object.mesh.whole->empty())
-      throw std::runtime_error("'" + object.id + "' has no mesh, so no distance to it can be measured");
-  };
-  for (const ObjectName& name : screw.away_from) {
-    const Object& object = bench.objects.at(name.name);
-    need_mesh(object);
-    found.push_back(clear_of_object(object, body, voxels));
-  }
+  std::vector<ScrewClear> found = clear_of_objects(
+      {{}, {}, screw.head_mm, glm::normalize(screw.direction), screw.diameter_mm, screw.length_mm},
+      screw.away_from, bench);
   for (const ObjectName& name : screw.cuts) {
     const Object& object = bench.objects.at(name.name);
     const Action* maker = bench.maker_of ? bench.maker_of(name.name) : nullptr;
@@ -115,27 +106,21 @@ std::vector<Clear> clearances(const Screw& screw, const SettleBench& bench) {
   return found;
 }
 
-void report(const Screw& screw, const std::vector<Clear>& clearances, const SettleBench& bench) {
+std::string in_words(const ScrewClear& clear) {
+  return clear.is_cut ? "the cut '" + clear.object + "'" : "'" + clear.object + "'";
+}
+
+void report(const Screw& screw, const std::vector<ScrewClear>& clearances, const SettleBench& bench) {
   const voxel::Universe universe = bench.objects.at(screw.object.name).voxel.octree.universe();
   // Each digitised surface may lie half a voxel's diagonal off.
   const double voxel_error_mm = glm::length(universe.lattice().spacing_mm());
   bench.details["clearances"] = nlohmann::ordered_json::array();
-  for (const Clear& clear : clearances) {
-    nlohmann::ordered_json line{{"object", clear.object},
-                                {"is_cut", clear.is_cut},
-                                {"distance_mm", clear.mesh_mm},
-                                {"voxel_distance_mm", nullptr}};
-    if (clear.voxel_mm) line["voxel_distance_mm"] = *clear.voxel_mm;
-    bench.details["clearances"].push_back(line);
-    const std::string what = clear.is_cut ? "the cut '" + clear.object + "'" : "'" + clear.object + "'";
-    if (clear.mesh_mm <= 0.0)
-      bench.findings.push_back("the screw goes into " + what + ": move its point or turn its direction");
-    else if (clear.mesh_mm < screw.least_mm)
-      bench.findings.push_back("the screw comes within " + three_figures(clear.mesh_mm) + " mm of " + what +
-                               ", less than the " + three_figures(screw.least_mm) +
-                               " mm that are asked for: move its point or turn its direction");
+  for (const ScrewClear& clear : clearances) {
+    bench.details["clearances"].push_back(to_json(clear));
+    if (std::string text = too_near("the screw", clear, screw.least_mm); !text.empty())
+      bench.findings.push_back(std::move(text));
     if (clear.voxel_mm && std::abs(*clear.voxel_mm - clear.mesh_mm) > voxel_error_mm)
-      bench.findings.push_back("the kernels disagree about the distance to " + what + ": " +
+      bench.findings.push_back("the kernels disagree about the distance to " + in_words(clear) + ": " +
                                three_figures(clear.mesh_mm) + " mm in meshes, " +
                                three_figures(*clear.voxel_mm) + " mm in voxels");
   }
@@ -190,6 +175,40 @@ void bound(const Screw&, const BoundBench&, Object&) {}
 
 }  // namespace
 
+std::vector<ScrewClear> clear_of_objects(const ScrewAxis& axis, const std::vector<ObjectName>& away_from,
+                                         const SettleBench& bench) {
+  std::vector<ScrewClear> found;
+  const glm::dvec3 tip_mm = axis.head_mm + axis.length_mm * axis.along;
+  const brep::Solid body = rod(axis.head_mm, tip_mm, 0.5 * axis.diameter_mm);
+  for (const ObjectName& name : away_from) {
+    const Object& object = bench.objects.at(name.name);
+    need_mesh(object);
+    const voxel::Octree voxels =
+        voxel::combine(object.voxel.octree.universe(),
+                       voxel::Expression(voxel::Cylinder{axis.head_mm, tip_mm, 0.5 * axis.diameter_mm}));
+    found.push_back(clear_of_object(object, body, voxels));
+  }
+  return found;
+}
+
+nlohmann::ordered_json to_json(const ScrewClear& clear) {
+  nlohmann::ordered_json line{{"object", clear.object},
+                              {"is_cut", clear.is_cut},
+                              {"distance_mm", clear.mesh_mm},
+                              {"voxel_distance_mm", nullptr}};
+  if (clear.voxel_mm) line["voxel_distance_mm"] = *clear.voxel_mm;
+  return line;
+}
+
+std::string too_near(const std::string& screw, const ScrewClear& clear, double least_mm) {
+  if (clear.mesh_mm <= 0.0)
+    return screw + " goes into " + in_words(clear) + ": move its point or turn its direction";
+  if (clear.mesh_mm >= least_mm) return {};
+  return screw + " comes within " + three_figures(clear.mesh_mm) + " mm of " + in_words(clear) +
+         ", less than the " + three_figures(least_mm) +
+         " mm that are asked for: move its point or turn its direction";
+}
+
 brep::Solid rod(const glm::dvec3& from_mm, const glm::dvec3& to_mm, double radius_mm) {
   constexpr int sides = 48;
   const double turn = 2.0 * glm::pi<double>() / sides;
@@ -224,6 +243,29 @@ ScrewAxis screw_axis(const std::string& name, const SettleBench& bench) {
           glm::dmat3(image) * glm::normalize(screw->direction),
           screw->diameter_mm,
           screw->length_mm};
+}
+
+std::optional<double> hole_off_mm(const brep::Solid& solid, const ScrewAxis& axis, double radius_mm) {
+  constexpr double near_mm = 0.05;  // the corners of the hole's prism and their rounding
+  const glm::dvec3 aside = std::abs(axis.along.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  const glm::dvec3 u = glm::normalize(glm::cross(axis.along, aside)), v = glm::cross(axis.along, u);
+  // u^2 + v^2 = 2 a u + 2 b v + c, summed over the points.
+  glm::dmat3 sums(0.0);
+  glm::dvec3 right(0.0);
+  int count = 0;
+  for (const glm::dvec3& p_mm : solid.triangles().points_mm) {
+    const glm::dvec3 from = p_mm - axis.head_mm;
+    const glm::dvec2 q(glm::dot(from, u), glm::dot(from, v));
+    if (std::abs(glm::length(q) - radius_mm) > near_mm) continue;
+    const glm::dvec3 row(2.0 * q.x, 2.0 * q.y, 1.0);
+    sums += glm::outerProduct(row, row);
+    right += row * glm::dot(q, q);
+    ++count;
+  }
+  constexpr int least = 12;
+  if (count < least || !(std::abs(glm::determinant(sums)) > 0.0)) return std::nullopt;
+  const glm::dvec3 found = glm::inverse(sums) * right;
+  return std::hypot(found.x, found.y);
 }
 
 Operation screw_operation() {

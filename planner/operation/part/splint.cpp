@@ -19,19 +19,16 @@
 
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/error.h"
-#include "brep/mesh/flat_triangles.h"
-#include "brep/mesh/health.h"
 #include "brep/shape/offset.h"
 #include "brep/shape/shadow.h"
-#include "brep/shape/untangle.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/object/provenance.h"
 #include "planner/operation/part/arch_band.h"
 #include "planner/operation/part/insertion.h"
+#include "planner/operation/part/printed_part.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "verify/witness/offset_witness.h"
-#include "voxel/filter/components.h"
 #include "voxel/filter/offset.h"
 #include "voxel/filter/shadow.h"
 #include "voxel/solid/combine.h"
@@ -218,12 +215,6 @@ double shadow_by_mm(const Splint& splint) {
   return std::abs(by_mm) < fit_cell_mm / 16.0 ? 0.0 : by_mm;
 }
 
-/// Balls of the thickness that stand off by this reach over the splint's surface: above the error of either
-/// kernel's distances on flat and gently curved parts.
-double opening_room_mm(const Splint& splint) {
-  return 0.05 * splint.thickness_mm;
-}
-
 /// The voxels of a jaw that a splint needs free.
 voxel::Expression taken_by(const Splint& splint, int jaw, const VoxelBench& bench) {
   const VoxelSide& object = bench.object(name_of(splint, jaw).name);
@@ -257,21 +248,7 @@ void voxels(const Splint& splint, const VoxelBench& bench, VoxelSide& made) {
     return;
   }
   const Stopwatch watch(bench.timings, "splint_voxel");
-  const double radius_mm = 0.5 * splint.thickness_mm;
-  const voxel::Expression core(
-      voxel::offset(octree, bench.within_universe(whole), -radius_mm, bench.progress));
-  const voxel::Octree cores = bench.combined(core);
-  voxel::Expression opened(cores);
-  if (!cores.is_empty())
-    opened = whole & voxel::Expression(
-                         voxel::offset(cores, core, radius_mm + opening_room_mm(splint), bench.progress));
-  const voxel::Components pieces = voxel::components(bench.combined(opened));
-  made.octree = pieces.largest;
-  // What is not of the largest piece is taken away with a voxel around it.
-  made.symbol = bench.within_universe(opened);
-  if (pieces.voxel_counts.size() > 1)
-    made.symbol = bench.within_universe(
-        opened - voxel::Expression(bench.combined(opened - voxel::Expression(pieces.largest))));
+  keep_largest(rounded(whole, 0.5 * splint.thickness_mm, bench), bench, made);
 }
 
 /// The same of a jaw's mesh.
@@ -292,36 +269,6 @@ std::vector<brep::Solid> taken_by(const Splint& splint, int jaw, const MeshBench
   return taken;
 }
 
-/// The largest component; a finding lists what is dropped.
-brep::Solid largest_piece(const brep::Solid& solid, std::vector<std::string>& findings) {
-  const std::vector<brep::Component>& pieces = solid.components();
-  if (pieces.size() < 2) return solid;
-  double dropped_mm3 = 0.0;
-  for (std::size_t i = 1; i < pieces.size(); ++i) dropped_mm3 += pieces[i].volume_mm3;
-  findings.push_back(std::to_string(pieces.size() - 1) + " pieces of " + three_figures(dropped_mm3) +
-                     " mm\u00b3 beside the splint are left out");
-  return brep::trusted_solid(brep::part_of(solid.mesh(), pieces.front().faces),
-                             brep::proof_of_part(solid.proof()));
-}
-
-/// The solid with points of single precision, as files for printers have them, and still without triangles that
-/// intersect: thin ones, where a Boolean's surfaces meet, would cross their neighbours when a file is written.
-brep::Solid in_single_precision(const brep::Solid& solid, std::vector<std::string>& findings) {
-  constexpr int most_rounds = 4;
-  brep::Triangles triangles = solid.triangles();
-  for (int round = 0; round < most_rounds; ++round) {
-    for (glm::dvec3& p_mm : triangles.points_mm) p_mm = glm::dvec3(glm::vec3(p_mm));
-    brep::Mesh mesh = brep::mesh_of(triangles);
-    brep::take_out_flat_triangles(mesh);
-    if (brep::health(mesh).solid()) return brep::trusted_solid(mesh, brep::Proof::Health);
-    triangles = brep::untangle(mesh).surface;
-  }
-  findings.push_back(
-      "triangles intersect where its points are rounded to single precision: mend a file of it by octotomy "
-      "repair --solid before it is printed");
-  return solid;
-}
-
 void triangles(const Splint& splint, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "splint");
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
@@ -330,33 +277,24 @@ void triangles(const Splint& splint, const MeshBench& bench, MeshSide& made) {
     const std::vector<brep::Solid> taken = taken_by(splint, jaw, bench, made);
     operands.insert(operands.end(), taken.begin(), taken.end());
   }
-  const auto take = [&](const brep::BooleanResult& found) {
-    made.shift_mm += found.shift_mm;
-    made.findings.insert(made.findings.end(), found.findings.begin(), found.findings.end());
-    return found.solid;
-  };
   brep::Solid whole = operands.front();
   for (std::size_t i = 1; i < operands.size(); ++i)
-    whole = take(brep::boolean(whole, brep::Operation::Difference, operands[i], bench.progress.stop));
+    whole = noted(brep::boolean(whole, brep::Operation::Difference, operands[i], bench.progress.stop), made);
   made.details["before_opening_mm3"] = brep::volume_mm3(whole);
   made.lineage = "the slab's mesh less level sets of the distance to the teeth and their exact shadows";
   if (whole.empty()) {
     made.whole = whole;
     return;
   }
-  const double radius_mm = 0.5 * splint.thickness_mm, cell_mm = splint.thickness_mm / 3.0;
-  const brep::Solid core = brep::offset(whole, {-radius_mm, cell_mm, progress});
-  if (core.empty()) {
+  const brep::Solid opened =
+      rounded(whole, {0.5 * splint.thickness_mm, splint.thickness_mm / 3.0}, bench, made);
+  if (opened.empty()) {
     made.findings.push_back("no part of the splint is " + three_figures(splint.thickness_mm) +
                             " mm thick: open the bite, or raise 'depth_mm' or 'width_mm'");
-    made.whole = core;
+    made.whole = opened;
     return;
   }
-  const brep::Solid reach = brep::offset(core, {radius_mm + opening_room_mm(splint), cell_mm, progress});
-  made.whole = in_single_precision(
-      largest_piece(take(brep::boolean(whole, brep::Operation::Intersection, reach, bench.progress.stop)),
-                    made.findings),
-      made.findings);
+  made.whole = printed(opened, "splint", made);
   made.details["thin_mm3"] = made.details["before_opening_mm3"].get<double>() - brep::volume_mm3(*made.whole);
 }
 

@@ -68,11 +68,13 @@ export const doubtful =
 export const recommended = (interval: Interval|undefined, digits: number): string =>
     doubtful(interval?.value, interval?.half_width, digits);
 
-/// A sentence on all certificates and their counts; nothing if there are none.
+/// A sentence on all certificates and their counts, and on measurements with a verdict; nothing if there are none.
 export function overall_verdict(counts: Counts): Child {
   const all = counts.PASS + counts.WARN + counts.FAIL;
-  if (!all) return null;
+  const failed = counts.measured?.FAIL ?? 0;
+  if (!all && !failed) return null;
   const [css, title] = counts.FAIL ? ["fail", "The two kernels disagree"] :
+      failed                       ? ["fail", "A measurement fails"] :
       counts.WARN                  ? ["warn", "The two kernels agree, with doubts"] :
       counts.PASS > counts.pass_not_resolved ?
                                      ["pass", "The two kernels agree"] :
@@ -83,5 +85,6 @@ export function overall_verdict(counts: Counts): Child {
       el("span", {class: "soft"}, `${plural(all, "certificate")}: ${counts.PASS} pass`,
          few(counts.WARN, `, ${counts.WARN} warn`), few(counts.FAIL, `, ${counts.FAIL} fail`),
          few(counts.not_resolved, `; ${counts.not_resolved} not resolved`),
-         few(counts.without_certificate, `; ${plural(counts.without_certificate, "object")} without a certificate`)));
+         few(counts.without_certificate, `; ${plural(counts.without_certificate, "object")} without a certificate`),
+         few(failed, `; ${plural(failed, "measurement")} with a FAIL`)));
 }

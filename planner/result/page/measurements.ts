@@ -4,7 +4,7 @@
 import {Child, el} from "../../browser/page/base/html";
 import {grouped, three_figures, unit_text} from "../../browser/page/base/numbers";
 import {Vec3} from "../../browser/page/base/vector";
-import {doubtful, list, plural, recommended, Row, section, soft, svg, table, wide_row} from "./elements";
+import {doubtful, list, pill, plural, recommended, Row, section, soft, svg, table, wide_row} from "./elements";
 import {Airway, Measurement} from "./result";
 
 const with_unit = (value: number|null, digits: number, unit: string): string =>
@@ -183,6 +183,14 @@ function trials(one: Measurement): Child {
   ];
 }
 
+/// Measurements that have a verdict of their own, as those of parts that are printed.
+function verdicts(all: Measurement[]): Child {
+  const rows = all.filter((one) => one.verdict !== undefined).map((one) => [
+    one.id, one.object, one.verdict ? pill(one.verdict) : "not measured", list(one.findings)
+  ]);
+  return rows.length ? table(["Proof", "Object", "Verdict", "Findings"], rows) : null;
+}
+
 /// Volumes at a glance, at the top of the report.
 export function tiles(all: Measurement[]): Child {
   const each = all.flatMap(({id, object, volume_mm3}) => volume_mm3 === undefined ? [] : [
@@ -195,6 +203,6 @@ export function measurements(all: Measurement[]): Child {
   const each = (key: keyof Measurement, draw: (one: Measurement) => Child): Child =>
       all.filter((one) => one[key] !== undefined).map(draw);
   return section(
-      "Measurements", sizes(all), lengths(all), each("flap_segments", flap), each("contacts", contacts),
+      "Measurements", verdicts(all), sizes(all), lengths(all), each("flap_segments", flap), each("contacts", contacts),
       each("airway", airway), each("missing", landmarks), each("doubts", trials));
 }

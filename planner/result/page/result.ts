@@ -10,6 +10,7 @@ export interface Finding { check: string; verdict: Verdict; detail: string }
 export interface Interval { value: number; half_width: Maybe<number> }
 export interface Counts {
   PASS: number; WARN: number; FAIL: number; not_resolved: number; pass_not_resolved: number; without_certificate: number;
+  measured?: {PASS: number; WARN: number; FAIL: number};  // measurements by their own verdict; of a report alone
 }
 
 export interface Scan {
@@ -75,7 +76,7 @@ export interface Measurement {
   distance_mm?: number; distance_half_width_mm: Maybe<number>;
   angle_deg?: number; angle_half_width_deg: Maybe<number>;
   contacts?: Contact[]; against: string; within_mm: number; certain_count: Maybe<number>; nearest_mm: Maybe<number>;
-  airway?: Airway;
+  airway?: Airway; verdict?: Maybe<Verdict>;
   flap_segments?: FlapSegment[]; osteotomies: Osteotomy[]; donor_used_mm: number; contact_estimator: string;
   missing?: {name: string; why: string}[];
   landmarks: {name: string; says: string; point_mm: Vec3; uncertainty_mm: number}[];

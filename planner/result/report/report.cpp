@@ -145,6 +145,39 @@ std::string text_of(const VerdictCounts& counts) {
               : "");
 }
 
+MeasuredVerdicts measured_verdicts(const Json& measurements) {
+  MeasuredVerdicts found;
+  for (const Json& measurement : measurements) {
+    const auto verdict = measurement.find("verdict");
+    if (verdict == measurement.end() || !verdict->is_string()) continue;
+    if (*verdict == "PASS") ++found.pass;
+    if (*verdict == "WARN") ++found.warn;
+    if (*verdict != "FAIL") continue;
+    ++found.fail;
+    const auto findings = measurement.find("findings");
+    std::string line = "'" + measurement.value("id", std::string()) + "'";
+    if (findings != measurement.end() && !findings->empty()) {
+      // Those that begin with a verdict may have a WARN before the FAIL.
+      const auto worst = std::find_if(findings->begin(), findings->end(), [](const Json& finding) {
+        return finding.get<std::string>().starts_with("FAIL");
+      });
+      line += ": " + (worst == findings->end() ? findings->front() : *worst).get<std::string>();
+    }
+    found.failed.push_back(std::move(line));
+  }
+  return found;
+}
+
+Json to_json(const MeasuredVerdicts& verdicts) {
+  return {{"PASS", verdicts.pass}, {"WARN", verdicts.warn}, {"FAIL", verdicts.fail}};
+}
+
+Json counts_json(const Result& result) {
+  Json counts = to_json(verdict_counts(result.evaluation));
+  counts["measured"] = to_json(measured_verdicts(result.measurements));
+  return counts;
+}
+
 Parts parts_of(const Object& object) {
   const double voxel_mm3 = object.voxel.octree.universe().lattice().voxel_mm3();
   Parts parts{object.id, {}};
@@ -210,7 +243,7 @@ Json result_json(const Result& result) {
        {"cephalometry", result.cephalometry},
        {"measurements", result.measurements},
        {"certificates", certificates_json(evaluation)},
-       {"counts", to_json(verdict_counts(evaluation))},
+       {"counts", counts_json(result)},
        {"findings", to_json(result.findings)}});
   return json;
 }

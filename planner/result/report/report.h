@@ -67,6 +67,19 @@ nlohmann::ordered_json to_json(const VerdictCounts& counts);
 /// "6 PASS (1 not resolved), 0 WARN, 0 FAIL", and ", 2 without a certificate" if there are any.
 std::string text_of(const VerdictCounts& counts);
 
+/// Measurements by their own verdict, as those of parts that are printed have one.
+struct MeasuredVerdicts {
+  int pass = 0, warn = 0, fail = 0;
+  std::vector<std::string> failed;  ///< of each FAIL its step, and the finding of it
+};
+/// Of measurements_json(). Measurements without a verdict count nowhere.
+MeasuredVerdicts measured_verdicts(const nlohmann::ordered_json& measurements);
+/// {"PASS": ..., "WARN": ..., "FAIL": ...}
+nlohmann::ordered_json to_json(const MeasuredVerdicts& verdicts);
+/// The counts of the certificates, and in `measured` those of the measurements. Precondition: the result's
+/// measurements were made.
+nlohmann::ordered_json counts_json(const Result& result);
+
 /// The connected parts (by faces) of an object in the voxel kernel.
 Parts parts_of(const Object& object);
 

@@ -72,11 +72,13 @@ Json report_data(const Result& result) {
   Json groups = Json::array(), contents = Json::array();
   for (const PictureGroup& group : result.pictures) groups.push_back(group_json(result.plan, group));
   for (const Exported& exported : result.exported) contents.push_back(exported.content);
+  Json counts = page_counts(verdict_counts(result.evaluation));
+  counts["measured"] = to_json(measured_verdicts(result.measurements));
   return {{"kind", "report"},
           {"result", result_json(result)},
           {"patients", result.anonymous ? std::vector<std::string>{"left out as asked"}
                                         : patient_lines(result.evaluation)},
-          {"counts", page_counts(verdict_counts(result.evaluation))},
+          {"counts", counts},
           {"pictures", groups},
           {"cephalogram", base64(result.cephalogram)},
           {"contents", contents},

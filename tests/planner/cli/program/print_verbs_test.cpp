@@ -96,6 +96,25 @@ TEST_F(PrintVerbs, AFailEndsWithStatusOneAndAWarnWithStatusZero) {
   EXPECT_EQ(status(at("slot.ply") + " --voxel 0.5"), 0);
 }
 
+TEST_F(PrintVerbs, APlanWhosePartFailsItsProofEndsWithStatusOneAndWritesEverything) {
+  const std::string start =
+      R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
+      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
+        { "id": "prints", "do": "printable", "object": "ball", "least_wall_mm": )";
+  write("thick.plan.json", start + R"(2 } ] })");
+  write("thin.plan.json", start + R"(10, "bed_mm": [20, 20, 20] } ] })");
+  const CommandAnswer good = run("run " + at("thick.plan.json") + " -o " + at("good") + " --json");
+  EXPECT_EQ(good.status, 0) << good.errors;
+  EXPECT_EQ(SortedJson::parse(good.out)["counts"]["measured"]["FAIL"], 0);
+  const CommandAnswer bad = run("run " + at("thin.plan.json") + " -o " + at("bad") + " --json");
+  EXPECT_EQ(bad.status, 1) << bad.errors;
+  EXPECT_NE(bad.errors.find("a FAIL verdict of 'prints': FAIL, bed: "), std::string::npos) << bad.errors;
+  const SortedJson json = SortedJson::parse(bad.out);
+  EXPECT_EQ(json["counts"]["measured"], SortedJson::parse(R"({"PASS": 0, "WARN": 0, "FAIL": 1})"));
+  EXPECT_EQ(json["counts"]["FAIL"], 0) << "the kernels agree";
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "bad/report.html"));
+}
+
 TEST_F(PrintVerbs, ASlotIsAGapAndTwoPiecesFail) {
   write_swept("two.ply", {box(0, 0, 30, 5), box(0, 5.3, 30, 10)});
   const SortedJson answer = printable("two.ply");

@@ -113,6 +113,17 @@ test('a disagreement is the first thing said', () => {
   contains(text, '<div class="verdict fail"><b>The two kernels disagree</b>', '<details open=""><summary><code>ct from 0');
 });
 
+test('a part that fails its proof is said first, and its proof is in the measurements', () => {
+  const worse = structuredClone(data);
+  worse.counts.measured = { PASS: 0, WARN: 0, FAIL: 1 };
+  worse.result.measurements = [
+    { id: 'seats', object: 'jig', verdict: 'FAIL', findings: ['binds on <bone>'] },
+    { id: 'unknown', object: 'jig', verdict: null, findings: [] }];
+  const text = drawn(script, worse);
+  contains(text, '<div class="verdict fail"><b>A measurement fails</b>', '; 1 measurement with a FAIL',
+           '<td>seats</td><td>jig</td><td><span class="pill fail">FAIL</span></td>', 'binds on &lt;bone&gt;', 'not measured');
+});
+
 const with_measurements = (...measurements) => drawn(script, { ...data, result: { ...result, measurements } });
 
 test('a flap has the order, lengths, angles and contacts of its segments', () => {

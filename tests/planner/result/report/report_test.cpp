@@ -161,5 +161,19 @@ TEST_F(Report, CountsOfThePageFollowTheCertificates) {
   EXPECT_EQ(counts["pass_not_resolved"], verdict_counts(result_.evaluation).pass_not_resolved);
 }
 
+TEST_F(Report, AFailOfAMeasurementCountsBesideTheCertificates) {
+  result_.measurements = Json::parse(R"([
+      {"id": "seats", "object": "cap", "verdict": "FAIL", "findings": ["'cap' binds on 'cup'", "more"]},
+      {"id": "prints", "object": "cap", "verdict": "WARN", "findings": []},
+      {"id": "unknown", "object": "cap", "verdict": null, "findings": ["no mesh"]},
+      {"id": "size", "object": "cap", "volume_mm3": 1.0}])");
+  const MeasuredVerdicts found = measured_verdicts(result_.measurements);
+  EXPECT_EQ(found.failed, std::vector<std::string>{"'seats': 'cap' binds on 'cup'"});
+  const Json expected = Json::parse(R"({"PASS": 0, "WARN": 1, "FAIL": 1})");
+  EXPECT_EQ(counts_json(result_)["measured"], expected);
+  EXPECT_EQ(report_data(result_)["counts"]["measured"], expected);
+  EXPECT_EQ(counts_json(result_)["FAIL"], 0) << "certificates are counted by themselves";
+}
+
 }  // namespace
 }  // namespace octotomy::planner

@@ -1,0 +1,514 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A plate on a bone as it is planned, with its holes where the plan's motions bring its screws.
+//
+// 1 The band about the curve through the points, the side from which the plate is put on (guide_site.h), and the
+//   screws' axes.
+// 2 The bone near the band and all that lies behind it along the way in which the plate is put on; grown by the
+//   bending radius and the clearance, then shrunk by the radius: its surface has no hollow narrower than the
+//   radius, so that the plate bridges gaps. As 2 holds all that lies behind it, so does this: the plate slides on.
+// 3 What is left of the thickness above the rounding, on a band narrower by the rounding; grown by the rounding,
+//   so that all outer edges are round. Less 2.
+// 4 Less the holes, and less walls thinner than a printer's. The largest piece, with points that files for printers can hold.
+//
+// 1 is settled once and is a shared value of both kernels.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <tbb/parallel_for.h>
+
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/distance.h"
+#include "brep/mesh/error.h"
+#include "brep/shape/offset.h"
+#include "brep/shape/shadow.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/object/provenance.h"
+#include "planner/operation/part/guide_site.h"
+#include "planner/operation/part/printed_part.h"
+#include "planner/operation/part/screw.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "verify/witness/offset_witness.h"
+#include "voxel/filter/offset.h"
+#include "voxel/filter/shadow.h"
+#include "voxel/filter/surface_crossings.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Plate {
+  ObjectName object;
+  std::string side;
+  std::optional<glm::dvec3> direction;
+  std::vector<Mark> points;
+  double width_mm = 7.0, thickness_mm = 2.5, bend_radius_mm = 10.0, clearance_mm = 0.2, rounding_mm = 0.8,
+         reach_mm = 25.0;
+  std::vector<ObjectName> screws;
+  double play_mm = 0.2, hole_wall_mm = 1.0;
+  std::vector<ObjectName> away_from;
+  double least_mm = 1.0;
+  // Settled.
+  GuideSite site;
+  Slab ridge;  ///< the band that the rounding makes as wide as the plate
+  std::vector<ScrewAxis> axes;
+
+  double hole_radius_mm(const ScrewAxis& axis) const { return 0.5 * (axis.diameter_mm + play_mm); }
+  double flat_mm() const { return thickness_mm - rounding_mm; }  ///< of the thickness below the rounding
+};
+
+constexpr double room_mm = 1.0;
+/// A screw may go in at up to this angle to the way in which the plate is put on.
+constexpr double most_oblique_deg = 45.0;
+/// How far off the bone a screw's point may be: it was placed by hand.
+constexpr double off_bone_mm = 3.0;
+/// Cells of the mesh's offsets. Triangles lie within a 16th of their cell, and on the mean within a third of that.
+/// A ball of the bending radius touches all triangles of the patch on which it rests, so that their number decides
+/// about the time.
+constexpr double fit_cell_mm = 1.0, outer_cell_mm = 1.5;
+double grown_cell_mm(const Plate& plate) {
+  return plate.bend_radius_mm / 5.0;
+}
+/// Triangles whose normal lies within 60 degrees of the way in face the bone.
+constexpr double faces_bone = 0.5;
+
+void check(const Plate& plate, const FieldLocation& place) {
+  try {
+    voxel::parse_view(plate.side);
+  } catch (const voxel::InvalidInput& error) {
+    place.at("side").refuse(error.what());
+  }
+  if (plate.rounding_mm > 0.45 * plate.thickness_mm)
+    place.at("rounding_mm").refuse("is more than 0.45 of 'thickness_mm': nothing of the sides would be left");
+  if (plate.rounding_mm > 0.3 * plate.width_mm)
+    place.at("rounding_mm").refuse("is more than 0.3 of 'width_mm': nothing of the outer face would be left");
+  if (!(plate.bend_radius_mm >= 2.0 * plate.thickness_mm))
+    place.at("bend_radius_mm")
+        .refuse(
+            "is less than twice 'thickness_mm': a plate that bends so sharply breaks, and its outer "
+            "side would cross itself");
+}
+
+/// The least distance of a place from the border of an outline; below 0 beside it.
+double within_mm(const std::vector<glm::dvec2>& outline_mm, const glm::dvec2& p_mm) {
+  double least_mm = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < outline_mm.size(); ++i) {
+    const glm::dvec2 &a = outline_mm[i], &b = outline_mm[(i + 1) % outline_mm.size()];
+    const double length2 = glm::dot(b - a, b - a);
+    const double share = length2 > 0.0 ? std::clamp(glm::dot(p_mm - a, b - a) / length2, 0.0, 1.0) : 0.0;
+    least_mm = std::min(least_mm, glm::distance(p_mm, glm::mix(a, b, share)));
+  }
+  return voxel::contains({outline_mm}, p_mm) ? least_mm : -least_mm;
+}
+
+/// The axes of the screws, each in the bone as planned, within the band and beside the other holes.
+std::vector<ScrewAxis> axes_of(const Plate& plate, const SettleBench& bench) {
+  std::vector<ScrewAxis> axes;
+  const brep::Solid& bone = bench.object(plate.object.name);
+  for (const ObjectName& name : plate.screws) {
+    const ScrewAxis axis = screw_axis(name.name, bench);
+    std::uint32_t start = 0;
+    if (const double off_mm = bone.tree().distance_mm(axis.head_mm, start); off_mm > off_bone_mm)
+      throw std::runtime_error("the screw '" + name.name + "' lies " + three_figures(off_mm) +
+                               " mm off the surface of '" + plate.object.name +
+                               "': name the screw as a move step carried it with its piece");
+    if (glm::dot(axis.along, plate.site.along) < std::cos(glm::radians(most_oblique_deg)))
+      throw std::runtime_error("the screw '" + name.name +
+                               "' points more than 45 degrees off the way in which the plate is put on: turn "
+                               "the screw, or choose another 'side'");
+    // Where the axis passes the middle of the plate's wall.
+    const glm::dvec3 middle_mm = axis.head_mm - (plate.clearance_mm + 0.5 * plate.thickness_mm) * axis.along;
+    const double wall_mm = within_mm(plate.site.base.outline_mm, plate.site.base.frame.project(middle_mm)) -
+                           plate.hole_radius_mm(axis);
+    if (wall_mm < plate.hole_wall_mm)
+      throw std::runtime_error(
+          "the hole of '" + name.name + "' leaves " +
+          (wall_mm > 0.0 ? three_figures(wall_mm) + " mm of the plate at its side, less than the " +
+                               three_figures(plate.hole_wall_mm) + " mm of 'hole_wall_mm'"
+                         : std::string("no plate at its side")) +
+          ": lead 'points' through the screws, make the plate wider, or leave the screw out of 'screws'");
+    for (const ScrewAxis& other : axes) {
+      const glm::dvec3 apart_mm = axis.head_mm - other.head_mm;
+      const glm::dvec3 across_mm = apart_mm - glm::dot(apart_mm, plate.site.along) * plate.site.along;
+      const double between_mm =
+          glm::length(across_mm) - plate.hole_radius_mm(axis) - plate.hole_radius_mm(other);
+      if (between_mm < plate.hole_wall_mm)
+        throw std::runtime_error("the holes of '" + other.screw + "' and '" + name.name + "' are " +
+                                 three_figures(std::max(0.0, between_mm)) + " mm apart, less than the " +
+                                 three_figures(plate.hole_wall_mm) +
+                                 " mm of 'hole_wall_mm': move one of the screws");
+    }
+    axes.push_back(axis);
+  }
+  return axes;
+}
+
+/// What is known of each screw: its axis as planned, and how far it stays from what it must not touch, before
+/// the motion as its own step says and at its planned place.
+void report_screws(const Plate& plate, const SettleBench& bench) {
+  bench.details["screws"] = nlohmann::ordered_json::array();
+  for (const ScrewAxis& axis : plate.axes) {
+    const Object& screw = bench.objects.at(axis.screw);
+    const Object& still = still_of(bench.objects, screw);
+    nlohmann::ordered_json line{{"screw", axis.screw},
+                                {"placed_by", still.id},
+                                {"is_carried", still.id != axis.screw},
+                                {"at_mm", to_json(axis.head_mm)},
+                                {"along", to_json(axis.along)},
+                                {"hole_mm", 2.0 * plate.hole_radius_mm(axis)},
+                                {"clearances", nlohmann::ordered_json::array()}};
+    if (const auto before = still.mesh.details.find("clearances"); before != still.mesh.details.end())
+      for (nlohmann::ordered_json clear : *before) {
+        clear["is_planned_place"] = false;
+        line["clearances"].push_back(std::move(clear));
+      }
+    for (const ScrewClear& clear : clear_of_objects(axis, plate.away_from, bench)) {
+      line["clearances"].push_back(to_json(clear));
+      line["clearances"].back()["is_planned_place"] = true;
+      if (std::string text = too_near("'" + axis.screw + "'", clear, plate.least_mm); !text.empty())
+        bench.findings.push_back(std::move(text));
+    }
+    bench.details["screws"].push_back(std::move(line));
+  }
+  if (plate.axes.empty()) bench.findings.push_back("the plate has no holes: name the plan's 'screws'");
+}
+
+Plate settle(const Plate& asked, const SettleBench& bench) {
+  const Stopwatch watch(bench.timings, "plate_settle");
+  Plate made = asked;
+  SiteAsked site;
+  site.bone = asked.object.name;
+  site.side = asked.side;
+  site.direction = asked.direction;
+  for (const Mark& mark : asked.points) site.points_mm.push_back(mark_mm(mark, bench.objects));
+  site.radius_mm = 0.5 * asked.width_mm;
+  site.reach_mm = asked.reach_mm;
+  site.before_mm = asked.thickness_mm + asked.clearance_mm + room_mm;
+  site.margin_mm = asked.bend_radius_mm + asked.thickness_mm + room_mm;
+  site.part = "plate";
+  site.is_on_several = true;
+  made.site = guide_site(site, bench);
+  // The plate ends in half discs about the first and last point.
+  Slab& base = made.site.base;
+  const std::vector<glm::dvec2>& points_mm = base.frame.points_mm;
+  base.outline_mm = round_band_outline(points_mm, asked.width_mm);
+  made.ridge = base;
+  made.ridge.outline_mm = round_band_outline(points_mm, asked.width_mm - 2.0 * asked.rounding_mm);
+  try {
+    static_cast<void>(base.solid());
+    static_cast<void>(made.ridge.solid());
+  } catch (const std::invalid_argument&) {
+    throw std::runtime_error(
+        "the plate about the points crosses itself: make it narrower, or give points in "
+        "their order along a line that bends less");
+  }
+  made.axes = axes_of(made, bench);
+  bench.details = {{"direction", to_json(made.site.along)}, {"length_mm", curve_length_mm(points_mm)}};
+  report_screws(made, bench);
+  return made;
+}
+
+std::string definition(const Plate& plate, const Objects&) {
+  return "plate of " + plain(plate.width_mm) + " x " + plain(plate.thickness_mm) + " mm on " +
+         plate.object.name + " from " + plate.side + ", " + std::to_string(plate.axes.size()) + " holes";
+}
+
+/// How far a hole goes to both sides of its screw's head: through the plate where it bridges a gap too.
+double through_mm(const Plate& plate) {
+  return plate.clearance_mm + plate.thickness_mm + plate.bend_radius_mm + room_mm;
+}
+
+void voxels(const Plate& plate, const VoxelBench& bench, VoxelSide& made) {
+  made.lineage = "distances to columns of the octree of the bone";
+  const VoxelSide& object = bench.object(plate.object.name);
+  const voxel::Expression near = plate.site.near.expression();
+  const voxel::Octree bone = bench.combined(voxel::Expression(object.octree) & near);
+  const auto has_none = [&] {
+    made.findings.push_back("no voxel lies within the plate: take smaller voxels");
+    made.octree = voxel::Octree::empty(bench.universe);
+    made.symbol = voxel::Expression(made.octree);
+  };
+  if (bone.is_empty()) return has_none();
+  const Stopwatch watch(bench.timings, "plate_voxel");
+  const auto grown = [&](const voxel::Expression& solid, double by_mm) {
+    const voxel::Octree octree = bench.combined(solid);
+    if (octree.is_empty()) return voxel::Expression(octree);
+    return voxel::Expression(voxel::offset(octree, bench.within_universe(solid), by_mm, bench.progress));
+  };
+  const voxel::Expression behind(voxel::shadow(bone, bench.within_universe(*object.symbol & near),
+                                               {plate.site.along, plate.site.end_mm, bench.progress})
+                                     .window);
+  const voxel::Expression closed =
+      grown(grown(behind, plate.bend_radius_mm + plate.clearance_mm), -plate.bend_radius_mm);
+  const voxel::Expression ridge = grown(closed, plate.flat_mm()) & plate.ridge.expression();
+  voxel::Expression whole = grown(ridge, plate.rounding_mm) - closed;
+  for (const ScrewAxis& axis : plate.axes) {
+    const glm::dvec3 by_mm = through_mm(plate) * axis.along;
+    whole = whole - voxel::Expression(voxel::Cylinder{axis.head_mm - by_mm, axis.head_mm + by_mm,
+                                                      plate.hole_radius_mm(axis)});
+  }
+  keep_largest(whole, bench, made);
+  if (made.octree.is_empty()) has_none();
+}
+
+/// The gap between a plate and the bone: at all places of its surface that face the bone.
+struct FitGap {
+  double mean_mm = 0.0, largest_mm = 0.0;
+  glm::dvec3 largest_at_mm{0.0};
+};
+
+std::optional<FitGap> mesh_gap(const brep::Solid& plate, const glm::dvec3& along, const brep::Solid& bone) {
+  const brep::Triangles& surface = plate.triangles();
+  std::vector<glm::dvec3> places_mm;
+  std::vector<double> area_mm2;
+  for (const auto& face : surface.faces) {
+    const glm::dvec3 &a = surface.points_mm[face[0]], &b = surface.points_mm[face[1]],
+                     &c = surface.points_mm[face[2]];
+    const glm::dvec3 doubled = glm::cross(b - a, c - a);
+    if (!(glm::dot(doubled, along) > faces_bone * glm::length(doubled))) continue;
+    places_mm.push_back((a + b + c) / 3.0);
+    area_mm2.push_back(0.5 * glm::length(doubled));
+  }
+  if (places_mm.empty()) return std::nullopt;
+  const std::vector<double> gaps_mm = bone.tree().distances_mm(places_mm);
+  FitGap gap;
+  double all_mm2 = 0.0;
+  for (std::size_t i = 0; i < places_mm.size(); ++i) {
+    gap.mean_mm += gaps_mm[i] * area_mm2[i];
+    all_mm2 += area_mm2[i];
+    if (gaps_mm[i] > gap.largest_mm) {
+      gap.largest_mm = gaps_mm[i];
+      gap.largest_at_mm = places_mm[i];
+    }
+  }
+  gap.mean_mm /= all_mm2;
+  return gap;
+}
+
+/// The same between the crossings of both objects' surfaces with the lattice.
+std::optional<FitGap> voxel_gap(const VoxelSide& plate, const glm::dvec3& along, const VoxelSide& bone,
+                                const voxel::Expression& near, const voxel::Universe& universe) {
+  const voxel::Expression world(voxel::bounds(universe.lattice()));
+  const auto crossings_of = [&](const voxel::Octree& octree, const voxel::Expression& solid) {
+    std::vector<glm::dvec3> found = voxel::SurfaceCrossings(octree, solid & world).points();
+    for (glm::dvec3& p : found) p = glm::dvec3(universe.lps_from_voxel * glm::dvec4(p, 1.0));
+    return found;
+  };
+  const glm::dmat4 voxel_from_lps = glm::inverse(universe.lps_from_voxel);
+  const double beyond_mm = std::max({universe.lattice().spacing_mm().x, universe.lattice().spacing_mm().y,
+                                     universe.lattice().spacing_mm().z});
+  const auto is_plate = [&](const glm::dvec3& p_mm) {
+    const glm::ivec3 voxel(glm::round(glm::dvec3(voxel_from_lps * glm::dvec4(p_mm, 1.0))));
+    return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) &&
+           glm::all(glm::lessThan(voxel, glm::ivec3(universe.side()))) && plate.octree.contains(voxel);
+  };
+  std::vector<glm::dvec3> facing;
+  for (const glm::dvec3& p_mm : crossings_of(plate.octree, *plate.symbol))
+    if (is_plate(p_mm - beyond_mm * along) && !is_plate(p_mm + beyond_mm * along)) facing.push_back(p_mm);
+  const voxel::Octree beside = voxel::combine(universe, voxel::Expression(bone.octree) & near);
+  if (facing.empty() || beside.is_empty()) return std::nullopt;
+  const std::vector<glm::dvec3> surface = crossings_of(beside, *bone.symbol & near);
+  constexpr std::size_t most = 2000;  // these are compared with all crossings of the bone
+  const std::size_t step = std::max<std::size_t>(1, facing.size() / most);
+  std::vector<glm::dvec3> places_mm;
+  for (std::size_t i = 0; i < facing.size(); i += step) places_mm.push_back(facing[i]);
+  std::vector<double> least_mm2(places_mm.size(), std::numeric_limits<double>::infinity());
+  tbb::parallel_for(std::size_t{0}, places_mm.size(), [&](std::size_t i) {
+    for (const glm::dvec3& q_mm : surface) {
+      const glm::dvec3 between = q_mm - places_mm[i];
+      least_mm2[i] = std::min(least_mm2[i], glm::dot(between, between));
+    }
+  });
+  FitGap gap;
+  for (std::size_t i = 0; i < places_mm.size(); ++i) {
+    const double mm = std::sqrt(least_mm2[i]);
+    gap.mean_mm += mm / static_cast<double>(places_mm.size());
+    if (mm > gap.largest_mm) {
+      gap.largest_mm = mm;
+      gap.largest_at_mm = places_mm[i];
+    }
+  }
+  return gap;
+}
+
+void triangles(const Plate& plate, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "plate");
+  const brep::Progress progress{bench.progress.stop, bench.progress.report};
+  const auto of = [&](const brep::Solid& a, brep::Operation operation, const brep::Solid& b) {
+    return noted(brep::boolean(a, operation, b, bench.progress.stop), made);
+  };
+  const auto grown = [&](const brep::Solid& solid, double by_mm, double cell_mm) {
+    const Stopwatch part(bench.timings, "plate_offset");
+    return brep::offset(solid, {by_mm, cell_mm, progress});
+  };
+  made.lineage = "level sets of the distance to the bone's exact shadow";
+  const brep::Solid bone = noted(plate.site.bone, made);
+  if (bone.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
+  const brep::Solid behind = brep::shadow(bone, {plate.site.along, plate.site.end_mm, progress}).solid;
+  const brep::Solid big = grown(behind, plate.bend_radius_mm + plate.clearance_mm, grown_cell_mm(plate));
+  const brep::Solid closed = grown(big, -plate.bend_radius_mm, fit_cell_mm);
+  if (closed.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
+  const brep::Solid ridge = of(grown(big, plate.flat_mm() - plate.bend_radius_mm, outer_cell_mm),
+                               brep::Operation::Intersection, plate.ridge.solid());
+  if (ridge.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
+  std::vector<brep::Solid> operands{grown(ridge, plate.rounding_mm, outer_cell_mm), closed};
+  for (const ScrewAxis& axis : plate.axes) {
+    const glm::dvec3 by_mm = through_mm(plate) * axis.along;
+    operands.push_back(rod(axis.head_mm - by_mm, axis.head_mm + by_mm, plate.hole_radius_mm(axis)));
+  }
+  const brep::Solid whole =
+      noted(brep::boolean(operands, brep::Operation::Difference, bench.progress.stop), made);
+  if (whole.empty()) throw std::runtime_error("nothing of the plate is left: make it thicker");
+  made.whole = printed(whole, "plate", made);
+  made.details["holes"] = nlohmann::ordered_json::array();
+  constexpr double goal_mm = 0.01;
+  for (const ScrewAxis& axis : plate.axes) {
+    const std::optional<double> off_mm = hole_off_mm(*made.whole, axis, plate.hole_radius_mm(axis));
+    made.details["holes"].push_back({{"screw", axis.screw}, {"off_axis_mm", nullptr}, {"goal_mm", goal_mm}});
+    if (off_mm) made.details["holes"].back()["off_axis_mm"] = *off_mm;
+    if (!off_mm)
+      made.findings.push_back("the plate has no hole for '" + axis.screw +
+                              "': it is on a piece that is left out, so lead 'points' over bone");
+    else if (*off_mm > goal_mm)
+      made.findings.push_back("the hole of '" + axis.screw + "' lies " + three_figures(*off_mm) +
+                              " mm off its axis, more than 0.01 mm");
+  }
+  if (const std::optional<FitGap> gap = mesh_gap(*made.whole, plate.site.along, bone))
+    made.details["gap"] = {{"mean_mm", gap->mean_mm},
+                           {"mean_half_width_mm", nullptr},
+                           {"largest_mm", gap->largest_mm},
+                           {"largest_half_width_mm", nullptr},
+                           {"voxel_mean_mm", nullptr},
+                           {"voxel_largest_mm", nullptr},
+                           {"largest_at_mm", to_json(gap->largest_at_mm)}};
+}
+
+/// The half-widths of the gap: how far both kernels are apart, and the noise of surfaces of digitised samples.
+void bound_gap(const Plate& plate, const BoundBench& bench, const Object& bone, Object& made) {
+  const auto json = made.mesh.details.find("gap");
+  if (json == made.mesh.details.end() || !made.voxel.symbol || made.voxel.octree.is_empty() ||
+      !bone.voxel.symbol)
+    return;
+  const std::optional<FitGap> gap =
+      voxel_gap(made.voxel, plate.site.along, bone.voxel, plate.site.near.expression(), bench.universe);
+  if (!gap) return;
+  const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
+  const double noise_mm = 0.1 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+  nlohmann::ordered_json& details = *json;
+  details["voxel_mean_mm"] = gap->mean_mm;
+  details["voxel_largest_mm"] = gap->largest_mm;
+  details["mean_half_width_mm"] = noise_mm + std::abs(gap->mean_mm - details["mean_mm"].get<double>());
+  details["largest_half_width_mm"] =
+      noise_mm + std::abs(gap->largest_mm - details["largest_mm"].get<double>());
+}
+
+void bound(const Plate& plate, const BoundBench& bench, Object& made) {
+  const Object& bone = bench.objects.at(plate.object.name);
+  inherit(bone, made);
+  if (bone.mesh.whole && made.mesh.whole && !made.mesh.whole->empty()) {
+    const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
+    double apart_mm = verify::offset_allowance_mm(
+        {bone.witness,
+         voxel::combine(bench.universe, voxel::Expression(bone.voxel.octree) & plate.site.near.expression()),
+         plate.site.bone.solid, is_whole_voxels(bone.voxel)},
+        {plate.bend_radius_mm + plate.clearance_mm, grown_cell_mm(plate)},
+        made.mesh.whole->measures().area_mm2);
+    // Later offsets are of smooth surfaces. Triangles lie within a third of their tolerance on the mean.
+    for (const auto& [by_mm, cell_mm] :
+         {std::pair(plate.bend_radius_mm, fit_cell_mm), std::pair(plate.rounding_mm, outer_cell_mm)})
+      apart_mm += brep::offset_tolerance_mm({by_mm, cell_mm, {}}) / 3.0;
+    if (is_whole_voxels(bone.voxel)) apart_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+    made.bound.measured_apart_mm += apart_mm;
+    made.bound.reshaped.push_back(bone.id);
+    bound_gap(plate, bench, bone, made);
+  }
+  const std::vector<CutPlane> sides = planes_of(plate.site.base.sides());
+  made.bound.planes.insert(made.bound.planes.end(), sides.begin(), sides.end());
+  made.shared_values.push_back("the band, the insertion direction and the screws' axes");
+  made.ends_with_universe = true;
+}
+
+}  // namespace
+
+Operation plate_operation() {
+  return Describe<Plate>("plate", "Makes a plate along a curve on the planned bone, with its screws' holes.",
+                         Makes::Object)
+      .takes(field("object", &Plate::object, "The bone as it is planned, with its pieces at their places.")
+                 .required()
+                 .positional("bone"))
+      .takes(field("side", &Plate::side,
+                   "The side from which the surgeon puts the plate on: anterior, posterior, left, right, "
+                   "superior, inferior, or AZ,EL in degrees; of the head as it is held.")
+                 .required())
+      .takes(field("direction", &Plate::direction,
+                   "The direction in which the plate is put on, LPS. Default: straight from the side.")
+                 .direction())
+      .takes(field("points", &Plate::points,
+                   "Two or more points on the bone, in their order along the plate, which ends in half discs "
+                   "about the first and the last: [x, y, z] or landmarks.")
+                 .required()
+                 .from(2))
+      .takes(field("width_mm", &Plate::width_mm, "The plate's width; 7 is asked for by this project.")
+                 .from(3.0)
+                 .to(20.0))
+      .takes(field("thickness_mm", &Plate::thickness_mm,
+                   "The plate's thickness; 2.5 is asked for by this project, and usual for plates that bear "
+                   "the jaw's load.")
+                 .from(0.8)
+                 .to(6.0))
+      .takes(
+          field("bend_radius_mm", &Plate::bend_radius_mm,
+                "The least radius of hollows that the plate follows: it bridges narrower ones and gaps. At "
+                "least twice the thickness; the default is a project's choice.")
+              .from(2.0)
+              .to(60.0))
+      .takes(
+          field("clearance_mm", &Plate::clearance_mm,
+                "The gap between plate and bone where the plate follows the bone; the default is a project's "
+                "choice.")
+              .from(0.05)
+              .to(2.0))
+      .takes(field("rounding_mm", &Plate::rounding_mm,
+                   "The radius of the outer edges; the default is a project's choice.")
+                 .from(0.2)
+                 .to(2.5))
+      .takes(
+          field("reach_mm", &Plate::reach_mm,
+                "How far the plate reaches back from the foremost bone along it; the default is a project's "
+                "choice.")
+              .from(2.0)
+              .to(150.0))
+      .takes(field("screws", &Plate::screws,
+                   "Screws of this plan, as motions carried them with their pieces: the plate has its holes "
+                   "there.")
+                 .in_plans_only())
+      .takes(field("play_mm", &Plate::play_mm,
+                   "By how much holes are wider than their screws; the default is a project's choice.")
+                 .from(0.0)
+                 .to(1.0))
+      .takes(field("hole_wall_mm", &Plate::hole_wall_mm,
+                   "The least wall between a hole and the plate's side or another hole; the default is a "
+                   "project's choice.")
+                 .from(0.5)
+                 .to(5.0))
+      .takes(field("away_from", &Plate::away_from,
+                   "Objects at their planned places that the screws must not touch, such as roots or the "
+                   "nerve's canal.")
+                 .in_plans_only())
+      .takes(
+          field("least_mm", &Plate::least_mm,
+                "The least distance to these; nearer ones are findings. The default is a project's choice.")
+              .from(0.0)
+              .to(20.0))
+      .example(R"({"id": "left_plate", "do": "plate", "object": "result", "side": "anterior",
+        "points": [[18, -82, -36], [18, -82, -20]], "screws": ["left_1"]})")
+      .on_files("octotomy plate bone.stl --side anterior --points 18,-82,-36 18,-82,-20 -o plate.stl")
+      .of_head()
+      .check(check)
+      .settle(settle)
+      .object(definition, voxels, triangles, bound);
+}
+
+}  // namespace octotomy::planner
