@@ -486,7 +486,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   else if (!octree.is_empty() || !solid.empty())
     lower(certificate, Verdict::Fail, "The object must be empty, and an answer is not.");
   const auto has_place = [&](const std::string& reason) { return reason.rfind("The two surfaces", 0) == 0; };
-  if (certificate.verdict != Verdict::Pass && certificate.worst &&
+  if (certificate.verdict != Verdict::Pass && certificate.worst && certificate.worst->size_mm > 0.0 &&
       std::none_of(certificate.reasons.begin(), certificate.reasons.end(), has_place))
     certificate.reasons.push_back(text_of(*certificate.worst));
   progress.at(1.0);

@@ -30,7 +30,6 @@
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
-#include "planner/plan/makers.h"
 #include "voxel/scan/dicom_source.h"
 
 namespace octotomy::planner::cli {
@@ -91,7 +90,7 @@ class OperationRun {
                        made.voxel);
     if (with_mesh) answer_by_mesh(made);
     if (wants_octree && !with_voxels) voxelise_answer(made);
-    if (is_mixed) add_makers({action_, objects_, no_scan_, no_scans_}, false, made);
+    if (is_mixed) add_makers(made);
     if (text_.certify) certify_answer(made);
     made.findings.insert(made.findings.begin(), mended_.begin(), mended_.end());
     made.findings.insert(made.findings.end(), beyond_.begin(), beyond_.end());
@@ -193,6 +192,25 @@ class OperationRun {
   static void add_file_maker(Object& object) {
     const std::string lineage = object.mesh.whole ? object.mesh.lineage : object.voxel.lineage;
     object.voxel.makers = object.mesh.makers = {"file: " + lineage};
+  }
+
+  /// The operands' files, and the code by which each kernel made the answer; sorted, each once.
+  void add_makers(Object& made) const {
+    const auto add = [&](std::vector<std::string>& all, const std::string& lineage, auto of_operand) {
+      all.push_back(operation_.name + ": " + lineage);
+      for (const Object& object : objects_) {
+        const std::vector<std::string>& more = of_operand(object);
+        all.insert(all.end(), more.begin(), more.end());
+      }
+      std::sort(all.begin(), all.end());
+      all.erase(std::unique(all.begin(), all.end()), all.end());
+    };
+    add(
+        made.voxel.makers, made.voxel.lineage,
+        [](const Object& object) -> const auto& { return object.voxel.makers; });
+    add(
+        made.mesh.makers, made.mesh.lineage,
+        [](const Object& object) -> const auto& { return object.mesh.makers; });
   }
 
   /// The voxels are those of the operand that is an octree, so that a mesh beyond them is cut off.
