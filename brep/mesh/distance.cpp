@@ -674,14 +674,22 @@ std::vector<double> SurfaceTree::signed_distances_mm(const std::vector<glm::dvec
   tree_->check_not_empty();
   // Blocks are fixed, so that the start of each search does not depend on the threads.
   constexpr std::size_t block = 256;
+  // The ball about a point that ends at the surface has no surface in it, so that points whose balls overlap
+  // lie on one side of it. Far above the rounding of distances.
+  constexpr double surely = 1.0 - 1e-9;
   tbb::parallel_for(std::size_t{0}, (points_mm.size() + block - 1) / block, [&](std::size_t b) {
     std::uint32_t triangle = 0;
+    double before_mm = 0.0;
     for (std::size_t i = b * block; i < std::min((b + 1) * block, points_mm.size()); ++i) {
       if (nearest[i] != unknown_triangle) triangle = nearest[i];
       distances[i] = tree_->distance(points_mm[i], triangle);
       nearest[i] = triangle;
       const int side = tree_->side_of(triangle, points_mm[i]);
-      if (side < 0 || (side == 0 && is_inside(points_mm[i]))) distances[i] = -distances[i];
+      const bool is_as_before = i > b * block && glm::distance(points_mm[i], points_mm[i - 1]) <
+                                                     surely * (distances[i] + std::abs(before_mm));
+      if (side < 0 || (side == 0 && (is_as_before ? before_mm < 0.0 : is_inside(points_mm[i]))))
+        distances[i] = -distances[i];
+      before_mm = distances[i];
     }
   });
   return distances;

@@ -115,9 +115,12 @@ void add_specks(Certificate& certificate, const Specks& specks) {
 /// Compares area and distances; for a resolved object with a witness, at first on a sample of the surfaces'
 /// points. If a bound is exceeded, looks for parts thinner than a voxel. A resolved object that differs only
 /// by those is not resolved there, and the certificate states the lost area. Surfaces beside `lost_voxels`, which the
-/// certificate lists as lost by resampling, do not count for the mean and the percentile.
+/// certificate lists as lost by resampling, do not count for the mean and the percentile. Nor do, with a
+/// witness and in doubt, parts of the mesh that `digitised`, its own voxels, do not have: the witness judges
+/// their triangles, and every voxel where both kernels differ.
 void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
-                      const brep::Solid& solid, const std::vector<glm::ivec3>& lost_voxels) {
+                      const brep::Solid& solid, const voxel::Octree& digitised,
+                      const std::vector<glm::ivec3>& lost_voxels) {
   const Specks specks = evidence.witnessed ? specks_of(solid, octree.universe().lattice()) : Specks();
   add_specks(certificate, specks);
   const bool is_strict = evidence.witnessed && certificate.resolved();
@@ -135,15 +138,17 @@ void compare_surfaces(Certificate& certificate, const Evidence& evidence, const 
     return area.difference <= *area.tolerance && distances.percentile95_mm() <= bounds.percentile95_mm &&
            distances.mean_mm() <= bounds.mean_mm && (is_strict || distances.largest_mm() <= far_mm);
   };
-  if (!lost_voxels.empty()) {
-    distances.leave_out_beside(lost_voxels);
-  } else if (!are_within()) {
-    const double thin_mm2 = distances.leave_out_thin();
+  if (!lost_voxels.empty()) distances.leave_out_beside(lost_voxels);
+  if (!are_within()) {
+    double thin_mm2 = distances.leave_out_thin();
+    if (evidence.witnessed) thin_mm2 += distances.leave_out_unheld(digitised, bounds.percentile95_mm);
     area = area_of(evidence, thin_mm2);
+    const std::string thin = voxel::rounded(100.0 * thin_mm2 / evidence.mesh.area_mm2) +
+                             " % of its surface bounds walls and gaps that are thinner than a voxel";
     if (is_strict && are_within())
-      certificate.unresolved = {std::nullopt, voxel::rounded(100.0 * thin_mm2 / evidence.mesh.area_mm2) +
-                                                  " % of its surface bounds walls and gaps that are thinner "
-                                                  "than a voxel"};
+      certificate.unresolved = {std::nullopt, thin};
+    else if (evidence.witnessed && certificate.unresolved)
+      certificate.unresolved->reason += ", and " + thin;
     else if (is_strict && loses_area)
       certificate.reasons.push_back("At this voxel size " + lost_share +
                                     " % of the surface is lost: of walls and gaps that are thinner than a "
@@ -469,7 +474,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   judge_evidence(certificate);
   if (!octree.is_empty() && evidence.mesh.area_mm2 > 0.0) {
     progress.at(0.5);
-    compare_surfaces(certificate, evidence, octree, solid, lost_voxels);
+    compare_surfaces(certificate, evidence, octree, solid, digitised, lost_voxels);
     progress.at(0.9);
     compare_inertia(certificate, evidence, solid);
     if (inputs.voxels_are_samples) compare_same_topology(certificate, octree, solid);
@@ -481,7 +486,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   else if (!octree.is_empty() || !solid.empty())
     lower(certificate, Verdict::Fail, "The object must be empty, and an answer is not.");
   const auto has_place = [&](const std::string& reason) { return reason.rfind("The two surfaces", 0) == 0; };
-  if (certificate.verdict != Verdict::Pass && certificate.worst &&
+  if (certificate.verdict != Verdict::Pass && certificate.worst && certificate.worst->size_mm > 0.0 &&
       std::none_of(certificate.reasons.begin(), certificate.reasons.end(), has_place))
     certificate.reasons.push_back(text_of(*certificate.worst));
   progress.at(1.0);

@@ -129,6 +129,10 @@ SurfaceDistances::SurfaceDistances(const voxel::Octree& octree, const brep::Soli
   from_solid_ = directed(samples_.points_mm, samples_.areas_mm2, sampled, [&] {
     return [&](const glm::dvec3& p_mm, double enough_mm) { return to_voxels(p_mm, enough_mm); };
   });
+  const double sampled_mm2 = std::accumulate(from_solid_.areas_mm2.begin(), from_solid_.areas_mm2.end(), 0.0);
+  if (sampled_mm2 > 0.0)
+    mm2_a_sampled_mm2_ =
+        std::accumulate(samples_.areas_mm2.begin(), samples_.areas_mm2.end(), 0.0) / sampled_mm2;
   const brep::SurfaceTree& tree = solid.tree();
   const Points centres = face_centres(octree);
   from_voxels_ = directed(centres.p_mm, centres.areas_mm2, sampled, [&] {
@@ -216,25 +220,38 @@ double SurfaceDistances::leave_out_thin() {
     for (std::size_t k = 0; k < left.size(); ++k)
       if (thick[k] == 0 || closing[k] != 0) thin[left[k]] = 1;
   }
-  double thin_mm2 = 0.0, measured_mm2 = 0.0;
+  return leave_out(thin);
+}
+
+double SurfaceDistances::leave_out_unheld(const voxel::Octree& digitised, double reach_mm) {
+  const voxel::BoundaryDistance to_digitised(digitised);
+  std::vector<std::uint8_t> unheld(from_solid_.numbers.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, unheld.size(), 256), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i)
+      unheld[i] = to_digitised(samples_.points_mm[from_solid_.numbers[i]], reach_mm) > reach_mm ? 1 : 0;
+  });
+  return leave_out(unheld);
+}
+
+double SurfaceDistances::leave_out(const std::vector<std::uint8_t>& is_out) {
+  double out_mm2 = 0.0;
   Directed kept;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < is_out.size(); ++i) {
     const double area_mm2 = from_solid_.areas_mm2[i];
-    measured_mm2 += area_mm2;
-    if (thin[i] != 0) {
-      thin_mm2 += area_mm2;
+    if (is_out[i] != 0) {
+      out_mm2 += area_mm2;
       continue;
     }
+    const std::uint32_t number = from_solid_.numbers[i];
     const double mm = from_solid_.distances_mm[i];
     kept.distances_mm.push_back(mm);
     kept.areas_mm2.push_back(area_mm2);
-    kept.numbers.push_back(numbers[i]);
-    if (mm > kept.largest_mm) kept.largest_mm = mm, kept.farthest_mm = samples_.points_mm[numbers[i]];
+    kept.numbers.push_back(number);
+    if (mm > kept.largest_mm) kept.largest_mm = mm, kept.farthest_mm = samples_.points_mm[number];
   }
   kept.sum_up();
   from_solid_ = std::move(kept);
-  const double whole_mm2 = std::accumulate(samples_.areas_mm2.begin(), samples_.areas_mm2.end(), 0.0);
-  return measured_mm2 > 0.0 ? thin_mm2 * whole_mm2 / measured_mm2 : 0.0;
+  return out_mm2 * mm2_a_sampled_mm2_;
 }
 
 }  // namespace octotomy::verify

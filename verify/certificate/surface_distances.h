@@ -39,6 +39,10 @@ class SurfaceDistances {
   /// those. Returns the area in mm2 of such sheets and gaps, estimated if points were sampled. The largest
   /// distance then covers the points that mean and percentile use.
   double leave_out_thin();
+  /// Removes the points of the solid further than reach_mm from the boundary of `digitised`, the voxels whose
+  /// centres the solid holds, because no set of voxels has them: the rims of thin sheets, and rods, which are
+  /// thick along their own normals. Returns their area as leave_out_thin() does.
+  double leave_out_unheld(const voxel::Octree& digitised, double reach_mm);
   /// Removes the points in or beside these voxels from both surfaces; one that leaves no point is 0 apart.
   /// Precondition: the voxels are in the order of before().
   void leave_out_beside(const std::vector<glm::ivec3>& voxels);
@@ -60,9 +64,13 @@ class SurfaceDistances {
   };
 
  private:
+  /// Removes marked points of from_solid_. Returns their area, estimated if points were sampled.
+  double leave_out(const std::vector<std::uint8_t>& is_out);
+
   const voxel::Octree& octree_;
   const brep::Solid& solid_;
-  brep::SurfaceSamples samples_;  ///< of the solid
+  brep::SurfaceSamples samples_;    ///< of the solid
+  double mm2_a_sampled_mm2_ = 1.0;  ///< area of the solid for each mm2 of from_solid_'s points
   Directed from_voxels_, from_solid_;
 };
 

@@ -2,7 +2,9 @@
 //
 // A verb made from an operation:
 //   1 The words of its options become the JSON of a step, which is read like a step of a plan.
-//   2 The files that it names become objects: meshes, checked to be solids, or octrees.
+//   2 The files that it names become objects: meshes, checked to be solids, or octrees. Where both kinds meet,
+//     each kernel gets all of them: meshes by the voxels whose centres they hold, octrees by the boundary of
+//     their voxels. Both kernels then share their operands, which the certificate says.
 //   3 The kernel that the output's format needs computes the answer; with --certify both do and are
 //     compared. If only the mesh kernel has an answer, an octree is made from its voxels.
 //   4 The answer is written, measured and printed.
@@ -11,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "brep/mesh/health.h"
+#include "convert/surface/cuberille.h"
 #include "convert/voxel/voxelise.h"
 #include "planner/cli/program/verbs.h"
 #include "planner/cli/verb/field_options.h"
@@ -69,9 +72,14 @@ class OperationRun {
           " is done only by the mesh kernel, so there is no certificate: leave --certify out");
     read_objects();
     const bool with_voxels = operation_.voxel && (wants_octree || text_.certify);
+    const bool with_mesh = !wants_octree || !with_voxels || text_.certify;
+    const bool is_mixed = operation_.voxel && has_octree_ && has_mesh_;
     if (with_voxels) choose_universe();
     for (Object& object : inputs_) {
+      if (is_mixed) add_file_maker(object);
+      if (with_voxels && is_mixed) check_room(object);
       if (with_voxels) add_voxels(object);
+      if (with_mesh && is_mixed) add_surface(object);
       objects_.add(std::move(object));
     }
     Object made("answer", operation_.name, universe_);
@@ -80,10 +88,12 @@ class OperationRun {
     if (with_voxels)
       operation_.voxel(value(), {universe_, objects_, no_scan_, timings_, progress(), {}, no_scans_},
                        made.voxel);
-    if (!wants_octree || !with_voxels || text_.certify) answer_by_mesh(made);
+    if (with_mesh) answer_by_mesh(made);
     if (wants_octree && !with_voxels) voxelise_answer(made);
+    if (is_mixed) add_makers(made);
     if (text_.certify) certify_answer(made);
     made.findings.insert(made.findings.begin(), mended_.begin(), mended_.end());
+    made.findings.insert(made.findings.end(), beyond_.begin(), beyond_.end());
     return wants_octree ? write_voxels(made) : write_mesh(made);
   }
 
@@ -115,6 +125,7 @@ class OperationRun {
       } else {
         object.mesh.whole = solid_of(path);
         object.mesh.lineage = "triangles of " + object.definition;
+        has_mesh_ = true;
       }
       inputs_.push_back(std::move(object));
     }
@@ -164,6 +175,64 @@ class OperationRun {
     object.voxel.octree = convert::voxelise(universe_, object.mesh.whole->linked(), progress());
     object.voxel.symbol = voxel::Expression(object.voxel.octree);
     object.voxel.lineage = "voxel centres inside of " + object.definition;
+  }
+
+  /// The surface of an octree that stands beside meshes.
+  void add_surface(Object& object) {
+    if (object.mesh.whole) return;
+    if (object.voxel.octree.is_empty()) throw std::runtime_error(object.id + ": holds no voxel");
+    const Stopwatch watch(timings_, "cuberille");
+    object.mesh.whole = brep::trusted_solid(
+        convert::triangles_of(convert::cuberille(object.voxel.octree, convert::Touching::Apart, progress())),
+        brep::Proof::Construction);
+    object.mesh.lineage = "boundary of the voxels of " + object.definition;
+  }
+
+  /// Both kernels' operands come from the same file.
+  static void add_file_maker(Object& object) {
+    const std::string lineage = object.mesh.whole ? object.mesh.lineage : object.voxel.lineage;
+    object.voxel.makers = object.mesh.makers = {"file: " + lineage};
+  }
+
+  /// The operands' files, and the code by which each kernel made the answer; sorted, each once.
+  void add_makers(Object& made) const {
+    const auto add = [&](std::vector<std::string>& all, const std::string& lineage, auto of_operand) {
+      all.push_back(operation_.name + ": " + lineage);
+      for (const Object& object : objects_) {
+        const std::vector<std::string>& more = of_operand(object);
+        all.insert(all.end(), more.begin(), more.end());
+      }
+      std::sort(all.begin(), all.end());
+      all.erase(std::unique(all.begin(), all.end()), all.end());
+    };
+    add(
+        made.voxel.makers, made.voxel.lineage,
+        [](const Object& object) -> const auto& { return object.voxel.makers; });
+    add(
+        made.mesh.makers, made.mesh.lineage,
+        [](const Object& object) -> const auto& { return object.mesh.makers; });
+  }
+
+  /// The voxels are those of the operand that is an octree, so that a mesh beyond them is cut off.
+  void check_room(const Object& object) {
+    if (!object.mesh.whole || object.mesh.whole->empty()) return;
+    const voxel::Lattice lattice = universe_.lattice();
+    const brep::Size& size = object.mesh.whole->size();
+    double beyond_mm = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec3 p_voxel = lattice.voxel({corner & 1 ? size.high_mm.x : size.low_mm.x,
+                                                corner & 2 ? size.high_mm.y : size.low_mm.y,
+                                                corner & 4 ? size.high_mm.z : size.low_mm.z});
+      const glm::dvec3 out =
+          lattice.spacing_mm() * glm::max(-0.5 - p_voxel, p_voxel - (universe_.side() - 0.5));
+      beyond_mm = std::max({beyond_mm, out.x, out.y, out.z});
+    }
+    if (!(beyond_mm > 0.0)) return;
+    const std::string what =
+        object.id + ": reaches " + three_figures(beyond_mm) + " mm beyond the voxels of the octree";
+    if (text_.certify)
+      throw std::runtime_error(what + ", so that the kernels cannot be compared there: leave --certify out");
+    beyond_.push_back(what + ": the answer has no voxels there; write a mesh, which is whole");
   }
 
   void answer_by_mesh(Object& made) {
@@ -254,8 +323,9 @@ class OperationRun {
   };
   Timings timings_;
   voxel::Universe universe_;
-  bool has_octree_ = false;
+  bool has_octree_ = false, has_mesh_ = false;
   std::vector<std::string> mended_;  ///< repairs of meshes that are not solids
+  std::vector<std::string> beyond_;  ///< meshes that the octree's universe cuts off
   std::vector<Object> inputs_;
   Objects objects_;
   std::shared_ptr<void> settled_;  ///< the operation's value with what it found out; empty: as typed

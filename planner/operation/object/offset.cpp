@@ -159,6 +159,15 @@ void triangles(const Offset& offset, const MeshBench& bench, MeshSide& made) {
   made.lineage = "level set of the distance to the mesh";
 }
 
+/// The cell that the mesh was made with. Where the user chose none, it is finer than cell_for() if the volume
+/// needed that.
+double cell_of(const Offset& offset, const brep::Solid& operand, const MeshSide& made) {
+  const auto cell = made.details.find("cell_mm");
+  return cell != made.details.end() && cell->is_number()
+             ? cell->get<double>()
+             : offset.cell_mm.value_or(cell_for(operand, offset.by_mm));
+}
+
 void bound(const Offset& offset, const BoundBench& bench, Object& made) {
   const Object& object = bench.objects.at(offset.object.name);
   made.bound.spacing_mm = object.bound.spacing_mm;
@@ -166,8 +175,7 @@ void bound(const Offset& offset, const BoundBench& bench, Object& made) {
   if (made.mesh.whole && object.mesh.whole) {
     const verify::OffsetOperand operand{object.witness, object.voxel.octree, *object.mesh.whole,
                                         is_whole_voxels(object.voxel)};
-    const verify::WitnessedOffset asked{offset.by_mm,
-                                        offset.cell_mm.value_or(cell_for(*object.mesh.whole, offset.by_mm))};
+    const verify::WitnessedOffset asked{offset.by_mm, cell_of(offset, *object.mesh.whole, made.mesh)};
     made.witness = verify::witness_of_offset(operand, asked);
     made.bound.measured_apart_mm =
         object.bound.measured_apart_mm +

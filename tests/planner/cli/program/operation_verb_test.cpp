@@ -64,6 +64,55 @@ TEST_F(OperationVerbs, ABooleanIsASurfaceOrVoxelsWithTheCertificateOfBoth) {
   }
 }
 
+/// A box of 7 x 28 x 28 mm and an octree of a ball: mixed operands in either order, in both formats.
+TEST_F(OperationVerbs, ABooleanOfAMeshAndAnOctreeIsTheSameInBothKernelsAndNotIndependent) {
+  brep::write_mesh(brep::shapes::box({3.2, -14, -14}, {10.2, 14, 14}), folder_ / "slab.off");
+  const double ball = volume_mm3("measure " + at("ball.octree"));
+  const double cut =
+      volume_mm3("boolean " + at("ball.octree") + " intersection " + at("slab.off") + " -o " + at("cut.ply"));
+  ASSERT_GT(cut, 0.05 * ball);
+  EXPECT_NEAR(
+      volume_mm3("boolean " + at("slab.off") + " intersection " + at("ball.octree") + " -o " + at("b.ply")),
+      cut, 1e-9 * cut);
+  // The boundary of the voxels holds exactly their volume, so that the parts add up.
+  EXPECT_NEAR(
+      volume_mm3("boolean " + at("ball.octree") + " difference " + at("slab.off") + " -o " + at("r.ply")),
+      ball - cut, 1e-6 * ball);
+  EXPECT_NEAR(volume_mm3("boolean " + at("slab.off") + " union " + at("ball.octree") + " -o " + at("u.ply")),
+              ball + 7.0 * 28.0 * 28.0 - cut, 1e-6 * ball);
+  for (const char* out : {"cut.ply", "cut.octree"}) {
+    const CommandAnswer answer = run("boolean " + at("ball.octree") + " intersection " + at("slab.off") +
+                                     " --certify --json -o " + at(out));
+    ASSERT_EQ(answer.status, 0) << out << answer.errors;
+    const SortedJson certificate = SortedJson::parse(answer.out).at("certificate");
+    EXPECT_EQ(certificate["verdict"], "WARN") << certificate.dump(1);
+    const std::string reasons = certificate["reasons"].dump();
+    EXPECT_NE(reasons.find("not independent"), std::string::npos) << reasons;
+    EXPECT_NE(reasons.find("file: triangles of slab.off; file: voxels of ball.octree"), std::string::npos)
+        << reasons;
+    EXPECT_NEAR(certificate["mesh"]["volume_mm3"].get<double>(), cut, 1e-9 * cut);
+    EXPECT_NEAR(certificate["voxel"]["volume_mm3"].get<double>(), cut, 0.1 * cut);
+  }
+}
+
+TEST_F(OperationVerbs, AMeshBeyondTheVoxelsOfAnOctreeIsWholeAsAMeshAndSaidToBeCutOffAsVoxels) {
+  brep::write_mesh(brep::shapes::box({0, -2, -2}, {500, 2, 2}), folder_ / "long.off");
+  const std::string asked = "boolean " + at("ball.octree") + " union " + at("long.off") + " -o ";
+  EXPECT_GT(volume_mm3(asked + at("u.ply")), 400.0 * 16.0);
+  const CommandAnswer voxels = run(asked + at("u.octree") + " --json");
+  EXPECT_EQ(voxels.status, 0);
+  EXPECT_NE(SortedJson::parse(voxels.out).at("findings").dump().find("beyond the voxels of the octree"),
+            std::string::npos)
+      << voxels.out;
+  expect_refused(run(asked + at("u.ply") + " --certify"), "leave --certify out");
+}
+
+/// Octrees alone have an exact Boolean of voxels, which is no surface.
+TEST_F(OperationVerbs, ABooleanOfOctreesAloneIsNoMesh) {
+  expect_refused(run("boolean " + at("ball.octree") + " union " + at("ball.octree") + " -o " + at("x.ply")),
+                 "octotomy mesh");
+}
+
 TEST_F(OperationVerbs, WhatTheMeshKernelAloneMakesIsVoxelised) {
   const double ball = volume_mm3("measure " + at("ball.off"));
   const double even = volume_mm3("smooth " + at("ball.off") + " --rounds 5 -o " + at("even.ply"));
