@@ -230,8 +230,8 @@ TEST(Render, RefusesWhatItCannotDraw) {
   options = whole_universe("left");
   options.width_mm = -1.0;
   EXPECT_THROW(render({{"a", block}}, options), std::invalid_argument);
-  options = whole_universe("10,0");
-  options.algorithm = Algorithm::NodeTrace;
+  options = whole_universe("left");
+  options.shading = Shading::Density;  // without samples
   EXPECT_THROW(render({{"a", block}}, options), std::invalid_argument);
 }
 
