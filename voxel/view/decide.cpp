@@ -3,17 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <tbb/parallel_for.h>
+#include <vector>
 
 #include "voxel/space/error.h"
 #include "voxel/tree/grey_cell.h"
 #include "voxel/view/layer.h"
 #include "voxel/view/pixel_index.h"
 
-// For every ray: 1 take the parts that cuts remove; 2 step through the samples, past blocks of which no cell
-// can meet the criterion; 3 count the beginnings of stretches; 4 halve the step in which the wanted one lies.
+// For every ray: 1 take the parts that cuts remove; 2 step through the samples, past leaves in which
+// no place can meet the criterion; 3 count the beginnings of stretches; 4 halve the step in which the wanted one lies.
 
 namespace octotomy::voxel {
 namespace {
@@ -34,6 +36,7 @@ class DecidedRays {
     low_ = decision.low / step;
     high_ = decision.high / step;
     steeper_ = decision.steeper_per_mm / step;
+    mark_dull_leaves();
   }
 
   Seen seen(const glm::dvec2& p_px) const {
@@ -123,33 +126,64 @@ class DecidedRays {
     return true;
   }
 
-  /// The depth up to which no place of a ray can meet the criterion, because of the range of the samples in
-  /// the block about it; at most the given depth if there is no such block.
+  /// The depth at which a ray leaves the leaf about it, if no place of the leaf can meet the criterion; at most
+  /// the given depth otherwise.
   double dull_until_mm(const Ray& ray, double depth_mm) const {
-    const int side = grey_.universe().side();
-    const glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(ray.at(depth_mm))), 0, side - 1);
-    for (int height = root_height(grey_.universe().depth); height >= 2; --height) {
-      const int edge = 1 << (2 * height);
-      const glm::ivec3 low = cell & ~(edge - 1);
-      // A change of samples depends on samples up to two voxels away.
-      const glm::ivec3 first = low + 2, last = low + edge - 4;
-      if (glm::any(glm::lessThan(cell, first)) || glm::any(glm::greaterThan(cell, last))) continue;
-      const MinMax range = grey_.range(height, cell >> (2 * height));
-      if (!is_dull(range)) continue;
-      double until_mm = std::numeric_limits<double>::infinity();
-      for (int axis = 0; axis < 3; ++axis) {
-        if (ray.per_mm[axis] == 0.0) continue;
-        const double face = ray.per_mm[axis] > 0.0 ? last[axis] + 1 : first[axis];
-        until_mm = std::min(until_mm, (face - ray.start[axis]) / ray.per_mm[axis]);
-      }
-      return until_mm;
+    const glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(ray.at(depth_mm))), 0, 4 * leaves_ - 1);
+    if (dull_[leaf_number(cell >> 2)] == 0) return depth_mm;
+    double until_mm = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (ray.per_mm[axis] == 0.0) continue;
+      const int low = cell[axis] & ~3;
+      const double face = ray.per_mm[axis] > 0.0 ? low + 4 : low;
+      until_mm = std::min(until_mm, (face - ray.start[axis]) / ray.per_mm[axis]);
     }
-    return depth_mm;
+    return until_mm;
   }
 
+  std::size_t leaf_number(const glm::ivec3& leaf) const {
+    const auto side = static_cast<std::size_t>(leaves_);
+    return static_cast<std::size_t>(leaf.x) +
+           side * (static_cast<std::size_t>(leaf.y) + side * static_cast<std::size_t>(leaf.z));
+  }
+
+  /// Marks leaves by the range of the samples in them and in the 26 about them: a change of samples in a leaf
+  /// depends on samples at most two voxels away.
+  void mark_dull_leaves() {
+    leaves_ = std::max(1, grey_.universe().side() / 4);
+    const auto side = static_cast<std::size_t>(leaves_);
+    dull_.assign(side * side * side, 0);
+    tbb::parallel_for(0, leaves_, [&](int z) {
+      for (int y = 0; y < leaves_; ++y)
+        for (int x = 0; x < leaves_; ++x) {
+          MinMax range = range_of_leaf({x, y, z});
+          for (int other = 0; other < 27; ++other) {
+            const glm::ivec3 near = glm::ivec3(x, y, z) + glm::ivec3(other % 3, other / 3 % 3, other / 9) - 1;
+            if (glm::any(glm::lessThan(near, glm::ivec3(0))) ||
+                glm::any(glm::greaterThanEqual(near, glm::ivec3(leaves_))))
+              continue;
+            range.widen(range_of_leaf(near));
+          }
+          dull_[leaf_number({x, y, z})] = is_dull(range) ? 1 : 0;
+        }
+    });
+  }
+
+  MinMax range_of_leaf(const glm::ivec3& leaf) const {
+    const int number = (leaf.x & 3) + 4 * (leaf.y & 3) + 16 * (leaf.z & 3);
+    return grey_.brick(leaf >> 2).leaf_range[static_cast<std::size_t>(number)];
+  }
+
+  /// A change between two samples of a range is at most the range. The derivative takes two samples two steps
+  /// apart; the gradient has three differences of samples two voxels apart, each at least four steps. Changes
+  /// across the universe's border are no surfaces, so that samples beyond it do not matter.
   bool is_dull(const MinMax& range) const {
-    return decision_.by == Criterion::Range ? range.high < low_ || range.low > high_
-                                            : range.low == range.high;
+    if (decision_.by == Criterion::Range) return range.high < low_ || range.low > high_;
+    const double most = static_cast<double>(range.high) - range.low;
+    const double distance_mm =
+        decision_.by == Criterion::Derivative ? 2.0 * step_mm_ : 4.0 * step_mm_ / std::sqrt(3.0);
+    // A ten-thousandth for rounding.
+    return 1.0001 * most < steeper_ * distance_mm;
   }
 
   const GreyOctree& grey_;
@@ -160,6 +194,8 @@ class DecidedRays {
   glm::dmat3 lps_from_normal_;
   double step_mm_ = 1.0;
   double low_ = 0.0, high_ = 0.0, steeper_ = 0.0;  ///< in steps of the samples
+  int leaves_ = 1;                                 ///< along an axis
+  std::vector<std::uint8_t> dull_;
 };
 
 }  // namespace

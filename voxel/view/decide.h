@@ -32,7 +32,7 @@ void check(const Decision& decision);
 /// in what the options' cuts remove, beyond the scan, and, for changes of samples, where they would depend on
 /// samples beyond it. The options' algorithm and count are not used. Precondition: the object has samples of
 /// its universe and was not moved. Throws as render() and check() do. Parallel over rows; same bits on any
-/// thread count. Cost: all steps of each ray up to its surface, without blocks that surely hold none.
+/// thread count. Cost: all steps of each ray up to its surface, without leaves that surely hold none, and a byte for each leaf of 4 x 4 x 4 voxels.
 Picture decide(const DrawnObject& object, const RenderOptions& options, const Decision& decision);
 
 }  // namespace octotomy::voxel

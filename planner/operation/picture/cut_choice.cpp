@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The cuts of pictures and the samples that cut faces and surfaces show.
+// The size and the cuts of pictures, and the samples that cut faces and surfaces show.
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 
 #include "planner/operation/picture/render.h"
@@ -30,6 +31,19 @@ voxel::CutTones tones_of(const Render& render, voxel::GreyOwners samples) {
 }
 
 }  // namespace
+
+glm::ivec2 size_of(const Render& render) {
+  const std::string& text = render.size;
+  int width = 0, height = 0;
+  char cross = 0, rest = 0;
+  const bool read =
+      std::sscanf(text.c_str(), "%d%c%d%c", &width, &cross, &height, &rest) == 3 && cross == 'x';
+  constexpr int most = 8192;
+  if (!read || width < 1 || height < 1 || width > most || height > most)
+    throw std::runtime_error("--size: '" + text +
+                             "' is no size: give WxH of 1 to 8192 pixels, for example 512x512");
+  return {width, height};
+}
 
 std::optional<voxel::CutTones> cut_tones_of(const Render& render,
                                             const std::vector<voxel::DrawnObject>& objects,

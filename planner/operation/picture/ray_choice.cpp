@@ -60,6 +60,15 @@ bool shows_surface_colours(const Render& render) {
   return !render.relief && std::find(painted.begin(), painted.end(), render.shading) != painted.end();
 }
 
+/// Refuses what a relief, black lines on white, does not show.
+void check_relief(const Render& render) {
+  if (!render.colours.empty() || !render.opacities.empty() || !render.colour_by.empty() || render.annotate ||
+      render.grid_mm || render.stereo_deg || render.cut_face != "plain")
+    throw std::runtime_error(
+        "--relief: is drawn in black lines: leave out --colour, --opacity, --colour-by, --annotate, --grid, "
+        "--stereo and --cut-face");
+}
+
 }  // namespace
 
 std::vector<Field> ray_fields() {
@@ -124,6 +133,7 @@ void check_ray_choices(const Render& render) {
   if (decides_by_change(render) && !render.steeper_per_mm)
     throw std::runtime_error("--decide: " + render.decide +
                              " needs --steeper, the change of samples per mm above which rays end");
+  if (render.relief) check_relief(render);
   if (!is_decided(render)) return;
   const auto refuse = [](const std::string& option) {
     throw std::runtime_error(option + ": rays that end by --decide or --peel do not have it: leave it out");

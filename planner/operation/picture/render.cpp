@@ -3,7 +3,6 @@
 #include "planner/operation/picture/render.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <map>
 
@@ -240,15 +239,6 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
   return made;
 }
 
-/// Refuses what a relief, black lines on white, does not show.
-void check_relief(const Render& render) {
-  if (!render.colours.empty() || !render.opacities.empty() || !render.colour_by.empty() || render.annotate ||
-      render.grid_mm || render.stereo_deg || render.cut_face != "plain")
-    throw std::runtime_error(
-        "--relief: is drawn in black lines: leave out --colour, --opacity, --colour-by, --annotate, --grid, "
-        "--stereo and --cut-face");
-}
-
 /// The grammar and the names of an expression of a plan's objects.
 void check_expression(const Render& render, const FieldLocation& place) {
   try {
@@ -266,10 +256,9 @@ void check_expression(const Render& render, const FieldLocation& place) {
 void check(const Render& render, const FieldLocation& place) {
   const auto refuse = [&](const std::string& field, const std::string& why) { place.at(field).refuse(why); };
   const std::size_t drawn = render.objects.size() + (render.expression.empty() ? 0 : 1);
-  if (drawn == 0) refuse("objects", "nothing to draw: give objects or an expression");
+  if (drawn == 0) throw std::runtime_error("nothing to draw: give objects or an expression");
   check_lights(render);
   check_ray_choices(render);
-  if (render.relief) check_relief(render);
   if (!render.expression.empty() &&
       (!render.colour_by.empty() || render.cut_face != "plain" || shows_densities(render)))
     refuse("expression",
@@ -453,19 +442,6 @@ void finish(RenderedPicture& picture, const voxel::ImagePlane& plane, const Rend
   picture.said["lps_from_pixel"] = to_json(picture.frame->lps_from_pixel);
 }
 
-glm::ivec2 size_of(const Render& render) {
-  const std::string& text = render.size;
-  int width = 0, height = 0;
-  char cross = 0, rest = 0;
-  const bool read =
-      std::sscanf(text.c_str(), "%d%c%d%c", &width, &cross, &height, &rest) == 3 && cross == 'x';
-  constexpr int most = 8192;
-  if (!read || width < 1 || height < 1 || width > most || height > most)
-    throw std::runtime_error("--size: '" + text +
-                             "' is no size: give WxH of 1 to 8192 pixels, for example 512x512");
-  return {width, height};
-}
-
 voxel::Annotation annotation_of(const Render& render, const std::vector<voxel::DrawnObject>& objects) {
   voxel::Annotation annotation;
   annotation.title = render.title.empty() ? render.view : render.title;
@@ -483,10 +459,12 @@ Operation render_operation() {
               "MetaImage, images, or a raw file. May be left out if there is an expression.")
               .from(1)
               .positional("files"))
-      .takes(field("expression", &Render::expression,
-                   "A Boolean expression that is drawn after the objects without creating it: & | - ^ ~ and "
-                   "parentheses, for example \"skull - cut\"; of the verb its names are bound by --let. The "
-                   "picture spans the objects that it names."))
+      .takes(field(
+          "expression", &Render::expression,
+          "A Boolean expression, drawn after the objects without a step or file of it: & | - ^ ~ and "
+          "parentheses, for example \"skull - cut\"; of the verb its names are bound by 'let'. Along an "
+          "axis it is evaluated only where it is visible. The picture spans the objects that it "
+          "names."))
       .takes(field("path", &Render::path, "The .png, .jpg or .webp file within the result's folder.")
                  .in_plans_only())
       .takes(field("view", &Render::view,
