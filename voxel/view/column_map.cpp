@@ -8,7 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include "voxel/tree/octree_node.h"
-#include "voxel/view/surface_break.h"
+#include "voxel/view/depth_plane.h"
 
 namespace octotomy::voxel {
 namespace {

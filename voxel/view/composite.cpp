@@ -9,6 +9,8 @@
 #include <tbb/parallel_for.h>
 #include <tuple>
 
+#include "voxel/space/error.h"
+#include "voxel/tree/grey_cell.h"
 #include "voxel/view/layer.h"
 #include "voxel/view/srgb.h"
 
@@ -95,69 +97,6 @@ class VisibleCells {
   std::vector<Level> levels_;
 };
 
-/// Trilinear samples and differences. Caches those of the last cell, because a ray takes several steps in it.
-class CellSamples {
- public:
-  explicit CellSamples(const GreyOctree& grey) : grey_(grey) {}
-
-  double at(const glm::dvec3& p) {
-    enter(p);
-    return trilinear(corners_, p - glm::dvec3(cell_));
-  }
-
-  /// Central differences as in grey_normal(), positive towards lower samples.
-  glm::dvec3 outward(const glm::dvec3& p) {
-    enter(p);
-    if (!differences_known_) {
-      for (std::size_t corner = 0; corner < 8; ++corner) differences_[corner] = difference(corner);
-      differences_known_ = true;
-    }
-    return trilinear(differences_, p - glm::dvec3(cell_));
-  }
-
- private:
-  static glm::ivec3 offset(std::size_t corner) {
-    return {static_cast<int>(corner & 1), static_cast<int>((corner >> 1) & 1), static_cast<int>(corner >> 2)};
-  }
-
-  void enter(const glm::dvec3& p) {
-    const glm::ivec3 cell(glm::floor(p));
-    if (cell == cell_) return;
-    cell_ = cell;
-    differences_known_ = false;
-    for (std::size_t corner = 0; corner < 8; ++corner) corners_[corner] = grey_.sample(cell + offset(corner));
-  }
-
-  /// The difference at a corner. Along every axis one of its two neighbours is another corner.
-  glm::dvec3 difference(std::size_t corner) const {
-    glm::dvec3 falling;
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool upper = ((corner >> axis) & 1) != 0;
-      glm::ivec3 beyond = cell_ + offset(corner);
-      beyond[axis] += upper ? 1 : -1;
-      const double inner = corners_[corner ^ (std::size_t{1} << axis)], outer = grey_.sample(beyond);
-      falling[axis] = upper ? inner - outer : outer - inner;
-    }
-    return falling;
-  }
-
-  template <typename Value>
-  static Value trilinear(const std::array<Value, 8>& corners, const glm::dvec3& t) {
-    const auto along_x = [&](std::size_t low) -> Value {
-      return corners[low] + (corners[low + 1] - corners[low]) * t.x;
-    };
-    const Value below = along_x(0) + (along_x(2) - along_x(0)) * t.y;
-    const Value above = along_x(4) + (along_x(6) - along_x(4)) * t.y;
-    return below + (above - below) * t.z;
-  }
-
-  const GreyOctree& grey_;
-  glm::ivec3 cell_{std::numeric_limits<int>::min()};
-  std::array<double, 8> corners_{};
-  std::array<glm::dvec3, 8> differences_{};
-  bool differences_known_ = false;
-};
-
 /// A pixel's ray in the universe's index space, by depth.
 struct Ray {
   glm::dvec3 start{0.0};
@@ -231,7 +170,7 @@ class March {
   std::pair<glm::vec4, float> along_ray(const Ray& ray, const DepthSpan& span,
                                         const std::vector<TakenSpan>& taken) const {
     const int steps = static_cast<int>(std::ceil((span.far_mm - span.near_mm) / step_mm_));
-    CellSamples samples(grey_);
+    GreyCell samples(grey_);
     glm::vec3 light(0.0f);
     float behind = 1.0f;  // transmitted share of the light from behind
     float half_mm = nothing;
@@ -254,7 +193,11 @@ class March {
         continue;
       const TransferTable::Entry entry = table_.at(samples.at(p));
       if (entry.per_mm <= 0.0f || beyond_scan(p)) continue;
-      const auto through = static_cast<float>(std::exp(-static_cast<double>(entry.per_mm) * length_mm));
+      double per_mm = entry.per_mm;
+      if (options_.gradient)
+        per_mm *= options_.gradient->share(grey_.step() * glm::length(outward(samples, p)));
+      if (per_mm <= 0.0) continue;
+      const auto through = static_cast<float>(std::exp(-per_mm * length_mm));
       const float share = behind * (1.0f - through);
       light += share * lit(entry.light, samples, p, cut_face(taken, depth_mm));
       behind *= through;
@@ -275,16 +218,20 @@ class March {
     return nullptr;
   }
 
+  /// The negative gradient, in steps of the samples per millimetre: the inverse transpose turns half the
+  /// differences over two voxels into it.
+  glm::dvec3 outward(GreyCell& samples, const glm::dvec3& p) const {
+    return lps_from_normal_ * (0.5 * samples.outward(p));
+  }
+
   /// Light from a point by Phong's model without gloss, on the cut's face or across the samples' gradient;
   /// unshaded if there is neither.
-  glm::vec3 lit(const glm::vec3& light, CellSamples& samples, const glm::dvec3& p,
-                const TakenSpan* cut) const {
+  glm::vec3 lit(const glm::vec3& light, GreyCell& samples, const glm::dvec3& p, const TakenSpan* cut) const {
     if (cut != nullptr) return light * static_cast<float>(facing(cut->normal));
-    // The inverse transpose turns half the differences over two voxels into differences per millimetre.
-    const glm::dvec3 outward = lps_from_normal_ * (0.5 * samples.outward(p));
-    const double slope = glm::length(outward);
+    const glm::dvec3 falling = outward(samples, p);
+    const double slope = glm::length(falling);
     if (!(slope > 0.0)) return light;
-    const glm::dvec3 normal = outward / slope;
+    const glm::dvec3 normal = falling / slope;
     const double surface = std::min(1.0, slope / options_.transfer.surface_per_mm * grey_.step());
     const double seen = facing(glm::dot(normal, plane_.view.look) > 0.0 ? -normal : normal);
     return light * static_cast<float>(1.0 + surface * (seen - 1.0));
@@ -292,7 +239,7 @@ class March {
 
   /// Light on a surface with a unit normal.
   double facing(const glm::dvec3& normal) const {
-    double sum = Scenery{}.ambient;
+    double sum = options_.ambient;
     for (const glm::dvec3& towards : lights_) sum += std::max(0.0, glm::dot(normal, towards));
     return sum;
   }
@@ -311,9 +258,20 @@ class March {
 
 }  // namespace
 
+double GradientOpacity::share(double slope_per_mm) const {
+  return std::clamp((slope_per_mm - clear_per_mm) / (opaque_per_mm - clear_per_mm), 0.0, 1.0);
+}
+
+void check(const GradientOpacity& gradient) {
+  if (!(std::isfinite(gradient.opaque_per_mm) && gradient.clear_per_mm >= 0.0 &&
+        gradient.opaque_per_mm > gradient.clear_per_mm))
+    throw InvalidInput("opacity by gradient rises from a change of at least 0 per mm to a larger one");
+}
+
 Composite composite(const GreyOctree& grey, const ImagePlane& plane, const CompositeOptions& options,
                     const Progress& progress) {
   check(options.transfer);
+  if (options.gradient) check(*options.gradient);
   const March march(grey, plane, options);
   const auto width = static_cast<std::size_t>(plane.size_px.x);
   Composite image{plane.size_px, {}, {}};

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/view/counted_trace.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <tbb/parallel_for.h>
 
 #include "voxel/measure/grey_level_counts.h"
 #include "voxel/view/axis_walk.h"
 #include "voxel/view/counted_walk.h"
+#include "voxel/view/node_polygon.h"
+#include "voxel/view/pixel_index.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -113,6 +117,108 @@ class PlainGreyNode {
   Status status_ = Status::Empty;
 };
 
+/// Node tracing in a general view: a quadtree node's ray is a beam with a square section. Octree nodes do not
+/// project onto quadtree nodes, so that a beam carries the nodes that it meets, front to back, instead of
+/// stepping from neighbour to neighbour.
+template <typename Node, typename Counter>
+class BeamTracer {
+ public:
+  BeamTracer(const NodePolygons& polygons, Counter& counter, std::int16_t object, DepthImage& image)
+      : polygons_(polygons), counter_(counter), object_(object), image_(image) {}
+
+  /// Traces a square of side_px pixels, a power of two.
+  void trace(const Node& root, const glm::ivec2& corner_px, int side_px) {
+    std::vector<Met> met;
+    met.push_back({root, 0, glm::ivec3(0), polygons_.of(glm::ivec3(0), 1 << root.side_log2())});
+    split(met, corner_px, side_px);
+  }
+
+ private:
+  /// A node that a beam meets.
+  struct Met {
+    Node node;
+    int level = 0;
+    glm::ivec3 origin{0};
+    NodePolygons::Polygon polygon;
+  };
+
+  /// Traces a beam that meets no other nodes than these, front to back.
+  void split(const std::vector<Met>& outer, const glm::ivec2& corner_px, int side_px) {
+    if (glm::any(glm::greaterThanEqual(corner_px, image_.size_px))) return;
+    if (side_px == 1) {
+      for (const Met& met : outer)
+        if (ends_in(met, corner_px)) return;
+      return;
+    }
+    std::vector<Met> inner;
+    for (const Met& met : outer)
+      if (collect(met, corner_px, side_px, inner)) break;
+    if (inner.empty()) return;
+    if (inner.front().node.status() == Status::Full && covers(inner.front(), corner_px, side_px)) {
+      paint(inner.front().polygon, corner_px, side_px);
+      return;
+    }
+    const int half = side_px / 2;
+    for (int i = 0; i < 4; ++i) split(inner, corner_px + half * glm::ivec2(i & 1, i >> 1), half);
+  }
+
+  /// Adds the parts of a node that the beam meets; opens a Partial node larger than the beam. Returns whether
+  /// a Full node across the whole beam hides everything behind.
+  bool collect(const Met& met, const glm::ivec2& corner_px, int side_px, std::vector<Met>& inner) {
+    const auto where = polygons_.place(met.polygon, corner_px, side_px);
+    if (where == NodePolygons::Containment::Outside) return false;
+    const bool is_full = met.node.status() == Status::Full;
+    const double extent_px = 2.0 * std::max(met.polygon.half_px.x, met.polygon.half_px.y);
+    if (is_full || extent_px <= side_px) {
+      inner.push_back(met);
+      return is_full && where == NodePolygons::Containment::Inside;
+    }
+    return open(met, [&](const Met& child) { return collect(child, corner_px, side_px, inner); });
+  }
+
+  bool covers(const Met& met, const glm::ivec2& corner_px, int side_px) const {
+    return polygons_.place(met.polygon, corner_px, side_px) == NodePolygons::Containment::Inside;
+  }
+
+  /// Paints the pixel if the ray through its centre ends in the node.
+  bool ends_in(const Met& met, const glm::ivec2& pixel) {
+    if (!polygons_.holds(met.polygon, glm::dvec2(pixel) + 0.5)) return false;
+    if (met.node.status() == Status::Full) {
+      paint(met.polygon, pixel, 1);
+      return true;
+    }
+    return open(met, [&](const Met& child) { return ends_in(child, pixel); });
+  }
+
+  /// Visits the children of a Partial node that are not Empty, front to back, until `visit` returns true.
+  template <typename Visit>
+  bool open(const Met& met, const Visit& visit) {
+    const int half = 1 << (met.node.side_log2() - 1);
+    for (int i = 0; i < 8; ++i) {
+      const int number = i ^ polygons_.front_child();
+      const glm::ivec3 origin = met.origin + glm::ivec3(number & 1, (number >> 1) & 1, number >> 2) * half;
+      const Met child{met.node.child(number), met.level + 1, origin, polygons_.of(origin, half)};
+      counter_.direct(child.level, child.node.status(), origin);
+      counter_.quadtree(1, 0);
+      if (child.node.status() != Status::Empty && visit(child)) return true;
+    }
+    return false;
+  }
+
+  void paint(const NodePolygons::Polygon& polygon, const glm::ivec2& corner_px, int side_px) {
+    const glm::ivec2 end = glm::min(corner_px + side_px, image_.size_px);
+    for (int y = corner_px.y; y < end.y; ++y)
+      for (int x = corner_px.x; x < end.x; ++x)
+        image_.pixels[pixel_index(image_.size_px, x, y)] = {
+            static_cast<float>(polygons_.depth_mm(polygon, {x + 0.5, y + 0.5})), object_, true};
+  }
+
+  const NodePolygons& polygons_;
+  Counter& counter_;
+  std::int16_t object_;
+  DepthImage& image_;
+};
+
 /// The rays of a general view through one octree.
 template <typename Node>
 class RayCounter {
@@ -207,6 +313,32 @@ ColumnMap quadtree_trace(const std::vector<DrawnObject>& objects, const AxisView
                         NodeTracer<Root, std::decay_t<decltype(counter)>>(frame, counter, columns)
                             .trace(Ancestors<Root>(root), 0, 0, 0, 0);
                       });
+}
+
+DepthImage quadtree_trace(const std::vector<DrawnObject>& objects, const ImagePlane& plane, Visits* visits) {
+  const NodePolygons polygons(objects.front().octree.universe(), plane);
+  DepthImage image = unlit(plane.size_px);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    DepthImage own = unlit(plane.size_px);
+    const auto number = static_cast<std::int16_t>(i);
+    const auto side_px =
+        static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(plane.size_px.x, plane.size_px.y))));
+    walk_object(objects[i], pixel_count(plane.size_px), visits, [&](const auto& root, auto& counter) {
+      using Root = std::decay_t<decltype(root)>;
+      using Counter = std::decay_t<decltype(counter)>;
+      if (root.status() == Status::Empty) return;
+      // A count needs the visits of one beam from the root; pictures start one for each tile.
+      constexpr int tile_px = 64;
+      const int beam_px = visits != nullptr ? side_px : std::min(side_px, tile_px);
+      const glm::ivec2 beams = (plane.size_px + beam_px - 1) / beam_px;
+      tbb::parallel_for(0, beams.x * beams.y, [&](int beam) {
+        BeamTracer<Root, Counter>(polygons, counter, number, own)
+            .trace(root, beam_px * glm::ivec2(beam % beams.x, beam / beams.x), beam_px);
+      });
+    });
+    take_nearer(own, image);
+  }
+  return image;
 }
 
 Visits visits_without_ranges(const GreyOctree& grey, Window16 window, const AxisView& axes) {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <tbb/parallel_for.h>
 
+#include "voxel/view/depth_plane.h"
 #include "voxel/view/pixel_index.h"
-#include "voxel/view/surface_break.h"
 
 namespace octotomy::voxel {
 namespace {

@@ -35,7 +35,7 @@ std::vector<DrawnObject> without(const std::vector<DrawnObject>& objects, const 
 /// Moves pixels from the voxel faces that a cut made onto the cut itself. The cut face is then flat, not
 /// stepped. A pixel shows a cut's face if its depth is a voxel's face and at most half a voxel's extent along
 /// the cut's normal away from the cut. No face between a kept and a removed voxel is farther. Faces seen at
-/// more than 76 degrees (surface_break.h) stay, because there a pixel shows the voxels' sides. Returns the
+/// more than 76 degrees (break_mm() of depth_plane.h) stay, because there a pixel shows the voxels' sides. Returns the
 /// outward normals (right, up, look) of the moved pixels and zero elsewhere; empty without cuts.
 /// Precondition: the image is of objects of this universe, drawn without the parts that the cuts remove.
 /// Parallel over rows.

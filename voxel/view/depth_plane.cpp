@@ -6,7 +6,6 @@
 #include <tbb/parallel_for.h>
 
 #include "voxel/space/vector_clones.h"
-#include "voxel/view/surface_break.h"
 
 namespace octotomy::voxel {
 namespace {

@@ -19,7 +19,7 @@
 #include "voxel/view/object_normals.h"
 #include "voxel/view/pixel_index.h"
 #include "voxel/view/ray_cast.h"
-#include "voxel/view/surface_break.h"
+#include "voxel/view/srgb.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -96,7 +96,7 @@ Drawing drawing_of(const std::vector<DrawnObject>& objects, const ImagePlane& pl
   const Universe& universe = objects.front().octree.universe();
   const VoxelRays rays = voxel_rays(universe, plane);
   const std::optional<AxisView> axes = axis_view(universe, plane.view);
-  if (algorithm == Algorithm::NodeTrace)
+  if (algorithm == Algorithm::NodeTrace && axes)
     return drawing_of_columns(
         visits != nullptr ? quadtree_trace(objects, *axes, visits) : node_trace(objects, *axes), *axes, rays,
         plane.size_px);
@@ -112,8 +112,9 @@ Drawing drawing_of(const std::vector<DrawnObject>& objects, const ImagePlane& pl
     if (visits != nullptr) count_rays(objects, plane, *visits);
     return {cast.picture(), seen_at};
   }
-  DepthImage faces = algorithm == Algorithm::FrontToBack ? front_to_back(objects, plane, visits)
-                                                         : back_to_front(objects, plane, visits);
+  DepthImage faces = algorithm == Algorithm::NodeTrace     ? quadtree_trace(objects, plane, visits)
+                     : algorithm == Algorithm::FrontToBack ? front_to_back(objects, plane, visits)
+                                                           : back_to_front(objects, plane, visits);
   const bool grey = std::any_of(objects.begin(), objects.end(),
                                 [](const DrawnObject& object) { return object.grey.has_value(); });
   return {grey ? refined(std::move(faces), cast) : std::move(faces), seen_at};
@@ -129,40 +130,91 @@ Scenery scenery_of(const std::vector<DrawnObject>& objects, const ImagePlane& pl
   scenery.depth_range_mm = plane.depth_range_mm;
   scenery.occlusion = options.occlusion;
   if (!options.lights.empty()) scenery.lights = options.lights;
+  if (options.ambient) scenery.ambient = *options.ambient;
+  if (options.gloss) scenery.gloss = *options.gloss;
+  if (options.exponent) scenery.exponent = *options.exponent;
   if (options.shading == Shading::Depth) scenery.style = Style::Depth;
   if (options.shading == Shading::Silhouette) scenery.style = Style::Silhouette;
   if (options.shading == Shading::Outline) scenery.style = Style::Outline;
   return scenery;
 }
 
-/// The sample at a point of a cut face, of the voxel that shows there. A cut runs between voxels' centres, so
-/// that the voxel may begin up to half a voxel's diagonal behind the cut: it is looked for along the sight,
-/// `ahead`, in steps of a quarter voxel.
-std::optional<double> sample_on_cut(const GreyOwners& samples, const glm::dvec3& p_voxel,
-                                    const glm::dvec3& ahead) {
+/// The sample of the voxel that shows at a point of a surface or cut face: at the point, or at the voxel's
+/// centre. The surface runs between voxels' centres, so that the voxel may begin up to a voxel's diagonal
+/// behind it: it is sought along the sight, `ahead`, in steps of a quarter voxel.
+std::optional<double> sample_behind(const GreyOwners& samples, const glm::dvec3& p_voxel,
+                                    const glm::dvec3& ahead, bool at_centre) {
   constexpr int most_steps = 8;
   const glm::dvec3 step = 0.25 * glm::normalize(ahead);
   for (int i = 0; i <= most_steps; ++i) {
     const glm::ivec3 voxel(glm::floor(p_voxel + double(i) * step + 0.5));
-    if (const std::optional<OwnedSample> owned = samples.at(voxel, p_voxel)) return owned->value();
+    if (const std::optional<OwnedSample> owned = samples.at(voxel, at_centre ? glm::dvec3(voxel) : p_voxel))
+      return owned->value();
   }
   return std::nullopt;
 }
 
-/// The paint of samples on cut faces and of scalars on surfaces.
+/// A sample between black and white as a grey tone.
+glm::vec3 tone_of(const CutTones& tones, double sample) {
+  return glm::vec3(
+      static_cast<float>(std::clamp((sample - tones.black) / (tones.white - tones.black), 0.0, 1.0)));
+}
+
+/// The light that remains at a depth: the farthest pixels keep a tenth, as in Style::Depth.
+class Attenuation {
+ public:
+  explicit Attenuation(const DepthImage& image) {
+    for (const Seen& seen : image.pixels) {
+      if (!seen.lit()) continue;
+      near_mm_ = std::min(near_mm_, seen.depth_mm);
+      far_mm_ = std::max(far_mm_, seen.depth_mm);
+    }
+  }
+  glm::vec3 operator()(const glm::vec3& srgb, float depth_mm) const {
+    if (!(far_mm_ > near_mm_)) return srgb;
+    const float left = 1.0f - 0.9f * (depth_mm - near_mm_) / (far_mm_ - near_mm_);
+    std::array<std::uint8_t, 3> dimmed{};
+    put_srgb(dimmed.data(), left * linear_from_srgb(srgb));
+    return glm::vec3(dimmed[0], dimmed[1], dimmed[2]) / 255.0f;
+  }
+
+ private:
+  float near_mm_ = std::numeric_limits<float>::infinity(), far_mm_ = -near_mm_;
+};
+
+/// Paints a pixel that shows a sample (thesis 5.2.1.2).
+void paint_density(const Densities& densities, double sample, const Attenuation* attenuation, float depth_mm,
+                   Paint::Kind& kind, glm::vec3& colour) {
+  const auto range =
+      std::find_if(densities.colours.begin(), densities.colours.end(),
+                   [&](const DensityColour& each) { return each.low <= sample && sample <= each.high; });
+  const bool is_coloured = range != densities.colours.end();
+  if (attenuation != nullptr) {
+    kind = Paint::Kind::Tone;
+    colour = (*attenuation)(is_coloured ? range->colour : tone_of(densities.tones, sample), depth_mm);
+  } else if (is_coloured) {
+    kind = Paint::Kind::Lit;
+    colour = range->colour;
+  }
+}
+
+/// The paint of samples on cut faces, and of scalars and samples on surfaces.
 Paint paint_of(const DepthImage& image, const std::vector<DrawnObject>& objects, const ImagePlane& plane,
                const RenderOptions& options, const Scenery& scenery,
                const std::vector<glm::vec3>& cut_normals) {
   Paint paint;
   const bool cuts_painted = options.cut_tones && !cut_normals.empty();
-  if (!cuts_painted && std::none_of(objects.begin(), objects.end(),
-                                    [](const DrawnObject& object) { return object.scalar != nullptr; }))
+  if (!cuts_painted && !options.densities &&
+      std::none_of(objects.begin(), objects.end(),
+                   [](const DrawnObject& object) { return object.scalar != nullptr; }))
     return paint;
   paint.kinds.assign(image.pixels.size(), Paint::Kind::None);
   paint.colours.resize(image.pixels.size());
   const glm::dmat4 voxel_from_lps = glm::inverse(objects.front().octree.universe().lps_from_voxel);
   // Scalars are read on the smoothed surface, because voxels' faces step by up to a voxel.
   const DepthPlane smooth = depth_plane(image, scenery);
+  std::optional<Attenuation> attenuation;
+  if (options.shading == Shading::Density) attenuation.emplace(image);
   tbb::parallel_for(0, image.size_px.y, [&](int y) {
     for (int x = 0; x < image.size_px.x; ++x) {
       const std::size_t pixel = pixel_index(image.size_px, x, y);
@@ -170,23 +222,27 @@ Paint paint_of(const DepthImage& image, const std::vector<DrawnObject>& objects,
       if (!seen.lit()) continue;
       const bool on_cut = cuts_painted && cut_normals[pixel] != glm::vec3(0.0f);
       const auto& scalar = objects[static_cast<std::size_t>(seen.object)].scalar;
-      if (!on_cut && scalar == nullptr) continue;
-      const double depth_mm = on_cut ? seen.depth_mm : smooth.depth.row(y)[x];
+      if (!on_cut && !options.densities && scalar == nullptr) continue;
+      const bool reads_samples = on_cut || options.densities.has_value();
+      const double depth_mm = reads_samples ? seen.depth_mm : smooth.depth.row(y)[x];
       const glm::dvec3 p_mm = plane.lps_mm({x + 0.5, y + 0.5}, depth_mm);
       const glm::dvec3 p_voxel(voxel_from_lps * glm::dvec4(p_mm, 1.0));
-      if (on_cut) {
-        const CutTones& tones = *options.cut_tones;
-        const glm::dvec3 ahead_mm = plane.lps_mm({x + 0.5, y + 0.5}, depth_mm + 1.0) - p_mm;
-        const std::optional<double> owned =
-            sample_on_cut(tones.samples, p_voxel, glm::dmat3(voxel_from_lps) * ahead_mm);
-        if (!owned) continue;
-        const double sample = *owned;
-        paint.kinds[pixel] = Paint::Kind::Tone;
-        paint.colours[pixel] = glm::vec3(
-            static_cast<float>(std::clamp((sample - tones.black) / (tones.white - tones.black), 0.0, 1.0)));
-      } else {
+      if (!reads_samples) {
         paint.kinds[pixel] = Paint::Kind::Lit;
         paint.colours[pixel] = diverging_colour(scalar->at(p_voxel) / scalar->most);
+        continue;
+      }
+      const CutTones& tones = on_cut ? *options.cut_tones : options.densities->tones;
+      const glm::dvec3 ahead_mm = plane.lps_mm({x + 0.5, y + 0.5}, depth_mm + 1.0) - p_mm;
+      const std::optional<double> sample =
+          sample_behind(tones.samples, p_voxel, glm::dmat3(voxel_from_lps) * ahead_mm, !on_cut);
+      if (!sample) continue;
+      if (on_cut) {
+        paint.kinds[pixel] = Paint::Kind::Tone;
+        paint.colours[pixel] = tone_of(tones, *sample);
+      } else {
+        paint_density(*options.densities, *sample, attenuation ? &*attenuation : nullptr, seen.depth_mm,
+                      paint.kinds[pixel], paint.colours[pixel]);
       }
     }
   });
@@ -203,7 +259,9 @@ bool reads_voxels(Shading shading) {
 std::vector<DrawnObject> to_trace(const std::vector<DrawnObject>& objects, const RenderOptions& options,
                                   Algorithm algorithm) {
   std::vector<DrawnObject> left = without(objects, options.cuts);
-  if (algorithm == Algorithm::NodeTrace && !options.count && !reads_voxels(options.shading)) return left;
+  const bool along_axis = axis_view(objects.front().octree.universe(), options.view).has_value();
+  if (algorithm == Algorithm::NodeTrace && along_axis && !options.count && !reads_voxels(options.shading))
+    return left;
   return built(std::move(left));
 }
 
@@ -239,7 +297,7 @@ Layer empty_layer(const glm::ivec2& size_px) {
 
 DrawnObject as_shaded(const DrawnObject& object, Shading shading) {
   DrawnObject drawn = object;
-  if (shading == Shading::Gradient) drawn.grey.reset();
+  if (shading == Shading::Gradient || shading == Shading::Density) drawn.grey.reset();
   return drawn;
 }
 

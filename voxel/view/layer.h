@@ -50,13 +50,13 @@ struct Layer {
   SeenAt seen_at;                      ///< owns its data; any number of threads may call it
 };
 
-/// The objects without the parts that the options' cuts remove. Builds their octrees unless node tracing
-/// alone reads them.
+/// The objects without the parts that the options' cuts remove. Builds their octrees unless node tracing along
+/// an axis alone reads them.
 std::vector<DrawnObject> to_trace(const std::vector<DrawnObject>& objects, const RenderOptions& options,
                                   Algorithm algorithm);
 
-/// Traces a layer. Preconditions: at least one object, all of the plane's universe and from to_trace(); node
-/// tracing only for views along the universe's axes. Counts visits if given.
+/// Traces a layer. Preconditions: at least one object, all of the plane's universe and from to_trace(). Counts
+/// visits if given.
 Layer draw_layer(const std::vector<DrawnObject>& objects, const ImagePlane& plane,
                  const std::vector<Cutaway>& cuts, Algorithm algorithm, Visits* visits = nullptr);
 

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <tbb/parallel_for.h>
+#include <type_traits>
 
+#include "voxel/space/error.h"
 #include "voxel/tree/highest_samples.h"
 #include "voxel/view/layer.h"
 #include "voxel/view/pixel_index.h"
@@ -160,15 +162,42 @@ void for_rows(const ImagePlane& plane, const Progress& progress, const DrawRow& 
   progress.at(1.0);
 }
 
+/// The attenuation relative to water of every sample of 16 bits, times the weight of the first range that
+/// holds it.
+class WeightedSamples {
+ public:
+  WeightedSamples(const GreyOctree& grey, const std::vector<RangeWeight>& weights) : of_(65536) {
+    for (int sample = -32768; sample < 32768; ++sample) {
+      const double value = sample * grey.step();
+      const auto range = std::find_if(weights.begin(), weights.end(), [&](const RangeWeight& each) {
+        return each.low <= value && value <= each.high;
+      });
+      of_[static_cast<std::size_t>(sample + 32768)] =
+          std::max(0.0, 1.0 + 0.001 * value) * (range != weights.end() ? range->weight : 1.0);
+    }
+  }
+  double operator()(int sample) const { return of_[static_cast<std::size_t>(sample + 32768)]; }
+
+ private:
+  std::vector<double> of_;
+};
+
+/// The samples as they are; their attenuation follows after interpolation.
+struct PlainSamples {
+  double operator()(int sample) const { return sample; }
+};
+
 /// Integrates along rays of one direction the attenuation relative to water, which is 0 for air. The nodes of
 /// the integral are the places where a ray crosses planes of voxels' centres along the axis that it runs
 /// closest to, and the ends of its span.
-template <int axis>
+template <int axis, typename Mapped>
 class AttenuationOfRay {
  public:
-  AttenuationOfRay(const GreyOctree& grey, const HighestSamples& highest, const glm::dvec3& per_mm)
+  AttenuationOfRay(const GreyOctree& grey, const HighestSamples& highest, const Mapped& mapped,
+                   const glm::dvec3& per_mm)
       : grey_(grey),
         highest_(highest),
+        mapped_(mapped),
         per_mm_(per_mm),
         last_(grey.universe().side() - 1),
         plane_mm_(1.0 / std::abs(per_mm[axis])),
@@ -200,10 +229,26 @@ class AttenuationOfRay {
     double all = 0.0, first = 0.0, last = 0.0;
   };
 
-  double relative(double sample) const { return std::max(0.0, 1.0 + sample * per_step_); }
+  static constexpr bool is_weighted = std::is_same_v<Mapped, WeightedSamples>;
+  /// Of an interpolated value of mapped_.
+  double relative(double value) const {
+    if constexpr (is_weighted) return value;
+    return std::max(0.0, 1.0 + value * per_step_);
+  }
   double at_depth(const glm::dvec3& start, double depth_mm) {
     const glm::dvec3 p = start + depth_mm * per_mm_;
+    if constexpr (is_weighted) return weighted_at(p);
     return relative(ends_.at(p, cell_of(p)));
+  }
+  double weighted_at(const glm::dvec3& p) const {
+    const glm::ivec3 cell = cell_of(p);
+    double sum = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::ivec3 upper(corner & 1, (corner >> 1) & 1, corner >> 2);
+      const glm::dvec3 near = 1.0 - glm::abs(p - glm::dvec3(cell + upper));
+      sum += near.x * near.y * near.z * mapped_(grey_.sample(cell + upper));
+    }
+    return sum;
   }
 
   Sum of_planes(const glm::dvec3& start, int first, int last) {
@@ -244,8 +289,8 @@ class AttenuationOfRay {
     const std::size_t v0 = row + part(in_v, v_axis), v1 = row + part((in_v + 1) & 15, v_axis);
     const auto next_u = static_cast<std::size_t>((in_u + 1) >> 4);
     const auto next_v = static_cast<std::size_t>((in_v + 1) >> 4 << 1);
-    const double a = bricks_[0][u0 + v0], b = bricks_[next_u][u1 + v0];
-    const double c = bricks_[next_v][u0 + v1], d = bricks_[next_u | next_v][u1 + v1];
+    const double a = mapped_(bricks_[0][u0 + v0]), b = mapped_(bricks_[next_u][u1 + v0]);
+    const double c = mapped_(bricks_[next_v][u0 + v1]), d = mapped_(bricks_[next_u | next_v][u1 + v1]);
     const double tu = u - cell_u, tv = v - cell_v;
     const double low = a + (b - a) * tu, high = c + (d - c) * tu;
     return low + (high - low) * tv;
@@ -283,6 +328,7 @@ class AttenuationOfRay {
 
   const GreyOctree& grey_;
   const HighestSamples& highest_;
+  const Mapped& mapped_;
   glm::dvec3 per_mm_;
   int last_;
   double plane_mm_;  ///< from plane to plane along the ray
@@ -300,14 +346,14 @@ int major_of(const glm::dvec3& per_mm) {
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
 }
 
-template <int axis>
+template <int axis, typename Mapped>
 RayImage radiograph_along(const GreyOctree& grey, const ImagePlane& plane, const VoxelRays& rays,
-                          const Progress& progress) {
+                          const Mapped& mapped, const Progress& progress) {
   RayImage image{plane.size_px, {}};
   image.values.assign(pixel_count(plane.size_px), 0.0f);
   const HighestSamples highest(grey);
   for_rows(plane, progress, [&](int y) {
-    AttenuationOfRay<axis> water_mm(grey, highest, rays.per_mm);
+    AttenuationOfRay<axis, Mapped> water_mm(grey, highest, mapped, rays.per_mm);
     for (int x = 0; x < plane.size_px.x; ++x) {
       const glm::dvec3 start = rays.start({x + 0.5, y + 0.5});
       if (const auto span = span_among_centres(start, rays.per_mm, grey.universe().side()))
@@ -316,6 +362,20 @@ RayImage radiograph_along(const GreyOctree& grey, const ImagePlane& plane, const
     }
   });
   return image;
+}
+
+template <typename Mapped>
+RayImage radiograph_of(const GreyOctree& grey, const ImagePlane& plane, const Mapped& mapped,
+                       const Progress& progress) {
+  const VoxelRays rays = voxel_rays(grey.universe(), plane);
+  switch (major_of(rays.per_mm)) {
+    case 0:
+      return radiograph_along<0>(grey, plane, rays, mapped, progress);
+    case 1:
+      return radiograph_along<1>(grey, plane, rays, mapped, progress);
+    default:
+      return radiograph_along<2>(grey, plane, rays, mapped, progress);
+  }
 }
 
 }  // namespace
@@ -352,15 +412,19 @@ RayImage maximum_intensity(const GreyOctree& grey, const ImagePlane& plane, cons
   return image;
 }
 
-RayImage radiograph(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress) {
-  const VoxelRays rays = voxel_rays(grey.universe(), plane);
-  switch (major_of(rays.per_mm)) {
-    case 0:
-      return radiograph_along<0>(grey, plane, rays, progress);
-    case 1:
-      return radiograph_along<1>(grey, plane, rays, progress);
-    default:
-      return radiograph_along<2>(grey, plane, rays, progress);
+RayImage radiograph(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress,
+                    const std::vector<RangeWeight>& weights) {
+  check(weights);
+  if (weights.empty()) return radiograph_of(grey, plane, PlainSamples{}, progress);
+  return radiograph_of(grey, plane, WeightedSamples(grey, weights), progress);
+}
+
+void check(const std::vector<RangeWeight>& weights) {
+  for (const RangeWeight& range : weights) {
+    if (std::isnan(range.low) || std::isnan(range.high) || range.low > range.high)
+      throw InvalidInput("a weighted range of samples is empty");
+    if (!(range.weight >= 0.0 && range.weight <= RangeWeight::max_weight))
+      throw InvalidInput("the weight of a range of samples is not between 0 and 100");
   }
 }
 

@@ -22,13 +22,29 @@ struct RayImage {
 /// thread count.
 RayImage maximum_intensity(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress = {});
 
+/// The share of its attenuation with which a range of samples, ends included, counts in a radiograph: 0
+/// dissolves it, more than 1 heightens it. Samples in no range count fully; of ranges that overlap the first
+/// applies.
+struct RangeWeight {
+  static constexpr double max_weight = 100.0;
+  double low = 0.0;
+  double high = 0.0;
+  double weight = 0.0;  ///< 0 to max_weight
+};
+/// Throws std::invalid_argument if a range is empty or a weight beyond its limits.
+void check(const std::vector<RangeWeight>& weights);
+
 /// The attenuation of X-rays along the view: the line integral, without unit, of the linear attenuation
 /// coefficient of samples in Hounsfield units, by the trapezoidal rule between the planes of voxels' centres
 /// that a ray crosses, with bilinear samples in them (P. M. Joseph, IEEE Trans. Med. Imaging 1(3), 1982). Rays
 /// are parallel, so that the picture is in true scale: from the side, a cephalogram without its enlargement.
 /// Water attenuates by 0.0206 / mm, as at 60 keV (NIST XCOM). Samples of at most -1000 attenuate nothing.
-/// Preconditions, exceptions and threads are those of maximum_intensity().
-RayImage radiograph(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress = {});
+/// With weights, each voxel's attenuation is first multiplied by that of the range that holds its sample
+/// (Harris et al. 1979; thesis 4.4.2.3), so that a voxel that is part bone and part air counts as its mean
+/// sample. Throws as maximum_intensity() and check() do; preconditions and threads are those of
+/// maximum_intensity().
+RayImage radiograph(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress = {},
+                    const std::vector<RangeWeight>& weights = {});
 
 /// Values from `black` to `white` as grey tones, three bytes per pixel; white may be the lower value.
 std::vector<std::uint8_t> grey_tones(const RayImage& image, double black, double white);

@@ -38,6 +38,11 @@ void check(const std::vector<DrawnObject>& objects, const RenderOptions& options
         "the samples for cut faces are of another universe than the objects: build them for the same");
   if (options.cut_tones && !(options.cut_tones->white > options.cut_tones->black))
     throw InvalidInput("white must be a larger sample than black on cut faces");
+  if (options.densities && options.densities->tones.samples.universe() != objects.front().octree.universe())
+    throw std::invalid_argument(
+        "the samples that colour surfaces are of another universe than the objects: build them for the same");
+  if (options.shading == Shading::Density && !options.densities)
+    throw InvalidInput("shading by density needs samples: draw a scan or a grey octree");
   if (options.size_px.x < 1 || options.size_px.y < 1)
     throw InvalidInput("a picture of " + std::to_string(options.size_px.x) + " x " +
                        std::to_string(options.size_px.y) + " pixels: both must be positive");
@@ -145,10 +150,6 @@ Picture blank_picture(const std::vector<DrawnObject>& objects, const RenderOptio
     throw InvalidInput(
         "a picture from an eye at a finite distance needs ray casting and no count of visits: choose ray "
         "casting or an orthographic picture");
-  if (picture.algorithm == Algorithm::NodeTrace && !axes)
-    throw InvalidInput(
-        "node tracing needs a view along the universe's axes: use one of the six named views of an upright "
-        "universe, or ray casting");
   if (options.count) picture.visits.emplace();
   return picture;
 }

@@ -16,7 +16,7 @@
 
 namespace octotomy::voxel {
 
-/// NodeTrace: quadtree rays through the octree, for views along the universe's axes (thesis 4.5).
+/// NodeTrace: quadtree rays through the octree (thesis 4.5), fastest for views along the universe's axes.
 /// RayCast: one ray per pixel that skips homogeneous blocks, for any view.
 /// FrontToBack, BackToFront: node by node into the picture, for any orthographic view; slower (thesis 4.4.3).
 enum class Algorithm { NodeTrace, RayCast, FrontToBack, BackToFront };
@@ -24,8 +24,9 @@ enum class Algorithm { NodeTrace, RayCast, FrontToBack, BackToFront };
 /// Depth: brightness by depth alone. Gradient: from the gradient of the depth image of voxels' faces (thesis
 /// 5.2.2.1). PartialVolume: as Gradient, with depths interpolated by partial volume (5.2.2.2) for objects
 /// with samples. Context: object-based, from each voxel's neighbours (5.2.1.1). GreyGradient: object-based,
-/// from the gradient of the samples (5.2.1.2). Silhouette, Outline: for print.
-enum class Shading { Depth, Gradient, Context, PartialVolume, GreyGradient, Silhouette, Outline };
+/// from the gradient of the samples (5.2.1.2). Silhouette, Outline: for print. Density: the sample of the
+/// visible voxel, darker with its depth (5.2.1.2); needs RenderOptions::densities.
+enum class Shading { Depth, Gradient, Context, PartialVolume, GreyGradient, Silhouette, Outline, Density };
 
 /// Samples painted on cut faces in grey tones, like a slice: at each place those of the operand that owns it,
 /// moved with it. Places that no window owns keep the object's colour.
@@ -33,6 +34,20 @@ struct CutTones {
   GreyOwners samples;
   double black = 0.0;
   double white = 1.0;  ///< above black
+};
+
+/// A colour for the surface voxels whose samples lie in a range, both ends included.
+struct DensityColour {
+  double low = 0.0;
+  double high = 0.0;
+  glm::vec3 colour{1.0f};  ///< sRGB, 0..1
+};
+
+/// Samples that colour surfaces: those of the first voxel that a ray meets behind the surface and that a
+/// window owns.
+struct Densities {
+  CutTones tones;                      ///< Shading::Density only
+  std::vector<DensityColour> colours;  ///< the first range that holds the sample; none: the object's colour
 };
 
 struct RenderOptions {
@@ -44,9 +59,9 @@ struct RenderOptions {
   /// Distance of the eye from the middle of the universe; none: orthographic, in true scale. Ray casting
   /// only.
   std::optional<double> eye_mm;
-  /// By default NodeTrace for views along the universe's axes and RayCast for others. NodeTrace for another
-  /// view throws std::invalid_argument. NodeTrace shows whole columns of voxels, so that outlines are angular
-  /// if pixels are much smaller than voxels; RayCast follows the interpolated surface.
+  /// By default NodeTrace for views along the universe's axes and RayCast for others. Along an axis NodeTrace
+  /// shows whole columns of voxels, so that outlines are angular if pixels are much smaller than voxels;
+  /// RayCast follows the interpolated surface.
   std::optional<Algorithm> algorithm;
   Shading shading = Shading::PartialVolume;
   glm::vec3 background{1.0f, 1.0f, 1.0f};  ///< sRGB, 0..1
@@ -61,6 +76,13 @@ struct RenderOptions {
   /// Blends the colours of four parts of each edge pixel; depth, object and lit pixels stay those of the
   /// pixel's centre. Adds a sixth (node tracing) to a half (ray casting) to the time of a frame.
   bool antialias = true;
+  /// Light from everywhere, the strength of the first light's mirror image and its exponent (thesis 5.1); by
+  /// default those of Scenery.
+  std::optional<float> ambient{};
+  std::optional<float> gloss{};
+  std::optional<float> exponent{};
+  /// Colours surfaces by their samples. The samples are of the objects' universe.
+  std::optional<Densities> densities{};
 };
 
 /// A picture with its depths and objects, row by row from the top left; each pixel shows the point at its

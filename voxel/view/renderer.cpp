@@ -58,12 +58,23 @@ bool same_tones(const std::optional<CutTones>& a, const std::optional<CutTones>&
   return a->samples.is_same(b->samples) && a->black == b->black && a->white == b->white;
 }
 
+bool same_densities(const std::optional<Densities>& a, const std::optional<Densities>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return same_tones(a->tones, b->tones) &&
+         std::equal(a->colours.begin(), a->colours.end(), b->colours.begin(), b->colours.end(),
+                    [](const DensityColour& one, const DensityColour& other) {
+                      return one.low == other.low && one.high == other.high && one.colour == other.colour;
+                    });
+}
+
 /// Whether two sets of options turn the same layers into the same picture.
 bool same_style(const RenderOptions& a, const RenderOptions& b) {
   const auto& [view, size_px, centre_mm, width_mm, eye_mm, algorithm, shading, background, cuts, cut_tones,
-               lights, occlusion, count, antialias] = a;
+               lights, occlusion, count, antialias, ambient, gloss, exponent, densities] = a;
   return shading == b.shading && background == b.background && occlusion == b.occlusion &&
-         antialias == b.antialias && same_lights(lights, b.lights) && same_tones(cut_tones, b.cut_tones);
+         antialias == b.antialias && same_lights(lights, b.lights) && same_tones(cut_tones, b.cut_tones) &&
+         ambient == b.ambient && gloss == b.gloss && exponent == b.exponent &&
+         same_densities(densities, b.densities);
 }
 
 bool same_view(const View& a, const View& b) {

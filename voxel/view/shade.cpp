@@ -14,7 +14,6 @@
 #include "voxel/view/mean_depth.h"
 #include "voxel/view/pixel_index.h"
 #include "voxel/view/srgb.h"
-#include "voxel/view/surface_break.h"
 
 // Passes over flat planes of floats, each in parallel over rows:
 // 1 smooth depths (depth_plane.h); 2 compute slopes; 3 compute the mean depth around every cell of 4 x 4
@@ -79,7 +78,8 @@ struct Lighting {
   explicit Lighting(const Scenery& scenery)
       : count(std::min(static_cast<int>(scenery.lights.size()), most_lights)),
         ambient(scenery.ambient),
-        gloss(scenery.lights.empty() ? 0.0f : scenery.gloss) {
+        gloss(scenery.lights.empty() ? 0.0f : scenery.gloss),
+        exponent(scenery.exponent) {
     for (int i = 0; i < count; ++i) {
       const Light& light = scenery.lights[static_cast<std::size_t>(i)];
       const glm::vec3 towards = glm::normalize(light.towards) * light.strength;
@@ -94,7 +94,7 @@ struct Lighting {
 
   int count = 0;
   float x[most_lights] = {}, y[most_lights] = {}, z[most_lights] = {};
-  float ambient = 0.0f, gloss = 0.0f;
+  float ambient = 0.0f, gloss = 0.0f, exponent = Scenery{}.exponent;
   glm::vec3 halfway{0.0f, 0.0f, -1.0f};
 };
 
@@ -185,6 +185,16 @@ struct Rows {
   std::array<std::vector<float>, 3> colour;
   std::array<std::vector<int>, 3> root;
 };
+
+/// The mirrored light of a row for any exponent; light_row() has the default one.
+void mirror_row(const Lighting& lighting, const glm::ivec2& lit, Rows& rows) {
+  for (int x = lit.x; x < lit.y; ++x) {
+    const auto i = static_cast<std::size_t>(x);
+    const glm::vec3 normal = glm::normalize(glm::vec3(rows.to_right[i], rows.to_top[i], -1.0f));
+    const float mirror = std::max(0.0f, glm::dot(normal, lighting.halfway));
+    rows.mirrored[i] = lighting.gloss * std::pow(mirror, lighting.exponent);
+  }
+}
 
 void slopes_of_row(const Scenery& scenery, const DepthPlane& plane, int y, Rows& rows) {
   const int stride = stride_px(scenery);
@@ -342,6 +352,7 @@ std::vector<std::uint8_t> shaded_picture(const DepthImage& image, const Scenery&
       slopes_of_normals(normals.subspan(pixel_index(image.size_px, 0, y), rows.to_right.size()), lit, rows);
     light_row(lighting, rows.to_right.data(), rows.to_top.data(), lit.x, lit.y, rows.diffuse.data(),
               rows.mirrored.data());
+    if (lighting.exponent != Scenery{}.exponent) mirror_row(lighting, lit, rows);
     if (surroundings) surroundings->mean_row(y, lit, rows.mean);
     dim_row(dimming, plane.depth.row(y), rows.mean.data(), lit.x, lit.y, rows.diffuse.data(),
             rows.mirrored.data());

@@ -41,6 +41,8 @@ struct Scenery {
   std::vector<Light> lights{Light{}, Light{{0.7f, -0.25f, -1.0f}, 0.25f}};
   float ambient = 0.06f;  ///< light from everywhere
   float gloss = 0.06f;    ///< strength of the first light's mirror image
+  /// Exponent of the mirror image's cosine: the larger, the smaller the highlight.
+  float exponent = 48.0f;
   bool occlusion = true;  ///< darkens surfaces that lie behind their surroundings
   bool depth_cue = true;  ///< darkens the far end by a third
   Paint paint{};          ///< Style::Shaded only

@@ -1,24 +1,33 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/operation/picture/drawn_files.h"
 
+#include <algorithm>
+#include <map>
 #include <variant>
 
 #include "planner/operation/file/path_checks.h"
 #include "planner/operation/picture/colour.h"
 #include "planner/operation/picture/mesh_voxels.h"
+#include "planner/operation/picture/ray_choice.h"
 #include "planner/operation/picture/ray_pictures.h"
+#include "planner/operation/table/nearest_name.h"
 #include "planner/operation/table/plan_universe.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/error.h"
 #include "voxel/tree/octree_file.h"
 
 namespace octotomy::planner {
 namespace {
 
 /// Makes the object a grey octree's window.
-void set_window(voxel::DrawnObject& object, const voxel::GreyOctree& grey, const SampleWindow& window) {
+void set_window(voxel::DrawnObject& object, const voxel::GreyOctree& grey, const Render& render) {
+  const SampleWindow& window = render.window;
   object.octree = voxel::combine(grey.universe(), voxel::Expression(window_on(grey, window)));
-  // The depth is interpolated at the lower bound. An upper bound inside the object would make it wrong.
-  if (!window.high) object.grey = grey;
+  // The depth is interpolated at the lower bound. An upper bound inside the object would make it wrong, so that
+  // the samples are kept only where they give no depth.
+  const bool gives_no_depth =
+      is_decided(render) || render.shading == "density" || render.shading == "gradient";
+  if (!window.high || gives_no_depth) object.grey = grey;
   object.threshold = window.low;
 }
 
@@ -44,7 +53,7 @@ voxel::DrawnObject drawn_of_file(const std::filesystem::path& path, const Render
     if (const auto* octree = std::get_if<voxel::Octree>(&file.tree)) {
       object.octree = *octree;
     } else if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
-      set_window(object, *grey, render.window);
+      set_window(object, *grey, render);
       object.counted_in_grey = object.grey.has_value();
     } else {
       const auto& partial = std::get<voxel::PartialOctree>(file.tree);
@@ -64,7 +73,7 @@ voxel::DrawnObject drawn_of_file(const std::filesystem::path& path, const Render
     const Stopwatch watch(timings, "octree");
     const voxel::Universe where = universe ? *universe : universe_of(scene, render.voxel_mm);
     set_window(object, voxel::grey_octree_of(where, scene, voxel::beyond_scan, bench.progress("octree")),
-               render.window);
+               render);
     if (object.octree.is_empty()) {
       const voxel::Range range = voxel::range(scene);
       throw std::runtime_error(path.string() + ": no voxel is in the window " + to_string(render.window) +
@@ -104,6 +113,58 @@ voxel::DrawnObject drawn(const Object& object, const glm::vec3& colour) {
   if (object.shown->moved_from_still != glm::dmat4(1.0))
     drawn.moved_from_still = object.shown->moved_from_still;
   return drawn;
+}
+
+std::vector<ObjectName> files_of(const Render& render) {
+  std::vector<ObjectName> files = render.objects;
+  std::map<std::string, std::string> bound;
+  std::vector<std::string> known;
+  for (const std::string& text : render.lets) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+      throw std::runtime_error("--let: '" + text + "' binds nothing: give NAME=FILE");
+    known.push_back(text.substr(0, equals));
+    if (!bound.emplace(known.back(), text.substr(equals + 1)).second)
+      throw std::runtime_error("--let: '" + known.back() + "' is bound twice");
+  }
+  const std::vector<std::string> names =
+      render.expression.empty() ? std::vector<std::string>{} : voxel::names_in(render.expression);
+  for (const std::string& name : names) {
+    if (!bound.contains(name))
+      throw std::runtime_error("--expression: nothing is called '" + name + "'" + suggestion(name, known) +
+                               ": bind it with --let " + name + "=FILE");
+    files.push_back({bound[name]});
+  }
+  for (const std::string& name : known)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw std::runtime_error("--let " + name + ": the expression does not name it" +
+                               suggestion(name, names) + ": leave it out");
+  return files;
+}
+
+std::vector<voxel::DrawnObject> with_expression(const Render& render,
+                                                std::vector<voxel::DrawnObject> objects) {
+  if (render.expression.empty()) return objects;
+  const std::vector<std::string> names = voxel::names_in(render.expression);
+  const auto first = objects.end() - static_cast<std::ptrdiff_t>(names.size());
+  const voxel::Universe universe = objects.front().octree.universe();
+  voxel::DrawnObject drawn{render.expression, voxel::Octree::empty(universe)};
+  drawn.unbuilt = voxel::parse_expression(render.expression,
+                                          {[&](std::string_view name) {
+                                             const auto at = std::find(names.begin(), names.end(), name);
+                                             return voxel::Expression((first + (at - names.begin()))->octree);
+                                           },
+                                           {}});
+  const auto has_samples = [](const voxel::DrawnObject& operand) { return operand.grey.has_value(); };
+  if (std::count_if(first, objects.end(), has_samples) == 1) {
+    const voxel::DrawnObject& shown = *std::find_if(first, objects.end(), has_samples);
+    drawn.grey = shown.grey;
+    drawn.threshold = shown.threshold;
+    drawn.moved_from_still = shown.moved_from_still;
+  }
+  objects.erase(first, objects.end());
+  objects.push_back(std::move(drawn));
+  return objects;
 }
 
 void paint(const Render& render, std::vector<voxel::DrawnObject>& objects) {

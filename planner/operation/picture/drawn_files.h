@@ -21,6 +21,16 @@ std::vector<voxel::DrawnObject> drawn_of_files(const Render& render, const std::
 /// A plan's object, with the samples that define its surface.
 voxel::DrawnObject drawn(const Object& object, const glm::vec3& colour);
 
+/// The files that a verb draws or names: those of its objects, then those that --let binds to the expression's
+/// names, in the order of these. Throws std::runtime_error for names that are not bound or bound twice.
+std::vector<ObjectName> files_of(const Render& render);
+
+/// The objects with the expression of the last ones, the operands, in their place. It is not built. Its surface
+/// is shown by the samples of the only operand that has samples, else by voxels' faces. Returns the objects as
+/// they are if there is no expression. Throws std::runtime_error for an expression that cannot be read.
+std::vector<voxel::DrawnObject> with_expression(const Render& render,
+                                                std::vector<voxel::DrawnObject> objects);
+
 /// Sets the requested colours and opacities, or the default ones.
 void paint(const Render& render, std::vector<voxel::DrawnObject>& objects);
 

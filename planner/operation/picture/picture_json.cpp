@@ -60,6 +60,8 @@ Json picks_json(const std::vector<glm::ivec2>& pixels, const std::vector<voxel::
         point_mm ? Json(objects[static_cast<std::size_t>(picture.object[index])].name) : Json(nullptr);
     pick["point_mm"] = to_json(point_mm);
     pick["depth_mm"] = point_mm ? Json(picture.depth_mm[index]) : Json(nullptr);
+    pick["colour"] = text_of_colour(
+        glm::vec3(picture.rgb[3 * index], picture.rgb[3 * index + 1], picture.rgb[3 * index + 2]) / 255.0f);
     list.push_back(std::move(pick));
   }
   return list;

@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "planner/operation/measure/result_json.h"
+#include "planner/operation/picture/light_choice.h"
+#include "planner/operation/picture/ray_choice.h"
 #include "planner/operation/picture/transfer_file.h"
 #include "voxel/view/composite.h"
 #include "voxel/view/radiograph.h"
@@ -20,6 +22,13 @@ voxel::TransferFunction transfer_of(const Render& render) {
       std::filesystem::exists(render.transfer))
     return read_transfer(render.transfer);
   return voxel::preset_transfer(render.transfer);
+}
+
+voxel::CompositeOptions composite_options_of(const Render& render) {
+  voxel::CompositeOptions options{transfer_of(render), cuts_of(render), lights_of(render)};
+  if (render.ambient) options.ambient = static_cast<float>(*render.ambient);
+  options.gradient = gradient_opacity_of(render);
+  return options;
 }
 
 /// A picture with its results.
@@ -74,6 +83,8 @@ void check_rays(const Render& render) {
   if (render.count || !render.algorithm.empty() || !render.picks.empty() || render.cut_face != "plain" ||
       !render.colour_by.empty())
     refuse("--shading", render.shading + " has no --algorithm, --count, --pick, --cut-face or --colour-by");
+  if (!render.expression.empty())
+    refuse("--expression", "an expression has no samples along rays: choose another --shading");
   if (render.eye_mm || render.stereo_deg)
     refuse(render.eye_mm ? "--eye" : "--stereo",
            "--shading " + render.shading + " is drawn orthographic and for one eye only");
@@ -105,11 +116,11 @@ RenderedPicture render_rays(const Render& render, const std::vector<voxel::Drawn
   {
     const Stopwatch watch(timings, "render");
     if (render.shading == "composite")
-      picture =
-          picture_of(voxel::composite(grey, plane, {transfer_of(render), cuts_of(render), {}}, progress));
+      picture = picture_of(voxel::composite(grey, plane, composite_options_of(render), progress));
     else
-      picture = picture_of(render.shading == "mip" ? voxel::maximum_intensity(grey, plane, progress)
-                                                   : voxel::radiograph(grey, plane, progress));
+      picture =
+          picture_of(render.shading == "mip" ? voxel::maximum_intensity(grey, plane, progress)
+                                             : voxel::radiograph(grey, plane, progress, weights_of(render)));
   }
   made.rgb = std::move(picture.rgb);
   made.pixel_mm = plane.pixel_mm;

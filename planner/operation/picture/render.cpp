@@ -3,7 +3,6 @@
 #include "planner/operation/picture/render.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <map>
 
@@ -13,12 +12,16 @@
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/picture/colour.h"
 #include "planner/operation/picture/drawn_files.h"
+#include "planner/operation/picture/light_choice.h"
 #include "planner/operation/picture/picture_json.h"
+#include "planner/operation/picture/ray_choice.h"
 #include "planner/operation/picture/ray_pictures.h"
+#include "planner/operation/picture/relief.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/scan/image_file.h"
+#include "voxel/space/error.h"
 #include "voxel/view/grid.h"
 #include "voxel/view/render.h"
 
@@ -39,6 +42,7 @@ const std::map<std::string, voxel::Shading> shadings{
     {"grey_gradient", voxel::Shading::GreyGradient},
     {"silhouette", voxel::Shading::Silhouette},
     {"outline", voxel::Shading::Outline},
+    {"density", voxel::Shading::Density},
 };
 
 template <typename Value>
@@ -88,27 +92,6 @@ Scene scene_of(const Render& render, std::vector<voxel::DrawnObject> objects, Ti
   return scene;
 }
 
-/// The samples in the tones that are asked for; by default from the smallest to the largest sample.
-voxel::CutTones tones_of(const Render& render, voxel::GreyOwners samples) {
-  if (render.tones.empty()) {
-    double black = std::numeric_limits<double>::infinity(), white = -black;
-    for (const voxel::Window& window : samples.windows()) {
-      const voxel::GreyOctree& grey = window.grey;
-      const voxel::MinMax range =
-          grey.range(std::max(2, voxel::root_height(grey.universe().depth)), {0, 0, 0});
-      black = std::min(black, range.low * grey.step());
-      white = std::max(white, std::max<double>(range.high, range.low + 1.0) * grey.step());
-    }
-    return {std::move(samples), black, white};
-  }
-  const auto colon = render.tones.find(':');
-  std::string numbers = render.tones;
-  if (colon != std::string::npos) numbers[colon] = ',';
-  const auto n = numbers_of<2>("--tones", numbers, "-500:1500");
-  if (!(n[1] > n[0])) throw std::runtime_error("--tones: '" + render.tones + "' has no room between");
-  return {std::move(samples), n[0], n[1]};
-}
-
 glm::ivec2 pixel_of(const std::string& text, const glm::ivec2& size_px) {
   const auto numbers = numbers_of<2>("--pick", text, "256,300");
   const glm::dvec2 pixel(numbers[0], numbers[1]);
@@ -139,10 +122,50 @@ std::vector<std::uint8_t> side_by_side(const voxel::Picture& left, const voxel::
   return rgb;
 }
 
+/// The samples that cut faces and surfaces show; none: colours.
+struct Samples {
+  std::optional<voxel::CutTones> on_cuts;
+  std::optional<voxel::CutTones> on_surfaces;
+  /// The highest sample of the object whose samples rays are decided by.
+  double highest = std::numeric_limits<double>::infinity();
+};
+
+/// The samples that the picture reads. Throws std::runtime_error where no object has any.
+Samples samples_of(const Render& render, const std::vector<voxel::DrawnObject>& objects,
+                   const std::vector<const Object*>& made) {
+  Samples samples;
+  const bool on_cuts = render.cut_face == "grey", on_surfaces = shows_densities(render);
+  if (!on_cuts && !on_surfaces) return samples;
+  const std::optional<voxel::CutTones> tones = cut_tones_of(render, objects, made);
+  if (!tones)
+    throw std::runtime_error(
+        std::string(on_cuts                       ? "--cut-face grey"
+                    : render.shading == "density" ? "--shading density"
+                                                  : "--density-colour") +
+        ": no object has samples; give a scan or grey octree first, and a --window LOW:");
+  if (on_cuts) samples.on_cuts = tones;
+  if (on_surfaces) samples.on_surfaces = tones;
+  return samples;
+}
+
+/// Draws the objects, or the surface in the samples of the only one that a decision function finds.
+voxel::Picture drawn_picture(const Render& render, const std::vector<voxel::DrawnObject>& objects,
+                             double highest, const voxel::RenderOptions& options) {
+  if (!is_decided(render)) return voxel::render(objects, options);
+  if (objects.size() != 1 || !objects.front().grey || objects.front().moved_from_still)
+    throw std::runtime_error((render.decide.empty() ? std::string("--peel") : "--decide " + render.decide) +
+                             ": needs the samples of one scan or grey octree, which was not moved");
+  voxel::DrawnObject object = objects.front();
+  const voxel::Decision decision = decision_of(render, object.threshold, highest);
+  // A change of samples may lie anywhere in the scan, not only about the window.
+  if (decision.by != voxel::Criterion::Range) object.octree = object.grey->scan();
+  return voxel::decide(object, options, decision);
+}
+
 /// `counted` are the objects as visits to them are counted, where that is not as they are drawn; else empty.
 RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> drawn,
-                         const std::vector<voxel::DrawnObject>& counted, std::optional<voxel::CutTones> tones,
-                         Timings& timings, const std::stop_token& stop) {
+                         const std::vector<voxel::DrawnObject>& counted, Samples samples, Timings& timings,
+                         const std::stop_token& stop) {
   if (is_ray_picture(render)) {
     paint(render, drawn);
     return render_rays(render, drawn, timings, stop);
@@ -150,16 +173,24 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
   voxel::RenderOptions options = options_of(render);
   std::vector<glm::ivec2> picks;
   for (const std::string& pick : render.picks) picks.push_back(pixel_of(pick, options.size_px));
-  const Scene scene = scene_of(render, std::move(drawn), timings);
+  if (!render.expression.empty()) {
+    // The frame of the operands, because that of the expression is known only once it is built.
+    const voxel::Frame frame = voxel::frame_about(drawn, options.view, options.size_px);
+    if (!options.centre_mm) options.centre_mm = frame.centre_mm;
+    if (!options.width_mm) options.width_mm = frame.width_mm;
+  }
+  const Scene scene = scene_of(render, with_expression(render, std::move(drawn)), timings);
   const std::vector<voxel::DrawnObject>& objects = scene.objects;
-  options.cut_tones = std::move(tones);
+  options.cut_tones = std::move(samples.on_cuts);
+  if (samples.on_surfaces)
+    options.densities = voxel::Densities{std::move(*samples.on_surfaces), density_colours_of(render)};
   voxel::Picture picture, right_eye;
   {
     const Stopwatch watch(timings, "render");
     if (render.stereo_deg) {
       const auto [left, right] = voxel::stereo_pair(options.view, *render.stereo_deg);
       options.view = right;
-      right_eye = voxel::render(objects, options);
+      right_eye = drawn_picture(render, objects, samples.highest, options);
       options.view = left;
     }
     std::optional<voxel::Visits> visits;
@@ -167,7 +198,7 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
       visits = voxel::render(counted, options).visits;
       options.count = false;
     }
-    picture = voxel::render(objects, options);
+    picture = drawn_picture(render, objects, samples.highest, options);
     if (visits) picture.visits = std::move(visits);
   }
   RenderedPicture made{picture.size_px, {}, picture.pixel_mm, {}, {}};
@@ -183,6 +214,17 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
     made.said["colour_by"] = distances_json(objects.front(), scene.coloured_by, picture);
   if (!picks.empty()) made.said["picks"] = picks_json(picks, objects, picture);
   if (picture.visits) add_visits(made.said, *picture.visits);
+  if (!render.expression.empty()) made.said["expression"] = render.expression;
+  if (is_decided(render)) {
+    made.said["decide"] = render.decide.empty() ? "range" : render.decide;
+    made.said["peel"] = render.peel.value_or(0);
+  }
+  if (render.relief) {
+    Relief relief = relief_of(picture, *render.relief);
+    made.said["relief"] = {{"corners", relief.corners}, {"levels", relief.levels}};
+    made.rgb = std::move(relief.rgb);
+    return made;
+  }
   std::optional<voxel::Annotation> annotation;
   if (render.annotate) annotation = annotation_of(render, scene);
   if (render.stereo_deg) {
@@ -197,9 +239,32 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
   return made;
 }
 
+/// The grammar and the names of an expression of a plan's objects.
+void check_expression(const Render& render, const FieldLocation& place) {
+  try {
+    // Any object will do.
+    voxel::parse_expression(render.expression, {[&](std::string_view name) -> voxel::Expression {
+                                                  place.need_object(std::string(name));
+                                                  return voxel::Sphere{};
+                                                },
+                                                {}});
+  } catch (const voxel::InvalidInput& error) {
+    place.refuse(error.what());
+  }
+}
+
 void check(const Render& render, const FieldLocation& place) {
   const auto refuse = [&](const std::string& field, const std::string& why) { place.at(field).refuse(why); };
-  if (render.colours.size() > render.objects.size() || render.opacities.size() > render.objects.size())
+  const std::size_t drawn = render.objects.size() + (render.expression.empty() ? 0 : 1);
+  if (drawn == 0) throw std::runtime_error("nothing to draw: give objects or an expression");
+  check_lights(render);
+  check_ray_choices(render);
+  if (!render.expression.empty() &&
+      (!render.colour_by.empty() || render.cut_face != "plain" || shows_densities(render)))
+    refuse("expression",
+           "has no surface to colour by distance or samples: leave out 'colour_by', 'cut_face', "
+           "'density_colours' and the shading density");
+  if (render.colours.size() > drawn || render.opacities.size() > drawn)
     refuse("colours", "and opacities: give at most one of each an object");
   if (render.grid_mm && (render.eye_mm || render.stereo_deg))
     refuse("grid_mm", "needs a picture in true scale: leave out 'eye_mm' and 'stereo_deg'");
@@ -224,11 +289,15 @@ void check(const Render& render, const FieldLocation& place) {
     place.refuse(error.what());
   }
   if (!render.colour_by.empty()) place.at("colour_by").need_object(other_of(render.colour_by));
+  if (!render.expression.empty()) check_expression(render, place.at("expression"));
 }
 
 std::vector<std::string> uses(const Render& render) {
-  if (render.colour_by.empty()) return {};
-  return {other_of(render.colour_by)};
+  std::vector<std::string> names;
+  if (!render.colour_by.empty()) names.push_back(other_of(render.colour_by));
+  if (!render.expression.empty())
+    for (std::string& name : voxel::names_in(render.expression)) names.push_back(std::move(name));
+  return names;
 }
 
 void write(const std::filesystem::path& path, const RenderedPicture& picture) {
@@ -242,15 +311,16 @@ void write(const Render& render, const AnswerBench& bench, Exported& made) {
     objects.push_back(drawn(bench.objects.at(name.name), glm::vec3(1.0f)));
   if (!render.colour_by.empty())
     objects.push_back(drawn(bench.objects.at(other_of(render.colour_by)), glm::vec3(1.0f)));
-  std::optional<voxel::CutTones> tones;
-  if (render.cut_face == "grey") {
-    std::vector<const Object*> cut;
-    for (const ObjectName& name : render.objects) cut.push_back(&bench.objects.at(name.name));
-    tones = cut_tones_of(render, {objects.begin(), objects.begin() + std::ptrdiff_t(cut.size())}, cut);
-    if (!tones) throw std::runtime_error("cut_face: no object is made of a window of a scan: leave it out");
-  }
+  if (!render.expression.empty())
+    for (const std::string& name : voxel::names_in(render.expression))
+      objects.push_back(drawn(bench.objects.at(name), glm::vec3(1.0f)));
+  std::vector<const Object*> sources;
+  for (const ObjectName& name : render.objects) sources.push_back(&bench.objects.at(name.name));
+  Samples samples =
+      samples_of(render, {objects.begin(), objects.begin() + std::ptrdiff_t(sources.size())}, sources);
+  if (!sources.empty() && sources.front()->shown) samples.highest = sources.front()->shown->high;
   RenderedPicture picture =
-      rendered(render, std::move(objects), {}, std::move(tones), bench.timings, bench.stop);
+      rendered(render, std::move(objects), {}, std::move(samples), bench.timings, bench.stop);
   write(output_file(bench.folder, made.path), picture);
   made.written = true;
   made.content = "a picture from " + render.view + ", " + std::to_string(picture.size_px.x) + " x " +
@@ -265,7 +335,9 @@ FileAnswer on_files(const Render& asked, const FileBench& bench) {
   if (is_ray_picture(render)) render.window = ray_window(render);
   voxel::parse_view(render.view);
   size_of(render);
-  std::vector<ObjectName> files = render.objects;
+  // A change of samples ends rays, whatever the samples are.
+  if (is_decided(render) && render.steeper_per_mm) render.window = {std::numeric_limits<std::int16_t>::min()};
+  std::vector<ObjectName> files = files_of(render);
   if (!render.colour_by.empty()) {
     files.push_back({other_of(render.colour_by)});
     if (!std::filesystem::exists(files.back().name))
@@ -280,16 +352,11 @@ FileAnswer on_files(const Render& asked, const FileBench& bench) {
     shown.count = false;
     objects = drawn_of_files(shown, files, bench);
   }
-  std::optional<voxel::CutTones> tones;
-  if (render.cut_face == "grey") {
-    tones =
-        cut_tones_of(render, {objects.begin(), objects.begin() + std::ptrdiff_t(render.objects.size())}, {});
-    if (!tones)
-      throw std::runtime_error(
-          "--cut-face grey: no object has samples; give a scan or grey octree first, and a --window LOW:");
-  }
+  Samples samples =
+      samples_of(render, {objects.begin(), objects.begin() + std::ptrdiff_t(render.objects.size())}, {});
+  samples.highest = render.window.high_or_infinity();
   const RenderedPicture picture =
-      rendered(render, std::move(objects), counted, std::move(tones), bench.timings, bench.stop);
+      rendered(render, std::move(objects), counted, std::move(samples), bench.timings, bench.stop);
   {
     const Stopwatch watch(bench.timings, "write");
     write(render.out, picture);
@@ -310,8 +377,20 @@ bool draws_surfaces(const Render& render) {
   return !is_ray_picture(render);
 }
 
+/// The file that NAME=FILE binds.
+std::string bound_file(const std::string& text) {
+  return text.substr(std::min(text.size(), text.find('=') + 1));
+}
+
+/// The file whose voxels all are drawn in; empty if there is none.
+std::string first_file(const Render& render) {
+  if (!render.objects.empty()) return render.objects.front().name;
+  return render.lets.empty() ? "" : bound_file(render.lets.front());
+}
+
 bool draws_samples(const Render& render) {
   std::vector<ObjectName> files = render.objects;
+  for (const std::string& text : render.lets) files.push_back({bound_file(text)});
   if (!render.colour_by.empty()) files.push_back({other_of(render.colour_by)});
   return std::any_of(files.begin(), files.end(), [](const ObjectName& file) {
     return !is_mesh(file.name) && octree_kind(file.name).value_or(OctreeKind::Grey) == OctreeKind::Grey;
@@ -327,27 +406,6 @@ std::vector<std::string> all_shadings() {
 
 }  // namespace
 
-std::optional<voxel::CutTones> cut_tones_of(const Render& render,
-                                            const std::vector<voxel::DrawnObject>& objects,
-                                            const std::vector<const Object*>& made) {
-  std::vector<voxel::SampleSource> sources;
-  for (const Object* object : made)
-    if (object->voxel.symbol) sources.push_back({*object->voxel.symbol, object->voxel.octree});
-  // What was filled or grown in an object of one scan lies in that scan, too, and moved with it.
-  const auto first = std::find_if(objects.begin(), objects.end(),
-                                  [](const voxel::DrawnObject& object) { return object.grey.has_value(); });
-  for (const voxel::DrawnObject& object : objects)
-    if (object.grey)
-      sources.push_back({voxel::all_samples(*object.grey, object.moved_from_still.value_or(glm::dmat4(1.0))),
-                         object.octree});
-    else if (made.empty() && first != objects.end())
-      sources.push_back({voxel::all_samples(*first->grey, first->moved_from_still.value_or(glm::dmat4(1.0))),
-                         object.octree});
-  voxel::GreyOwners samples(objects.front().octree.universe(), sources);
-  if (samples.windows().empty()) return std::nullopt;
-  return tones_of(render, std::move(samples));
-}
-
 voxel::RenderOptions options_of(const Render& render) {
   voxel::RenderOptions options;
   options.view = voxel::parse_view(render.view);
@@ -356,6 +414,13 @@ voxel::RenderOptions options_of(const Render& render) {
   options.width_mm = render.width_mm;
   if (render.centre_mm) options.centre_mm = options.view.project(*render.centre_mm);
   options.eye_mm = render.eye_mm;
+  options.lights = lights_of(render);
+  const auto share = [](const std::optional<double>& typed) {
+    return typed ? std::optional(static_cast<float>(*typed)) : std::nullopt;
+  };
+  options.ambient = share(render.ambient);
+  options.gloss = share(render.specular);
+  options.exponent = share(render.specular_exponent);
   options.cuts = cuts_of(render);
   options.count = render.count;
   if (!render.algorithm.empty()) options.algorithm = algorithms.at(render.algorithm);
@@ -377,39 +442,6 @@ void finish(RenderedPicture& picture, const voxel::ImagePlane& plane, const Rend
   picture.said["lps_from_pixel"] = to_json(picture.frame->lps_from_pixel);
 }
 
-glm::ivec2 size_of(const Render& render) {
-  const std::string& text = render.size;
-  int width = 0, height = 0;
-  char cross = 0, rest = 0;
-  const bool read =
-      std::sscanf(text.c_str(), "%d%c%d%c", &width, &cross, &height, &rest) == 3 && cross == 'x';
-  constexpr int most = 8192;
-  if (!read || width < 1 || height < 1 || width > most || height > most)
-    throw std::runtime_error("--size: '" + text +
-                             "' is no size: give WxH of 1 to 8192 pixels, for example 512x512");
-  return {width, height};
-}
-
-std::vector<voxel::Cutaway> cuts_of(const Render& render) {
-  std::vector<voxel::Cutaway> cuts;
-  for (const std::string& plane : render.cut_planes) {
-    const auto n = numbers_of<4>("--cut-plane", plane, "1,0,0,12.5");
-    const glm::dvec3 normal(n[0], n[1], n[2]);
-    if (!(glm::length(normal) > 0.0))
-      throw std::runtime_error(std::string("--cut-plane: '") + plane + "' has a normal without length");
-    cuts.emplace_back(voxel::HalfSpace{glm::normalize(normal), n[3]});
-  }
-  for (const std::string& box : render.cut_boxes) {
-    const auto n = numbers_of<6>("--cut-box", box, "0,-100,0,80,0,90");
-    const voxel::Box removed{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-    if (!glm::all(glm::lessThan(removed.low_mm, removed.high_mm)))
-      throw std::runtime_error(std::string("--cut-box: '") + box +
-                               "' holds nothing: give the lower corner first");
-    cuts.emplace_back(removed);
-  }
-  return cuts;
-}
-
 voxel::Annotation annotation_of(const Render& render, const std::vector<voxel::DrawnObject>& objects) {
   voxel::Annotation annotation;
   annotation.title = render.title.empty() ? render.view : render.title;
@@ -424,10 +456,15 @@ Operation render_operation() {
           field(
               "objects", &Render::objects,
               "What is drawn; of the verb octrees (.octree), or scans: a DICOM folder or file, NIfTI, NRRD, "
-              "MetaImage, images, or a raw file.")
-              .required()
+              "MetaImage, images, or a raw file. May be left out if there is an expression.")
               .from(1)
               .positional("files"))
+      .takes(field(
+          "expression", &Render::expression,
+          "A Boolean expression, drawn after the objects without a step or file of it: & | - ^ ~ and "
+          "parentheses, for example \"skull - cut\"; of the verb its names are bound by 'let'. Along an "
+          "axis it is evaluated only where it is visible. The picture spans the objects that it "
+          "names."))
       .takes(field("path", &Render::path, "The .png, .jpg or .webp file within the result's folder.")
                  .in_plans_only())
       .takes(field("view", &Render::view,
@@ -447,21 +484,22 @@ Operation render_operation() {
                    "Two pictures side by side, the left eye's at the left, and the angle between them.")
                  .from(0.1)
                  .to(30.0))
-      .takes(
-          field("algorithm", &Render::algorithm,
-                "node_trace (views along the axes), ray_cast, front_to_back or back_to_front. Default: the "
-                "fastest for the view.")
-              .one_of(names_of(algorithms)))
+      .takes(field("algorithm", &Render::algorithm,
+                   "node_trace, ray_cast, front_to_back or back_to_front. Default: the fastest for the view.")
+                 .one_of(names_of(algorithms)))
       .takes(
           field(
               "shading", &Render::shading,
-              "depth, gradient, context, partial_volume, grey_gradient, silhouette or outline; mip (largest "
+              "depth, gradient, context, partial_volume, grey_gradient, silhouette, outline or density (the "
+              "samples of visible voxels, darker with depth); mip (largest "
               "sample), radiograph (X-rays, in true scale) or composite (by a transfer function).")
               .one_of(all_shadings()))
       .takes(field("colours", &Render::colours, "#RRGGBB, one an object in their order.")
                  .repeated()
                  .called("colour")
-                 .read_if<Render>(draws_surfaces, along_rays))
+                 .read_if<Render>(draws_surfaces, along_rays)
+                 .read_if<Render>([](const Render& render) { return render.shading != "density"; },
+                                  "is not of the shading density, which shows samples: leave it out"))
       .takes(field("opacities", &Render::opacities, "0 (hidden) to 1, one an object in their order.")
                  .repeated()
                  .called("opacity")
@@ -493,9 +531,13 @@ Operation render_operation() {
                    "What cut faces show: plain (the object's colour) or grey (the scan's samples).")
                  .one_of({"plain", "grey"}))
       .takes(field("tones", &Render::tones,
-                   "BLACK:WHITE in sample units of grey cut faces. Default: the samples' range.")
-                 .read_if<Render>([](const Render& render) { return render.cut_face == "grey"; },
-                                  "is of grey cut faces: add 'cut_face'"))
+                   "BLACK:WHITE in sample units of grey cut faces and of the shading density. Default: the "
+                   "samples' range.")
+                 .read_if<Render>(
+                     [](const Render& render) {
+                       return render.cut_face == "grey" || render.shading == "density";
+                     },
+                     "is of grey cut faces and of the shading density: add 'cut_face' or 'shading'"))
       .takes(field("picks", &Render::picks,
                    "X,Y of a pixel, from the top left (of the left eye's picture), whose object and point "
                    "are told; "
@@ -514,15 +556,32 @@ Operation render_operation() {
                  .to(1000.0)
                  .called("grid"))
       .takes(field("count", &Render::count, "Counts the octree nodes that the algorithm visits."))
+      .takes(light_fields())
+      .takes(ray_fields())
+      .takes(
+          field("relief", &Render::relief,
+                "Instead of the picture, its depths as a surface of this many cells along the longer side, "
+                "seen isometrically, in black lines.")
+              .from(4)
+              .to(512)
+              .read_if<Render>(draws_surfaces, "is of pictures with depths: choose another 'shading'"))
+      .verb_takes(field("lets", &Render::lets, "NAME=FILE: what a name of the expression stands for.")
+                      .repeated()
+                      .called("let")
+                      .read_if<Render>([](const Render& render) { return !render.expression.empty(); },
+                                       "is of 'expression': add it"))
       .verb_takes(field("out", &Render::out, "A .png, .jpg or .webp file.").required())
       .verb_takes(field("window", &Render::window, "LOW:HIGH or LOW: in sample units, or a tissue.")
                       .read_if<Render>(draws_surfaces, along_rays)
-                      .read_if<Render>(draws_samples, "only scans and grey octrees have one: leave it out"))
+                      .read_if<Render>(draws_samples, "only scans and grey octrees have one: leave it out")
+                      .read_if<Render>([](const Render& render) { return !render.steeper_per_mm; },
+                                       "changes of samples end the rays, whatever the samples are: leave it "
+                                       "out"))
       .verb_takes(
           field("voxel_mm", &Render::voxel_mm,
                 "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
               .greater_than(0.0)
-              .read_if<Render>([](const Render& render) { return !is_octree(render.objects.front().name); },
+              .read_if<Render>([](const Render& render) { return !is_octree(first_file(render)); },
                                "the first file is an octree, whose voxels all are drawn in: leave it out"))
       .reads_scans()
       .uses(uses)
@@ -530,6 +589,8 @@ Operation render_operation() {
         "view": "35,15"})")
       .on_files(
           "octotomy render head.nrrd -o skull.png --window 300: --view 35,15 --size 1024x1024\n"
+          "  octotomy render -o rest.png --expression \"skull - cut\" --let skull=skull.octree --let "
+          "cut=cut.octree\n"
           "  octotomy render rest.octree piece.octree -o plan.png --colour \"#ede3cc\" --colour \"#cc7a29\"",
           on_files)
       .check(check)

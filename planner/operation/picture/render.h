@@ -36,7 +36,21 @@ struct Render {
   std::string title;
   std::optional<double> grid_mm;
   bool count = false;
+  /// Drawn after the objects; empty: none.
+  std::string expression;
+  // Light (thesis 5.1).
+  std::vector<std::string> lights;
+  std::optional<double> ambient, diffuse, specular, specular_exponent;
+  // Samples along rays (4.4.2.3) and on surfaces (5.2.1.2).
+  std::string decide;
+  std::optional<double> steeper_per_mm;
+  std::optional<int> peel;
+  std::vector<std::string> dissolve;
+  std::string gradient_opacity;
+  std::vector<std::string> density_colours;
+  std::optional<int> relief;
   // Of the command only.
+  std::vector<std::string> lets;
   std::filesystem::path out;
   SampleWindow window{300.0};
   std::optional<double> voxel_mm;

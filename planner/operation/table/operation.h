@@ -91,6 +91,10 @@ class Describe {
     entry_.fresh = [] { return std::make_shared<Value>(); };
   }
   Describe&& takes(Field field) && { return entry_.fields.push_back(std::move(field)), std::move(*this); }
+  Describe&& takes(std::vector<Field> fields) && {
+    for (Field& field : fields) entry_.fields.push_back(std::move(field));
+    return std::move(*this);
+  }
   Describe&& example(std::string json) && { return entry_.example = std::move(json), std::move(*this); }
   Describe&& on_files(std::string command) && {
     return entry_.verb_example = std::move(command), std::move(*this);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Node tracing, ray casting, front to back and back to front on the same scenes.
+#include <cmath>
 #include <gtest/gtest.h>
 #include <random>
 
@@ -104,7 +105,7 @@ TEST(Algorithms, AllFourLightTheSameColumnsAtTheSameDepthsAlongAxesForRandomExpr
   EXPECT_GT(second, 1000);
 }
 
-TEST(Algorithms, TheThreeOfGeneralViewsLightTheSamePixelsAtTheSameDepthsForRandomExpressions) {
+TEST(Algorithms, TheFourOfGeneralViewsLightTheSamePixelsAtTheSameDepthsForRandomExpressions) {
   int lit = 0, unlit = 0, second = 0, at_silhouettes = 0;
   for (std::uint64_t seed = 0; seed < 250; ++seed) {
     const std::vector<DrawnObject> objects = random_scene(1000 + seed);
@@ -118,7 +119,12 @@ TEST(Algorithms, TheThreeOfGeneralViewsLightTheSamePixelsAtTheSameDepthsForRando
     const ImagePlane plane =
         image_plane(universe, view, {48, 40}, {view.project(0.5 * (box.low_mm + box.high_mm)), width_mm});
     const RayCast cast(objects, plane);
-    const std::array<DepthImage, 2> images{front_to_back(objects, plane), back_to_front(objects, plane)};
+    const std::array<DepthImage, 3> images{front_to_back(objects, plane), back_to_front(objects, plane),
+                                           quadtree_trace(objects, plane)};
+    for (std::size_t pixel = 0; pixel < images[0].pixels.size(); ++pixel) {
+      ASSERT_EQ(images[2].pixels[pixel].object, images[0].pixels[pixel].object) << "seed " << seed;
+      ASSERT_EQ(images[2].pixels[pixel].depth_mm, images[0].pixels[pixel].depth_mm) << "seed " << seed;
+    }
     for (int y = 0; y < plane.size_px.y; ++y)
       for (int x = 0; x < plane.size_px.x; ++x) {
         const Seen ray = cast.seen({x + 0.5, y + 0.5});
@@ -176,6 +182,40 @@ TEST(Visits, OfFigure48AreThoseWorkedOutInTheThesis) {
   EXPECT_EQ(visits.all.octree[0].empty, visits.direct.octree[0].empty);
   EXPECT_EQ(visits.direct.quadtree, 1u + 7u + 3u * 3u + 2u);
   EXPECT_EQ(visits.all.quadtree, visits.direct.quadtree + 3u);
+}
+
+TEST(Visits, OfNodeTracingInTheIsometricViewAreThoseOfTheNodesThatItsBeamsOpen) {
+  // A Full universe ends every beam at the root; an Empty one has no beam. Neither visits a node below.
+  const Universe universe = spaced_universe(4);
+  const Box box = bounds(universe.lattice());
+  const View view = parse_view("45,35.264389682754654");
+  const ImagePlane plane =
+      image_plane(universe, view, {64, 64}, {view.project(0.5 * (box.low_mm + box.high_mm)), 40.0});
+  for (const Octree& octree : {Octree::full(universe), Octree::empty(universe)}) {
+    Visits visits;
+    quadtree_trace({{"all or nothing", octree}}, plane, &visits);
+    EXPECT_EQ(visits.direct.quadtree, 0u);
+  }
+  // One Full octant: every beam that opens the root visits up to eight children, and no node below.
+  tests::Dense dense(16);
+  for (int z = 0; z < 8; ++z)
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 8; ++x) dense.at({x, y, z}) = 1;
+  const std::vector<DrawnObject> octant{{"octant", tests::octree_of(universe, dense)}};
+  Visits visits;
+  const DepthImage counted = quadtree_trace(octant, plane, &visits);
+  const DepthImage drawn = quadtree_trace(octant, plane);
+  EXPECT_GT(visits.direct.octree[0].full, 0u);
+  EXPECT_EQ(visits.direct.octree[1].full + visits.direct.octree[1].empty, 0u);
+  EXPECT_EQ(visits.direct.quadtree, visits.direct.octree[0].full + visits.direct.octree[0].empty);
+  EXPECT_LT(visits.direct.quadtree, 8u * 64u * 64u);
+  std::size_t lit = 0;
+  for (std::size_t pixel = 0; pixel < drawn.pixels.size(); ++pixel) {
+    ASSERT_EQ(counted.pixels[pixel].depth_mm, drawn.pixels[pixel].depth_mm);
+    lit += drawn.pixels[pixel].lit() ? 1 : 0;
+  }
+  // A cube along its diagonal is a regular hexagon of the area sqrt(3) a^2.
+  EXPECT_NEAR(static_cast<double>(lit), std::sqrt(3.0) * 64.0 / (plane.pixel_mm * plane.pixel_mm), 8.0);
 }
 
 TEST(Visits, EveryNodeOnceBackToFrontFewerFrontToBackFewestByNodeTracing) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
+#include <optional>
 #include <tbb/global_control.h>
 
 #include "tests/unit_universe.h"
@@ -103,7 +104,7 @@ TEST(Composite, HalfOfTheLightIsLostWhereTheExponentialSaysSo) {
 
 /// The integral without skipped blocks, early ends or kept samples.
 glm::vec4 reference(const GreyOctree& grey, const ImagePlane& plane, const TransferFunction& transfer,
-                    const glm::dvec2& p_px) {
+                    const glm::dvec2& p_px, const std::optional<glm::dvec2>& ramp = std::nullopt) {
   const TransferTable table(transfer, {-1000, 1000});
   const glm::dvec3 start_mm = plane.lps_mm(p_px, 0.0);
   double from = -1e9, until = 1e9;
@@ -139,7 +140,9 @@ glm::vec4 reference(const GreyOctree& grey, const ImagePlane& plane, const Trans
       }
       facing += std::min(1.0, glm::length(gradient) / transfer.surface_per_mm) * (lit - 1.0);
     }
-    const double share = behind * (1.0 - std::exp(-entry.per_mm * length));
+    double per_mm = entry.per_mm;
+    if (ramp) per_mm *= std::clamp((glm::length(gradient) - ramp->x) / (ramp->y - ramp->x), 0.0, 1.0);
+    const double share = behind * (1.0 - std::exp(-per_mm * length));
     light += share * facing * glm::dvec3(entry.light);
     behind -= share;
   }
@@ -177,6 +180,42 @@ TEST(Composite, SkippingEndingEarlyAndKeepingSamplesChangeNothingThatIsSeen) {
       }
     EXPECT_GT(partly, 100) << view;
     EXPECT_GT(wholly, 20) << view;
+  }
+}
+
+TEST(Composite, OpacityFromDensityAndGradientIsTheRampTimesTheTransferFunctions) {
+  // A ball whose inside is even: by its gradient only its shell is seen, and what is behind it.
+  const GreyOctree grey = grey_of(
+      [](const glm::dvec3& p) {
+        const double ball = std::clamp(60.0 * (10.0 - glm::length(p)), -200.0, 300.0);
+        return std::max(ball, 300.0 - 40.0 * glm::distance(p, glm::dvec3(0, 13, 0)));
+      },
+      -200);
+  const TransferFunction transfer{
+      {{0.0, {0.9f, 0.3f, 0.2f}, 0.0}, {100.0, {0.9f, 0.3f, 0.2f}, 0.03}, {300.0, green, 0.06}}, 100.0};
+  for (const char* view : {"anterior", "35,25"}) {
+    const ImagePlane plane = plane_of(grey, view);
+    const Composite plain = composite(grey, plane, {transfer, {}, {}});
+    CompositeOptions options{transfer, {}, {}};
+    options.gradient = GradientOpacity{10.0, 50.0};
+    const Composite image = composite(grey, plane, options);
+    int lighter = 0;
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 40; ++x) {
+        const glm::vec4 truth = reference(grey, plane, transfer, {x + 0.5, y + 0.5}, glm::dvec2(10.0, 50.0));
+        const auto pixel = static_cast<std::size_t>(y * 40 + x);
+        for (int channel = 0; channel < 4; ++channel)
+          ASSERT_NEAR(image.light[pixel][channel], truth[channel], 1.1 / 1024.0)
+              << view << " " << x << ", " << y;
+        lighter += image.light[pixel].w < plain.light[pixel].w - 0.1f;
+      }
+    EXPECT_GT(lighter, 50) << view;
+  }
+  for (const GradientOpacity bad : {GradientOpacity{-1.0, 5.0}, GradientOpacity{5.0, 5.0},
+                                    GradientOpacity{0.0, INFINITY}, GradientOpacity{NAN, 5.0}}) {
+    CompositeOptions options{transfer, {}, {}};
+    options.gradient = bad;
+    EXPECT_THROW(composite(grey, plane_of(grey, "left"), options), std::invalid_argument);
   }
 }
 

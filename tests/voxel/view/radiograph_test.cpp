@@ -170,6 +170,57 @@ TEST(Radiograph, IsTheIntegralOfFineStepsThoughAirIsSkipped) {
   }
 }
 
+TEST(Radiograph, WithRangesDissolvedAndHeightenedIsTheIntegralOfTheWeightedVoxels) {
+  const std::vector<RangeWeight> weights{{-200.0, 300.0, 0.0}, {1000.0, 1500.0, 3.0}, {0.0, 5000.0, 0.5}};
+  const auto weight = [&](double sample) {
+    return sample >= -200.0 && sample <= 300.0    ? 0.0
+           : sample >= 1000.0 && sample <= 1500.0 ? 3.0
+           : sample >= 0.0                        ? 0.5
+                                                  : 1.0;
+  };
+  const GreyOctree grey = lumps(5);
+  for (const char* view : {"anterior", "left", "inferior"}) {
+    const ImagePlane plane = plane_of(grey, view);
+    const RayImage image = radiograph(grey, plane, {}, weights);
+    double most = 0.0;
+    for (int pixel = 0; pixel < 64 * 64; pixel += 3) {
+      // Rays through voxels' centres: the trapezia of the voxels' own attenuations.
+      const VoxelRays rays = voxel_rays(grey.universe(), plane);
+      const glm::dvec3 start = rays.start({pixel % 64 + 0.5, pixel / 64 + 0.5});
+      int axis = 0;
+      while (rays.per_mm[axis] == 0.0) ++axis;
+      double water_mm = 0.0;
+      for (int i = 0; i < 64; ++i) {
+        glm::ivec3 voxel(glm::round(start));
+        voxel[axis] = i;
+        const double sample = grey.sample(voxel);
+        water_mm += (i == 0 || i == 63 ? 0.25 : 0.5) * std::max(0.0, 1.0 + sample / 1000.0) * weight(sample);
+      }
+      ASSERT_NEAR(image.values[static_cast<std::size_t>(pixel)], 0.0206 * water_mm, 1e-5) << view << pixel;
+      most = std::max(most, 0.0206 * water_mm);
+    }
+    EXPECT_GT(most, 0.3) << view;
+  }
+  // Weights of one are no weights, and dissolving all leaves nothing, in an oblique view, too.
+  const ImagePlane oblique = plane_of(grey, "35,15");
+  const RayImage plain = radiograph(grey, oblique), ones = radiograph(grey, oblique, {}, {{-900, 9000, 1.0}});
+  const RayImage none = radiograph(grey, oblique, {}, {{-5000.0, 5000.0, 0.0}});
+  for (std::size_t i = 0; i < plain.values.size(); ++i) {
+    ASSERT_NEAR(ones.values[i], plain.values[i], 1e-4);
+    ASSERT_EQ(none.values[i], 0.0f);
+  }
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  EXPECT_EQ(radiograph(grey, oblique, {}, {{-900, 9000, 1.0}}).values, ones.values);
+}
+
+TEST(Radiograph, RefusesRangesThatAreEmptyAndWeightsBeyondTheirLimits) {
+  const GreyOctree grey = block_of_water();
+  const ImagePlane plane = plane_of(grey, "left");
+  for (const RangeWeight& bad : {RangeWeight{1.0, 0.0, 0.0}, RangeWeight{0.0, 1.0, -0.1},
+                                 RangeWeight{0.0, 1.0, 101.0}, RangeWeight{NAN, 1.0, 0.0}})
+    EXPECT_THROW(radiograph(grey, plane, {}, {bad}), std::invalid_argument) << bad.low << " " << bad.weight;
+}
+
 TEST(Radiograph, AndMaximumIntensityAreTheSameBitsOnAnyThreadCount) {
   const GreyOctree grey = lumps(7);
   const ImagePlane plane = plane_of(grey, "35,15");

@@ -230,9 +230,87 @@ TEST(Render, RefusesWhatItCannotDraw) {
   options = whole_universe("left");
   options.width_mm = -1.0;
   EXPECT_THROW(render({{"a", block}}, options), std::invalid_argument);
-  options = whole_universe("10,0");
-  options.algorithm = Algorithm::NodeTrace;
+  options = whole_universe("left");
+  options.shading = Shading::Density;  // without samples
   EXPECT_THROW(render({{"a", block}}, options), std::invalid_argument);
+}
+
+/// Two plates across the view, in front of each other: samples of 250 at the patient's right, of 800 behind
+/// at the left.
+DrawnObject two_plates() {
+  const Universe universe = universe_of_128_mm();
+  const GreyOctree grey =
+      grey_octree_of(universe, tests::field_scene<std::int16_t>(universe.lattice(), [](const glm::dvec3& p) {
+                       if (p.x < 0.0) return p.y > -10.0 && p.y < 0.0 ? 250.0 : -1000.0;
+                       return p.y > 30.0 && p.y < 40.0 ? 800.0 : -1000.0;
+                     }));
+  const Octree octree = combine(universe, Expression(Window{grey, 0.0, 32767.0}));
+  return {"plates", octree, glm::vec3(0.5f), grey, 0.0};
+}
+
+RenderOptions by_density(const DrawnObject& object, Shading shading) {
+  RenderOptions options = whole_universe("anterior");
+  options.shading = shading;
+  options.antialias = options.occlusion = false;
+  options.densities = Densities{
+      {GreyOwners(object.octree.universe(), {{all_samples(*object.grey), object.octree}}), 0.0, 1000.0}, {}};
+  return options;
+}
+
+glm::ivec3 rgb_at(const Picture& picture, int x, int y) {
+  const std::size_t i = 3 * static_cast<std::size_t>(y * picture.size_px.x + x);
+  return {picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]};
+}
+
+TEST(Render, ByDensityAPixelHasTheToneOfItsVoxelDimmedWithDepthOrTheColourOfItsRange) {
+  const DrawnObject plates = two_plates();
+  for (const Algorithm algorithm : {Algorithm::NodeTrace, Algorithm::RayCast}) {
+    RenderOptions options = by_density(plates, Shading::Density);
+    options.algorithm = algorithm;
+    const Picture toned = render({plates}, options);
+    // In the near plate all of the light, in the far one a tenth.
+    EXPECT_EQ(rgb_at(toned, 16, 30), glm::ivec3(64));
+    const auto linear = [](double srgb) { return std::pow((srgb + 0.055) / 1.055, 2.4); };
+    const double far = 1.055 * std::pow(0.1 * linear(0.8), 1.0 / 2.4) - 0.055;
+    EXPECT_NEAR(rgb_at(toned, 48, 30).x, 255.0 * far, 1.0);
+    options.densities->colours = {{200.0, 300.0, {1.0f, 0.0f, 0.0f}}, {0.0, 5000.0, {0.0f, 0.0f, 1.0f}}};
+    const Picture coloured = render({plates}, options);
+    EXPECT_EQ(rgb_at(coloured, 16, 30), glm::ivec3(255, 0, 0));
+    EXPECT_EQ(rgb_at(coloured, 48, 30).x, 0);
+    EXPECT_GT(rgb_at(coloured, 48, 30).z, 50);
+  }
+}
+
+TEST(Render, ColoursOfRangesAreLitAndOtherVoxelsKeepTheObjectsColour) {
+  const DrawnObject plates = two_plates();
+  RenderOptions options = by_density(plates, Shading::PartialVolume);
+  options.lights = {Light{{0.0f, 0.0f, -1.0f}, 1.0f}};
+  options.ambient = options.gloss = 0.0f;
+  options.densities->colours = {{200.0, 300.0, {1.0f, 0.0f, 0.0f}}};
+  const Picture picture = render({plates}, options);
+  EXPECT_EQ(rgb_at(picture, 16, 30), glm::ivec3(rgb_at(picture, 16, 30).x, 0, 0));
+  EXPECT_GT(rgb_at(picture, 16, 30).x, 200);
+  const glm::ivec3 grey = rgb_at(picture, 48, 30);
+  EXPECT_EQ(grey, glm::ivec3(grey.x));
+  // Half of the diffuse share leaves half of the linear light.
+  options.lights.front().strength = 0.5f;
+  const auto linear = [](int srgb) { return std::pow((srgb / 255.0 + 0.055) / 1.055, 2.4); };
+  EXPECT_NEAR(linear(rgb_at(render({plates}, options), 48, 30).x) / linear(grey.x), 0.5, 0.02);
+}
+
+TEST(Render, NodeTracingInAGeneralViewShowsThePictureOfFrontToBack) {
+  const Octree block = block_at({30, 30, 30});
+  for (const char* view : {"10,0", "45,35.264389682754654", "-120,-70"}) {
+    RenderOptions options = whole_universe(view);
+    options.algorithm = Algorithm::NodeTrace;
+    const Picture traced = render({{"a", block}}, options);
+    options.algorithm = Algorithm::FrontToBack;
+    const Picture walked = render({{"a", block}}, options);
+    EXPECT_EQ(traced.algorithm, Algorithm::NodeTrace);
+    EXPECT_GT(traced.lit_pixels, 10u) << view;
+    EXPECT_EQ(traced.rgb, walked.rgb) << view;
+    EXPECT_EQ(traced.depth_mm, walked.depth_mm) << view;
+  }
 }
 
 /// Mean and largest distance of picked points from a sphere of shares, outside of it positive, in voxels, where

@@ -19,6 +19,40 @@ Scenery scenery_of(double pixel_mm = 1.0) {
   return {{{0.9f, 0.9f, 0.9f}, {0.9f, 0.2f, 0.1f}}, glm::vec3(1.0f), pixel_mm, 1.0, 1000.0};
 }
 
+/// The linear light of a plane's middle pixel without occlusion and depth cue.
+double light_on(const glm::vec2& slope, const Scenery& asked) {
+  const DepthImage image = image_of(33, [&](int x, int y) {
+    return Seen{50.0f + slope.x * static_cast<float>(x) - slope.y * static_cast<float>(y), 0, false};
+  });
+  Scenery scenery = asked;
+  scenery.colours = {glm::vec3(0.5f)};
+  scenery.occlusion = scenery.depth_cue = false;
+  const double srgb = shade(image, scenery)[3 * (16 * 33 + 16)] / 255.0;
+  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+TEST(Shade, IsPhongsModelForAnyAmbientDiffuseAndSpecularShareAndExponent) {
+  const double albedo = std::pow((0.5 + 0.055) / 1.055, 2.4);
+  int glossy = 0;
+  for (const glm::vec2& slope : {glm::vec2(0.0f), glm::vec2(0.3f, -0.2f), glm::vec2(-0.1f, 0.25f)})
+    for (const float exponent : {1.0f, 5.0f, 48.0f, 200.0f}) {
+      Scenery scenery = scenery_of();
+      scenery.ambient = 0.15f;
+      scenery.lights = {Light{{-0.3f, 0.4f, -0.9f}, 0.5f}};
+      scenery.gloss = 0.3f;
+      scenery.exponent = exponent;
+      // Equation 5.1: the surface's normal, the light and the direction halfway to the observer.
+      const glm::dvec3 normal = glm::normalize(glm::dvec3(slope.x, slope.y, -1.0));
+      const glm::dvec3 light = glm::normalize(glm::dvec3(-0.3, 0.4, -0.9));
+      const glm::dvec3 halfway = glm::normalize(light + glm::dvec3(0, 0, -1));
+      const double mirrored = 0.3 * std::pow(std::max(0.0, glm::dot(normal, halfway)), exponent);
+      const double wanted = albedo * (0.15 + 0.5 * std::max(0.0, glm::dot(normal, light))) + mirrored;
+      EXPECT_NEAR(light_on(slope, scenery), wanted, 0.006) << slope.x << ", exponent " << exponent;
+      glossy += mirrored > 0.05;
+    }
+  EXPECT_GT(glossy, 5);
+}
+
 std::size_t at(const DepthImage& image, int x, int y) {
   return static_cast<std::size_t>(y * image.size_px.x + x);
 }

@@ -50,6 +50,33 @@ TEST_F(ScanVerbs, SlicesAreInTrueScaleAndSayWhereTheyLie) {
   EXPECT_EQ(oblique["letters"]["right"], "L");
 }
 
+TEST_F(ScanVerbs, AnExpressionIsDrawnAsTheOctreeThatEvalMakesOfIt) {
+  ASSERT_EQ(run("octree " + at("ball.nrrd") + " --window 0: -o " + at("a.octree")).status, 0);
+  ASSERT_EQ(run("octree " + at("ball.nrrd") + " --window 500: -o " + at("b.octree")).status, 0);
+  const std::string lets = " --let a=" + at("a.octree") + " --let b=" + at("b.octree");
+  for (const std::string expression : {"a - b", "a & b", "a ^ ~b"}) {
+    ASSERT_EQ(run("eval \"" + expression + "\" -o " + at("e.octree") + lets).status, 0);
+    const std::string frame = " --size 90x90 --width 40 --centre 0,0,0 --view 35,15 -o " + at("e.png");
+    const SortedJson made = json("render " + at("e.octree") + frame);
+    const std::string pixels = tests::bytes_of(folder_ / "e.png");
+    const SortedJson unmade = json("render --expression \"" + expression + "\"" + lets + frame);
+    EXPECT_EQ(made["lit_pixels"], unmade["lit_pixels"]) << expression;
+    EXPECT_GT(made["lit_pixels"].get<int>(), 500) << expression;
+    EXPECT_EQ(tests::bytes_of(folder_ / "e.png"), pixels) << expression;
+  }
+  const std::string rest = " -o " + at("e.png");
+  expect_refused(run("render --expression \"a - c\"" + lets + rest), "'c'");
+  expect_refused(run("render --expression a" + lets + rest), "--let b");
+  expect_refused(run("render --expression a --let a" + rest), "NAME=FILE");
+  expect_refused(run("render --expression \"a -\" --let a=" + at("a.octree") + rest), "expected");
+  expect_refused(run("render " + at("a.octree") + " --let a=" + at("a.octree") + rest), "'expression'");
+  expect_refused(run("render" + rest), "expression");
+  expect_refused(run("render " + at("ball.nrrd") + " --window 0: --decide gradient --steeper 5" + rest),
+                 "--window");
+  expect_refused(run("render " + at("a.octree") + " --decide range" + rest), "samples");
+  expect_refused(run("render " + at("a.octree") + " --shading density" + rest), "samples");
+}
+
 TEST_F(ScanVerbs, ACurveIsGivenAsPointsOrAsAFile) {
   write("curve.json", R"({"points_mm": [[-10, 5, 0], [0, -8, 0], [10, 5, 0]]})");
   const std::string rest = " --height 20 --pixel 0.5 -o " + at("curve.png");

@@ -21,7 +21,7 @@ std::filesystem::path list_path() {
 }
 
 /// Rows without commands, to be lowered with each one that is built.
-constexpr int missing_count = 10;
+constexpr int missing_count = 1;
 
 class ThesisItems : public tests::CommandLine {
  protected:
