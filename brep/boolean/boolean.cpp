@@ -23,6 +23,7 @@
 #include "brep/boolean/corefine.h"
 #include "brep/boolean/line_agreement.h"
 #include "brep/boolean/near_boolean.h"
+#include "brep/boolean/rectilinear.h"
 #include "brep/boolean/settle.h"
 #include "brep/mesh/coordinate_order.h"
 #include "brep/mesh/equal_points.h"
@@ -265,6 +266,24 @@ Attempt best_attempt(const Question& question, const Solid& b) {
   return whole;
 }
 
+/// The remedy for surfaces that touch themselves, where corefinement breaks off, or whose results cross
+/// themselves: if all faces are square to the axes, cells between their planes.
+Attempt rectilinear_attempt(const Question& question, double tolerance_mm) {
+  Attempt attempt;
+  std::optional<Results> results =
+      rectilinear_results(question.a.triangles(), question.b.triangles(),
+                          with_witnesses(question.wanted, question.a, question.b), tolerance_mm);
+  if (!results) {
+    attempt.failure = "faces are not square to the axes";
+    return attempt;
+  }
+  for (std::size_t r = 0; r < results->size(); ++r)
+    if ((*results)[r]) attempt.volumes_mm3[r] = size_of(*(*results)[r]).volume_mm3;
+  attempt.results = *std::move(results);
+  judge(question, question.b, attempt);
+  return attempt;
+}
+
 Attempt shifted_attempt(const Question& question, const glm::dvec3& shift) {
   Mesh b = question.b.mesh();
   for (const auto v : b.vertices()) b.set_point(v, b.point(v) + Mesh::Point(shift.x, shift.y, shift.z));
@@ -302,13 +321,15 @@ void tell_flat(Attempt& attempt) {
         (attempt.flat == 1 ? " other diagonal" : " other diagonals") + "; their surfaces are unchanged");
 }
 
-/// Takes out the folds that rounding left, and reports the ones that stay.
-void settle(const Question& question, Attempt& attempt) {
+/// Takes out the folds that rounding left, and reports and returns the number of those that stay.
+std::size_t settle(const Question& question, Attempt& attempt) {
+  std::size_t crossing = 0;
   for (std::size_t r = 0; r < attempt.results.size(); ++r) {
     if (!question.wanted[r] || attempt.results[r]->faces.empty()) continue;
     Settled done =
         settled(std::move(*attempt.results[r]), {&question.a.triangles(), &question.b.triangles()});
     attempt.results[r] = std::move(done.surface);
+    crossing += done.crossing;
     if (done.crossing > 0)
       attempt.findings.push_back(question.names.of(r) + " crosses itself: " + std::to_string(done.crossing) +
                                  (done.crossing == 1 ? " pair" : " pairs") + " of triangles, first at (" +
@@ -316,6 +337,7 @@ void settle(const Question& question, Attempt& attempt) {
                                  short_text(done.at_mm.z) +
                                  ") mm; repair the result before other verbs take it");
   }
+  return crossing;
 }
 
 /// The wanted results, before meshes are made of them.
@@ -324,15 +346,16 @@ struct Answer {
   std::optional<double> residual;
   double shift_mm = 0.0;
   std::vector<std::string> findings;
+  std::size_t crossing = 0;  ///< pairs of triangles that intersect
 };
 
 Answer answer_of(const Question& question, Attempt attempt) {
   assert(attempt.failure.empty());
-  settle(question, attempt);
+  Answer answer;
+  answer.crossing = settle(question, attempt);
   tell_touching(question, attempt);
   tell_films(question, attempt);
   tell_flat(attempt);
-  Answer answer;
   const double whole = volume_mm3(question.a) + volume_mm3(question.b);
   if (attempt.disagreement_mm3) answer.residual = whole > 0.0 ? *attempt.disagreement_mm3 / whole : 0.0;
   answer.results = std::move(attempt.results);
@@ -341,45 +364,70 @@ Answer answer_of(const Question& question, Attempt attempt) {
   return answer;
 }
 
+/// An attempt in the frame, in LPS.
+Attempt moved_back(const Question& question, const CommonFrame& frame, Attempt attempt) {
+  for (std::optional<Triangles>& result : attempt.results)
+    if (result) result = frame.moved_back(*result);
+  // Points of doubles are moved by their last places, as every new point is.
+  if (frame.moved_mm > volume_tolerance_mm3(question.a.size(), question.b.size()) /
+                           (question.a.size().area_mm2 + question.b.size().area_mm2))
+    attempt.findings.push_back(
+        "coplanar: faces of " + question.names.first + " and " + question.names.second + " within " +
+        short_text(frame.moved_mm) +
+        " mm of one plane count as lying on it, as points are rounded to floats, which "
+        "changes a volume by at most " +
+        short_text(frame.moved_mm * (question.a.size().area_mm2 + question.b.size().area_mm2)) + " mm3");
+  return attempt;
+}
+
 /// Where faces of both lie on one plane but for rounding. None without such faces, or where the results fail
 /// in that frame, too.
 std::optional<Answer> answer_in_common_frame(const Question& question) {
   const std::optional<CommonFrame> frame = common_frame(question.a, question.b);
   if (!frame) return std::nullopt;
-  Attempt attempt =
-      best_attempt({frame->a, frame->b, question.wanted, question.names, question.stop}, frame->b);
-  if (!attempt.failure.empty()) return std::nullopt;
-  for (std::optional<Triangles>& result : attempt.results)
-    if (result) result = frame->moved_back(*result);
-  // Points of doubles are moved by their last places, as every new point is.
-  if (frame->moved_mm > volume_tolerance_mm3(question.a.size(), question.b.size()) /
-                            (question.a.size().area_mm2 + question.b.size().area_mm2))
-    attempt.findings.push_back(
-        "coplanar: faces of " + question.names.first + " and " + question.names.second + " within " +
-        short_text(frame->moved_mm) +
-        " mm of one plane count as lying on it, as points are rounded to floats, which "
-        "changes a volume by at most " +
-        short_text(frame->moved_mm * (question.a.size().area_mm2 + question.b.size().area_mm2)) + " mm3");
+  const Question turned{frame->a, frame->b, question.wanted, question.names, question.stop};
+  std::optional<Answer> crossing;
+  for (const bool by_cells : {false, true}) {
+    Attempt attempt =
+        by_cells ? rectilinear_attempt(turned, frame->tolerance_mm) : best_attempt(turned, frame->b);
+    if (!attempt.failure.empty()) continue;
+    Answer answer = answer_of(question, moved_back(question, *frame, std::move(attempt)));
+    if (answer.crossing == 0) return answer;
+    if (!crossing) crossing = std::move(answer);
+  }
+  return crossing;
+}
+
+/// Of the operands as given. None where no attempt succeeds; `failure` is then the first one's.
+std::optional<Answer> answer_as_given(const Question& question, std::string& failure) {
+  Attempt attempt = best_attempt(question, question.b);
+  failure = attempt.failure;
+  std::optional<Answer> crossing;
+  if (attempt.failure.empty()) {
+    Answer answer = answer_of(question, std::move(attempt));
+    if (answer.crossing == 0) return answer;
+    crossing = std::move(answer);
+  }
+  attempt = rectilinear_attempt(question, 0.0);
+  if (!attempt.failure.empty()) return crossing;
   return answer_of(question, std::move(attempt));
 }
 
 Answer answer(const Question& question) {
   if (std::optional<Answer> found = answer_in_common_frame(question)) return *std::move(found);
   std::string first_failure;
+  if (std::optional<Answer> found = answer_as_given(question, first_failure)) return *std::move(found);
   const double extent = extent_mm(question.a.size(), question.b.size());
-  for (int i = 0; i < attempt_count; ++i) {
+  for (int i = 1; i < attempt_count; ++i) {
     const glm::dvec3 shift = shift_mm(i, extent);
-    Attempt attempt = i == 0 ? best_attempt(question, question.b) : shifted_attempt(question, shift);
-    if (attempt.failure.empty()) {
-      attempt.shift_mm = glm::length(shift);
-      if (i > 0)
-        attempt.findings.push_back(
-            "shifted: " + question.names.second + " was moved by (" + short_text(shift.x) + ", " +
-            short_text(shift.y) + ", " + short_text(shift.z) + ") mm, which changes a volume by at most " +
-            short_text(attempt.shift_mm * question.b.size().area_mm2) + " mm3, as " + first_failure);
-      return answer_of(question, std::move(attempt));
-    }
-    if (i == 0) first_failure = attempt.failure;
+    Attempt attempt = shifted_attempt(question, shift);
+    if (!attempt.failure.empty()) continue;
+    attempt.shift_mm = glm::length(shift);
+    attempt.findings.push_back(
+        "shifted: " + question.names.second + " was moved by (" + short_text(shift.x) + ", " +
+        short_text(shift.y) + ", " + short_text(shift.z) + ") mm, which changes a volume by at most " +
+        short_text(attempt.shift_mm * question.b.size().area_mm2) + " mm3, as " + first_failure);
+    return answer_of(question, std::move(attempt));
   }
   throw Error(ErrorCode::Geometry,
               "no Boolean: " + first_failure + ", and moving " + question.names.second + " by up to " +

@@ -264,7 +264,7 @@ std::optional<CommonFrame> common_frame(const Solid& a, const Solid& b) {
   for (Triangles* turned : {&turned_a, &turned_b})
     for (glm::dvec3& p : turned->points_mm) p = frame_from_lps * (p - frame.origin_mm);
   const Triangles exact_a = turned_a, exact_b = turned_b;
-  const double tolerance_mm = apart_along_axis() * unit_mm;
+  const double tolerance_mm = frame.tolerance_mm = apart_along_axis() * unit_mm;
   for (int axis = 0; axis < 3; ++axis) {
     const std::vector<double> offsets =
         offsets_along(planes_a, planes_b, frame.lps_from_frame[axis], frame.origin_mm, tolerance_mm);
