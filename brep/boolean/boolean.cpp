@@ -3,8 +3,9 @@
 // caller's order nor its addresses show in the bits; 3 where faces lie on one plane but for rounding, go on in
 // a frame in which they do exactly; 4 cut near the common lines only, or corefine the whole where that will
 // not do; 5 let the volumes vouch for each other, and lines through all shells for their places; 6 where a
-// wanted result is not manifold or these do not agree, try again with the second operand moved by far less
-// than any bound, and tell.
+// wanted result is not manifold, these do not agree or triangles intersect, try cells between the planes, then
+// operands that have the same triangles on planes in common; 7 where none has a result, move the second
+// operand by far less than any bound, and tell.
 #include "brep/boolean/boolean.h"
 
 #include <algorithm>
@@ -21,6 +22,7 @@
 
 #include "brep/boolean/common_frame.h"
 #include "brep/boolean/corefine.h"
+#include "brep/boolean/imprint.h"
 #include "brep/boolean/line_agreement.h"
 #include "brep/boolean/near_boolean.h"
 #include "brep/boolean/rectilinear.h"
@@ -321,15 +323,15 @@ void tell_flat(Attempt& attempt) {
         (attempt.flat == 1 ? " other diagonal" : " other diagonals") + "; their surfaces are unchanged");
 }
 
-/// Takes out the folds that rounding left, and reports and returns the number of those that stay.
+/// Takes out the folds that rounding left, reports those that stay, and returns their number.
 std::size_t settle(const Question& question, Attempt& attempt) {
-  std::size_t crossing = 0;
+  std::size_t unfit = 0;
   for (std::size_t r = 0; r < attempt.results.size(); ++r) {
     if (!question.wanted[r] || attempt.results[r]->faces.empty()) continue;
     Settled done =
         settled(std::move(*attempt.results[r]), {&question.a.triangles(), &question.b.triangles()});
     attempt.results[r] = std::move(done.surface);
-    crossing += done.crossing;
+    unfit += done.crossing + done.flat;
     if (done.crossing > 0)
       attempt.findings.push_back(question.names.of(r) + " crosses itself: " + std::to_string(done.crossing) +
                                  (done.crossing == 1 ? " pair" : " pairs") + " of triangles, first at (" +
@@ -337,7 +339,7 @@ std::size_t settle(const Question& question, Attempt& attempt) {
                                  short_text(done.at_mm.z) +
                                  ") mm; repair the result before other verbs take it");
   }
-  return crossing;
+  return unfit;
 }
 
 /// The wanted results, before meshes are made of them.
@@ -346,13 +348,13 @@ struct Answer {
   std::optional<double> residual;
   double shift_mm = 0.0;
   std::vector<std::string> findings;
-  std::size_t crossing = 0;  ///< pairs of triangles that intersect
+  std::size_t unfit = 0;  ///< pairs of triangles that intersect, and triangles without area
 };
 
 Answer answer_of(const Question& question, Attempt attempt) {
   assert(attempt.failure.empty());
   Answer answer;
-  answer.crossing = settle(question, attempt);
+  answer.unfit = settle(question, attempt);
   tell_touching(question, attempt);
   tell_films(question, attempt);
   tell_flat(attempt);
@@ -364,59 +366,74 @@ Answer answer_of(const Question& question, Attempt attempt) {
   return answer;
 }
 
-/// An attempt in the frame, in LPS.
-Attempt moved_back(const Question& question, const CommonFrame& frame, Attempt attempt) {
-  for (std::optional<Triangles>& result : attempt.results)
-    if (result) result = frame.moved_back(*result);
-  // Points of doubles are moved by their last places, as every new point is.
-  if (frame.moved_mm > volume_tolerance_mm3(question.a.size(), question.b.size()) /
-                           (question.a.size().area_mm2 + question.b.size().area_mm2))
-    attempt.findings.push_back(
-        "coplanar: faces of " + question.names.first + " and " + question.names.second + " within " +
-        short_text(frame.moved_mm) +
-        " mm of one plane count as lying on it, as points are rounded to floats, which "
-        "changes a volume by at most " +
-        short_text(frame.moved_mm * (question.a.size().area_mm2 + question.b.size().area_mm2)) + " mm3");
-  return attempt;
+/// The finding where faces were moved onto one plane by more than the last places of doubles, by which every
+/// new point is moved.
+void tell_coplanar(const Question& question, double moved_mm, Attempt& attempt) {
+  const double area_mm2 = question.a.size().area_mm2 + question.b.size().area_mm2;
+  if (moved_mm <= volume_tolerance_mm3(question.a.size(), question.b.size()) / area_mm2) return;
+  attempt.findings.push_back("coplanar: faces of " + question.names.first + " and " + question.names.second +
+                             " within " + short_text(moved_mm) +
+                             " mm of one plane count as lying on it, as points are rounded to floats, which "
+                             "changes a volume by at most " +
+                             short_text(moved_mm * area_mm2) + " mm3");
 }
 
-/// Where faces of both lie on one plane but for rounding. None without such faces, or where the results fail
-/// in that frame, too.
-std::optional<Answer> answer_in_common_frame(const Question& question) {
+/// The first answer without folds, or else the one with the fewest; and why the operands as given had none.
+class Best {
+ public:
+  bool is_found() const { return best_ && best_->unfit == 0; }
+  void add(const Question& question, Attempt attempt) {
+    if (!attempt.failure.empty()) return;
+    Answer answer = answer_of(question, std::move(attempt));
+    if (!best_ || answer.unfit < best_->unfit) best_ = std::move(answer);
+  }
+  std::optional<Answer>& answer() { return best_; }
+
+ private:
+  std::optional<Answer> best_;
+};
+
+/// Where faces of both lie on one plane but for rounding.
+void answer_in_common_frame(const Question& question, Best& best) {
   const std::optional<CommonFrame> frame = common_frame(question.a, question.b);
-  if (!frame) return std::nullopt;
+  if (!frame) return;
   const Question turned{frame->a, frame->b, question.wanted, question.names, question.stop};
-  std::optional<Answer> crossing;
   for (const bool by_cells : {false, true}) {
     Attempt attempt =
         by_cells ? rectilinear_attempt(turned, frame->tolerance_mm) : best_attempt(turned, frame->b);
     if (!attempt.failure.empty()) continue;
-    Answer answer = answer_of(question, moved_back(question, *frame, std::move(attempt)));
-    if (answer.crossing == 0) return answer;
-    if (!crossing) crossing = std::move(answer);
+    for (std::optional<Triangles>& result : attempt.results)
+      if (result) result = frame->moved_back(*result);
+    tell_coplanar(question, frame->moved_mm, attempt);
+    best.add(question, std::move(attempt));
+    if (best.is_found()) return;
   }
-  return crossing;
 }
 
-/// Of the operands as given. None where no attempt succeeds; `failure` is then the first one's.
-std::optional<Answer> answer_as_given(const Question& question, std::string& failure) {
-  Attempt attempt = best_attempt(question, question.b);
-  failure = attempt.failure;
-  std::optional<Answer> crossing;
-  if (attempt.failure.empty()) {
-    Answer answer = answer_of(question, std::move(attempt));
-    if (answer.crossing == 0) return answer;
-    crossing = std::move(answer);
-  }
-  attempt = rectilinear_attempt(question, 0.0);
-  if (!attempt.failure.empty()) return crossing;
-  return answer_of(question, std::move(attempt));
+/// As above, where planes of several directions are common.
+void answer_of_imprinted(const Question& question, Best& best) {
+  const std::optional<Imprinted> divided = imprinted(question.a, question.b);
+  if (!divided) return;
+  const Question both{divided->a, divided->b, question.wanted, question.names, question.stop};
+  Attempt attempt = best_attempt(both, divided->b);
+  tell_coplanar(question, divided->moved_mm, attempt);
+  best.add(both, std::move(attempt));
 }
 
 Answer answer(const Question& question) {
-  if (std::optional<Answer> found = answer_in_common_frame(question)) return *std::move(found);
+  Best best;
+  answer_in_common_frame(question, best);
+  if (best.is_found()) return *std::move(best.answer());
+  const bool has_frame = best.answer().has_value();
   std::string first_failure;
-  if (std::optional<Answer> found = answer_as_given(question, first_failure)) return *std::move(found);
+  if (!has_frame) {
+    Attempt attempt = best_attempt(question, question.b);
+    first_failure = attempt.failure;
+    best.add(question, std::move(attempt));
+    if (!best.is_found()) best.add(question, rectilinear_attempt(question, 0.0));
+  }
+  if (!best.is_found()) answer_of_imprinted(question, best);
+  if (best.answer()) return *std::move(best.answer());
   const double extent = extent_mm(question.a.size(), question.b.size());
   for (int i = 1; i < attempt_count; ++i) {
     const glm::dvec3 shift = shift_mm(i, extent);

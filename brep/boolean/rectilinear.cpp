@@ -8,6 +8,7 @@
 #include <array>
 #include <cassert>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "brep/mesh/coordinate_order.h"
@@ -137,6 +138,37 @@ std::optional<Cells> cells_in(const Triangles& surface, const Grid& grid) {
   return cells;
 }
 
+/// Divides the sides where more than two triangles meet, all at one point. Sheets that touch there are then
+/// apart in their points, which the pose that they are moved to rounds alike.
+void divide_pinched_sides(Triangles& surface) {
+  using Side = std::pair<std::uint32_t, std::uint32_t>;
+  const auto side_of = [](std::uint32_t v, std::uint32_t w) { return Side(std::min(v, w), std::max(v, w)); };
+  std::vector<Side> sides, pinched;
+  for (const auto& face : surface.faces)
+    for (std::size_t k = 0; k < 3; ++k) sides.push_back(side_of(face[k], face[(k + 1) % 3]));
+  std::sort(sides.begin(), sides.end());
+  for (std::size_t i = 2; i < sides.size(); ++i)
+    if (sides[i] == sides[i - 2] && (pinched.empty() || pinched.back() != sides[i]))
+      pinched.push_back(sides[i]);
+  const auto first = static_cast<std::uint32_t>(surface.points_mm.size());
+  for (const Side& side : pinched)
+    surface.points_mm.push_back(0.5 * (surface.points_mm[side.first] + surface.points_mm[side.second]));
+  for (std::size_t f = 0; f < surface.faces.size() && !pinched.empty(); ++f)
+    for (std::size_t k = 0; k < 3;) {
+      const std::array<std::uint32_t, 3> face = surface.faces[f];
+      const std::uint32_t from = face[k], to = face[(k + 1) % 3], tip = face[(k + 2) % 3];
+      const auto found = std::lower_bound(pinched.begin(), pinched.end(), side_of(from, to));
+      if (found == pinched.end() || *found != side_of(from, to)) {
+        ++k;
+        continue;
+      }
+      const std::uint32_t middle = first + static_cast<std::uint32_t>(found - pinched.begin());
+      surface.faces[f] = {from, middle, tip};
+      surface.faces.push_back({middle, to, tip});
+      k = 0;
+    }
+}
+
 /// The faces between cells in and out.
 Triangles boundary_of(const Cells& cells, const Grid& grid) {
   Triangles boundary;
@@ -179,6 +211,7 @@ Triangles boundary_of(const Cells& cells, const Grid& grid) {
             boundary.faces.push_back({number(corners[0]), number(corners[2]), number(corners[3])});
           }
       }
+  divide_pinched_sides(boundary);
   return in_coordinate_order(mesh_of(split_fans(boundary).surface));
 }
 

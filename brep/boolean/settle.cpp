@@ -261,6 +261,7 @@ Settled settled(Triangles surface, const std::array<const Triangles*, 2>& operan
     best.surface = std::move(tried);
   }
   best.crossing = least.crossing;
+  best.flat = least.flat;
   best.at_mm = least.at_mm;
   return best;
 }

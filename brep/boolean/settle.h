@@ -13,6 +13,7 @@ namespace octotomy::brep {
 struct Settled {
   Triangles surface;
   std::size_t crossing = 0;  ///< pairs of triangles beside new points that still intersect
+  std::size_t flat = 0;      ///< triangles beside new points that have no area still
   glm::dvec3 at_mm{0.0};     ///< a corner of the first of them
 };
 

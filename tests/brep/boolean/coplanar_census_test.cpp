@@ -440,11 +440,11 @@ std::vector<std::optional<double>> manifold_volumes(const std::filesystem::path&
   return volumes;
 }
 
-/// 220 Booleans, or as many as OCTOTOMY_COPLANAR says; one alone with OCTOTOMY_COPLANAR_ONE=number.
+/// 66 Booleans, or as many as OCTOTOMY_COPLANAR says; one alone with OCTOTOMY_COPLANAR_ONE=number.
 TEST(CoplanarCensus, VolumesAreRightOrTheErrorIsStatedInEveryPose) {
   const char *count_text = std::getenv("OCTOTOMY_COPLANAR"), *one = std::getenv("OCTOTOMY_COPLANAR_ONE");
   const int first = one ? std::atoi(one) : 0;
-  const int last = one ? first + 1 : count_text ? std::atoi(count_text) : 220;
+  const int last = one ? first + 1 : count_text ? std::atoi(count_text) : 66;
   const bool has_peer = !manifold_folder().empty();
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("coplanar-" + std::to_string(::getpid()) + ".bin");
