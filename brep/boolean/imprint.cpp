@@ -32,7 +32,8 @@ using Links =
     CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>,
                                          CGAL::Constrained_triangulation_face_base_2<Kernel>>;
 using Triangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Links, CGAL::No_constraint_intersection_tag>;
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Links,
+                                               CGAL::No_constraint_intersection_requiring_constructions_tag>;
 
 constexpr std::size_t most_triangles = 200'000;
 constexpr std::uint32_t none = static_cast<std::uint32_t>(-1);
