@@ -739,6 +739,9 @@ std::string weld_way(const Triangles& given, double extent_mm, const RepairOptio
     welded.weld_mm = std::stod(apart);
     try {
       const Repair made = mended(given, welded, false);
+      // Some pieces may close by chance and the others be taken out.
+      constexpr double most = 0.8;
+      if (size_of(made.surface).area_mm2 < most * size_of(given).area_mm2) continue;
       return "--weld " + apart + " joins points up to " + apart + " mm apart and encloses " +
              short_text(size_of(made.surface).volume_mm3) + " mm3";
     } catch (const Error& error) {
