@@ -324,12 +324,12 @@ void tell_flat(Attempt& attempt) {
 }
 
 /// Takes out the folds that rounding left, reports those that stay, and returns their number.
-std::size_t settle(const Question& question, Attempt& attempt) {
+std::size_t settle(const Question& question, Attempt& attempt, SettleReach reach) {
   std::size_t unfit = 0;
   for (std::size_t r = 0; r < attempt.results.size(); ++r) {
     if (!question.wanted[r] || attempt.results[r]->faces.empty()) continue;
     Settled done =
-        settled(std::move(*attempt.results[r]), {&question.a.triangles(), &question.b.triangles()});
+        settled(std::move(*attempt.results[r]), {&question.a.triangles(), &question.b.triangles()}, reach);
     attempt.results[r] = std::move(done.surface);
     unfit += done.crossing + done.flat;
     if (done.crossing > 0)
@@ -351,10 +351,10 @@ struct Answer {
   std::size_t unfit = 0;  ///< pairs of triangles that intersect, and triangles without area
 };
 
-Answer answer_of(const Question& question, Attempt attempt) {
+Answer answer_of(const Question& question, Attempt attempt, SettleReach reach = SettleReach::NewPoints) {
   assert(attempt.failure.empty());
   Answer answer;
-  answer.unfit = settle(question, attempt);
+  answer.unfit = settle(question, attempt, reach);
   tell_touching(question, attempt);
   tell_films(question, attempt);
   tell_flat(attempt);
@@ -382,9 +382,9 @@ void tell_coplanar(const Question& question, double moved_mm, Attempt& attempt) 
 class Best {
  public:
   bool is_found() const { return best_ && best_->unfit == 0; }
-  void add(const Question& question, Attempt attempt) {
+  void add(const Question& question, Attempt attempt, SettleReach reach = SettleReach::NewPoints) {
     if (!attempt.failure.empty()) return;
-    Answer answer = answer_of(question, std::move(attempt));
+    Answer answer = answer_of(question, std::move(attempt), reach);
     if (!best_ || answer.unfit < best_->unfit) best_ = std::move(answer);
   }
   std::optional<Answer>& answer() { return best_; }
@@ -405,7 +405,7 @@ void answer_in_common_frame(const Question& question, Best& best) {
     for (std::optional<Triangles>& result : attempt.results)
       if (result) result = frame->moved_back(*result);
     tell_coplanar(question, frame->moved_mm, attempt);
-    best.add(question, std::move(attempt));
+    best.add(question, std::move(attempt), SettleReach::CommonBox);
     if (best.is_found()) return;
   }
 }
@@ -417,7 +417,7 @@ void answer_of_imprinted(const Question& question, Best& best) {
   const Question both{divided->a, divided->b, question.wanted, question.names, question.stop};
   Attempt attempt = best_attempt(both, divided->b);
   tell_coplanar(question, divided->moved_mm, attempt);
-  best.add(both, std::move(attempt));
+  best.add(both, std::move(attempt), SettleReach::CommonBox);
 }
 
 Answer answer(const Question& question) {

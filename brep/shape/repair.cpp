@@ -616,8 +616,11 @@ bool is_within_share(double before_mm3, double now_mm3, const RepairOptions& opt
 void check_volume(double before_mm3, const Triangles& now, const RepairOptions& options, const char* step) {
   const double now_mm3 = volume_inside_mm3(now);
   if (!is_within_share(before_mm3, now_mm3, options))
-    refuse_volume(before_mm3, now_mm3, options, step,
-                  "allow a larger one, --max-volume-share, or mend with smaller cells, --cell");
+    refuse_volume(
+        before_mm3, now_mm3, options, step,
+        "take --solid instead, which unites closed shells and makes other surfaces anew, or accept it by "
+        "--max-volume-share " +
+            short_text(1.01 * std::abs(now_mm3 - before_mm3) / before_mm3));
 }
 
 /// An answer that was tried, if it has one.
