@@ -27,21 +27,20 @@
 namespace octotomy::brep {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Links =
-    CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>,
-                                         CGAL::Constrained_triangulation_face_base_2<Kernel>>;
-using Triangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Links,
+using PlaneKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using PlaneLinks = CGAL::Triangulation_data_structure_2<
+    CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, PlaneKernel>,
+    CGAL::Constrained_triangulation_face_base_2<PlaneKernel>>;
+using PlaneTriangulation =
+    CGAL::Constrained_Delaunay_triangulation_2<PlaneKernel, PlaneLinks,
                                                CGAL::No_constraint_intersection_requiring_constructions_tag>;
 
-constexpr std::size_t most_triangles = 200'000;
-constexpr std::uint32_t none = static_cast<std::uint32_t>(-1);
+constexpr std::size_t most_imprinted = 200'000;
 
-using Face = std::array<std::uint32_t, 3>;
-using Side = std::pair<std::uint32_t, std::uint32_t>;  // the lower point first
+using FacePoints = std::array<std::uint32_t, 3>;
+using SidePoints = std::pair<std::uint32_t, std::uint32_t>;  // the lower point first
 
-Side side_of(std::uint32_t v, std::uint32_t w) {
+SidePoints side_points(std::uint32_t v, std::uint32_t w) {
   return {std::min(v, w), std::max(v, w)};
 }
 
@@ -97,11 +96,11 @@ class Imprint {
   /// Both surfaces divided. Throws NotDivided.
   std::array<Triangles, 2> divided() {
     std::array<Triangles, 2> surfaces;
-    std::vector<std::vector<Face>> parts_of_a(faces_[0].size());
+    std::vector<std::vector<FacePoints>> parts_of_a(faces_[0].size());
     for (std::size_t k = 0; k < 2; ++k) {
       surfaces[k].points_mm = points_mm_;
       for (std::uint32_t f = 0; f < faces_[k].size(); ++f) {
-        std::vector<Face> parts = k == 0 ? parts_of_first(f) : parts_of_second(f, parts_of_a);
+        std::vector<FacePoints> parts = k == 0 ? parts_of_first(f) : parts_of_second(f, parts_of_a);
         surfaces[k].faces.insert(surfaces[k].faces.end(), parts.begin(), parts.end());
         if (k == 0) parts_of_a[f] = std::move(parts);
       }
@@ -123,24 +122,25 @@ class Imprint {
           same[w] = v;
           moved_mm_ = std::max(moved_mm_, apart_mm);
         }
-    for (Face& face : faces_[1])
+    for (FacePoints& face : faces_[1])
       for (std::uint32_t& v : face) v = same[v];
   }
 
-  glm::dvec3 normal_of(const Face& face) const {
+  glm::dvec3 normal_of(const FacePoints& face) const {
     const glm::dvec3& p = points_mm_[face[0]];
     return glm::normalize(glm::cross(points_mm_[face[1]] - p, points_mm_[face[2]] - p));
   }
 
   /// How far a point lies from a side, inward.
-  double inward_mm(const Face& face, std::size_t side, const glm::dvec3& normal, const glm::dvec3& p) const {
+  double inward_mm(const FacePoints& face, std::size_t side, const glm::dvec3& normal,
+                   const glm::dvec3& p) const {
     const glm::dvec3 &from = points_mm_[face[side]], &to = points_mm_[face[(side + 1) % 3]];
     return glm::dot(glm::cross(normal, glm::normalize(to - from)), p - from);
   }
 
   /// Lists the corners of another triangle that lie in a triangle or on its sides.
-  void place_corners(std::size_t solid, std::uint32_t f, const Face& others) {
-    const Face& face = faces_[solid][f];
+  void place_corners(std::size_t solid, std::uint32_t f, const FacePoints& others) {
+    const FacePoints& face = faces_[solid][f];
     const glm::dvec3 normal = normal_of(face);
     for (const std::uint32_t v : others) {
       if (std::find(face.begin(), face.end(), v) != face.end()) continue;
@@ -151,7 +151,7 @@ class Imprint {
           static_cast<std::size_t>(std::min_element(inward.begin(), inward.end()) - inward.begin());
       if (inward[nearest] < -tolerance_mm_) continue;
       if (inward[nearest] <= tolerance_mm_) {
-        on_side_[solid][side_of(face[nearest], face[(nearest + 1) % 3])].insert(v);
+        on_side_[solid][side_points(face[nearest], face[(nearest + 1) % 3])].insert(v);
         moved_mm_ = std::max(moved_mm_, std::abs(inward[nearest]));
       } else {
         inner_[solid][f].insert(v);
@@ -160,7 +160,7 @@ class Imprint {
     }
   }
 
-  bool is_on(std::size_t solid, const Side& side, std::uint32_t v) const {
+  bool is_on(std::size_t solid, const SidePoints& side, std::uint32_t v) const {
     const auto found = on_side_[solid].find(side);
     return v == side.first || v == side.second ||
            (found != on_side_[solid].end() && found->second.count(v) != 0);
@@ -168,8 +168,8 @@ class Imprint {
 
   /// A point where sides of both cross, on each.
   void cross_sides(std::uint32_t f, std::size_t i, std::uint32_t g, std::size_t j) {
-    const Face &of_a = faces_[0][f], &of_b = faces_[1][g];
-    const Side a = side_of(of_a[i], of_a[(i + 1) % 3]), b = side_of(of_b[j], of_b[(j + 1) % 3]);
+    const FacePoints &of_a = faces_[0][f], &of_b = faces_[1][g];
+    const SidePoints a = side_points(of_a[i], of_a[(i + 1) % 3]), b = side_points(of_b[j], of_b[(j + 1) % 3]);
     if (is_on(0, a, b.first) || is_on(0, a, b.second) || is_on(1, b, a.first) || is_on(1, b, a.second))
       return;
     const std::array<std::uint32_t, 4> key{a.first, a.second, b.first, b.second};
@@ -193,7 +193,7 @@ class Imprint {
   /// The points of a side, from one end to the other.
   std::vector<std::uint32_t> chain(std::size_t solid, std::uint32_t from, std::uint32_t to) const {
     std::vector<std::uint32_t> chain{from};
-    if (const auto found = on_side_[solid].find(side_of(from, to)); found != on_side_[solid].end()) {
+    if (const auto found = on_side_[solid].find(side_points(from, to)); found != on_side_[solid].end()) {
       const glm::dvec3 start = points_mm_[from], along = points_mm_[to] - start;
       std::vector<std::pair<double, std::uint32_t>> between;
       for (const std::uint32_t v : found->second)
@@ -206,67 +206,69 @@ class Imprint {
   }
 
   /// The sides of a triangle, divided at the points on them.
-  std::vector<Side> border(std::size_t solid, std::uint32_t f) const {
-    std::vector<Side> sides;
-    const Face& face = faces_[solid][f];
+  std::vector<SidePoints> border(std::size_t solid, std::uint32_t f) const {
+    std::vector<SidePoints> sides;
+    const FacePoints& face = faces_[solid][f];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::vector<std::uint32_t> points = chain(solid, face[k], face[(k + 1) % 3]);
-      for (std::size_t i = 0; i + 1 < points.size(); ++i) sides.push_back(side_of(points[i], points[i + 1]));
+      for (std::size_t i = 0; i + 1 < points.size(); ++i)
+        sides.push_back(side_points(points[i], points[i + 1]));
     }
     return sides;
   }
 
   std::set<std::uint32_t> points_in(std::size_t solid, std::uint32_t f) const {
     std::set<std::uint32_t> points = inner_[solid][f];
-    for (const Side& side : border(solid, f)) points.insert({side.first, side.second});
+    for (const SidePoints& side : border(solid, f)) points.insert({side.first, side.second});
     return points;
   }
 
-  std::vector<Face> parts_of_first(std::uint32_t f) const {
+  std::vector<FacePoints> parts_of_first(std::uint32_t f) const {
     const std::set<std::uint32_t> points = points_in(0, f);
-    std::set<Side> within;
+    std::set<SidePoints> within;
     for (const std::uint32_t g : partners_[0][f])
-      for (const Side& side : border(1, g))
+      for (const SidePoints& side : border(1, g))
         if (points.count(side.first) != 0 && points.count(side.second) != 0) within.insert(side);
     return parts(0, f, points, within);
   }
 
-  std::vector<Face> parts_of_second(std::uint32_t g, const std::vector<std::vector<Face>>& parts_of_a) const {
+  std::vector<FacePoints> parts_of_second(std::uint32_t g,
+                                          const std::vector<std::vector<FacePoints>>& parts_of_a) const {
     const std::set<std::uint32_t> points = points_in(1, g);
-    std::set<Side> within;
+    std::set<SidePoints> within;
     for (const std::uint32_t f : partners_[1][g])
-      for (const Face& part : parts_of_a[f])
+      for (const FacePoints& part : parts_of_a[f])
         for (std::size_t k = 0; k < 3; ++k)
-          if (const Side side = side_of(part[k], part[(k + 1) % 3]);
+          if (const SidePoints side = side_points(part[k], part[(k + 1) % 3]);
               points.count(side.first) != 0 && points.count(side.second) != 0)
             within.insert(side);
     return parts(1, g, points, within);
   }
 
   /// A triangle divided at points and by sides.
-  std::vector<Face> parts(std::size_t solid, std::uint32_t f, const std::set<std::uint32_t>& points,
-                          const std::set<Side>& within) const {
-    const Face& face = faces_[solid][f];
+  std::vector<FacePoints> parts(std::size_t solid, std::uint32_t f, const std::set<std::uint32_t>& points,
+                                const std::set<SidePoints>& within) const {
+    const FacePoints& face = faces_[solid][f];
     if (points.size() == 3) return {face};
     // Without the axis nearest to the normal, so that no coordinate is rounded.
     const glm::dvec3 normal = normal_of(face), size = glm::abs(normal);
     const int drop = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     int u = (drop + 1) % 3, v = (drop + 2) % 3;
     if (normal[drop] < 0.0) std::swap(u, v);
-    Triangulation plane;
-    std::map<std::uint32_t, Triangulation::Vertex_handle> handles;
+    PlaneTriangulation plane;
+    std::map<std::uint32_t, PlaneTriangulation::Vertex_handle> handles;
     for (const std::uint32_t number : points) {
       const glm::dvec3& p = points_mm_[number];
       const std::size_t before = plane.number_of_vertices();
-      const Triangulation::Vertex_handle handle = plane.insert(Kernel::Point_2(p[u], p[v]));
+      const PlaneTriangulation::Vertex_handle handle = plane.insert(PlaneKernel::Point_2(p[u], p[v]));
       if (plane.number_of_vertices() == before) throw NotDivided();
       handle->info() = number;
       handles.emplace(number, handle);
     }
-    const std::vector<Side> outline = border(solid, f);
-    const std::set<Side> outer(outline.begin(), outline.end());
-    for (const std::set<Side>* sides : {&outer, &within})
-      for (const Side& side : *sides) {
+    const std::vector<SidePoints> outline = border(solid, f);
+    const std::set<SidePoints> outer(outline.begin(), outline.end());
+    for (const std::set<SidePoints>* sides : {&outer, &within})
+      for (const SidePoints& side : *sides) {
         plane.insert_constraint(handles.at(side.first), handles.at(side.second));
         if (plane.number_of_vertices() != points.size()) throw NotDivided();
       }
@@ -274,21 +276,22 @@ class Imprint {
   }
 
   /// The triangles within the outline.
-  static std::vector<Face> inside(const Triangulation& plane, const std::set<Side>& outline) {
-    std::set<Triangulation::Face_handle> outside{plane.infinite_face()};
-    std::vector<Triangulation::Face_handle> flood{plane.infinite_face()};
+  static std::vector<FacePoints> inside(const PlaneTriangulation& plane,
+                                        const std::set<SidePoints>& outline) {
+    std::set<PlaneTriangulation::Face_handle> outside{plane.infinite_face()};
+    std::vector<PlaneTriangulation::Face_handle> flood{plane.infinite_face()};
     while (!flood.empty()) {
-      const Triangulation::Face_handle face = flood.back();
+      const PlaneTriangulation::Face_handle face = flood.back();
       flood.pop_back();
       for (int k = 0; k < 3; ++k) {
-        const auto v = face->vertex(Triangulation::ccw(k)), w = face->vertex(Triangulation::cw(k));
+        const auto v = face->vertex(PlaneTriangulation::ccw(k)), w = face->vertex(PlaneTriangulation::cw(k));
         const bool is_finite = !plane.is_infinite(v) && !plane.is_infinite(w);
-        if (is_finite && outline.count(side_of(v->info(), w->info())) != 0) continue;
-        if (const Triangulation::Face_handle next = face->neighbor(k); outside.insert(next).second)
+        if (is_finite && outline.count(side_points(v->info(), w->info())) != 0) continue;
+        if (const PlaneTriangulation::Face_handle next = face->neighbor(k); outside.insert(next).second)
           flood.push_back(next);
       }
     }
-    std::vector<Face> parts;
+    std::vector<FacePoints> parts;
     for (auto face = plane.finite_faces_begin(); face != plane.finite_faces_end(); ++face)
       if (outside.count(face) == 0)
         parts.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
@@ -297,10 +300,10 @@ class Imprint {
 
   double tolerance_mm_ = 0.0, moved_mm_ = 0.0;
   std::vector<glm::dvec3> points_mm_;  ///< of both solids, each place once, and where sides cross
-  std::array<std::vector<Face>, 2> faces_;
+  std::array<std::vector<FacePoints>, 2> faces_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
   std::array<std::vector<std::vector<std::uint32_t>>, 2> partners_;
-  std::array<std::map<Side, std::set<std::uint32_t>>, 2> on_side_;
+  std::array<std::map<SidePoints, std::set<std::uint32_t>>, 2> on_side_;
   std::array<std::vector<std::set<std::uint32_t>>, 2> inner_;
   std::map<std::array<std::uint32_t, 4>, std::uint32_t> crossings_;
 };
@@ -328,7 +331,7 @@ std::optional<Imprinted> imprinted(const Solid& a, const Solid& b) {
   const glm::dvec3 high = glm::min(a.size().high_mm, b.size().high_mm) + tolerance_mm;
   const std::vector<Plane> of_a = planes_of(a.triangles(), low, high),
                            of_b = planes_of(b.triangles(), low, high);
-  if (of_a.size() + of_b.size() > most_triangles) return std::nullopt;
+  if (of_a.size() + of_b.size() > most_imprinted) return std::nullopt;
   try {
     Imprint imprint(a, b);
     if (!imprint.find_pairs(of_a, of_b, tolerance_mm)) return std::nullopt;
@@ -338,7 +341,7 @@ std::optional<Imprinted> imprinted(const Solid& a, const Solid& b) {
     return Imprinted{*std::move(new_a), *std::move(new_b), imprint.moved_mm()};
   } catch (const NotDivided&) {
     return std::nullopt;
-  } catch (const Triangulation::Intersection_of_constraints_exception&) {
+  } catch (const PlaneTriangulation::Intersection_of_constraints_exception&) {
     return std::nullopt;
   }
 }
