@@ -2,9 +2,13 @@
 #include "brep/align/oriented_box.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/convex_hull_3.h>
 #include <CGAL/optimal_bounding_box.h>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -23,14 +27,88 @@ std::vector<Kernel::Point_3> points_of(const Mesh& mesh) {
   return points;
 }
 
+/// With more points on the hull, the search takes those that lie furthest along `most_points / 2` directions
+/// and against them. Neighbouring directions are 2 degrees apart, so no edge of the box is over 2e-4 of its
+/// length off, and it is measured again over all points.
+constexpr std::size_t most_points = 4000;
+
+glm::dvec3 as_vector(const Kernel::Point_3& p) {
+  return {p.x(), p.y(), p.z()};
+}
+
+std::vector<Kernel::Point_3> furthest_points(const std::vector<Kernel::Point_3>& hull) {
+  std::vector<std::size_t> chosen;
+  const std::size_t directions = most_points / 2;
+  for (std::size_t i = 0; i < directions; ++i) {
+    // A spiral of equal areas over half of the sphere.
+    const double z = (static_cast<double>(i) + 0.5) / static_cast<double>(directions),
+                 turn = static_cast<double>(i) * std::numbers::pi * (3.0 - std::sqrt(5.0)),
+                 r = std::sqrt(1.0 - z * z);
+    const glm::dvec3 along(r * std::cos(turn), r * std::sin(turn), z);
+    std::size_t first = 0, last = 0;
+    double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+    for (std::size_t k = 0; k < hull.size(); ++k) {
+      const double at = glm::dot(along, as_vector(hull[k]));
+      if (at < low) low = at, first = k;
+      if (at > high) high = at, last = k;
+    }
+    chosen.push_back(first);
+    chosen.push_back(last);
+  }
+  std::sort(chosen.begin(), chosen.end());
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  std::vector<Kernel::Point_3> points;
+  for (const std::size_t k : chosen) points.push_back(hull[k]);
+  return points;
+}
+
+/// The box with the same axes that holds all points.
+void hold(const std::vector<Kernel::Point_3>& points, OrientedBox& box) {
+  glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+  const glm::dmat3 frame_from_lps = glm::transpose(glm::dmat3(box.axes[0], box.axes[1], box.axes[2]));
+  for (const Kernel::Point_3& p : points) {
+    const glm::dvec3 at = frame_from_lps * (as_vector(p) - box.centre_mm);
+    low = glm::min(low, at);
+    high = glm::max(high, at);
+  }
+  box.centre_mm += glm::transpose(frame_from_lps) * (0.5 * (low + high));
+  box.edges_mm = high - low;
+}
+
+/// Axes and edges in the order of falling edges.
+void order(OrientedBox& box) {
+  std::array<int, 3> by_length{0, 1, 2};
+  std::stable_sort(by_length.begin(), by_length.end(),
+                   [&](int p, int q) { return box.edges_mm[p] > box.edges_mm[q]; });
+  const OrientedBox given = box;
+  for (int k = 0; k < 3; ++k) {
+    const auto from = static_cast<std::size_t>(by_length[static_cast<std::size_t>(k)]);
+    box.axes[static_cast<std::size_t>(k)] = forward(given.axes[from]);
+    box.edges_mm[k] = given.edges_mm[static_cast<int>(from)];
+  }
+  box.axes[2] = glm::normalize(glm::cross(box.axes[0], box.axes[1]));
+}
+
 }  // namespace
 
 OrientedBox oriented_box(const Mesh& mesh) {
-  const std::vector<Kernel::Point_3> points = points_of(mesh);
+  std::vector<Kernel::Point_3> points = points_of(mesh), all;
   if (points.empty()) throw InvalidInput("oriented_box: there are no triangles for a box");
+  bool is_hull = false;
+  if (points.size() > most_points) {
+    std::vector<Kernel::Point_3> hull;
+    CGAL::extreme_points_3(points, std::back_inserter(hull));
+    is_hull = true;
+    if (hull.size() > most_points) {
+      all = std::move(hull);
+      points = furthest_points(all);
+    } else {
+      points = std::move(hull);
+    }
+  }
   std::array<Kernel::Point_3, 8> corners;
   // Uses a fixed seed, because the default generator would continue from the previous call.
-  CGAL::oriented_bounding_box(points, corners, CGAL::parameters::use_convex_hull(true).random_seed(1));
+  CGAL::oriented_bounding_box(points, corners, CGAL::parameters::use_convex_hull(!is_hull).random_seed(1));
 
   // The neighbours of corner 0 are corners 1, 3 and 5.
   const auto at = [&](std::size_t i) { return glm::dvec3(corners[i].x(), corners[i].y(), corners[i].z()); };
@@ -46,6 +124,10 @@ OrientedBox oriented_box(const Mesh& mesh) {
   box.axes[0] = forward(edges[0] / box.edges_mm.x);
   box.axes[1] = forward(edges[1] / box.edges_mm.y);
   box.axes[2] = glm::normalize(glm::cross(box.axes[0], box.axes[1]));
+  if (!all.empty()) {
+    hold(all, box);
+    order(box);
+  }
   return box;
 }
 

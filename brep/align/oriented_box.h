@@ -18,7 +18,7 @@ struct OrientedBox {
 
 /// A box of nearly least volume around the points of a mesh's triangles, LPS. The largest component of each
 /// of the first two axes is positive; the third axis makes them right-handed. Throws std::invalid_argument if
-/// there are no triangles. Cost: n log n for the hull, then a search whose length does not depend on n.
+/// there are no triangles. Cost: n log n for the hull, then a search over at most 4000 of its points.
 /// Source: Chang, Gorissen and Melchior, "Fast oriented bounding box optimization on the rotation group SO(3,
 /// R)", TOG 30(5), 2011, as implemented in CGAL, with a fixed seed.
 OrientedBox oriented_box(const Mesh& mesh);

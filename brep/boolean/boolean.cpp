@@ -3,8 +3,9 @@
 // caller's order nor its addresses show in the bits; 3 where faces lie on one plane but for rounding, go on in
 // a frame in which they do exactly; 4 cut near the common lines only, or corefine the whole where that will
 // not do; 5 let the volumes vouch for each other, and lines through all shells for their places; 6 where a
-// wanted result is not manifold or these do not agree, try again with the second operand moved by far less
-// than any bound, and tell.
+// wanted result is not manifold, these do not agree or triangles intersect, try cells between the planes, then
+// operands that have the same triangles on planes in common; 7 where none has a result, move the second
+// operand by far less than any bound, and tell.
 #include "brep/boolean/boolean.h"
 
 #include <algorithm>
@@ -21,8 +22,10 @@
 
 #include "brep/boolean/common_frame.h"
 #include "brep/boolean/corefine.h"
+#include "brep/boolean/imprint.h"
 #include "brep/boolean/line_agreement.h"
 #include "brep/boolean/near_boolean.h"
+#include "brep/boolean/rectilinear.h"
 #include "brep/boolean/settle.h"
 #include "brep/mesh/coordinate_order.h"
 #include "brep/mesh/equal_points.h"
@@ -265,6 +268,24 @@ Attempt best_attempt(const Question& question, const Solid& b) {
   return whole;
 }
 
+/// The remedy for surfaces that touch themselves, where corefinement breaks off, or whose results cross
+/// themselves: if all faces are square to the axes, cells between their planes.
+Attempt rectilinear_attempt(const Question& question, double tolerance_mm) {
+  Attempt attempt;
+  std::optional<Results> results =
+      rectilinear_results(question.a.triangles(), question.b.triangles(),
+                          with_witnesses(question.wanted, question.a, question.b), tolerance_mm);
+  if (!results) {
+    attempt.failure = "faces are not square to the axes";
+    return attempt;
+  }
+  for (std::size_t r = 0; r < results->size(); ++r)
+    if ((*results)[r]) attempt.volumes_mm3[r] = size_of(*(*results)[r]).volume_mm3;
+  attempt.results = *std::move(results);
+  judge(question, question.b, attempt);
+  return attempt;
+}
+
 Attempt shifted_attempt(const Question& question, const glm::dvec3& shift) {
   Mesh b = question.b.mesh();
   for (const auto v : b.vertices()) b.set_point(v, b.point(v) + Mesh::Point(shift.x, shift.y, shift.z));
@@ -302,13 +323,15 @@ void tell_flat(Attempt& attempt) {
         (attempt.flat == 1 ? " other diagonal" : " other diagonals") + "; their surfaces are unchanged");
 }
 
-/// Takes out the folds that rounding left, and reports the ones that stay.
-void settle(const Question& question, Attempt& attempt) {
+/// Takes out the folds that rounding left, reports those that stay, and returns their number.
+std::size_t settle(const Question& question, Attempt& attempt, SettleReach reach) {
+  std::size_t unfit = 0;
   for (std::size_t r = 0; r < attempt.results.size(); ++r) {
     if (!question.wanted[r] || attempt.results[r]->faces.empty()) continue;
     Settled done =
-        settled(std::move(*attempt.results[r]), {&question.a.triangles(), &question.b.triangles()});
+        settled(std::move(*attempt.results[r]), {&question.a.triangles(), &question.b.triangles()}, reach);
     attempt.results[r] = std::move(done.surface);
+    unfit += done.crossing + done.flat;
     if (done.crossing > 0)
       attempt.findings.push_back(question.names.of(r) + " crosses itself: " + std::to_string(done.crossing) +
                                  (done.crossing == 1 ? " pair" : " pairs") + " of triangles, first at (" +
@@ -316,6 +339,7 @@ void settle(const Question& question, Attempt& attempt) {
                                  short_text(done.at_mm.z) +
                                  ") mm; repair the result before other verbs take it");
   }
+  return unfit;
 }
 
 /// The wanted results, before meshes are made of them.
@@ -324,15 +348,16 @@ struct Answer {
   std::optional<double> residual;
   double shift_mm = 0.0;
   std::vector<std::string> findings;
+  std::size_t unfit = 0;  ///< pairs of triangles that intersect, and triangles without area
 };
 
-Answer answer_of(const Question& question, Attempt attempt) {
+Answer answer_of(const Question& question, Attempt attempt, SettleReach reach = SettleReach::NewPoints) {
   assert(attempt.failure.empty());
-  settle(question, attempt);
+  Answer answer;
+  answer.unfit = settle(question, attempt, reach);
   tell_touching(question, attempt);
   tell_films(question, attempt);
   tell_flat(attempt);
-  Answer answer;
   const double whole = volume_mm3(question.a) + volume_mm3(question.b);
   if (attempt.disagreement_mm3) answer.residual = whole > 0.0 ? *attempt.disagreement_mm3 / whole : 0.0;
   answer.results = std::move(attempt.results);
@@ -341,45 +366,85 @@ Answer answer_of(const Question& question, Attempt attempt) {
   return answer;
 }
 
-/// Where faces of both lie on one plane but for rounding. None without such faces, or where the results fail
-/// in that frame, too.
-std::optional<Answer> answer_in_common_frame(const Question& question) {
+/// The finding where faces were moved onto one plane by more than the last places of doubles, by which every
+/// new point is moved.
+void tell_coplanar(const Question& question, double moved_mm, Attempt& attempt) {
+  const double area_mm2 = question.a.size().area_mm2 + question.b.size().area_mm2;
+  if (moved_mm <= volume_tolerance_mm3(question.a.size(), question.b.size()) / area_mm2) return;
+  attempt.findings.push_back("coplanar: faces of " + question.names.first + " and " + question.names.second +
+                             " within " + short_text(moved_mm) +
+                             " mm of one plane count as lying on it, as points are rounded to floats, which "
+                             "changes a volume by at most " +
+                             short_text(moved_mm * area_mm2) + " mm3");
+}
+
+/// The first answer without folds, or else the one with the fewest; and why the operands as given had none.
+class Best {
+ public:
+  bool is_found() const { return best_ && best_->unfit == 0; }
+  void add(const Question& question, Attempt attempt, SettleReach reach = SettleReach::NewPoints) {
+    if (!attempt.failure.empty()) return;
+    Answer answer = answer_of(question, std::move(attempt), reach);
+    if (!best_ || answer.unfit < best_->unfit) best_ = std::move(answer);
+  }
+  std::optional<Answer>& answer() { return best_; }
+
+ private:
+  std::optional<Answer> best_;
+};
+
+/// Where faces of both lie on one plane but for rounding.
+void answer_in_common_frame(const Question& question, Best& best) {
   const std::optional<CommonFrame> frame = common_frame(question.a, question.b);
-  if (!frame) return std::nullopt;
-  Attempt attempt =
-      best_attempt({frame->a, frame->b, question.wanted, question.names, question.stop}, frame->b);
-  if (!attempt.failure.empty()) return std::nullopt;
-  for (std::optional<Triangles>& result : attempt.results)
-    if (result) result = frame->moved_back(*result);
-  // Points of doubles are moved by their last places, as every new point is.
-  if (frame->moved_mm > volume_tolerance_mm3(question.a.size(), question.b.size()) /
-                            (question.a.size().area_mm2 + question.b.size().area_mm2))
-    attempt.findings.push_back(
-        "coplanar: faces of " + question.names.first + " and " + question.names.second + " within " +
-        short_text(frame->moved_mm) +
-        " mm of one plane count as lying on it, as points are rounded to floats, which "
-        "changes a volume by at most " +
-        short_text(frame->moved_mm * (question.a.size().area_mm2 + question.b.size().area_mm2)) + " mm3");
-  return answer_of(question, std::move(attempt));
+  if (!frame) return;
+  const Question turned{frame->a, frame->b, question.wanted, question.names, question.stop};
+  for (const bool by_cells : {false, true}) {
+    Attempt attempt =
+        by_cells ? rectilinear_attempt(turned, frame->tolerance_mm) : best_attempt(turned, frame->b);
+    if (!attempt.failure.empty()) continue;
+    for (std::optional<Triangles>& result : attempt.results)
+      if (result) result = frame->moved_back(*result);
+    tell_coplanar(question, frame->moved_mm, attempt);
+    best.add(question, std::move(attempt), SettleReach::CommonBox);
+    if (best.is_found()) return;
+  }
+}
+
+/// As above, where planes of several directions are common.
+void answer_of_imprinted(const Question& question, Best& best) {
+  const std::optional<Imprinted> divided = imprinted(question.a, question.b);
+  if (!divided) return;
+  const Question both{divided->a, divided->b, question.wanted, question.names, question.stop};
+  Attempt attempt = best_attempt(both, divided->b);
+  tell_coplanar(question, divided->moved_mm, attempt);
+  best.add(both, std::move(attempt), SettleReach::CommonBox);
 }
 
 Answer answer(const Question& question) {
-  if (std::optional<Answer> found = answer_in_common_frame(question)) return *std::move(found);
+  Best best;
+  answer_in_common_frame(question, best);
+  if (best.is_found()) return *std::move(best.answer());
+  const bool has_frame = best.answer().has_value();
   std::string first_failure;
+  if (!has_frame) {
+    Attempt attempt = best_attempt(question, question.b);
+    first_failure = attempt.failure;
+    best.add(question, std::move(attempt));
+    if (!best.is_found()) best.add(question, rectilinear_attempt(question, 0.0));
+  }
+  if (!best.is_found()) answer_of_imprinted(question, best);
+  if (best.answer()) return *std::move(best.answer());
   const double extent = extent_mm(question.a.size(), question.b.size());
-  for (int i = 0; i < attempt_count; ++i) {
+  for (int i = 1; i < attempt_count; ++i) {
     const glm::dvec3 shift = shift_mm(i, extent);
-    Attempt attempt = i == 0 ? best_attempt(question, question.b) : shifted_attempt(question, shift);
-    if (attempt.failure.empty()) {
-      attempt.shift_mm = glm::length(shift);
-      if (i > 0)
-        attempt.findings.push_back(
-            "shifted: " + question.names.second + " was moved by (" + short_text(shift.x) + ", " +
-            short_text(shift.y) + ", " + short_text(shift.z) + ") mm, which changes a volume by at most " +
-            short_text(attempt.shift_mm * question.b.size().area_mm2) + " mm3, as " + first_failure);
-      return answer_of(question, std::move(attempt));
-    }
-    if (i == 0) first_failure = attempt.failure;
+    Attempt attempt = shifted_attempt(question, shift);
+    if (!attempt.failure.empty()) continue;
+    attempt.shift_mm = glm::length(shift);
+    attempt.findings.push_back(
+        "shifted: " + question.names.second + " was moved by (" + short_text(shift.x) + ", " +
+        short_text(shift.y) + ", " + short_text(shift.z) + ") mm, which changes a volume by at most " +
+        short_text(attempt.shift_mm * question.b.size().area_mm2) + " mm3, as " + first_failure);
+    return answer_of(question, std::move(attempt));
   }
   throw Error(ErrorCode::Geometry,
               "no Boolean: " + first_failure + ", and moving " + question.names.second + " by up to " +

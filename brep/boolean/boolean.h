@@ -27,7 +27,8 @@ struct BooleanResult {
 /// operands, so that no shell is too many, missing or turned, see disagreement_along_lines(). Shells of one
 /// operand may lie on the other's, with the same sense or the contrary one, in whole or in part. Faces that lie
 /// on one plane but for the rounding of the points, as of boxes turned as one, count as lying on it exactly,
-/// see common_frame.h. An operand
+/// see common_frame.h; where that leaves triangles that intersect, solids whose faces are all square to one
+/// frame are cut by cells, see rectilinear.h, and others are divided alike first, see imprint.h. An operand
 /// that meets itself, which a proof below Health allows, is found near the cut only. The bits are the same on
 /// any number of threads and for either order of the operands. Throws std::invalid_argument if an operand is
 /// inside out; Error (Geometry) if the result cannot be represented as a manifold surface, the volumes do not

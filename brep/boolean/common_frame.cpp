@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "brep/boolean/coplanar_pairs.h"
 #include "brep/mesh/coordinate_order.h"
 #include "brep/mesh/flat_triangles.h"
 
@@ -20,18 +21,6 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::size_t most_triangles = 200'000;
-
-/// The larger spacing of floats or doubles about the largest coordinate: of floats where all points are such.
-double rounding_mm(const Triangles& a, const Triangles& b, double reach_mm) {
-  bool are_floats = true;
-  for (const Triangles* solid : {&a, &b})
-    for (const glm::dvec3& p : solid->points_mm)
-      for (int k = 0; k < 3; ++k)
-        are_floats = are_floats && p[k] == static_cast<double>(static_cast<float>(p[k]));
-  const double epsilon = are_floats ? static_cast<double>(std::numeric_limits<float>::epsilon())
-                                    : std::numeric_limits<double>::epsilon();
-  return epsilon * reach_mm;
-}
 
 /// How far points of one plane may lie beside it, in roundings: a turn is a sum of three products, a file
 /// rounds once more, and the plane through three such points is off by as much again within them.
@@ -45,44 +34,6 @@ constexpr double apart_along_axis() {
   return 32.0;
 }
 
-/// Cosines that differ by less are of one direction, and are of square ones below it. Triangles whose points
-/// lie on one plane to rounding agree to that over their height: this allows heights of a millionth of the
-/// reach.
-constexpr double same_direction() {
-  return 1e-6;
-}
-
-struct Plane {
-  glm::dvec3 normal{0.0}, on_mm{0.0};  ///< the normal's largest part is positive
-  double area_mm2 = 0.0;
-  std::array<glm::dvec3, 3> corners_mm;
-};
-
-std::vector<Plane> planes_of(const Triangles& solid, const glm::dvec3& low, const glm::dvec3& high) {
-  std::vector<Plane> planes;
-  for (const auto& face : solid.faces) {
-    const std::array<glm::dvec3, 3> p{solid.points_mm[face[0]], solid.points_mm[face[1]],
-                                      solid.points_mm[face[2]]};
-    if (glm::any(glm::lessThan(glm::max(glm::max(p[0], p[1]), p[2]), low)) ||
-        glm::any(glm::greaterThan(glm::min(glm::min(p[0], p[1]), p[2]), high)))
-      continue;
-    const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
-    const double length = glm::length(normal);
-    if (!(length > 0.0)) continue;
-    const glm::dvec3 size = glm::abs(normal);
-    const int largest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    planes.push_back(
-        {normal / (normal[largest] < 0.0 ? -length : length), (p[0] + p[1] + p[2]) / 3.0, 0.5 * length, p});
-  }
-  return planes;
-}
-
-bool are_on(const std::array<glm::dvec3, 3>& points_mm, const Plane& plane, double tolerance_mm) {
-  return std::all_of(points_mm.begin(), points_mm.end(), [&](const glm::dvec3& p) {
-    return std::abs(glm::dot(plane.normal, p - plane.on_mm)) <= tolerance_mm;
-  });
-}
-
 /// A direction that planes of both solids are square to.
 struct Direction {
   glm::dvec3 normal{0.0};
@@ -93,63 +44,30 @@ bool is_axis(const glm::dvec3& normal) {
   return (normal.x != 0.0) + (normal.y != 0.0) + (normal.z != 0.0) == 1;
 }
 
-/// A plane by how far it lies from a common origin along its normal, or along the turned one.
-struct Offset {
-  double along_mm = 0.0;
-  const Plane* plane = nullptr;
-  bool is_turned = false;
-};
-
 /// Directions of the planes in common, in the order in which they are found; of each the widest triangle's.
 /// Cost: n log n, and the pairs of triangles whose planes lie equally far from the origin.
 std::vector<Direction> common_directions(const std::vector<Plane>& of_a, const std::vector<Plane>& of_b,
                                          double tolerance_mm) {
-  if (of_a.empty() || of_b.empty()) return {};
-  const glm::dvec3 origin_mm = of_a.front().on_mm;
-  double reach_mm = 0.0;
-  for (const std::vector<Plane>* planes : {&of_a, &of_b})
-    for (const Plane& plane : *planes) reach_mm = std::max(reach_mm, glm::distance(plane.on_mm, origin_mm));
-  // Of planes in common the points lie within the tolerance, and the normals differ by `same_direction`.
-  const double range_mm = tolerance_mm + 2.0 * same_direction() * reach_mm;
-  std::vector<Offset> offsets;
-  for (const Plane& plane : of_b) {
-    const double along_mm = glm::dot(plane.normal, plane.on_mm - origin_mm);
-    // Normals whose largest parts all but tie may have come with either sign.
-    offsets.push_back({along_mm, &plane, false});
-    offsets.push_back({-along_mm, &plane, true});
-  }
-  std::stable_sort(offsets.begin(), offsets.end(),
-                   [](const Offset& p, const Offset& q) { return p.along_mm < q.along_mm; });
   std::vector<Direction> directions;
   std::vector<double> widest_mm2;
-  for (const Plane& a : of_a) {
-    const double along_mm = glm::dot(a.normal, a.on_mm - origin_mm);
-    auto at = std::lower_bound(offsets.begin(), offsets.end(), along_mm - range_mm,
-                               [](const Offset& p, double mm) { return p.along_mm < mm; });
-    for (; at != offsets.end() && at->along_mm <= along_mm + range_mm; ++at) {
-      const Plane& b = *at->plane;
-      if (at->is_turned != (glm::dot(a.normal, b.normal) < 0.0) ||
-          glm::length(glm::cross(a.normal, b.normal)) > same_direction())
-        continue;
-      const bool is_a_wider = a.area_mm2 >= b.area_mm2;
-      const Plane &wide = is_a_wider ? a : b, &narrow = is_a_wider ? b : a;
-      if (!are_on(narrow.corners_mm, wide, tolerance_mm)) continue;
-      auto known = std::find_if(directions.begin(), directions.end(), [&](const Direction& d) {
-        return glm::length(glm::cross(d.normal, wide.normal)) <= same_direction();
-      });
-      if (known == directions.end()) {
-        directions.push_back({wide.normal, 0.0});
-        widest_mm2.push_back(0.0);
-        known = directions.end() - 1;
-      }
-      known->area_mm2 += narrow.area_mm2;
-      double& widest = widest_mm2[static_cast<std::size_t>(known - directions.begin())];
-      if (wide.area_mm2 > widest) {
-        widest = wide.area_mm2;
-        known->normal = wide.normal;
-      }
+  for_each_coplanar_pair(of_a, of_b, tolerance_mm, [&](const Plane& a, const Plane& b) {
+    const bool is_a_wider = a.area_mm2 >= b.area_mm2;
+    const Plane &wide = is_a_wider ? a : b, &narrow = is_a_wider ? b : a;
+    auto known = std::find_if(directions.begin(), directions.end(), [&](const Direction& d) {
+      return glm::length(glm::cross(d.normal, wide.normal)) <= same_direction();
+    });
+    if (known == directions.end()) {
+      directions.push_back({wide.normal, 0.0});
+      widest_mm2.push_back(0.0);
+      known = directions.end() - 1;
     }
-  }
+    known->area_mm2 += narrow.area_mm2;
+    double& widest = widest_mm2[static_cast<std::size_t>(known - directions.begin())];
+    if (wide.area_mm2 > widest) {
+      widest = wide.area_mm2;
+      known->normal = wide.normal;
+    }
+  });
   return directions;
 }
 
@@ -233,11 +151,9 @@ Triangles CommonFrame::moved_back(const Triangles& triangles) const {
 
 std::optional<CommonFrame> common_frame(const Solid& a, const Solid& b) {
   if (a.empty() || b.empty()) return std::nullopt;
-  double reach_mm = 0.0;
-  for (const glm::dvec3& p : {a.size().low_mm, a.size().high_mm, b.size().low_mm, b.size().high_mm})
-    reach_mm = std::max({reach_mm, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   const Triangles &of_a = a.triangles(), &of_b = b.triangles();
-  const double unit_mm = rounding_mm(of_a, of_b, reach_mm);
+  const PointRounding rounding = point_rounding(of_a, of_b);
+  const double unit_mm = rounding.mm;
   const double margin_mm = beside_plane() * unit_mm;
   const glm::dvec3 low = glm::max(a.size().low_mm, b.size().low_mm) - margin_mm;
   const glm::dvec3 high = glm::min(a.size().high_mm, b.size().high_mm) + margin_mm;
@@ -264,7 +180,7 @@ std::optional<CommonFrame> common_frame(const Solid& a, const Solid& b) {
   for (Triangles* turned : {&turned_a, &turned_b})
     for (glm::dvec3& p : turned->points_mm) p = frame_from_lps * (p - frame.origin_mm);
   const Triangles exact_a = turned_a, exact_b = turned_b;
-  const double tolerance_mm = apart_along_axis() * unit_mm;
+  const double tolerance_mm = frame.tolerance_mm = apart_along_axis() * unit_mm;
   for (int axis = 0; axis < 3; ++axis) {
     const std::vector<double> offsets =
         offsets_along(planes_a, planes_b, frame.lps_from_frame[axis], frame.origin_mm, tolerance_mm);
@@ -275,7 +191,7 @@ std::optional<CommonFrame> common_frame(const Solid& a, const Solid& b) {
     return std::nullopt;
   // Points that stood beside a plane by more than the last places of doubles stay on it: put back, they could
   // turn over what was cut beside them.
-  frame.kept_mm = apart_along_axis() * std::numeric_limits<double>::epsilon() * reach_mm;
+  frame.kept_mm = apart_along_axis() * std::numeric_limits<double>::epsilon() * rounding.reach_mm;
   const auto keep = [&](const Triangles& given, const Triangles& exact, const Triangles& turned) {
     for (std::size_t i = 0; i < turned.points_mm.size(); ++i) {
       const glm::dvec3& p = turned.points_mm[i];

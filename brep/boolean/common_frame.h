@@ -13,7 +13,8 @@ namespace octotomy::brep {
 /// plane but for their rounding lie on it exactly there, so that such faces are coplanar.
 struct CommonFrame {
   Solid a, b;
-  double moved_mm = 0.0;  ///< largest move of a point beside the change of frame
+  double moved_mm = 0.0;      ///< largest move of a point beside the change of frame
+  double tolerance_mm = 0.0;  ///< coordinates along an axis that are nearer to each other count as one
 
   /// A surface of the frame in LPS millimetres. Points of the solids that lay on the planes to the last places
   /// of doubles, or on none, are exactly what they were, of both first a's. Neighbouring new points that are

@@ -12,7 +12,9 @@
 #include "brep/boolean/coincident_shells.h"
 #include "brep/boolean/line_agreement.h"
 #include "brep/mesh/coordinate_order.h"
+#include "brep/mesh/equal_points.h"
 #include "brep/mesh/error.h"
+#include "brep/mesh/short_text.h"
 #include "brep/mesh/surface_mesh.h"
 #include "brep/mesh/triangles.h"
 
@@ -29,6 +31,21 @@ Surface surface_of(const Solid& solid, const std::string& name) {
   if (volume_mm3(solid) < 0.0)
     throw InvalidInput("operand " + name + "'s triangles face inward; reverse them first");
   return surface_mesh_of<Kernel::Point_3>(solid.triangles());
+}
+
+/// Refuses an operand that touches itself within the other's box: corefinement takes such a point for one and
+/// breaks its links.
+void need_points_apart(const Solid& solid, const Solid& other, const std::string& name) {
+  const glm::dvec3 &low = other.size().low_mm, &high = other.size().high_mm;
+  const std::vector<glm::dvec3>& points = solid.triangles().points_mm;
+  const std::vector<std::uint32_t> first = first_equal_points(points);
+  for (std::uint32_t v = 0; v < points.size(); ++v) {
+    const glm::dvec3& p = points[v];
+    if (first[v] == v || glm::any(glm::lessThan(p, low)) || glm::any(glm::greaterThan(p, high))) continue;
+    throw Error(ErrorCode::Geometry, "no exact Boolean: operand " + name + " touches itself at (" +
+                                         short_text(p.x) + ", " + short_text(p.y) + ", " + short_text(p.z) +
+                                         ") mm, which only the inexact Boolean resolves");
+  }
 }
 
 /// Adds by halves, so that most sums are of numbers of similar length.
@@ -147,6 +164,8 @@ Cut cut(const Solid& a, const Solid& b, const std::vector<ResultPlace>& asked, c
 }  // namespace
 
 ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b, const Progress& progress) {
+  need_points_apart(a, b, "a");
+  need_points_apart(b, a, "b");
   const Rational of_a = six_volumes(triangles_of(surface_of(a, "a"))),
                  of_b = six_volumes(triangles_of(surface_of(b, "b")));
   const ResultPlace wanted = operation == Operation::Union          ? of_union

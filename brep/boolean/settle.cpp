@@ -60,6 +60,14 @@ class Origins {
   /// The last place of the largest coordinate.
   double rounding_mm() const { return std::numeric_limits<double>::epsilon() * reach_mm_; }
 
+  /// Marks the points in the common box.
+  std::vector<std::uint8_t> in_common(const Triangles& surface) const {
+    std::vector<std::uint8_t> is_in;
+    is_in.reserve(surface.points_mm.size());
+    for (const glm::dvec3& p : surface.points_mm) is_in.push_back(common_.holds(p));
+    return is_in;
+  }
+
   /// Of each point, 1 where it is the first operand's, 2 where the second's, 3 of both, 0 where it is new.
   std::vector<std::uint8_t> origins(const Triangles& surface) const {
     std::vector<std::uint8_t> origin(surface.points_mm.size(), 3);
@@ -114,11 +122,10 @@ struct Folds {
   std::size_t count() const { return crossing + flat; }
 };
 
-Folds folds_of(const Triangles& surface, const std::vector<std::uint8_t>& origin) {
+Folds folds_of(const Triangles& surface, const std::vector<std::uint8_t>& is_marked) {
   Folds folds;
   Triangles near{surface.points_mm, {}};
-  for (const std::uint32_t f : faces_at(surface, corners_of_new(surface, origin)))
-    near.faces.push_back(surface.faces[f]);
+  for (const std::uint32_t f : faces_at(surface, is_marked)) near.faces.push_back(surface.faces[f]);
   if (near.faces.empty()) return folds;
   std::vector<std::uint8_t> is_flat(near.faces.size(), 0);
   for (std::size_t i = 0; i < near.faces.size(); ++i) {
@@ -245,22 +252,27 @@ class Settler {
 
 }  // namespace
 
-Settled settled(Triangles surface, const std::array<const Triangles*, 2>& operands) {
+Settled settled(Triangles surface, const std::array<const Triangles*, 2>& operands, SettleReach reach) {
   assert(operands[0] != nullptr && operands[1] != nullptr);
   Settled best{std::move(surface)};
   const Origins points(operands);
-  Folds least = folds_of(best.surface, points.origins(best.surface));
+  const auto folds_in = [&](const Triangles& tried) {
+    return folds_of(tried, reach == SettleReach::CommonBox ? points.in_common(tried)
+                                                           : corners_of_new(tried, points.origins(tried)));
+  };
+  Folds least = folds_in(best.surface);
   constexpr double last = 0x1p34;
   for (double roundings = 0x1p4; roundings <= last && least.count() > 0; roundings *= 0x1p6) {
     const Tolerances tolerances{roundings * points.rounding_mm(),
                                 std::min(roundings, 0x1p6) * points.rounding_mm()};
     Triangles tried = Settler(best.surface, points.origins(best.surface), tolerances).run();
-    const Folds folds = folds_of(tried, points.origins(tried));
+    const Folds folds = folds_in(tried);
     if (folds.count() >= least.count()) continue;
     least = folds;
     best.surface = std::move(tried);
   }
   best.crossing = least.crossing;
+  best.flat = least.flat;
   best.at_mm = least.at_mm;
   return best;
 }

@@ -13,8 +13,14 @@ namespace octotomy::brep {
 struct Settled {
   Triangles surface;
   std::size_t crossing = 0;  ///< pairs of triangles beside new points that still intersect
+  std::size_t flat = 0;      ///< triangles beside new points that have no area still
   glm::dvec3 at_mm{0.0};     ///< a corner of the first of them
 };
+
+/// Where folds are looked for: beside new points, or in all of the operands' common box. The latter is needed
+/// where faces of both lie on one plane, as triangles of either may then intersect without a new point, and
+/// costs an intersection test of all triangles there.
+enum class SettleReach { NewPoints, CommonBox };
 
 /// The surface that a Boolean made, without the folds that rounding its points left. A new point lies within a
 /// rounding of the planes that meet there, but where these are nearly parallel it may lie far from where they
@@ -26,6 +32,7 @@ struct Settled {
 /// are kept in preference to new ones. The same result on any number of threads. Precondition: mesh_of()
 /// accepts the triangles. Cost: n log n of the operands' points in their common box and of the triangles beside
 /// new points, linear in all.
-Settled settled(Triangles surface, const std::array<const Triangles*, 2>& operands);
+Settled settled(Triangles surface, const std::array<const Triangles*, 2>& operands,
+                SettleReach reach = SettleReach::NewPoints);
 
 }  // namespace octotomy::brep

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Wavefront's OBJ and Geomview's OFF, as text. Sources: Wavefront, Advanced Visualizer, appendix B1 (Object
 // Files), whose free-form surfaces (surf, or bzp, bsp and cdc of its version 2.11) are not polygons.
+#include <optional>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include "brep/io/mesh_scanner.h"
 #include "brep/mesh/error.h"
@@ -69,16 +72,29 @@ glm::dvec3 point(MeshScanner& scanner) {
   return p;
 }
 
-MeshContent read_binary_off(MeshScanner scanner) {
+/// Bytes of each point of a binary OFF file beside its place: after their mark, a texture's two numbers, a
+/// colour's four, a normal's three. None if the mark has other letters.
+std::optional<std::size_t> bytes_beside_place(std::string_view magic) {
+  std::size_t numbers = 0;
+  for (const auto& [letters, count] : {std::pair("ST", 2U), std::pair("C", 4U), std::pair("N", 3U)})
+    if (magic.starts_with(letters)) {
+      magic.remove_prefix(std::string_view(letters).size());
+      numbers += count;
+    }
+  return magic == "OFF" ? std::optional(numbers * sizeof(float)) : std::nullopt;
+}
+
+MeshContent read_binary_off(MeshScanner scanner, std::size_t beside_place) {
   MeshContent made;
   const auto count = [&](std::size_t bytes_each) {
     return scanner.bounded(scanner.binary<std::int32_t>(std::endian::big), bytes_each);
   };
-  const std::size_t points = count(12), faces = count(8);
+  const std::size_t points = count(12 + beside_place), faces = count(8);
   scanner.skip(4);
   for (std::size_t i = 0; i < points; ++i) {
     glm::dvec3 p;
     for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.binary<float>(std::endian::big);
+    scanner.skip(beside_place);
     made.triangles.points_mm.push_back(p);
   }
   PolygonSplitter polygons(made.triangles, made.polygons);
@@ -140,10 +156,10 @@ MeshContent read_off(std::string_view bytes) {
   if (!magic.ends_with("OFF") || magic.find_first_of("4n") != std::string_view::npos)
     scanner.fail("an OFF file of points in space starts with OFF, COFF, NOFF or STOFF");
   if (MeshScanner ahead = scanner; ahead.word(true) == "BINARY") {
-    if (magic != "OFF")
-      scanner.fail("a binary OFF file with colours or normals is not read: write it as text");
+    const std::optional<std::size_t> beside_place = bytes_beside_place(magic);
+    if (!beside_place) scanner.fail("a binary OFF file starts with OFF, after ST, C and N in this order");
     ahead.line();
-    return read_binary_off(ahead);
+    return read_binary_off(ahead, *beside_place);
   }
   MeshContent made;
   read_comments(bytes, made.says);

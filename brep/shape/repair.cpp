@@ -616,8 +616,11 @@ bool is_within_share(double before_mm3, double now_mm3, const RepairOptions& opt
 void check_volume(double before_mm3, const Triangles& now, const RepairOptions& options, const char* step) {
   const double now_mm3 = volume_inside_mm3(now);
   if (!is_within_share(before_mm3, now_mm3, options))
-    refuse_volume(before_mm3, now_mm3, options, step,
-                  "allow a larger one, --max-volume-share, or mend with smaller cells, --cell");
+    refuse_volume(
+        before_mm3, now_mm3, options, step,
+        "take --solid instead, which unites closed shells and makes other surfaces anew, or accept it by "
+        "--max-volume-share " +
+            short_text(1.01 * std::abs(now_mm3 - before_mm3) / before_mm3));
 }
 
 /// An answer that was tried, if it has one.
@@ -728,10 +731,30 @@ void make_solid(Mender& mender, double before_mm3, const RepairOptions& options)
   mender.enclose(options);
 }
 
-}  // namespace
+Repair mended(const Triangles& surface, const RepairOptions& options, bool offers_ways);
 
-Repair repair(const Triangles& surface, const RepairOptions& options) {
-  check(surface, options);
+/// Points of a surface in loose pieces that could be joined, if that closes it. Empty if it does not.
+std::string weld_way(const Triangles& given, double extent_mm, const RepairOptions& options) {
+  if (options.weld_mm) return {};
+  for (const double share : {3e-4, 1e-3, 3e-3}) {
+    RepairOptions welded = options;
+    const std::string apart = short_text(share * extent_mm);
+    welded.weld_mm = std::stod(apart);
+    try {
+      const Repair made = mended(given, welded, false);
+      // Some pieces may close by chance and the others be taken out.
+      constexpr double most = 0.8;
+      if (size_of(made.surface).area_mm2 < most * size_of(given).area_mm2) continue;
+      return "--weld " + apart + " joins points up to " + apart + " mm apart and encloses " +
+             short_text(size_of(made.surface).volume_mm3) + " mm3";
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::Geometry) throw;
+    }
+  }
+  return {};
+}
+
+Repair mended(const Triangles& surface, const RepairOptions& options, bool offers_ways) {
   Mender mender(surface);
   if (options.solid && options.wall_mm) {
     mender.replace(wall_of(surface, *options.wall_mm, options), wall_cell_mm(*options.wall_mm, options),
@@ -751,14 +774,18 @@ Repair repair(const Triangles& surface, const RepairOptions& options) {
     try {
       make_solid(mender, before_mm3, options);
     } catch (const Error& error) {
-      if (error.code() != ErrorCode::Geometry) throw;
-      const std::string wall = wall_way(surface, Mender(surface).extent_mm(), options);
-      throw Error(ErrorCode::Geometry, error.what() + (wall.empty() ? "" : "; or " + wall));
+      if (error.code() != ErrorCode::Geometry || !offers_ways) throw;
+      std::string ways;
+      const double extent_mm = Mender(surface).extent_mm();
+      for (const std::string& way :
+           {weld_way(surface, extent_mm, options), wall_way(surface, extent_mm, options)})
+        if (!way.empty()) ways += "; or " + way;
+      throw Error(ErrorCode::Geometry, error.what() + ways);
     }
     const double now_mm3 = options.hull ? before_mm3 : volume_inside_mm3(mender.surface());
     if (!is_within_share(before_mm3, now_mm3, options))
       refuse_volume(before_mm3, now_mm3, options, "enclosing",
-                    mender.cell_mm()
+                    mender.cell_mm() && offers_ways
                         ? ways_that_work(connected, surface, before_mm3, now_mm3, *mender.cell_mm(), options)
                         : "allow a larger one, --max-volume-share");
   } else {
@@ -769,6 +796,13 @@ Repair repair(const Triangles& surface, const RepairOptions& options) {
   // Shells that intersected can be placed only now; each orientation may make another one necessary.
   for (int turns = 0; (options.orient || options.solid) && turns < 3 && mender.orient(); ++turns) continue;
   return mender.result();
+}
+
+}  // namespace
+
+Repair repair(const Triangles& surface, const RepairOptions& options) {
+  check(surface, options);
+  return mended(surface, options, true);
 }
 
 RepairEffect repair_effect(const Triangles& before, const Triangles& after, const KnownSolids& solids) {

@@ -246,17 +246,21 @@ class OperationRun {
     operation_.mesh(value(), {box.low_mm, box.high_mm, objects_, no_scan_, expressions, timings_, progress()},
                     made.mesh);
     made.findings = made.mesh.findings;
-    if (!made.mesh.whole->empty()) return;
-    std::string why;
-    for (const std::string& finding : made.findings) why += "; " + finding;
-    throw std::runtime_error("nothing is left of " + made.definition + ": there is no surface to write" +
-                             why);
+    // An empty answer is an answer, of volume 0, and its file has no triangles.
+    if (made.mesh.whole->empty())
+      made.findings.push_back("empty: nothing is left of " + made.definition + ", so " +
+                              text_.out.filename().string() + " has no triangles");
   }
 
   /// Voxelises an answer that only the mesh kernel has.
   void voxelise_answer(Object& made) {
     const Stopwatch watch(timings_, "voxelise");
     const brep::Solid& solid = *made.mesh.whole;
+    if (solid.empty()) {
+      choose_universe();
+      made.voxel.octree = voxel::Octree::empty(universe_);
+      return;
+    }
     const voxel::Box box{solid.size().low_mm, solid.size().high_mm};
     made.voxel.octree =
         convert::voxelise(universe_around(box, longest_side_mm(box)), solid.linked(), progress());

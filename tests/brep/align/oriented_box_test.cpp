@@ -42,6 +42,18 @@ TEST(OrientedBox, HoldsEveryPointAndIsNoLargerThanTheOneAlongTheAxes) {
   EXPECT_LT(box.volume_mm3(), 0.95 * along_axes.x * along_axes.y * along_axes.z);
 }
 
+TEST(OrientedBox, HoldsEveryPointOfAHullOfMany) {
+  Triangles egg = shapes::sphere({7, -8, 9}, 50, 5);  // 10 242 points, all on the hull
+  const glm::dmat3 turn(glm::rotate(glm::dmat4(1.0), 0.7, glm::normalize(glm::dvec3(1, 2, 3))));
+  for (glm::dvec3& p : egg.points_mm) p = turn * (glm::dvec3(1.0, 0.7, 0.5) * (p - glm::dvec3(7, -8, 9)));
+  const OrientedBox box = oriented_box(mesh_of(egg));
+  for (const glm::dvec3& p : egg.points_mm)
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_LE(std::abs(glm::dot(p - box.centre_mm, box.axes[k])),
+                0.5 * box.edges_mm[static_cast<int>(k)] + 1e-9);
+  EXPECT_LT(box.volume_mm3(), 1.005 * 100 * 70 * 50);
+}
+
 TEST(OrientedBox, IsTheSameInEveryCall) {
   const Mesh ball = mesh_of(shapes::sphere({1, 2, 3}, 3, 2));
   const OrientedBox one = oriented_box(ball), other = oriented_box(ball);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <stop_token>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/measure.h"
 #include "tests/brep/shapes.h"
 
@@ -73,6 +74,22 @@ TEST(ExactBoolean, ReportsItsProgressAndStopsWhenAsked) {
   EXPECT_THROW(exact_boolean(a, Operation::Union, b, progress), Stopped);
   EXPECT_GT(last, 0.3);
   EXPECT_LT(last, 0.9) << "it went on after the stop";
+}
+
+TEST(ExactBoolean, AnOperandThatTouchesItselfWithinTheOtherIsRefused) {
+  const Solid touching = trusted_solid(
+      shapes::together(shapes::box({0, 0, 0}, {2, 2, 2}), shapes::box({2, 2, 0}, {4, 4, 2})), Proof::Rounded);
+  const Solid around = solid_of(shapes::box({1, 1, -1}, {3, 3, 3})),
+              beside = solid_of(shapes::box({-1, -1, -1}, {1, 1, 1}));
+  try {
+    exact_boolean(touching, Operation::Intersection, around);
+    FAIL() << "nothing was refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Geometry);
+    EXPECT_NE(std::string(error.what()).find("operand a touches itself at (2, 2, "), std::string::npos)
+        << error.what();
+  }
+  EXPECT_DOUBLE_EQ(exact_boolean(touching, Operation::Intersection, beside).result_mm3, 1.0);
 }
 
 }  // namespace

@@ -104,6 +104,38 @@ TEST(ReadMesh, OffTakesCommentsColoursAndPolygons) {
            "COFF\n4 1 4\n0 0 0.5 1 2 3 4\n1 0 0.5 1 2 3 4\n1 1 0.5 1 2 3 4\n0 1 0.5 1 2 3 4\n4 0 1 2 3\n"));
 }
 
+TEST(ReadMesh, BinaryOffSkipsWhatStandsBesideThePlaces) {
+  for (const auto& [magic, beside] : {std::pair("OFF", 0), std::pair("COFF", 4), std::pair("STCNOFF", 9)}) {
+    std::string bytes = std::string(magic) + " BINARY\n" + big(4) + big(1) + big(0);
+    for (const auto& [x, y] : {std::pair{0.f, 0.f}, {1.f, 0.f}, {1.f, 1.f}, {0.f, 1.f}}) {
+      bytes += big(x) + big(y) + big(0.5f);
+      for (int i = 0; i < beside; ++i) bytes += big(0.25f);
+    }
+    bytes += big(4);
+    for (int i = 0; i < 4; ++i) bytes += big(i);
+    bytes += big(1) + big(7);  // its colour's number
+    expect_square(read(std::string(magic) + "_binary.off", bytes));
+    EXPECT_NE(refusal_of("short.off", bytes.substr(0, 60)), "");
+  }
+  EXPECT_NE(refusal_of("n.off", "NCOFF BINARY\n" + big(0) + big(0) + big(0)).find("in this order"),
+            std::string::npos);
+}
+
+TEST(ReadMesh, PlyTakesStripsInBothByteOrders) {
+  const std::string elements =
+      "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n"
+      "property list int int vertex_indices\nend_header\n";
+  std::string body;
+  for (const auto& [x, y] : {std::pair{0.f, 0.f}, {1.f, 0.f}, {0.f, 1.f}, {1.f, 1.f}})
+    body += big(x) + big(y) + big(0.5f);
+  body += big(5);
+  for (int i = 0; i < 4; ++i) body += big(i);
+  body += big(-1);
+  expect_square(read("strip.ply", "ply\nformat binary_big_endian 1.0\n" + elements + body));
+  expect_square(read("strip_text.ply", "ply\nformat ascii 1.0\n" + elements +
+                                           "0 0 0.5\n1 0 0.5\n0 1 0.5\n1 1 0.5\n5 0 1 2 3 -1\n"));
+}
+
 TEST(ReadMesh, PlyTakesBothByteOrdersAndSkipsWhatItDoesNotKnow) {
   const std::string elements =
       "comment made by hand\nelement vertex 4\nproperty uchar red\nproperty float x\nproperty double y\n"

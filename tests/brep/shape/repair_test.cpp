@@ -235,6 +235,35 @@ TEST(Repair, ASheetIsToldTheWallThatItCanBeGivenAndGetsIt) {
   EXPECT_THROW(repair(sheet, options), std::invalid_argument);
 }
 
+TEST(Repair, LooseTrianglesAreOfferedTheWeldThatClosesThem) {
+  // Each triangle by itself, its corners up to a fiftieth of a millimetre off.
+  const Triangles ball = shapes::sphere({0, 0, 0}, 20, 3);
+  Triangles loose;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> off(-0.02, 0.02);
+  for (const auto& face : ball.faces) {
+    const auto first = static_cast<std::uint32_t>(loose.points_mm.size());
+    for (const std::uint32_t v : face)
+      loose.points_mm.push_back(ball.points_mm[v] + glm::dvec3(off(random), off(random), off(random)));
+    loose.faces.push_back({first, first + 1, first + 2});
+  }
+  RepairOptions options;
+  options.solid = true;
+  try {
+    repair(loose, options);
+    FAIL() << "points 0.03 mm apart were joined without being asked";
+  } catch (const std::runtime_error& error) {
+    const std::string told = error.what();
+    const std::size_t weld = told.find("--weld ");
+    ASSERT_NE(weld, std::string::npos) << told;
+    options.weld_mm = std::stod(told.substr(weld + 7));
+  }
+  const Repair made = repair(loose, options);
+  EXPECT_TRUE(health(made.surface).solid());
+  const double volume_mm3 = size_of(ball).volume_mm3;
+  EXPECT_NEAR(size_of(made.surface).volume_mm3, volume_mm3, 2e-3 * volume_mm3);
+}
+
 TEST(Repair, RefusesOptionsOutOfTheirRange) {
   RepairOptions options;
   options.weld_mm = -1.0;

@@ -165,7 +165,12 @@ TEST_F(CommandLine, AMarginAboutABallIsABall) {
   const SortedJson json = SortedJson::parse(answer.out);
   EXPECT_NEAR(json["volume_mm3"].get<double>(), tests::ball_mm3(15), 0.01 * tests::ball_mm3(15));
   EXPECT_EQ(json["self_intersections"], 0);
-  expect_refused(run("offset " + at("ball.stl") + " --by -13 -o " + at("none.stl")), "nothing is left of");
+  const CommandAnswer none = run("offset " + at("ball.stl") + " --by -20 -o " + at("gone.stl") + " --json");
+  ASSERT_EQ(none.status, 0) << none.errors;
+  const SortedJson empty = SortedJson::parse(none.out);
+  EXPECT_EQ(empty["volume_mm3"], 0.0);
+  EXPECT_EQ(empty["faces"], 0);
+  EXPECT_NE(empty["findings"].dump().find("empty: nothing is left of"), std::string::npos) << none.out;
   expect_refused(run("offset " + at("ball.stl") + " --by nan -o " + at("none.stl")), "nan");
   EXPECT_EQ(
       run("offset " + at("ball.stl") + " --by 3 --cell 0.05 --time-limit 0.01 -o " + at("none.stl")).status,
