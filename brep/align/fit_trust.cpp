@@ -34,6 +34,15 @@ constexpr double equal_share() {
   return 0.35;
 }
 
+/// Answers of a symmetric shape match as much as one another, to the noise of samples. Those that differ by more
+/// than this ratio, and match less than this share, are chance: caps of two bodies that share nothing match so.
+constexpr double chance_ratio() {
+  return 0.95;
+}
+constexpr double chance_share() {
+  return 0.6;
+}
+
 /// Motions closer than this share of the spread are one answer. Refinements with few samples end within a
 /// hundredth of each other.
 constexpr double same_share() {
@@ -176,7 +185,10 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
       trust.equals.clear();
       return trust;
     }
-  if (!trust.equals.empty()) return trust;
+  const bool is_chance =
+      trust.rival_share < chance_ratio() * own[near_rungs - 1] && own[near_rungs - 1] < chance_share();
+  if (!trust.equals.empty() && !is_chance) return trust;
+  trust.equals.clear();
   const bool is_near = leads(ladder_mm.size() - 1) || own[near_rungs - 1] >= equal_share();
   trust.verdict = is_near ? FitVerdict::Doubtful : FitVerdict::Failed;
   trust.reason = per_cent(trust.matched_share) + " of the surface lies within " +
