@@ -20,6 +20,13 @@ constexpr double matching_cosine() {
 constexpr double least_ratio() {
   return 2.0;
 }
+/// A small match by chance exceeds others by more: caps of rounded bodies do by 2.5 times.
+constexpr double small_share() {
+  return 0.4;
+}
+constexpr double least_small_ratio() {
+  return 2.8;
+}
 constexpr double least_lead() {
   return 0.12;
 }
@@ -175,7 +182,8 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
   }
   trust.rival_share = rival[near_rungs - 1];
   const auto leads = [&](std::size_t rung) {
-    return own[rung] >= least_ratio() * rival[rung] && own[rung] >= rival[rung] + least_lead();
+    const double ratio = own[rung] < small_share() ? least_small_ratio() : least_ratio();
+    return own[rung] >= ratio * rival[rung] && own[rung] >= rival[rung] + least_lead();
   };
   for (std::size_t rung = 0; rung < near_rungs; ++rung)
     if (leads(rung)) {

@@ -172,9 +172,11 @@ TEST(RegistrationTrials, WrongMotionsAreToldAndRightOnesNotCalledFailed) {
     right_failed += is_right && verdict == FitVerdict::Failed;
     wrong_told += !is_right && verdict != FitVerdict::Right;
     wrong_untold += !is_right && verdict == FitVerdict::Right;
-    const std::string replay = "OCTOTOMY_REGISTRATION=" + std::to_string(i) +
-                               " OCTOTOMY_REGISTRATIONS=1: " + body.name + ", off by " +
-                               std::to_string(error_mm) + " mm";
+    const std::string replay =
+        "OCTOTOMY_REGISTRATION=" + std::to_string(i) + " OCTOTOMY_REGISTRATIONS=1: " + body.name +
+        ", off by " + std::to_string(error_mm) + " mm, lacks " + std::to_string(lost) + ", matched " +
+        std::to_string(fit.trust->matched_share) + " and elsewhere " +
+        std::to_string(fit.trust->rival_share) + " within " + std::to_string(fit.trust->tolerance_mm) + " mm";
     EXPECT_TRUE(is_right || verdict != FitVerdict::Right) << replay;
     EXPECT_FALSE(is_right && verdict == FitVerdict::Failed) << replay << ": " << fit.trust->reason;
   }
