@@ -20,6 +20,13 @@ constexpr double matching_cosine() {
 constexpr double least_ratio() {
   return 2.0;
 }
+/// A small match by chance exceeds others by more: caps of rounded bodies do by 2.5 times.
+constexpr double small_share() {
+  return 0.4;
+}
+constexpr double least_small_ratio() {
+  return 2.8;
+}
 constexpr double least_lead() {
   return 0.12;
 }
@@ -32,6 +39,15 @@ constexpr double equal_ratio() {
 /// Equal answers match at least this share of the surface within the third rung.
 constexpr double equal_share() {
   return 0.35;
+}
+
+/// Answers of a symmetric shape match as much as one another, to the noise of samples. Those that differ by more
+/// than this ratio, and match less than this share, are chance: caps of two bodies that share nothing match so.
+constexpr double chance_ratio() {
+  return 0.95;
+}
+constexpr double chance_share() {
+  return 0.6;
 }
 
 /// Motions closer than this share of the spread are one answer. Refinements with few samples end within a
@@ -166,7 +182,8 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
   }
   trust.rival_share = rival[near_rungs - 1];
   const auto leads = [&](std::size_t rung) {
-    return own[rung] >= least_ratio() * rival[rung] && own[rung] >= rival[rung] + least_lead();
+    const double ratio = own[rung] < small_share() ? least_small_ratio() : least_ratio();
+    return own[rung] >= ratio * rival[rung] && own[rung] >= rival[rung] + least_lead();
   };
   for (std::size_t rung = 0; rung < near_rungs; ++rung)
     if (leads(rung)) {
@@ -176,7 +193,10 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
       trust.equals.clear();
       return trust;
     }
-  if (!trust.equals.empty()) return trust;
+  const bool is_chance =
+      trust.rival_share < chance_ratio() * own[near_rungs - 1] && own[near_rungs - 1] < chance_share();
+  if (!trust.equals.empty() && !is_chance) return trust;
+  trust.equals.clear();
   const bool is_near = leads(ladder_mm.size() - 1) || own[near_rungs - 1] >= equal_share();
   trust.verdict = is_near ? FitVerdict::Doubtful : FitVerdict::Failed;
   trust.reason = per_cent(trust.matched_share) + " of the surface lies within " +

@@ -15,6 +15,8 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <glm/glm.hpp>
+#include <limits>
 #include <vector>
 
 #include "convert/tet/mesh3_criteria.h"
@@ -64,11 +66,13 @@ struct Labels {
   std::array<double, 3> spacing_mm{};
   std::vector<std::uint8_t> of_voxel;
   std::vector<Point> start;
+  std::vector<convert::LabelPlane> planes;
   std::vector<double> size_shares;  ///< factors of sizes, at every `share_step`-th voxel
   int share_step = 1;
 
   /// The label with the largest trilinear share of the eight samples about a point, of equal ones the lowest.
-  /// So surfaces between labels are smooth and not in the voxels' steps.
+  /// So surfaces between labels are smooth and not in the voxels' steps. Labels that meet in a plane count as
+  /// one beside others, and the side of the plane decides between them.
   int at(const Point& p) const {
     std::array<double, 3> place{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -80,15 +84,56 @@ struct Labels {
     for (std::size_t k = 0; k < 8; ++k) labels[k] = of_voxel[number[k]];
     int best = labels[0];
     double most = -1.0;
+    const std::array<std::uint8_t, 8> groups = grouped(labels);
     for (std::size_t k = 0; k < 8; ++k) {
       double sum = 0.0;
-      for (std::size_t j = 0; j < 8; ++j) sum += labels[j] == labels[k] ? shares[j] : 0.0;
-      if (sum > most || (sum == most && labels[k] < best)) {
+      for (std::size_t j = 0; j < 8; ++j) sum += groups[j] == groups[k] ? shares[j] : 0.0;
+      if (sum > most || (sum == most && groups[k] < best)) {
         most = sum;
-        best = labels[k];
+        best = groups[k];
       }
     }
-    return best;
+    return planes.empty() ? best : of_group(static_cast<std::uint8_t>(best), labels, groups, p);
+  }
+
+ private:
+  static bool holds(const std::array<std::uint8_t, 8>& labels, std::uint64_t label) {
+    return std::find(labels.begin(), labels.end(), label) != labels.end();
+  }
+
+  /// Labels with the lowest one that they are joined to by planes.
+  std::array<std::uint8_t, 8> grouped(const std::array<std::uint8_t, 8>& labels) const {
+    std::array<std::uint8_t, 8> groups = labels;
+    for (const convert::LabelPlane& plane : planes) {
+      if (!holds(labels, plane.low) || !holds(labels, plane.high)) continue;
+      const std::uint8_t one = group_of(plane.low, labels, groups),
+                         other = group_of(plane.high, labels, groups);
+      std::replace(groups.begin(), groups.end(), std::max(one, other), std::min(one, other));
+    }
+    return groups;
+  }
+  static std::uint8_t group_of(std::uint64_t label, const std::array<std::uint8_t, 8>& labels,
+                               const std::array<std::uint8_t, 8>& groups) {
+    return groups.at(
+        static_cast<std::size_t>(std::find(labels.begin(), labels.end(), label) - labels.begin()));
+  }
+
+  /// The lowest label of a group that is on its own side of each of its planes to others of the group.
+  int of_group(std::uint8_t group, const std::array<std::uint8_t, 8>& labels,
+               const std::array<std::uint8_t, 8>& groups, const Point& p) const {
+    const glm::dvec3 p_mm(p.x(), p.y(), p.z());
+    int found = std::numeric_limits<int>::max();
+    for (std::size_t k = 0; k < 8; ++k) {
+      if (groups[k] != group || labels[k] >= found) continue;
+      const bool is_here = std::all_of(planes.begin(), planes.end(), [&](const convert::LabelPlane& plane) {
+        if ((labels[k] != plane.low && labels[k] != plane.high) || !holds(labels, plane.low) ||
+            !holds(labels, plane.high))
+          return true;
+        return (plane.away_mm(p_mm) < 0.0) == (labels[k] == plane.low);
+      });
+      if (is_here) found = labels[k];
+    }
+    return found == std::numeric_limits<int>::max() ? group : found;
   }
 };
 
@@ -128,8 +173,13 @@ using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
 bool read(const MesherRequest& request, Labels& labels, LabelSizes& sizes) {
   if (std::sscanf(request.switches.data(), convert::label_switches, &sizes.facet_mm, &sizes.distance_mm,
                   &sizes.cell_mm, &labels.share_step) != 4 ||
-      request.points != 0 || request.triangles != 0 || labels.share_step < 1)
+      request.triangles != 0 || labels.share_step < 1)
     return false;
+  // One plane a pair of labels.
+  constexpr std::uint64_t most_planes = 256 * 255 / 2;
+  if (request.points > most_planes) return false;
+  labels.planes.resize(request.points);
+  if (!read_all(labels.planes.data(), labels.planes.size() * sizeof(convert::LabelPlane))) return false;
   std::uint64_t voxels = 1, shares = 1;
   for (std::size_t i = 0; i < 3; ++i) {
     if (request.dims[i] < 2 || request.dims[i] > 65536) return false;

@@ -8,13 +8,14 @@
 #include "brep/mesh/distance.h"
 #include "convert/tet/element_faces.h"
 #include "convert/tet/improve_tetrahedra.h"
+#include "convert/tet/sharp_edges.h"
 #include "voxel/space/rounded.h"
 
 // 1 Mesh_3 refines a Delaunay triangulation until facets and cells have the sizes asked for, and exudes
-//   slivers.
+//   slivers. Nodes beside sharp edges of the given surface move onto these (sharp_edges.h).
 // 2 The nodes of its surface lie on the given one, so its facets are chords: they lose volume on a convex
-//   surface and gain some on a hollow one. Every node of the surface moves along its normal by the same share
-//   of the distance that a facet's middle may have there. The share is at most 1: a larger one would mean
+//   surface and gain some on a hollow one. Every node of the surface, except those of flat faces and sharp
+//   edges, moves along its normal by the same share of the distance that a facet's middle may have there. The share is at most 1: a larger one would mean
 //   that something else was lost.
 // 3 Nodes move to mend flat elements (improve_tetrahedra.h).
 // 4 The answer counts only if the volumes are positive, their sum is the surface's, each point of the given
@@ -84,6 +85,7 @@ double restore_volume(Tetrahedra& tetrahedra, double volume_mm3, const std::vect
     double whole_play_mm3 = 0.0;
     for (std::size_t k = 0; k < play_mm.size(); ++k)
       whole_play_mm3 += play_mm[k] * at.area_mm2[tetrahedra.boundary_nodes[k]];
+    if (!(whole_play_mm3 > 0.0)) return moved;
     const double by = (volume_mm3 - quality(tetrahedra).volume_mm3) / whole_play_mm3;
     moved += by;
     if (!(std::abs(moved) <= 1.0)) return moved;
@@ -258,17 +260,42 @@ std::optional<std::string> misplaced(const Tetrahedra& made, const Given& given)
          " % of the volume outside of the given surface: walls are thinner than elements";
 }
 
+/// The play without that of nodes on flat faces, whose facets lose nothing.
+std::vector<double> play_off_flats_mm(const Tetrahedra& made, std::vector<double> play_mm) {
+  constexpr double flat_cosine = 0.99985;  // a degree
+  const brep::Triangles surface = surface_of(made);
+  const NodeNormals at = node_normals(made, surface);
+  std::vector<bool> is_curved(made.nodes_mm.size(), false);
+  const auto& p = made.nodes_mm;
+  for (const auto& [a, b, c] : surface.faces) {
+    const glm::dvec3 normal = glm::cross(p[b] - p[a], p[c] - p[a]);
+    for (const std::uint32_t v : {a, b, c})
+      if (glm::dot(normal, at.normals[v]) < flat_cosine * glm::length(normal) * glm::length(at.normals[v]))
+        is_curved[v] = true;
+  }
+  for (std::size_t k = 0; k < play_mm.size(); ++k)
+    if (!is_curved[made.boundary_nodes[k]]) play_mm[k] = 0.0;
+  return play_mm;
+}
+
 /// Passes 2 to 4 over the elements of Mesh_3.
 std::optional<std::string> finish(Try& t, const Given& given, const TetOptions& options) {
   ImproveOptions improving;
+  const brep::Triangles surface{given.surface.points_mm, given.surface.triangles};
+  const std::vector<std::uint32_t> on_edges =
+      put_on_sharp_edges(t.made, {surface, given.tree}, fit_dihedral_deg());
   improving.surface_play_mm = play_mm(given, given.tree.feet(boundary_mm(t.made)));
+  for (std::size_t k = 0; k < t.made.boundary_nodes.size(); ++k)
+    if (std::binary_search(on_edges.begin(), on_edges.end(), t.made.boundary_nodes[k]))
+      improving.surface_play_mm[k] = 0.0;
   improving.min_dihedral_deg = options.min_dihedral_deg;
   improving.progress.stop = options.progress.stop;
   // Surface nodes that move to mend an element change the volume again, by less each time.
   constexpr int rounds = 3;
   std::optional<std::string> fault;
   for (int i = 0; i < rounds && (i == 0 || fault); ++i) {
-    const double moved = restore_volume(t.made, given.volume_mm3, improving.surface_play_mm);
+    const double moved =
+        restore_volume(t.made, given.volume_mm3, play_off_flats_mm(t.made, improving.surface_play_mm));
     if (!(std::abs(moved) <= 1.0))
       return "misses the volume by " + rounded(std::abs(moved)) +
              " times the amount that its facets' distances from the surface allow";

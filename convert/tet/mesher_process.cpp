@@ -219,6 +219,7 @@ Sent sent(const MesherInput& input) {
 
 Sent sent(const LabelImage& image) {
   Sent made;
+  made.request.points = made.add(image.planes);
   made.request.holes = made.add(image.start_mm);
   made.request.sizes = made.add(image.shares);
   made.request.labels = made.add(image.labels);

@@ -23,7 +23,7 @@ struct MesherRequest {
 
   std::uint64_t version = this_version;
   std::array<char, 64> switches{};
-  std::uint64_t points = 0;            ///< three doubles each
+  std::uint64_t points = 0;            ///< three doubles each; of labels, the planes
   std::uint64_t triangles = 0;         ///< three uint32 each
   std::uint64_t holes = 0;             ///< three doubles each
   std::uint64_t sizes = 0;             ///< a double each; of labels, the shares
@@ -94,6 +94,14 @@ MesherOutcome run_tetgen(const MesherInput& input, const std::string& switches, 
 /// to start from, on each of its parts. Throws as run_tetgen().
 MesherOutcome run_mesh3(const MesherInput& input, const Mesh3Sizes& sizes, const MesherLimits& limits);
 
+/// A plane in which two labels of an image meet; the normal points from the lower label to the higher.
+struct LabelPlane {
+  glm::dvec3 on_mm{0.0}, normal{0.0};
+  std::uint64_t low = 0, high = 0;  ///< labels
+
+  double away_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm - on_mm, normal); }
+};
+
 /// An image of labels, a byte a voxel, x fastest. Label 0 is outside; the border is 0. The centre of voxel
 /// (0, 0, 0) is the origin.
 struct LabelImage {
@@ -105,6 +113,7 @@ struct LabelImage {
   /// fastest; interpolated in between. Empty: one size everywhere.
   std::vector<double> shares{};
   int share_step = 8;
+  std::vector<LabelPlane> planes{};  ///< one a pair of labels at most
 };
 /// The number of shares along an axis of `voxels` voxels.
 constexpr int share_count(int voxels, int step) {

@@ -2,6 +2,7 @@
 #include "convert/tet/region_tetrahedra.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -19,12 +20,14 @@
 #include "voxel/tree/slice_build.h"
 
 // 1 The regions' voxels become an image of labels: their box and a voxel all round.
+//   Where voxels cannot tell an interface from a plane, it is one, and the side of the plane decides between its
+//   regions.
 // 2 Mesh_3 starts from the middles between voxels of different labels, a size apart, so that it misses no
 // region
-//   and no part of one. Denser start points would show it the voxels' steps, on which refinement for good
-//   angles never ends.
+//   and no part of one, and from rims, where three labels meet: else it finds these half a voxel off. Denser
+//   start points would show it the voxels' steps, on which refinement for good angles never ends.
 // 3 The nodes are moved to the patient's frame. Where regions meet in a plane, the nodes along its rim, where
-//   three labels meet and no surface is, are put on it: a contact that is not flat interlocks. Then nodes move
+//   three labels meet, are put on it: a contact that is not flat interlocks. Then nodes move
 //   to mend flat elements.
 // 4 The answer counts only if all volumes are positive and each region's is near that of its voxels.
 
@@ -126,37 +129,202 @@ struct Counted {
   double exposed_mm2 = 0.0;  ///< faces towards other labels
 };
 
-/// Seed points on the interface of one label pair are at least `size_mm` apart.
+/// A plane through the points that are near it.
+struct InterfacePlane {
+  glm::dvec3 on_mm{0.0}, normal{0.0};
+  double away_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm - on_mm, normal); }
+};
+
+/// The plane of least squares through the points that are near a plane.
+InterfacePlane fitted(const std::vector<glm::dvec3>& points_mm, InterfacePlane plane, double near_mm) {
+  constexpr int rounds = 5;
+  for (int round = 0; round < rounds; ++round) {
+    glm::dvec3 middle_mm(0.0);
+    double count = 0.0;
+    const auto visit_near = [&](const auto& visit) {
+      for (const glm::dvec3& p_mm : points_mm)
+        if (std::abs(plane.away_mm(p_mm)) <= near_mm) visit(p_mm);
+    };
+    visit_near([&](const glm::dvec3& p_mm) {
+      middle_mm += p_mm;
+      count += 1.0;
+    });
+    if (count == 0.0) return plane;
+    middle_mm /= count;
+    // The slopes along two directions of the plane solve a system of two equations.
+    const glm::dvec3 other = std::abs(plane.normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 u = glm::normalize(glm::cross(plane.normal, other)), w = glm::cross(plane.normal, u);
+    glm::dmat2 squares(0.0);
+    glm::dvec2 products(0.0);
+    visit_near([&](const glm::dvec3& p_mm) {
+      const glm::dvec3 arm = p_mm - middle_mm;
+      const glm::dvec2 at(glm::dot(arm, u), glm::dot(arm, w));
+      squares += glm::outerProduct(at, at);
+      products += glm::dot(arm, plane.normal) * at;
+    });
+    plane.on_mm = middle_mm;
+    const double determinant = glm::determinant(squares);
+    if (!(determinant > 0.0)) return plane;
+    const glm::dvec2 slopes = glm::inverse(squares) * products;
+    plane.normal = glm::normalize(plane.normal - slopes.x * u - slopes.y * w);
+  }
+  return plane;
+}
+
+using LabelPair = std::pair<std::uint8_t, std::uint8_t>;  // the lower first
+
+/// Planes that may be what two regions were cut by. The middle between two voxels on either side of a plane is
+/// within half a voxel's edge of it, so that an interface whose middles all are is as flat as voxels can tell.
+/// The fitted plane is not the cut itself, hence a tenth of an edge more.
+std::vector<LabelPlane> planes_between(const Labelled& labelled) {
+  constexpr std::size_t fewest = 16;
+  constexpr double most_edges = 0.6, near_share = 0.99;
+  const LabelImage& image = labelled.image;
+  struct Between {
+    std::vector<glm::dvec3> middles_mm;
+    glm::dvec3 across{0.0};  ///< sum of the faces' areas, from the lower label to the higher
+  };
+  std::map<LabelPair, Between> of_pair;
+  const glm::dvec3& edge_mm = image.spacing_mm;
+  for (int z = 0; z + 1 < image.dims.z; ++z)
+    for (int y = 0; y + 1 < image.dims.y; ++y)
+      for (int x = 0; x + 1 < image.dims.x; ++x)
+        for (int axis = 0; axis < 3; ++axis) {
+          const glm::ivec3 v(x, y, z);
+          glm::ivec3 beside = v;
+          ++beside[axis];
+          const std::uint8_t one = image.labels[labelled.number(v)],
+                             other = image.labels[labelled.number(beside)];
+          if (one == other || one == 0 || other == 0) continue;
+          Between& between = of_pair[std::minmax(one, other)];
+          between.middles_mm.push_back(0.5 * (glm::dvec3(v) + glm::dvec3(beside)) * edge_mm);
+          between.across[axis] +=
+              (one < other ? 1.0 : -1.0) * edge_mm[(axis + 1) % 3] * edge_mm[(axis + 2) % 3];
+        }
+  std::vector<LabelPlane> planes;
+  for (const auto& [pair, between] : of_pair) {
+    const std::vector<glm::dvec3>& points_mm = between.middles_mm;
+    if (points_mm.size() < fewest || !(glm::length(between.across) > 0.0)) continue;
+    glm::dvec3 middle_mm(0.0);
+    for (const glm::dvec3& p_mm : points_mm) middle_mm += p_mm / static_cast<double>(points_mm.size());
+    const InterfacePlane plane = fitted(points_mm, {middle_mm, glm::normalize(between.across)},
+                                        std::numeric_limits<double>::infinity());
+    const double near_mm = most_edges * std::max({edge_mm.x, edge_mm.y, edge_mm.z});
+    const auto near = std::count_if(points_mm.begin(), points_mm.end(), [&](const glm::dvec3& p_mm) {
+      return std::abs(plane.away_mm(p_mm)) <= near_mm;
+    });
+    if (static_cast<double>(near) >= near_share * static_cast<double>(points_mm.size()))
+      planes.push_back({plane.on_mm, plane.normal, pair.first, pair.second});
+  }
+  return planes;
+}
+
+const LabelPlane* plane_between(const std::vector<LabelPlane>& planes, std::uint8_t one, std::uint8_t other) {
+  const auto [low, high] = std::minmax(one, other);
+  const auto found =
+      std::find_if(planes.begin(), planes.end(),
+                   [low = low, high = high](const LabelPlane& p) { return p.low == low && p.high == high; });
+  return found == planes.end() ? nullptr : &*found;
+}
+
+/// Seed points on the interface of one label pair are at least `size_mm` apart. They keep clear of rims, too: one
+/// beside a rim, half-way between two of its points, would be taken for the rim.
 class Starts {
  public:
-  explicit Starts(double size_mm) : size_mm_(size_mm) {}
+  explicit Starts(double size_mm, const std::vector<glm::dvec3>& rims_mm = {}) : size_mm_(size_mm) {
+    for (const glm::dvec3& p_mm : rims_mm) insert(p_mm, rim());
+  }
 
-  /// Adds a point unless another of its pair is nearer than the size; true if added.
+  /// Adds a point unless another of its pair or a rim's is too near; true if added.
   bool add(const glm::dvec3& p_mm, std::uint8_t one, std::uint8_t other) {
-    const glm::ivec3 cell(glm::floor(p_mm / size_mm_));
     const Pair pair(std::min(one, other), std::max(one, other));
-    for (int n = 0; n < 27; ++n) {
-      const glm::ivec3 c = cell + glm::ivec3(n % 3, (n / 3) % 3, n / 9) - 1;
-      const auto [first, end] = in_cell_.equal_range({pair, c.x, c.y, c.z});
-      for (auto at = first; at != end; ++at)
-        if (glm::distance(at->second, p_mm) < size_mm_) return false;
-    }
-    in_cell_.emplace(Key{pair, cell.x, cell.y, cell.z}, p_mm);
+    constexpr double clear_share = 0.8;
+    if (is_near(p_mm, pair, size_mm_) || is_near(p_mm, rim(), clear_share * size_mm_)) return false;
+    insert(p_mm, pair);
     return true;
   }
 
  private:
   using Pair = std::pair<std::uint8_t, std::uint8_t>;
   using Key = std::tuple<Pair, int, int, int>;
+
+  /// Of no interface, whose labels differ.
+  static Pair rim() { return {1, 1}; }
+
+  glm::ivec3 cell_of(const glm::dvec3& p_mm) const { return glm::ivec3(glm::floor(p_mm / size_mm_)); }
+  void insert(const glm::dvec3& p_mm, const Pair& pair) {
+    const glm::ivec3 c = cell_of(p_mm);
+    in_cell_.emplace(Key{pair, c.x, c.y, c.z}, p_mm);
+  }
+  bool is_near(const glm::dvec3& p_mm, const Pair& pair, double near_mm) const {
+    for (int n = 0; n < 27; ++n) {
+      const glm::ivec3 c = cell_of(p_mm) + glm::ivec3(n % 3, (n / 3) % 3, n / 9) - 1;
+      const auto [first, end] = in_cell_.equal_range({pair, c.x, c.y, c.z});
+      for (auto at = first; at != end; ++at)
+        if (glm::distance(at->second, p_mm) < near_mm) return true;
+    }
+    return false;
+  }
+
   double size_mm_;
   std::multimap<Key, glm::dvec3> in_cell_;
 };
+
+/// Where three regions meet about an edge of the dual lattice, in the square between four voxels' centres: of
+/// their bilinear shares three are equal there. None where fewer than three labels meet, or where the twice
+/// seen one lies across the diagonal.
+std::optional<glm::dvec2> triple_point(const std::array<std::uint8_t, 4>& labels) {
+  // Corners 0 and 1 share a side, as do 0 and 2; 3 is across from 0.
+  const auto [a, b, c, d] = labels;
+  if (a == d || b == c) return std::nullopt;
+  const bool is_low_x = a == c, is_high_x = b == d, is_low_y = a == b, is_high_y = c == d;
+  const int pairs = is_low_x + is_high_x + is_low_y + is_high_y;
+  if (pairs == 0) return glm::dvec2(0.5);
+  if (pairs > 1) return std::nullopt;
+  // A label with the whole of a side has 1 - t there, each of the others t / 2: equal at 2 / 3.
+  constexpr double far = 2.0 / 3.0;
+  if (is_low_x) return glm::dvec2(far, 0.5);
+  if (is_high_x) return glm::dvec2(1.0 - far, 0.5);
+  return glm::dvec2(0.5, is_low_y ? far : 1.0 - far);
+}
+
+/// Start points along the lines where three labels meet. Without them Mesh_3 puts the ends of an interface where
+/// a start point on one side of its rim happens to lie, half a voxel off.
+void add_rim_starts(Labelled& labelled, double size_mm) {
+  LabelImage& image = labelled.image;
+  Starts starts(size_mm);
+  for (int z = 0; z + 1 < image.dims.z; ++z)
+    for (int y = 0; y + 1 < image.dims.y; ++y)
+      for (int x = 0; x + 1 < image.dims.x; ++x)
+        for (int axis = 0; axis < 3; ++axis) {
+          const int u = (axis + 1) % 3, w = (axis + 2) % 3;
+          std::array<std::uint8_t, 4> labels{};
+          for (int k = 0; k < 4; ++k) {
+            glm::ivec3 v(x, y, z);
+            v[u] += k % 2;
+            v[w] += k / 2;
+            labels.at(static_cast<std::size_t>(k)) = image.labels[labelled.number(v)];
+          }
+          const std::optional<glm::dvec2> at = triple_point(labels);
+          if (!at) continue;
+          glm::dvec3 place(x, y, z);
+          place[u] += at->x;
+          place[w] += at->y;
+          glm::dvec3 p_mm = place * image.spacing_mm;
+          for (std::size_t k = 0; k < 4; ++k)
+            for (std::size_t l = 0; l < k; ++l)
+              if (const LabelPlane* plane = plane_between(image.planes, labels.at(k), labels.at(l)))
+                p_mm -= plane->away_mm(p_mm) * plane->normal;
+          if (starts.add(p_mm, 0, 0)) image.start_mm.push_back(p_mm);
+        }
+}
 
 /// Pass 2. Counts each region in the same walk.
 std::vector<Counted> add_starts(Labelled& labelled, double size_mm, std::size_t regions) {
   LabelImage& image = labelled.image;
   std::vector<Counted> counted(regions + 1);
-  Starts starts(size_mm);
+  if (regions > 1) add_rim_starts(labelled, size_mm);
+  Starts starts(size_mm, image.start_mm);
   const glm::dvec3& edge_mm = image.spacing_mm;
   for (int z = 0; z < image.dims.z; ++z)
     for (int y = 0; y < image.dims.y; ++y)
@@ -171,18 +339,14 @@ std::vector<Counted> add_starts(Labelled& labelled, double size_mm, std::size_t 
           if (label == other) continue;
           for (const std::uint8_t one : {label, other})
             counted[one].exposed_mm2 += edge_mm[(axis + 1) % 3] * edge_mm[(axis + 2) % 3];
-          const glm::dvec3 p_mm = 0.5 * (glm::dvec3(v) + glm::dvec3(beside)) * edge_mm;
+          glm::dvec3 p_mm = 0.5 * (glm::dvec3(v) + glm::dvec3(beside)) * edge_mm;
+          if (const LabelPlane* plane = plane_between(image.planes, label, other))
+            p_mm -= plane->away_mm(p_mm) * plane->normal;
           if (starts.add(p_mm, label, other)) image.start_mm.push_back(p_mm);
         }
       }
   return counted;
 }
-
-/// A plane that most nodes of an interface lie on.
-struct InterfacePlane {
-  glm::dvec3 on_mm{0.0}, normal{0.0};
-  double away_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm - on_mm, normal); }
-};
 
 std::optional<InterfacePlane> plane_of(const Tetrahedra& made, const Interface& between,
                                        const std::vector<std::uint32_t>& nodes, double near_mm) {
@@ -206,15 +370,38 @@ std::optional<InterfacePlane> plane_of(const Tetrahedra& made, const Interface& 
     best = plane;
   }
   if (static_cast<double>(most) < least_share * static_cast<double>(nodes.size())) return std::nullopt;
-  return best;
+  std::vector<glm::dvec3> points_mm;
+  for (const std::uint32_t v : nodes) points_mm.push_back(made.nodes_mm[v]);
+  return fitted(points_mm, *best, near_mm);
+}
+
+/// Gives elements at a plane between two regions to the one on whose side their middle is. Mesh_3 decides by the
+/// middle of an element's ball, which for those at a rim may lie beyond the plane.
+void divide_by_planes(Tetrahedra& made, const std::vector<LabelPlane>& planes) {
+  for (const LabelPlane& plane : planes) {
+    const auto low = static_cast<std::uint32_t>(plane.low - 1),
+               high = static_cast<std::uint32_t>(plane.high - 1);
+    std::vector<std::uint8_t> touches(made.nodes_mm.size(), 0);
+    for (std::size_t t = 0; t < made.tets.size(); ++t)
+      if (const std::uint32_t region = made.region_of_tet[t]; region == low || region == high)
+        for (const std::uint32_t v : made.tets[t]) touches[v] |= region == low ? 1 : 2;
+    for (std::size_t t = 0; t < made.tets.size(); ++t) {
+      if (made.region_of_tet[t] != low && made.region_of_tet[t] != high) continue;
+      if (std::none_of(made.tets[t].begin(), made.tets[t].end(),
+                       [&](std::uint32_t v) { return touches[v] == 3; }))
+        continue;
+      const TetCorners p = corners_mm(made, t);
+      made.region_of_tet[t] = plane.away_mm(0.25 * (p[0] + p[1] + p[2] + p[3])) < 0.0 ? low : high;
+    }
+  }
 }
 
 /// Puts the nodes of interfaces that are flat but for their rims on their planes, where no element about them
 /// comes to have a smaller angle than `least_deg` or turns over.
-void flatten_interfaces(Tetrahedra& made, const RegionMeshOptions& options, double voxel_mm,
-                        double least_deg) {
+void flatten_interfaces(Tetrahedra& made, const std::vector<LabelPlane>& planes,
+                        const RegionMeshOptions& options, double voxel_mm, double least_deg) {
   const double near_mm = 0.05 * voxel_mm;  // five times what surfaces between labels are found to
-  const double far_mm = 0.5 * options.size_mm;
+  const double far_mm = 0.75 * options.size_mm;
   std::vector<std::vector<std::uint32_t>> about(made.nodes_mm.size());
   for (std::uint32_t t = 0; t < made.tets.size(); ++t)
     for (const std::uint32_t v : made.tets[t]) about[v].push_back(t);
@@ -224,7 +411,12 @@ void flatten_interfaces(Tetrahedra& made, const RegionMeshOptions& options, doub
       for (const std::uint32_t v : corners_of(made, face)) nodes.push_back(v);
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    const std::optional<InterfacePlane> plane = plane_of(made, between, nodes, near_mm);
+    std::optional<InterfacePlane> plane;
+    if (const LabelPlane* known = plane_between(planes, static_cast<std::uint8_t>(between.from + 1),
+                                                static_cast<std::uint8_t>(between.to + 1)))
+      plane = InterfacePlane{known->on_mm, known->normal};
+    else
+      plane = plane_of(made, between, nodes, near_mm);
     if (!plane) continue;
     for (const std::uint32_t v : nodes) {
       const double away_mm = plane->away_mm(made.nodes_mm[v]);
@@ -240,6 +432,34 @@ void flatten_interfaces(Tetrahedra& made, const RegionMeshOptions& options, doub
       });
       if (is_unfit) made.nodes_mm[v] = before_mm;
     }
+  }
+}
+
+/// Reports nodes of a flat interface that stayed off its plane: surfaces in contact interlock there.
+void tell_bumps(Tetrahedra& made, const std::vector<LabelPlane>& planes, double voxel_mm) {
+  constexpr double least_share = 0.02;  // of a voxel
+  for (const Interface& between : interfaces(made)) {
+    const LabelPlane* plane = plane_between(planes, static_cast<std::uint8_t>(between.from + 1),
+                                            static_cast<std::uint8_t>(between.to + 1));
+    if (plane == nullptr) continue;
+    std::vector<std::uint32_t> nodes;
+    for (const ElementFace& face : between.faces)
+      for (const std::uint32_t v : corners_of(made, face)) nodes.push_back(v);
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    std::size_t off = 0;
+    double most_mm = 0.0;
+    for (const std::uint32_t v : nodes) {
+      const double away_mm = std::abs(plane->away_mm(made.nodes_mm[v]));
+      if (away_mm > least_share * voxel_mm) ++off;
+      most_mm = std::max(most_mm, away_mm);
+    }
+    if (off > 0)
+      made.findings.push_back("the interface of regions " + std::to_string(between.from + 1) + " and " +
+                              std::to_string(between.to + 1) + " is flat, but " + std::to_string(off) +
+                              " of its " + std::to_string(nodes.size()) +
+                              " nodes stay off its plane, by up to " + rounded(most_mm) +
+                              " mm: surfaces in contact interlock there; take another size of elements");
   }
 }
 
@@ -300,6 +520,7 @@ Tetrahedra smooth_tetrahedra_of(const std::vector<voxel::Octree>& regions, const
   Labelled image = labelled(regions);
   const voxel::Lattice lattice = regions.front().universe().lattice();
   add_shares(image, lattice, options);
+  image.image.planes = planes_between(image);
   const std::vector<Counted> counted = add_starts(image, options.size_mm, regions.size());
   for (std::size_t label = 1; label < counted.size(); ++label)
     if (counted[label].voxels == 0)
@@ -324,12 +545,20 @@ Tetrahedra smooth_tetrahedra_of(const std::vector<voxel::Octree>& regions, const
     for (auto& tet : made.tets) std::swap(tet[0], tet[1]);
   made.boundary_nodes = boundary_nodes(made.tets);
   const double voxel_mm = std::min({edge_mm.x, edge_mm.y, edge_mm.z});
+  std::vector<LabelPlane> planes = image.image.planes;
+  for (LabelPlane& plane : planes) {
+    const glm::dvec3 end_mm = lps_mm(image, lattice, plane.on_mm + plane.normal);
+    plane.on_mm = lps_mm(image, lattice, plane.on_mm);
+    plane.normal = glm::normalize(end_mm - plane.on_mm);  // still from the lower label to the higher
+  }
   const double least_deg = std::min(options.min_dihedral_deg, fit_dihedral_deg());
-  flatten_interfaces(made, options, voxel_mm, least_deg);
+  divide_by_planes(made, planes);
+  flatten_interfaces(made, planes, options, voxel_mm, least_deg);
   mend(made, options);
   // Nodes that mending took off a plane go back where that leaves elements fit.
-  flatten_interfaces(made, options, voxel_mm, least_deg);
+  flatten_interfaces(made, planes, options, voxel_mm, least_deg);
   check_volumes(made, counted, image);
+  tell_bumps(made, planes, voxel_mm);
   return made;
 }
 

@@ -17,6 +17,7 @@
 #include "convert/tet/isosurface_stuffing.h"
 #include "convert/tet/mesh3_tetrahedra.h"
 #include "convert/tet/mesher_process.h"
+#include "convert/tet/sharp_edges.h"
 #include "convert/tet/surface_sizes.h"
 #include "voxel/space/error.h"
 #include "voxel/space/rounded.h"
@@ -420,6 +421,9 @@ std::optional<Tetrahedra> by_stuffing(const MesherInput& surface, double surface
     attempts.code = voxel::ErrorCode::Geometry;
     return std::nullopt;
   }
+  // Stuffing's own least angle.
+  constexpr double least_deg = 10.0;
+  put_on_sharp_edges(made, {triangles, brep::SurfaceTree(triangles)}, least_deg);
   std::vector<double> apart_mm = brep::SurfaceTree(surface_of(made)).distances_mm(surface.points_mm);
   std::sort(apart_mm.begin(), apart_mm.end());
   made.findings.push_back("the elements are of isosurface stuffing, whose nodes on the surface lie on the " +

@@ -9,6 +9,7 @@
 #include "brep/mesh/components.h"
 #include "brep/shape/decimate.h"
 #include "convert/surface/fill_cavities.h"
+#include "convert/tet/hinges.h"
 #include "convert/tet/octree_tetrahedra.h"
 #include "convert/tet/tetrahedralise.h"
 #include "planner/operation/table/fault.h"
@@ -138,7 +139,9 @@ std::variant<Filling, std::string> tried(const Object& object, const FillingOpti
 
 }  // namespace
 
-std::variant<Filling, std::string> filling_of(const Object& object, const FillingOptions& options) {
+namespace {
+
+std::variant<Filling, std::string> filling_or_fallback(const Object& object, const FillingOptions& options) {
   std::variant<Filling, std::string> made = tried(object, options);
   const bool has_fallback = options.fallback && !object.voxel.octree.is_empty();
   std::optional<std::string> why;
@@ -158,6 +161,16 @@ std::variant<Filling, std::string> filling_of(const Object& object, const Fillin
     for (const std::string& finding : filling->tetrahedra.findings)
       voxels.findings.push_back("before: " + finding);
   return voxels;
+}
+
+}  // namespace
+
+std::variant<Filling, std::string> filling_of(const Object& object, const FillingOptions& options) {
+  std::variant<Filling, std::string> made = filling_or_fallback(object, options);
+  if (auto* filling = std::get_if<Filling>(&made))
+    if (std::optional<std::string> hinge = convert::hinge_in(filling->tetrahedra))
+      filling->findings.push_back(*std::move(hinge));
+  return made;
 }
 
 std::vector<std::string> quality_notes(const convert::TetQuality& quality) {

@@ -27,6 +27,11 @@ constexpr double on_surface_share() {
   return 0.25;
 }
 
+/// As a share of the distance that counts as on a plane: what a mesher's nodes stand off a flat face by.
+constexpr double rounding_share() {
+  return 0.1;
+}
+
 double mean_side_mm(const brep::Triangles& surface) {
   double sum = 0.0;
   for (const auto& face : surface.faces)
@@ -87,7 +92,26 @@ class Picker {
     if (of_faces.empty()) return chosen(is_near);
     std::sort(of_faces.begin(), of_faces.end());
     of_faces.erase(std::unique(of_faces.begin(), of_faces.end()), of_faces.end());
+    keep_along(point_mm, normal, of_faces);
     return of_faces;
+  }
+
+  /// Leaves out nodes that stand off the plane much more than most do: they round the face's edges, and holding
+  /// them would clamp the sides beside it.
+  void keep_along(const glm::dvec3& point_mm, const glm::dvec3& normal,
+                  std::vector<std::uint32_t>& nodes) const {
+    constexpr double most_medians = 3.0;
+    std::vector<double> away_mm;
+    for (const std::uint32_t v : nodes)
+      away_mm.push_back(std::abs(glm::dot(tetrahedra_.nodes_mm[v] - point_mm, normal)));
+    std::vector<double> sorted_mm = away_mm;
+    const auto middle = sorted_mm.begin() + static_cast<std::ptrdiff_t>(sorted_mm.size() / 2);
+    std::nth_element(sorted_mm.begin(), middle, sorted_mm.end());
+    const double most_mm = std::max(most_medians * *middle, rounding_share() * near_mm_);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (away_mm[i] <= most_mm) nodes[kept++] = nodes[i];
+    nodes.resize(kept);
   }
 
   std::vector<std::uint32_t> nearest(const glm::dvec3& p_mm) const {

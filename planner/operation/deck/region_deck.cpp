@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "convert/tet/hinges.h"
 #include "convert/tet/octree_tetrahedra.h"
 #include "convert/tet/region_tetrahedra.h"
 #include "convert/tet/separate_regions.h"
@@ -225,6 +226,8 @@ RegionDeck region_deck(const Objects& objects, const Object& object, const Deck&
   check_and_count(regions);
   RegionDeck deck;
   fill(objects, regions, step, progress, deck);
+  if (std::optional<std::string> hinge = convert::hinge_in(deck.tetrahedra))
+    deck.findings.push_back(*std::move(hinge));
   add_materials(regions, step, deck);
   add_free_surfaces(regions, deck);
   add_interfaces(regions, step, deck);

@@ -10,6 +10,7 @@
 #include "brep/mesh/split_fans.h"
 #include "convert/deck/deck.h"
 #include "convert/deck/second_order.h"
+#include "convert/tet/hinges.h"
 #include "convert/tet/octree_tetrahedra.h"
 #include "convert/tet/region_tetrahedra.h"
 #include "convert/tet/separate_regions.h"
@@ -314,6 +315,8 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
     throw std::runtime_error("--finer is not of voxels' own elements: give --size, too");
   TetResult filled = of_voxels ? of_octrees(bench, asked) : of_mesh(bench, asked);
   const convert::Tetrahedra& tetrahedra = filled.tetrahedra;
+  if (std::optional<std::string> hinge = convert::hinge_in(tetrahedra))
+    filled.findings.push_back(*std::move(hinge));
   const convert::TetQuality quality = convert::quality(tetrahedra);
   convert::DeckOptions deck = deck_of(bench, asked, filled, quality);
   if (bench.stop.stop_requested())

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "convert/tet/region_tetrahedra.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -65,6 +66,42 @@ TEST(RegionTetrahedra, ACutBetweenTwoPiecesIsADisc) {
   EXPECT_NEAR(area_mm2(t, between[0].faces), M_PI * 100.0, 0.06 * M_PI * 100.0);
   EXPECT_NEAR(volume_mm3(t, 0), volume_mm3(t, 1), 0.02 * volume_mm3(t, 0));
   EXPECT_GT(quality(t).min_dihedral_deg, 5.0);
+}
+
+/// Distances of an interface's nodes from the plane of a cut.
+std::vector<double> off_plane_mm(const Tetrahedra& t, const glm::dvec3& on_mm, const glm::dvec3& normal) {
+  std::vector<std::uint32_t> nodes;
+  for (const Interface& between : interfaces(t))
+    for (const ElementFace& face : between.faces)
+      for (const std::uint32_t v : corners_of(t, face)) nodes.push_back(v);
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  std::vector<double> off_mm;
+  for (const std::uint32_t v : nodes) off_mm.push_back(std::abs(glm::dot(t.nodes_mm[v] - on_mm, normal)));
+  return off_mm;
+}
+
+TEST(RegionTetrahedra, AnObliqueCutBetweenTwoPiecesIsFlatButForNodesThatAreTold) {
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(0.3, -0.2, 1.0)), on_mm(15.3);
+  const voxel::Octree whole = ball(9.0, on_mm);
+  const voxel::Octree half = voxel::combine(
+      tests::unit_universe(5),
+      Expression(voxel::Sphere{on_mm, 9.0}) & Expression(voxel::HalfSpace{normal, glm::dot(on_mm, normal)}));
+  for (const double size_mm : {3.0, 4.0, 5.0}) {
+    RegionMeshOptions options;
+    options.size_mm = size_mm;
+    const Tetrahedra t = smooth_tetrahedra_of({half, whole}, options);
+    EXPECT_GE(quality(t).min_dihedral_deg, 5.0);
+    std::vector<double> off_mm = off_plane_mm(t, on_mm, normal);
+    std::sort(off_mm.begin(), off_mm.end());
+    // The plane is known from voxels alone, to a part of one. Steps of voxels would put half of the nodes off.
+    constexpr double known_mm = 0.25;
+    EXPECT_LT(off_mm[off_mm.size() * 85 / 100], known_mm) << size_mm;
+    const bool is_told = std::any_of(t.findings.begin(), t.findings.end(), [](const std::string& finding) {
+      return finding.find("stay off its plane") != std::string::npos;
+    });
+    EXPECT_EQ(off_mm.back() > known_mm, is_told) << size_mm << ": " << off_mm.back();
+  }
 }
 
 TEST(RegionTetrahedra, EveryPartOfARegionIsThereHoweverSmall) {

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/tet/sharp_edges.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "convert/tet/element_faces.h"
+
+// Meshers that make a surface of their own put its nodes on the given one, and its triangles cut the edges off.
+// After Labelle and Shewchuk (isosurface_stuffing.h), who snap lattice nodes to the surface: here nodes snap to
+// edges of the surface.
+
+namespace octotomy::convert {
+namespace {
+
+/// The cosine between normals from which on an edge is sharp: 40 degrees.
+constexpr double sharp_cosine() {
+  return 0.766;
+}
+
+using Ends = std::pair<std::uint32_t, std::uint32_t>;  // the lower first
+
+Ends ends(std::uint32_t a, std::uint32_t b) {
+  return std::minmax(a, b);
+}
+
+glm::dvec3 unit_normal_of(const brep::Triangles& surface, const std::array<std::uint32_t, 3>& face) {
+  const glm::dvec3& p = surface.points_mm[face[0]];
+  const glm::dvec3 across = glm::cross(surface.points_mm[face[1]] - p, surface.points_mm[face[2]] - p);
+  const double length = glm::length(across);
+  return length > 0.0 ? across / length : glm::dvec3(0.0);
+}
+
+glm::dvec3 nearest_on(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 way = b - a;
+  const double squared = glm::dot(way, way);
+  return squared > 0.0 ? a + std::clamp(glm::dot(p - a, way) / squared, 0.0, 1.0) * way : a;
+}
+
+using Cell = std::array<int, 3>;
+
+Cell cell_of(const glm::dvec3& p_mm, double side_mm) {
+  const glm::dvec3 cell = glm::floor(p_mm / side_mm);
+  return {static_cast<int>(cell.x), static_cast<int>(cell.y), static_cast<int>(cell.z)};
+}
+
+/// Calls f(entry) for the entries of a cell and of the 26 about it.
+template <typename Entry, typename F>
+void for_each_near(const std::map<Cell, std::vector<Entry>>& cells, const Cell& middle, const F& f) {
+  for (int n = 0; n < 27; ++n) {
+    const auto found = cells.find({middle[0] + n % 3 - 1, middle[1] + n / 3 % 3 - 1, middle[2] + n / 9 - 1});
+    if (found == cells.end()) continue;
+    for (const Entry& entry : found->second) f(entry);
+  }
+}
+
+/// The sharp edges of a surface, found by place, and the points where at least three end.
+class SharpEdges {
+ public:
+  SharpEdges(const brep::Triangles& surface, const std::vector<glm::dvec3>& normals, double cell_mm)
+      : surface_(surface), cell_mm_(cell_mm) {
+    std::map<Ends, std::uint32_t> first;
+    std::map<std::uint32_t, int> edges_at;
+    for (std::uint32_t f = 0; f < surface.faces.size(); ++f)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Ends edge = ends(surface.faces[f].at(i), surface.faces[f].at((i + 1) % 3));
+        const auto [at, is_new] = first.emplace(edge, f);
+        if (is_new || glm::dot(normals[at->second], normals[f]) >= sharp_cosine()) continue;
+        add(edge);
+        ++edges_at[edge.first];
+        ++edges_at[edge.second];
+      }
+    for (const auto& [point, count] : edges_at)
+      if (count >= 3) corners_mm_.push_back(surface.points_mm[point]);
+  }
+
+  const std::vector<glm::dvec3>& corners_mm() const { return corners_mm_; }
+
+  /// The nearest point of a sharp edge within a cell's side; infinitely far where there is none.
+  glm::dvec3 nearest_mm(const glm::dvec3& p_mm) const {
+    glm::dvec3 best_mm(std::numeric_limits<double>::infinity());
+    double least_mm = cell_mm_;
+    for_each_near(edges_, cell_of(p_mm, cell_mm_), [&](const Ends& edge) {
+      const glm::dvec3 at_mm =
+          nearest_on(p_mm, surface_.points_mm[edge.first], surface_.points_mm[edge.second]);
+      const double far_mm = glm::distance(at_mm, p_mm);
+      if (far_mm >= least_mm) return;
+      least_mm = far_mm;
+      best_mm = at_mm;
+    });
+    return best_mm;
+  }
+
+ private:
+  /// Into the cells of points a half of a cell's side apart: no point of the edge is further than that from one.
+  void add(const Ends& edge) {
+    const glm::dvec3 &a = surface_.points_mm[edge.first], &b = surface_.points_mm[edge.second];
+    const int steps = std::max(1, static_cast<int>(std::ceil(2.0 * glm::distance(a, b) / cell_mm_)));
+    for (int i = 0; i <= steps; ++i) {
+      std::vector<Ends>& here = edges_[cell_of(a + static_cast<double>(i) / steps * (b - a), cell_mm_)];
+      if (here.empty() || here.back() != edge) here.push_back(edge);
+    }
+  }
+
+  const brep::Triangles& surface_;
+  double cell_mm_;
+  std::map<Cell, std::vector<Ends>> edges_;
+  std::vector<glm::dvec3> corners_mm_;
+};
+
+class Putting {
+ public:
+  Putting(Tetrahedra& tetrahedra, const KeptSurface& given, double least_deg)
+      : t_(tetrahedra),
+        given_(given),
+        least_deg_(least_deg),
+        about_(tetrahedra.nodes_mm.size()),
+        is_moved_(tetrahedra.nodes_mm.size(), false) {
+    for (std::uint32_t t = 0; t < t_.tets.size(); ++t)
+      for (const std::uint32_t v : t_.tets[t]) about_[v].push_back(t);
+    for (const auto& face : given.triangles.faces) normals_.push_back(unit_normal_of(given.triangles, face));
+  }
+
+  std::vector<std::uint32_t> run() {
+    std::vector<Ends> sides;
+    for (const auto& [a, b, c] : surface_of(t_).faces)
+      for (const Ends& side : {ends(a, b), ends(b, c), ends(c, a)}) sides.push_back(side);
+    std::sort(sides.begin(), sides.end());
+    sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+    double sum_mm = 0.0;
+    for (const auto& [a, b] : sides) sum_mm += glm::distance(t_.nodes_mm[a], t_.nodes_mm[b]);
+    const double side_mm = sum_mm / static_cast<double>(sides.size());
+    const SharpEdges edges(given_.triangles, normals_, side_mm);
+    put_on_corners(edges, side_mm);
+    // A second round reaches sides whose nearer end had been kept by an element that has changed since.
+    constexpr int rounds = 2;
+    for (int round = 0; round < rounds; ++round) put_on_edges(edges, sides);
+    std::sort(moved_.begin(), moved_.end());
+    return moved_;
+  }
+
+ private:
+  double least_angle_deg(std::uint32_t v) const {
+    Tetrahedra star;
+    for (const std::uint32_t t : about_[v]) {
+      const TetCorners p = corners_mm(t_, t);
+      if (!(six_volumes(p) > 0.0)) return -1.0;
+      const auto first = static_cast<std::uint32_t>(star.nodes_mm.size());
+      star.nodes_mm.insert(star.nodes_mm.end(), p.begin(), p.end());
+      star.tets.push_back({first, first + 1, first + 2, first + 3});
+    }
+    return quality(star).min_dihedral_deg;
+  }
+
+  bool put(std::uint32_t v, const glm::dvec3& at_mm) {
+    const double before_deg = least_angle_deg(v);
+    const glm::dvec3 before_mm = t_.nodes_mm[v];
+    t_.nodes_mm[v] = at_mm;
+    if (least_angle_deg(v) >= std::min(before_deg, least_deg_)) {
+      moved_.push_back(v);
+      is_moved_[v] = true;
+      return true;
+    }
+    t_.nodes_mm[v] = before_mm;
+    return false;
+  }
+
+  void put_on_corners(const SharpEdges& edges, double side_mm) {
+    constexpr double near_share = 0.7;
+    std::map<Cell, std::vector<std::uint32_t>> nodes;
+    for (const std::uint32_t v : t_.boundary_nodes) nodes[cell_of(t_.nodes_mm[v], side_mm)].push_back(v);
+    for (const glm::dvec3& corner_mm : edges.corners_mm()) {
+      double least_mm = near_share * side_mm;
+      std::optional<std::uint32_t> nearest;
+      for_each_near(nodes, cell_of(corner_mm, side_mm), [&](std::uint32_t v) {
+        const double far_mm = glm::distance(t_.nodes_mm[v], corner_mm);
+        if (far_mm >= least_mm || is_moved_[v]) return;
+        least_mm = far_mm;
+        nearest = v;
+      });
+      if (nearest) put(*nearest, corner_mm);
+    }
+  }
+
+  void put_on_edges(const SharpEdges& edges, const std::vector<Ends>& sides) {
+    std::vector<glm::dvec3> points_mm;
+    for (const std::uint32_t v : t_.boundary_nodes) points_mm.push_back(t_.nodes_mm[v]);
+    const std::vector<brep::Foot> feet = given_.tree.feet(points_mm);
+    std::vector<glm::dvec3> normal(t_.nodes_mm.size(), glm::dvec3(0.0));
+    for (std::size_t i = 0; i < feet.size(); ++i) normal[t_.boundary_nodes[i]] = normals_[feet[i].face];
+    for (const auto& [a, b] : sides) {
+      if (is_moved_[a] || is_moved_[b] || glm::dot(normal[a], normal[b]) >= sharp_cosine()) continue;
+      std::array<std::uint32_t, 2> order{a, b};
+      std::array<glm::dvec3, 2> to_mm{edges.nearest_mm(t_.nodes_mm[a]), edges.nearest_mm(t_.nodes_mm[b])};
+      if (glm::distance(to_mm[1], t_.nodes_mm[b]) < glm::distance(to_mm[0], t_.nodes_mm[a])) {
+        std::swap(order[0], order[1]);
+        std::swap(to_mm[0], to_mm[1]);
+      }
+      for (std::size_t i = 0; i < 2; ++i)
+        if (std::isfinite(to_mm.at(i).x) && put(order.at(i), to_mm.at(i))) break;
+    }
+  }
+
+  Tetrahedra& t_;
+  const KeptSurface& given_;
+  double least_deg_;
+  std::vector<std::vector<std::uint32_t>> about_;
+  std::vector<glm::dvec3> normals_;  ///< of the given triangles
+  std::vector<std::uint32_t> moved_;
+  std::vector<bool> is_moved_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> put_on_sharp_edges(Tetrahedra& tetrahedra, const KeptSurface& given,
+                                              double least_deg) {
+  return Putting(tetrahedra, given, least_deg).run();
+}
+
+}  // namespace octotomy::convert
