@@ -59,15 +59,15 @@ struct Plate {
   double flat_mm() const { return thickness_mm - rounding_mm; }  ///< of the thickness below the rounding
 };
 
-constexpr double room_mm = 1.0;
+constexpr double plate_room_mm = 1.0;
 /// A screw may go in at up to this angle to the way in which the plate is put on.
-constexpr double most_oblique_deg = 45.0;
+constexpr double steepest_screw_deg = 45.0;
 /// How far off the bone a screw's point may be: it was placed by hand.
-constexpr double off_bone_mm = 3.0;
+constexpr double screw_off_bone_mm = 3.0;
 /// Cells of the mesh's offsets. Triangles lie within a 16th of their cell, and on the mean within a third of that.
 /// A ball of the bending radius touches all triangles of the patch on which it rests, so that their number decides
 /// about the time.
-constexpr double fit_cell_mm = 1.0, outer_cell_mm = 1.5;
+constexpr double plate_fit_cell_mm = 1.0, plate_outer_cell_mm = 1.5;
 double grown_cell_mm(const Plate& plate) {
   return plate.bend_radius_mm / 5.0;
 }
@@ -110,11 +110,11 @@ std::vector<ScrewAxis> axes_of(const Plate& plate, const SettleBench& bench) {
   for (const ObjectName& name : plate.screws) {
     const ScrewAxis axis = screw_axis(name.name, bench);
     std::uint32_t start = 0;
-    if (const double off_mm = bone.tree().distance_mm(axis.head_mm, start); off_mm > off_bone_mm)
+    if (const double off_mm = bone.tree().distance_mm(axis.head_mm, start); off_mm > screw_off_bone_mm)
       throw std::runtime_error("the screw '" + name.name + "' lies " + three_figures(off_mm) +
                                " mm off the surface of '" + plate.object.name +
                                "': name the screw as a move step carried it with its piece");
-    if (glm::dot(axis.along, plate.site.along) < std::cos(glm::radians(most_oblique_deg)))
+    if (glm::dot(axis.along, plate.site.along) < std::cos(glm::radians(steepest_screw_deg)))
       throw std::runtime_error("the screw '" + name.name +
                                "' points more than 45 degrees off the way in which the plate is put on: turn "
                                "the screw, or choose another 'side'");
@@ -185,8 +185,8 @@ Plate settle(const Plate& asked, const SettleBench& bench) {
   for (const Mark& mark : asked.points) site.points_mm.push_back(mark_mm(mark, bench.objects));
   site.radius_mm = 0.5 * asked.width_mm;
   site.reach_mm = asked.reach_mm;
-  site.before_mm = asked.thickness_mm + asked.clearance_mm + room_mm;
-  site.margin_mm = asked.bend_radius_mm + asked.thickness_mm + room_mm;
+  site.before_mm = asked.thickness_mm + asked.clearance_mm + plate_room_mm;
+  site.margin_mm = asked.bend_radius_mm + asked.thickness_mm + plate_room_mm;
   site.part = "plate";
   site.is_on_several = true;
   made.site = guide_site(site, bench);
@@ -217,7 +217,7 @@ std::string definition(const Plate& plate, const Objects&) {
 
 /// How far a hole goes to both sides of its screw's head: through the plate where it bridges a gap too.
 double through_mm(const Plate& plate) {
-  return plate.clearance_mm + plate.thickness_mm + plate.bend_radius_mm + room_mm;
+  return plate.clearance_mm + plate.thickness_mm + plate.bend_radius_mm + plate_room_mm;
 }
 
 void voxels(const Plate& plate, const VoxelBench& bench, VoxelSide& made) {
@@ -348,12 +348,12 @@ void triangles(const Plate& plate, const MeshBench& bench, MeshSide& made) {
   if (bone.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
   const brep::Solid behind = brep::shadow(bone, {plate.site.along, plate.site.end_mm, progress}).solid;
   const brep::Solid big = grown(behind, plate.bend_radius_mm + plate.clearance_mm, grown_cell_mm(plate));
-  const brep::Solid closed = grown(big, -plate.bend_radius_mm, fit_cell_mm);
+  const brep::Solid closed = grown(big, -plate.bend_radius_mm, plate_fit_cell_mm);
   if (closed.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
-  const brep::Solid ridge = of(grown(big, plate.flat_mm() - plate.bend_radius_mm, outer_cell_mm),
+  const brep::Solid ridge = of(grown(big, plate.flat_mm() - plate.bend_radius_mm, plate_outer_cell_mm),
                                brep::Operation::Intersection, plate.ridge.solid());
   if (ridge.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
-  std::vector<brep::Solid> operands{grown(ridge, plate.rounding_mm, outer_cell_mm), closed};
+  std::vector<brep::Solid> operands{grown(ridge, plate.rounding_mm, plate_outer_cell_mm), closed};
   for (const ScrewAxis& axis : plate.axes) {
     const glm::dvec3 by_mm = through_mm(plate) * axis.along;
     operands.push_back(rod(axis.head_mm - by_mm, axis.head_mm + by_mm, plate.hole_radius_mm(axis)));
@@ -416,8 +416,8 @@ void bound(const Plate& plate, const BoundBench& bench, Object& made) {
         {plate.bend_radius_mm + plate.clearance_mm, grown_cell_mm(plate)},
         made.mesh.whole->measures().area_mm2);
     // Later offsets are of smooth surfaces. Triangles lie within a third of their tolerance on the mean.
-    for (const auto& [by_mm, cell_mm] :
-         {std::pair(plate.bend_radius_mm, fit_cell_mm), std::pair(plate.rounding_mm, outer_cell_mm)})
+    for (const auto& [by_mm, cell_mm] : {std::pair(plate.bend_radius_mm, plate_fit_cell_mm),
+                                         std::pair(plate.rounding_mm, plate_outer_cell_mm)})
       apart_mm += brep::offset_tolerance_mm({by_mm, cell_mm, {}}) / 3.0;
     if (is_whole_voxels(bone.voxel)) apart_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
     made.bound.measured_apart_mm += apart_mm;

@@ -81,7 +81,7 @@ struct Item {
 };
 
 /// A scene that keeps the triangles which it draws.
-struct Drawing {
+struct DrawnItems {
   std::deque<brep::Triangles> triangles;
   brep::DrawnScene scene;
   std::vector<Item> items;  ///< in the scene's numbers
@@ -93,7 +93,7 @@ glm::vec3 colour_of_item(const Draw& asked, std::size_t number, bool is_of_lines
                                        : colour_of(is_of_lines ? number + 1 : number);
 }
 
-void add_surfaces(const Draw& asked, const FileBench& bench, Drawing& drawing) {
+void add_surfaces(const Draw& asked, const FileBench& bench, DrawnItems& drawing) {
   for (const ObjectName& object : asked.objects) {
     const Stopwatch watch(bench.timings, "read");
     drawing.triangles.push_back(triangles_named(object.name, bench));
@@ -157,7 +157,7 @@ double length_mm(const brep::DrawnLines& lines) {
   return length;
 }
 
-void add_contours(const Draw& asked, const FileBench& bench, Drawing& drawing,
+void add_contours(const Draw& asked, const FileBench& bench, DrawnItems& drawing,
                   std::vector<std::string>& findings) {
   for (const ObjectName& object : asked.contours) {
     const Stopwatch watch(bench.timings, "contours");
@@ -194,7 +194,7 @@ brep::DrawnLines edges_of(const voxel::Box& box) {
 }
 
 /// The box of all that is drawn, and of the whole scan.
-void add_box(const std::optional<voxel::Scene>& scene, Drawing& drawing, std::size_t number) {
+void add_box(const std::optional<voxel::Scene>& scene, DrawnItems& drawing, std::size_t number) {
   const brep::ViewExtent drawn = brep::extent(drawing.scene, {1, 0, 0}, {0, 1, 0}, {0, 0, 1});
   voxel::Box box{drawn.low_mm, drawn.high_mm};
   if (scene) {
@@ -224,7 +224,7 @@ voxel::Octree shown_inside(const std::string& name, const voxel::Lattice& lattic
   return *octree;
 }
 
-void add_slices(const Draw& asked, const voxel::Scene& scene, const FileBench& bench, Drawing& drawing) {
+void add_slices(const Draw& asked, const voxel::Scene& scene, const FileBench& bench, DrawnItems& drawing) {
   if (asked.window) need_hounsfield(*asked.window, scene);
   std::optional<voxel::Octree> within;
   if (asked.within) within = shown_inside(asked.within->name, scene.lattice, bench);
@@ -318,7 +318,7 @@ glm::ivec2 picked_pixel(const std::string& text, const glm::ivec2& size_px) {
   return glm::ivec2(pixel);
 }
 
-Json picks_of(const Draw& asked, const Drawing& drawing, const brep::Camera& camera,
+Json picks_of(const Draw& asked, const DrawnItems& drawing, const brep::Camera& camera,
               const brep::DrawnPicture& picture) {
   Json list = Json::array();
   for (const std::string& text : asked.picks) {
@@ -337,7 +337,7 @@ Json picks_of(const Draw& asked, const Drawing& drawing, const brep::Camera& cam
   return list;
 }
 
-Json items_json(const Drawing& drawing, const brep::DrawnPicture& picture, bool is_culled) {
+Json items_json(const DrawnItems& drawing, const brep::DrawnPicture& picture, bool is_culled) {
   std::vector<std::uint64_t> lit(drawing.items.size(), 0);
   for (const std::int32_t item : picture.item)
     if (item >= 0) ++lit[static_cast<std::size_t>(item)];
@@ -364,8 +364,8 @@ Json depth_range_of(const brep::DrawnPicture& picture) {
   return low > high ? Json(nullptr) : Json::array({low, high});
 }
 
-Drawing drawing_of(const Draw& asked, const FileBench& bench, std::vector<std::string>& findings) {
-  Drawing drawing;
+DrawnItems drawing_of(const Draw& asked, const FileBench& bench, std::vector<std::string>& findings) {
+  DrawnItems drawing;
   add_surfaces(asked, bench, drawing);
   add_contours(asked, bench, drawing, findings);
   const std::size_t before_slices = drawing.items.size();
@@ -386,7 +386,7 @@ FileAnswer on_files(const Draw& asked, const FileBench& bench) {
   voxel::parse_view(asked.view);
   for (const std::string& pick : asked.picks) picked_pixel(pick, size_of(asked));
   FileAnswer answer{{{"path", asked.out.string()}}};
-  const Drawing drawing = drawing_of(asked, bench, answer.findings);
+  const DrawnItems drawing = drawing_of(asked, bench, answer.findings);
   const brep::DrawOptions options = options_of(asked, drawing.scene);
   const brep::Camera& camera = options.camera;
   brep::DrawnPicture picture;

@@ -38,14 +38,14 @@ std::size_t common_count(const Solid& a, const Solid& b) {
   return count;
 }
 
-const glm::dmat4 pose = glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(31, -12, 77)), 1.1,
-                                    glm::normalize(glm::dvec3(1, 2, -0.5)));
+const glm::dmat4 turned_pose = glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(31, -12, 77)), 1.1,
+                                           glm::normalize(glm::dvec3(1, 2, -0.5)));
 
 TEST(Imprint, APieceOfABallHasTheBallsTrianglesInAnyPose) {
   const Solid ball = solid_of(shapes::sphere({0, 0, 0}, 20, 3));
   const Solid piece =
       boolean(ball, Operation::Intersection, solid_of(shapes::box({1, -30, -30}, {30, 7, 30}))).solid;
-  const Solid a = moved(ball, pose), b = moved(piece, pose);
+  const Solid a = moved(ball, turned_pose), b = moved(piece, turned_pose);
   const std::optional<Imprinted> both = imprinted(a, b);
   ASSERT_TRUE(both);
   EXPECT_LT(both->moved_mm, 1e-12);
@@ -60,8 +60,8 @@ TEST(Imprint, APieceOfABallHasTheBallsTrianglesInAnyPose) {
 }
 
 TEST(Imprint, SidesThatCrossInAFaceDivideBoth) {
-  const Solid a = moved(solid_of(shapes::box({0, 0, 0}, {4, 4, 4})), pose),
-              b = moved(solid_of(shapes::box({1, 1, 4}, {6, 3, 6})), pose);
+  const Solid a = moved(solid_of(shapes::box({0, 0, 0}, {4, 4, 4})), turned_pose),
+              b = moved(solid_of(shapes::box({1, 1, 4}, {6, 3, 6})), turned_pose);
   const std::optional<Imprinted> both = imprinted(a, b);
   ASSERT_TRUE(both);
   EXPECT_GE(common_count(both->a, both->b), 2u);

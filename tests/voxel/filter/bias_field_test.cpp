@@ -14,7 +14,7 @@ using tests::field_scene;
 using tests::for_each_index;
 using tests::sample_at;
 
-constexpr double radius_mm = 60.0;
+constexpr double brain_radius_mm = 60.0;
 
 Lattice head_lattice() {
   return axis_aligned_lattice({64, 64, 56}, {2.2, 2.2, 2.5}, {-69.3, -69.3, -68.75});
@@ -22,13 +22,13 @@ Lattice head_lattice() {
 
 /// A field that changes by a third across the head, along a direction of no axis.
 double field_at(const glm::dvec3& p) {
-  return std::exp(0.25 * (p.x + 0.5 * p.y - 0.3 * p.z) / radius_mm -
-                  0.15 * glm::dot(p, p) / (radius_mm * radius_mm));
+  return std::exp(0.25 * (p.x + 0.5 * p.y - 0.3 * p.z) / brain_radius_mm -
+                  0.15 * glm::dot(p, p) / (brain_radius_mm * brain_radius_mm));
 }
 
 /// A ball of two tissues of 100 and 180 in eight layers along x, in air of 2.
 double tissue_at(const glm::dvec3& p) {
-  if (glm::length(p) > radius_mm) return 2.0;
+  if (glm::length(p) > brain_radius_mm) return 2.0;
   return static_cast<int>(std::floor((p.x + 80.0) / 20.0)) % 2 == 0 ? 100.0 : 180.0;
 }
 
@@ -45,7 +45,7 @@ double variation(const Scene& scene, double tissue) {
   double count = 0.0, sum = 0.0, squares = 0.0;
   for_each_index(scene.lattice, 1, [&](const glm::ivec3& at) {
     const glm::dvec3 p = scene.lattice.lps_mm(at);
-    if (tissue_at(p) != tissue || glm::length(p) > radius_mm - 3.0) return;
+    if (tissue_at(p) != tissue || glm::length(p) > brain_radius_mm - 3.0) return;
     const double sample = sample_at(scene, at);
     count += 1.0;
     sum += sample;
@@ -67,7 +67,7 @@ TEST(BiasField, OfAPhantomIsFoundAndTheVariationWithinATissueFalls) {
   double low = 1e9, high = 0.0;
   for_each_index(spoiled.lattice, 1, [&](const glm::ivec3& at) {
     const glm::dvec3 p = spoiled.lattice.lps_mm(at);
-    if (glm::length(p) > radius_mm - 3.0) return;
+    if (glm::length(p) > brain_radius_mm - 3.0) return;
     const double error = sample_at(spoiled, at) / sample_at(even.scene, at) / field_at(p);
     low = std::min(low, error);
     high = std::max(high, error);
