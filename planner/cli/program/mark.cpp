@@ -12,7 +12,7 @@
 namespace octotomy::planner::cli {
 namespace {
 
-voxel::SightLine line_of(const std::string& text) {
+voxel::SightLine sight_line_of(const std::string& text) {
   const auto colon = text.find(':');
   if (colon == std::string::npos)
     throw CLI::ValidationError("--in",
@@ -24,7 +24,7 @@ voxel::SightLine line_of(const std::string& text) {
 int mark(const Program& program, const std::vector<std::string>& marks) {
   if (marks.size() != 2)
     throw CLI::ValidationError("--in", "give it twice: a point in space needs two views");
-  const voxel::SpaceMark found = voxel::mark_between(line_of(marks[0]), line_of(marks[1]));
+  const voxel::SpaceMark found = voxel::mark_between(sight_line_of(marks[0]), sight_line_of(marks[1]));
   Json json = answer({});
   json["point_mm"] = to_json(found.point_mm);
   json["miss_mm"] = found.miss_mm;
