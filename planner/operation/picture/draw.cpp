@@ -285,7 +285,8 @@ brep::Camera camera_of(const Draw& asked, const brep::DrawnScene& scene) {
   const glm::dvec2 low(whole.low_mm), high(whole.high_mm);
   camera.centre_mm = asked.centre_mm ? view.project(*asked.centre_mm) : 0.5 * (low + high);
   // As voxel::frame_about(): a margin of a twentieth. A flat scene seen on edge has no extent of its own.
-  const double extent_mm = std::max({high.x - low.x, high.y - low.y, 1e-3 * (whole.high_mm.z - low.x), 1e-3});
+  const double extent_mm =
+      std::max({high.x - low.x, high.y - low.y, 1e-3 * (whole.high_mm.z - whole.low_mm.z), 1e-3});
   const double across_mm = 1.05 * extent_mm * camera.size_px.x / std::min(camera.size_px.x, camera.size_px.y);
   camera.pixel_mm = asked.width_mm.value_or(across_mm) / camera.size_px.x;
   camera.nearest_mm = whole.low_mm.z;
