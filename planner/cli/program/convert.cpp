@@ -159,19 +159,19 @@ std::optional<int> convert_as(const Program& program, const ConvertText& text) {
   return std::nullopt;
 }
 
-/// Leaves out what a scan's file may state of anybody beside its samples: names of labels, and words that the
-/// standard does not define.
+/// Removes what may name a person in a scan's file: names of labels, and words that the standard does not
+/// define.
 void leave_out_words(voxel::Scene& scene, LabelTable& table, std::vector<std::string>& changes) {
   constexpr std::array<const char*, 3> units{"HU", "US", "OD"};
   if (!table.names.empty()) changes.emplace_back("Names of labels: removed");
   table.names.clear();
   if (std::string kept = voxel::defined_modality(scene.modality); kept != scene.modality) {
-    changes.emplace_back("Modality (0008,0060): written as OT, as it is no word of the standard");
+    changes.emplace_back("Modality (0008,0060): written as OT, because the standard does not define it");
     scene.modality = "OT";
   }
   if (!scene.declared_unit.empty() &&
       std::find(units.begin(), units.end(), scene.declared_unit) == units.end()) {
-    changes.emplace_back("Rescale Type (0028,1054): removed, as it is no word of the standard");
+    changes.emplace_back("Rescale Type (0028,1054): removed, because the standard does not define it");
     scene.declared_unit.clear();
   }
 }
