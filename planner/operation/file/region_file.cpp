@@ -103,7 +103,7 @@ voxel::View view_across(const glm::dvec3& area) {
 
 using Slices = std::vector<voxel::SliceMask::Slice>;
 
-/// Of planes that count as one though they are not.
+/// The finding on planes so near each other that they count as one plane.
 std::string too_near(double gap_mm) {
   return plain(gap_mm) + " mm apart, and planes within " + plain(2.0 * off_plane_mm()) +
          " mm count as one: draw it on planes that are further apart, or check that positions are in mm";

@@ -323,7 +323,7 @@ Operation move_operation() {
                   field("axis", &Rotation::axis, "The direction of the axis, LPS.").direction(),
                   field("about_mm", &Rotation::about_mm, "A point on the axis, LPS, or a landmark."),
                   field("through", &Rotation::through,
-                        "The axis from one point to another, as both condyles, in place of 'axis'.")
+                        "In place of 'axis': two points that the axis passes, for example both condyles.")
                       .from(2)
                       .to(2)}))
       .takes(record("by", &Move::by, "The translation in words of the head.",

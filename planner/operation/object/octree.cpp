@@ -148,7 +148,7 @@ const voxel::Octree& binary_of(const Build& asked, const std::string& name, cons
   return *octree;
 }
 
-/// The object, and those beside it in its universe.
+/// The object and the further objects in its universe.
 std::vector<voxel::Octree> objects_of(const FileBench& bench, const Build& asked,
                                       const voxel::OctreeFile& file) {
   std::vector<voxel::Octree> objects{binary_of(asked, asked.file.name, file)};

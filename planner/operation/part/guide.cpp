@@ -72,8 +72,8 @@ struct Guide {
   double sleeve_radius_mm() const { return hole_radius_mm() + sleeve_wall_mm; }
 };
 
-/// Cells of the mesh's offsets: of the fitting surface, and of the outer one. Triangles of the fitting surface
-/// lie within a 16th of a cell of it, a third of a printer's error of 0.16 mm.
+/// Cell sizes of the mesh's offsets: for the fitting surface and for the outer surface. Triangles of the
+/// fitting surface lie within a 16th of a cell of it, a third of a printer's error of 0.16 mm.
 constexpr double base_cell_mm = 1.0, outer_cell_mm = 2.0;
 /// Room about the region beyond what the guide needs.
 constexpr double room_mm = 1.0;

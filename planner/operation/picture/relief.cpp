@@ -102,7 +102,7 @@ Relief relief_of(const voxel::Picture& picture, int cells) {
     for (int x = std::max(0, far - heights.corners.y + 2); x <= std::min(far, heights.corners.x - 2); ++x) {
       const int y = far - x;
       const std::vector<glm::dvec2> cell{at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)};
-      // Halves, because a bent cell is not convex in the picture.
+      // Two triangles, because a bent cell is not convex in the picture.
       fill_white(canvas, {cell[0], cell[1], cell[2]});
       fill_white(canvas, {cell[0], cell[2], cell[3]});
       voxel::draw_lines(canvas, {{cell[0], cell[1], cell[2], cell[3], cell[0]}}, pen);

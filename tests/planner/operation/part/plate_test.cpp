@@ -130,7 +130,7 @@ TEST(PlateStep, RefusesWhatMakesNoPlateInASentenceThatSaysWhy) {
   expect_refused(plate_step(R"("points": [[3, -30, 0], [0, -20, 0]])"), "10.1 mm off the surface of 'ball'");
   expect_refused(plate_step(R"("points": [[0, 20, 0], [0, -20, 0]])"), "lie behind each other");
   expect_refused(plate_step(R"("points": [[0, 18.33, 8], [0, -20, 0]])"),
-                 "behind other bone as the plate is put on");
+                 "behind other bone, seen along the direction in which the plate is put on");
   expect_refused(plate_step(across + R"(, "direction": [1, 0, 0])"),
                  "nobody on that side can put the plate on");
   expect_refused(plate_step(across + R"(, "screws": ["ball"])"), "'ball' is no screw");
@@ -150,7 +150,7 @@ TEST(PlateStep, RefusesWhatMakesNoPlateInASentenceThatSaysWhy) {
   expect_refused(two_pieces("[0, -6, 0]", plate_step(R"("points": [[0, -24.33, 8], [0, -18.33, -8]],
                      "screws": ["up"])",
                                                      "planned")),
-                 "name the screw as a move step carried it with its piece");
+                 "name the object that a move step made of the screw");
 }
 
 }  // namespace
