@@ -35,7 +35,7 @@ bool is_volume(const fs::path& path) {
 void need_used(const ConvertText& text, bool writes_dicom, bool writes_segments) {
   const auto need = [&](bool is_given, const std::string& option, bool is_used, const std::string& of) {
     if (is_given && !is_used)
-      throw std::runtime_error(text.out.string() + ": " + option + " is of " + of +
+      throw std::runtime_error(text.out.string() + ": " + option + " applies only to " + of +
                                ", which is not written: leave it out, or write " + of);
   };
   need(!text.label.empty(), "--label", writes_segments, "a DICOM segmentation (.dcm)");
@@ -155,7 +155,7 @@ std::optional<int> convert_as(const Program& program, const ConvertText& text) {
                              "fractions writes the share of each voxel");
   if (text.as == "stl" || text.as == "obj")
     throw std::runtime_error(text.in.string() + ": is no surface, which --as " + text.as +
-                             " is of: octotomy mesh makes one");
+                             " needs: octotomy mesh makes one");
   return std::nullopt;
 }
 

@@ -40,7 +40,7 @@ void check(const Repair& repair, const FieldLocation& place) {
     place.at(repair.hull      ? "hull"
              : repair.cell_mm ? "cell_mm"
                               : "wall_mm")
-        .refuse("is of a surface that is made anew: add 'solid'");
+        .refuse("applies only to a surface that is rebuilt: add 'solid'");
 }
 
 Json changes_json(const std::vector<brep::Change>& changes) {

@@ -344,7 +344,7 @@ Operation guide_operation() {
                  .from(3.0)
                  .to(60.0)
                  .read_if<Guide>([](const Guide& guide) { return !guide.region; },
-                                 "is of 'points': leave it out"))
+                                 "applies only to 'points': leave it out"))
       .takes(record("region", &Guide::region, "In place of the points, a region drawn in a view.",
                     {field("view", &DrawnSite::view, "The view in which the region is drawn.").required(),
                      field("polygons_mm", &DrawnSite::polygons_mm,
