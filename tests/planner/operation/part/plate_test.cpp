@@ -100,7 +100,8 @@ TEST(PlateStep, BridgesTheGapAndHasItsHolesWhereTheMotionBringsTheScrews) {
   EXPECT_FALSE(screws[1].at("is_carried"));
   EXPECT_NEAR(screws[0].at("at_mm")[1].get<double>(), -19.33, 1e-9);
   EXPECT_NEAR(screws[0].at("at_mm")[2].get<double>(), 9.5, 1e-9);
-  // Its own step measured 5 mm to the cut before the motion; at its place it is off the lower piece.
+  // The screw's own step measured 5 mm to the cut before the motion; the second distance is that to the lower
+  // piece at the planned place.
   ASSERT_EQ(screws[0].at("clearances").size(), 2u) << screws.dump(1);
   EXPECT_FALSE(screws[0].at("clearances")[0].at("is_planned_place"));
   EXPECT_NEAR(screws[0].at("clearances")[0].at("distance_mm").get<double>(), 5.0, 0.05);
