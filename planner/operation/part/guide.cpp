@@ -9,8 +9,8 @@
 //   that reach as far before the bone as the slot is deep: that shadow moved back along the saw; a rod for each
 //   sleeve. Edges of the walls are rounded.
 // 4 3 less 2, then less slots and holes.
-// 5 Walls thinner than a printer's are cut off: slots and holes leave slivers at the edges of the bone.
-// 6 The largest piece, with points that files for printers can hold.
+// 5 The largest piece, with points that files for printers can hold. Slots and holes may leave slivers at the
+//   edges of the bone, which `printable` finds.
 //
 // 1 is settled once and is a shared value of both kernels.
 #include <algorithm>

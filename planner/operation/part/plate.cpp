@@ -5,10 +5,12 @@
 //   screws' axes.
 // 2 The bone near the band and all that lies behind it along the way in which the plate is put on; grown by the
 //   bending radius and the clearance, then shrunk by the radius: its surface has no hollow narrower than the
-//   radius, so that the plate bridges gaps. As 2 holds all that lies behind it, so does this: the plate slides on.
+//   radius, so that the plate bridges gaps. It still contains all that lies behind it, so that the plate slides
+//   on.
 // 3 What is left of the thickness above the rounding, on a band narrower by the rounding; grown by the rounding,
 //   so that all outer edges are round. Less 2.
-// 4 Less the holes, and less walls thinner than a printer's. The largest piece, with points that files for printers can hold.
+// 4 Less the holes. The largest piece, with points that files for printers can hold. Thin walls may remain,
+//   which `printable` finds.
 //
 // 1 is settled once and is a shared value of both kernels.
 #include <algorithm>
