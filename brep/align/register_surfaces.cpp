@@ -149,7 +149,7 @@ class Refinement {
     return fit;
   }
 
-  /// Refines further with all samples within the noise of those that were kept, whatever their share.
+  /// Refines further with all samples within the noise of the kept ones, without a limit on their share.
   Fit widened(Fit fit, int rounds) const {
     const std::vector<Meeting> meetings = meet(fit.motion);
     std::vector<double> distances;

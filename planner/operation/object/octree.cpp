@@ -99,7 +99,7 @@ voxel::OctreeFile from_scan(const FileBench& bench, const Build& asked) {
     throw std::runtime_error(asked.file.name + ": is a mesh: octotomy voxelise makes an octree of one");
   if (!asked.window && !asked.grey)
     throw std::runtime_error(asked.file.name +
-                             ": is a scan, say what of it: --window LOW:HIGH for an object, for example "
+                             ": is a scan: choose --window LOW:HIGH for an object, for example "
                              "--window 300:, or --grey for all samples");
   const std::optional<SampleWindow>& window = asked.window;
   const voxel::Scene scene = bench.read_scan(asked.in());
@@ -143,7 +143,7 @@ const voxel::Octree& binary_of(const Build& asked, const std::string& name, cons
   if (octree == nullptr)
     throw std::runtime_error(name + ": only a binary octree can be written as " + asked.as +
                              (std::holds_alternative<voxel::GreyOctree>(file.tree)
-                                  ? ": choose an object of the samples with --window LOW:HIGH"
+                                  ? ": choose an object by --window LOW:HIGH"
                                   : ": this one holds fractions, digitise it as centre or half"));
   return *octree;
 }

@@ -77,7 +77,7 @@ struct Guide {
 constexpr double base_cell_mm = 1.0, outer_cell_mm = 2.0;
 /// Room about the region beyond what the guide needs.
 constexpr double room_mm = 1.0;
-/// How far rods and holes go on below the bone's surface, which is not known to a hair at a screw's point.
+/// How far rods and holes extend below the bone's surface, because a screw's point may lie slightly off it.
 constexpr double below_mm = 5.0;
 
 void check(const Guide& guide, const FieldLocation& place) {
@@ -388,11 +388,10 @@ Operation guide_operation() {
                    "The thickness of the walls beside a slot; the default is a project's choice.")
                  .from(1.0)
                  .to(10.0))
-      .takes(
-          field("slot_end_mm", &Guide::slot_end_mm,
-                "What is left of the guide beyond a slot's closed ends; the default is a project's choice.")
-              .from(1.0)
-              .to(30.0))
+      .takes(field("slot_end_mm", &Guide::slot_end_mm,
+                   "The wall of the guide beyond a slot's closed ends; the default is a project's choice.")
+                 .from(1.0)
+                 .to(30.0))
       .takes(field("slot_form", &Guide::slot_form,
                    "closed: both ends of slots are closed; three_sided: the end of the line's last point is "
                    "open.")
