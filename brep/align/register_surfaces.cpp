@@ -559,9 +559,10 @@ SurfaceFit register_surfaces(const Mesh& moving, const Mesh& fixed, const Surfac
           trust_of(fit.fixed_from_moving, {cloud, surface, noise_mm, fit.rms_mm, again, searched.ends});
       if (fit.trust->verdict >= answer.trust->verdict) continue;
       answer = std::move(fit);
-      answer.findings.push_back("WARN overlap: at " + short_text(100.0 * options.overlap) +
-                                " % no position was sure, so that " + short_text(100.0 * less.overlap) +
-                                " % were fitted: state by --overlap what both surfaces show");
+      answer.findings.push_back(
+          "WARN overlap: at " + short_text(100.0 * options.overlap) +
+          " % overlap no position was certain, so that " + short_text(100.0 * less.overlap) +
+          " % were fitted: give the share that both surfaces have in common by --overlap");
     }
   }
   tell_trust(answer);

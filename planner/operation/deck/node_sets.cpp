@@ -221,7 +221,7 @@ std::vector<convert::Prescribed> prescribed_of(const std::vector<std::string>& f
   }
   if (fixed.empty() && !moved.empty())
     throw std::runtime_error(
-        "--move: nothing stays, so that the whole body would go along: name a set by --fix");
+        "--move: no nodes are fixed, so that the whole body would move: name a set by --fix");
   return step;
 }
 

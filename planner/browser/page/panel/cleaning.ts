@@ -206,7 +206,8 @@ function proposal_card(step: Step, proposal: Proposal): Child {
           {class: "primary", "data-key": `${name}-do`}));
 }
 
-// The picture of a proposal ends with the panel on which it stands, and with what it was computed of.
+// Removes the picture of a proposal when its panel closes, or when the plan from which it was computed
+// changes.
 watch(["plan", "selected", "right_tab", "tool", "draft_window", "draft_step"], () => {
   const {preview, cleaning} = state;
   if (!preview?.steps) return;
