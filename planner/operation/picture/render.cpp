@@ -148,8 +148,7 @@ Samples samples_of(const Render& render, const std::vector<voxel::DrawnObject>& 
   return samples;
 }
 
-/// Draws the objects; or, if a decision function is chosen, the surface that it finds in the samples of the
-/// only object.
+/// Draws the objects or, with a decision function, the surface that it finds in the only object's samples.
 voxel::Picture drawn_picture(const Render& render, const std::vector<voxel::DrawnObject>& objects,
                              double highest, const voxel::RenderOptions& options) {
   if (!is_decided(render)) return voxel::render(objects, options);
@@ -454,9 +453,8 @@ voxel::Annotation annotation_of(const Render& render, const std::vector<voxel::D
 Operation render_operation() {
   return Describe<Render>("render", "Draws scans' windows and octrees as shaded surfaces.", Makes::File)
       .takes(field("objects", &Render::objects,
-                   "Objects to draw; on the command line octrees (.octree), or scans: a DICOM folder or "
-                   "file, NIfTI, NRRD, "
-                   "MetaImage, images, or a raw file. May be left out if there is an expression.")
+                   "Objects to draw; on the command line octrees (.octree), or scans: DICOM folders or "
+                   "files, NIfTI, NRRD, MetaImage, images, raw files. Optional if there is an expression.")
                  .from(1)
                  .positional("files"))
       .takes(field(
