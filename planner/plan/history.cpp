@@ -60,8 +60,8 @@ constexpr const char* tables = R"(
 /// Refuses because some states are not yet in the history's file but in files beside it.
 [[noreturn]] void refuse_read_only(const fs::path& path) {
   throw std::runtime_error(path.string() +
-                           ": cannot be written, which its newest states need: copy the plan and all files "
-                           "whose names begin with " +
+                           ": its newest states can be read only where it can be written: copy the plan and "
+                           "all files whose names begin with " +
                            path.filename().string() + " to a folder of yours");
 }
 

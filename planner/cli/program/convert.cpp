@@ -132,7 +132,7 @@ int convert_labels(const Program& program, const ConvertText& text) {
 /// Writes the kind of DICOM object that --as names; none if it names none.
 std::optional<int> convert_as(const Program& program, const ConvertText& text) {
   if (text.planes != "images" && text.as != "structures")
-    throw std::runtime_error("--planes is of --as structures, which is not written: leave it out");
+    throw std::runtime_error("--planes applies only to --as structures: leave it out");
   const bool is_report = voxel::extension_of(text.in) == ".pdf";
   if (text.as.empty() && !is_mesh(text.in) && !is_report) return std::nullopt;
   need_extension(text.out, {".dcm"}, "such a DICOM object is");
