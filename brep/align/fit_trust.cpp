@@ -20,7 +20,8 @@ constexpr double matching_cosine() {
 constexpr double least_ratio() {
   return 2.0;
 }
-/// A small match by chance exceeds others by more: caps of rounded bodies do by 2.5 times.
+/// If a fit matches less than `small_share` of the surface, its match must exceed every other by
+/// `least_small_ratio`: caps of rounded bodies exceed others by 2.5 times by chance.
 constexpr double small_share() {
   return 0.4;
 }
@@ -41,8 +42,9 @@ constexpr double equal_share() {
   return 0.35;
 }
 
-/// Answers of a symmetric shape match as much as one another, to the noise of samples. Those that differ by more
-/// than this ratio, and match less than this share, are chance: caps of two bodies that share nothing match so.
+/// The fits of a symmetric shape match equally much, apart from the noise of samples. Fits whose matches
+/// differ by more than this ratio, and that match less than this share, are chance: caps of two unrelated
+/// bodies match like that.
 constexpr double chance_ratio() {
   return 0.95;
 }

@@ -127,8 +127,8 @@ MirrorFit plane_of(const SurfaceFit& fit, const MirrorPlane& start, const glm::d
   return found;
 }
 
-/// Planes that most pairs of samples are mirror images about, point and normal: they do not hang on where the
-/// surface's centre and axes lie, so that a loss on one side takes votes from the mid-plane and does not move
+/// Planes that most pairs of samples are mirror images about, point and normal: they do not depend on the
+/// surface's centre and axes, so that a loss on one side removes votes from the mid-plane but does not move
 /// it. Pairs vote in cells of some ten degrees by a tenth of the spread; the peaks, the highest first.
 std::vector<MirrorPlane> voted_planes(const Cloud& cloud, std::size_t count) {
   constexpr double cells_of_normal = 6.0, cell_share = 0.1, like_normals = 0.15;

@@ -28,8 +28,9 @@ std::vector<Kernel::Point_3> points_of(const Mesh& mesh) {
 }
 
 /// With more points on the hull, the search takes those that lie furthest along `most_points / 2` directions
-/// and against them. Neighbouring directions are 2 degrees apart, so no edge of the box is over 2e-4 of its
-/// length off, and it is measured again over all points.
+/// and against them. Every direction is within about 2 degrees of one of these. The box is measured again
+/// over all points, so it holds all of them; on a rounded body its edges exceed the shortest possible ones by
+/// less than 1e-3.
 constexpr std::size_t most_points = 4000;
 
 glm::dvec3 as_vector(const Kernel::Point_3& p) {

@@ -149,7 +149,7 @@ class Refinement {
     return fit;
   }
 
-  /// Refines further with all samples within the noise of those that were kept, whatever their share.
+  /// Refines further with all samples within the noise of the kept ones, without a limit on their share.
   Fit widened(Fit fit, int rounds) const {
     const std::vector<Meeting> meetings = meet(fit.motion);
     std::vector<double> distances;
@@ -559,9 +559,10 @@ SurfaceFit register_surfaces(const Mesh& moving, const Mesh& fixed, const Surfac
           trust_of(fit.fixed_from_moving, {cloud, surface, noise_mm, fit.rms_mm, again, searched.ends});
       if (fit.trust->verdict >= answer.trust->verdict) continue;
       answer = std::move(fit);
-      answer.findings.push_back("WARN overlap: at " + short_text(100.0 * options.overlap) +
-                                " % no position was sure, so that " + short_text(100.0 * less.overlap) +
-                                " % were fitted: state by --overlap what both surfaces show");
+      answer.findings.push_back(
+          "WARN overlap: at " + short_text(100.0 * options.overlap) +
+          " % overlap no position was certain, so that " + short_text(100.0 * less.overlap) +
+          " % were fitted: give the share that both surfaces have in common by --overlap");
     }
   }
   tell_trust(answer);

@@ -2,10 +2,10 @@
 // 1 refuse inside-out operands; 2 put the operands in an order of their own, so that neither the
 // caller's order nor its addresses show in the bits; 3 where faces lie on one plane but for rounding, go on in
 // a frame in which they do exactly; 4 cut near the common lines only, or corefine the whole where that will
-// not do; 5 let the volumes vouch for each other, and lines through all shells for their places; 6 where a
-// wanted result is not manifold, these do not agree or triangles intersect, try cells between the planes, then
-// operands that have the same triangles on planes in common; 7 where none has a result, move the second
-// operand by far less than any bound, and tell.
+// not do; 5 check the volumes against each other, and the places of all shells by lines through them; 6 where
+// a wanted result is not manifold, these do not agree or triangles intersect, try cells between the planes,
+// then operands that have the same triangles on planes in common; 7 where none has a result, move the second
+// operand by far less than any bound, and report it.
 #include "brep/boolean/boolean.h"
 
 #include <algorithm>
@@ -268,8 +268,8 @@ Attempt best_attempt(const Question& question, const Solid& b) {
   return whole;
 }
 
-/// The remedy for surfaces that touch themselves, where corefinement breaks off, or whose results cross
-/// themselves: if all faces are square to the axes, cells between their planes.
+/// Computes the results from the cells between the planes of all faces, which must be square to the axes.
+/// Used where corefinement fails: for surfaces that touch themselves, and for results that cross themselves.
 Attempt rectilinear_attempt(const Question& question, double tolerance_mm) {
   Attempt attempt;
   std::optional<Results> results =
@@ -366,15 +366,15 @@ Answer answer_of(const Question& question, Attempt attempt, SettleReach reach = 
   return answer;
 }
 
-/// The finding where faces were moved onto one plane by more than the last places of doubles, by which every
-/// new point is moved.
+/// Reports that faces were moved onto one plane, unless by no more than the rounding of doubles, which moves
+/// every new point.
 void tell_coplanar(const Question& question, double moved_mm, Attempt& attempt) {
   const double area_mm2 = question.a.size().area_mm2 + question.b.size().area_mm2;
   if (moved_mm <= volume_tolerance_mm3(question.a.size(), question.b.size()) / area_mm2) return;
   attempt.findings.push_back("coplanar: faces of " + question.names.first + " and " + question.names.second +
                              " within " + short_text(moved_mm) +
-                             " mm of one plane count as lying on it, as points are rounded to floats, which "
-                             "changes a volume by at most " +
+                             " mm of one plane count as lying on it, because points are rounded to floats; "
+                             "this changes a volume by at most " +
                              short_text(moved_mm * area_mm2) + " mm3");
 }
 
@@ -393,7 +393,7 @@ class Best {
   std::optional<Answer> best_;
 };
 
-/// Where faces of both lie on one plane but for rounding.
+/// Answers in a frame in which faces that lie on one plane, apart from rounding, lie on it exactly.
 void answer_in_common_frame(const Question& question, Best& best) {
   const std::optional<CommonFrame> frame = common_frame(question.a, question.b);
   if (!frame) return;
@@ -410,7 +410,7 @@ void answer_in_common_frame(const Question& question, Best& best) {
   }
 }
 
-/// As above, where planes of several directions are common.
+/// Answers with operands that have the same triangles on common planes; these may have several directions.
 void answer_of_imprinted(const Question& question, Best& best) {
   const std::optional<Imprinted> divided = imprinted(question.a, question.b);
   if (!divided) return;

@@ -14,7 +14,7 @@ bool are_on(const std::array<glm::dvec3, 3>& points_mm, const Plane& plane, doub
   });
 }
 
-/// A plane by how far it lies from a common origin along its normal, or along the turned one.
+/// The distance of a plane from a common origin along its normal, or along the reversed normal.
 struct Offset {
   double along_mm = 0.0;
   const Plane* plane = nullptr;
@@ -65,12 +65,12 @@ void for_each_coplanar_pair(const std::vector<Plane>& of_a, const std::vector<Pl
   double reach_mm = 0.0;
   for (const std::vector<Plane>* planes : {&of_a, &of_b})
     for (const Plane& plane : *planes) reach_mm = std::max(reach_mm, glm::distance(plane.on_mm, origin_mm));
-  // Of planes in common the points lie within the tolerance, and the normals differ by `same_direction`.
+  // On a common plane, points differ by the tolerance and normals by `same_direction` at most.
   const double range_mm = tolerance_mm + 2.0 * same_direction() * reach_mm;
   std::vector<Offset> offsets;
   for (const Plane& plane : of_b) {
     const double along_mm = glm::dot(plane.normal, plane.on_mm - origin_mm);
-    // Normals whose largest parts all but tie may have come with either sign.
+    // If two components of a normal are almost equally large, rounding decides the sign; so both are listed.
     offsets.push_back({along_mm, &plane, false});
     offsets.push_back({-along_mm, &plane, true});
   }

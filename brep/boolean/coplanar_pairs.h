@@ -18,8 +18,9 @@ struct PointRounding {
 };
 PointRounding point_rounding(const Triangles& a, const Triangles& b);
 
-/// Normals that differ by less are of one direction. Triangles whose points lie on one plane to rounding agree
-/// to that over their height: this allows heights of a millionth of the reach.
+/// Normals that differ by less have one direction. Rounding of the points turns a triangle's normal by the
+/// rounding divided by the triangle's height, so that triangles whose height is below a million roundings may
+/// be missed.
 constexpr double same_direction() {
   return 1e-6;
 }
@@ -32,7 +33,7 @@ struct Plane {
   std::uint32_t face = 0;
 };
 
-/// Those of the triangles that have an area and reach into the box.
+/// The triangles that have an area and reach into the box.
 std::vector<Plane> planes_of(const Triangles& surface, const glm::dvec3& low, const glm::dvec3& high);
 
 /// Visits the pairs whose narrower triangle lies within the tolerance of the wider one's plane, whether or not

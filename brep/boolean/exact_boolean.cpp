@@ -33,8 +33,8 @@ Surface surface_of(const Solid& solid, const std::string& name) {
   return surface_mesh_of<Kernel::Point_3>(solid.triangles());
 }
 
-/// Refuses an operand that touches itself within the other's box: corefinement takes such a point for one and
-/// breaks its links.
+/// Refuses an operand that touches itself within the other's box: corefinement would treat coincident points
+/// as one and break the mesh's links.
 void need_points_apart(const Solid& solid, const Solid& other, const std::string& name) {
   const glm::dvec3 &low = other.size().low_mm, &high = other.size().high_mm;
   const std::vector<glm::dvec3>& points = solid.triangles().points_mm;

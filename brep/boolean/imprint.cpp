@@ -250,7 +250,7 @@ class Imprint {
                                 const std::set<SidePoints>& within) const {
     const FacePoints& face = faces_[solid][f];
     if (points.size() == 3) return {face};
-    // Without the axis nearest to the normal, so that no coordinate is rounded.
+    // Projects along the axis nearest to the normal, so that no coordinate is rounded.
     const glm::dvec3 normal = normal_of(face), size = glm::abs(normal);
     const int drop = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     int u = (drop + 1) % 3, v = (drop + 2) % 3;
@@ -308,8 +308,9 @@ class Imprint {
   std::map<std::array<std::uint32_t, 4>, std::uint32_t> crossings_;
 };
 
-/// How far points may lie beside the triangle that they were cut from, in roundings: a turn is a sum of three
-/// products, and points of doubles may have been contracted with others before, see settle.cpp.
+/// How far a point may lie off the triangle that it was cut from, in multiples of the rounding: a motion
+/// computes each coordinate as a sum of three products, and settle.cpp may have merged points of doubles
+/// before.
 constexpr double beside_triangle(bool are_floats) {
   return are_floats ? 8.0 : 64.0;
 }

@@ -88,14 +88,16 @@ long turn(const Place& p, const Place& q, const Place& r) {
   return static_cast<long>(q[1] - p[1]) * (r[2] - p[2]) - static_cast<long>(q[2] - p[2]) * (r[1] - p[1]);
 }
 
-/// Whether the line along x through a row's cells crosses the triangle, +1 or -1 for its sense, else 0. The
-/// line stands beside the cell's middle by so little that it meets no side of a triangle between places.
+/// Whether the line along x through a row of cells crosses the triangle: +1 or -1 for the triangle's
+/// orientation, else 0. The line passes so little beside the cells' middles that it meets no side of a
+/// triangle.
 int crossing(const std::array<Place, 3>& corners, int y, int z) {
   int inside = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const Place &p = corners[k], &q = corners[(k + 1) % 3];
     const long dy = q[1] - p[1], dz = q[2] - p[2];
-    // Of the middle, twice; then of what is beside it, first along y and then along z.
+    // Twice the area that the side spans with the middle; if it is 0, with a point beside it along y, then
+    // along z.
     long side = dy * (2L * (z - p[2]) + 1) - dz * (2L * (y - p[1]) + 1);
     if (side == 0) side = dz != 0 ? -dz : dy;
     if (side == 0) return 0;
@@ -124,7 +126,7 @@ std::optional<Cells> cells_in(const Triangles& surface, const Grid& grid) {
     const auto [low_z, high_z] = std::minmax({corners[0][2], corners[1][2], corners[2][2]});
     for (int z = low_z; z < high_z; ++z)
       for (int y = low_y; y < high_y; ++y)
-        // Outward along x, the line leaves.
+        // Where a face's normal points along x, the line leaves the solid.
         cells[grid.cell(corners[0][0], y, z)] =
             static_cast<std::int8_t>(cells[grid.cell(corners[0][0], y, z)] - crossing(corners, y, z));
   }
@@ -138,8 +140,8 @@ std::optional<Cells> cells_in(const Triangles& surface, const Grid& grid) {
   return cells;
 }
 
-/// Divides the sides where more than two triangles meet, all at one point. Sheets that touch there are then
-/// apart in their points, which the pose that they are moved to rounds alike.
+/// Divides each side where more than two triangles meet, in all of them at the same point. Each sheet that
+/// touches there then has points of its own, and a later motion rounds equal points equally.
 void divide_pinched_sides(Triangles& surface) {
   using Side = std::pair<std::uint32_t, std::uint32_t>;
   const auto side_of = [](std::uint32_t v, std::uint32_t w) { return Side(std::min(v, w), std::max(v, w)); };

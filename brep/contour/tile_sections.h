@@ -34,8 +34,8 @@ struct TiledSections {
   /// Of these, pairs whose best strip crossed itself or another surface, or would enclose a volume twice, and
   /// which were joined by the best one by the cost whose spans are clear of contours (tile_clear()).
   std::size_t clear_strips = 0;
-  /// Of these, pairs for which that strip crossed something, too, and which were joined by the best one nearer
-  /// to that of shortest spans (tile_near()), by that, or by that of least area.
+  /// Of these, pairs whose clear strip crossed something, too. They were joined by the best strip near the
+  /// strip of shortest spans (tile_near()), by the strip of shortest spans, or by the strip of least area.
   std::size_t narrowed_strips = 0;
   /// Pairs all of whose strips crossed something and which were joined by overlay() instead.
   std::size_t crossed_strips = 0;

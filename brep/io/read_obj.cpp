@@ -72,8 +72,8 @@ glm::dvec3 point(MeshScanner& scanner) {
   return p;
 }
 
-/// Bytes of each point of a binary OFF file beside its place: after their mark, a texture's two numbers, a
-/// colour's four, a normal's three. None if the mark has other letters.
+/// Bytes of each point of a binary OFF file besides its position: two numbers of a texture, four of a colour
+/// and three of a normal, as the file's prefix states. None if the prefix has other letters.
 std::optional<std::size_t> bytes_beside_place(std::string_view magic) {
   std::size_t numbers = 0;
   for (const auto& [letters, count] : {std::pair("ST", 2U), std::pair("C", 4U), std::pair("N", 3U)})
@@ -157,7 +157,8 @@ MeshContent read_off(std::string_view bytes) {
     scanner.fail("an OFF file of points in space starts with OFF, COFF, NOFF or STOFF");
   if (MeshScanner ahead = scanner; ahead.word(true) == "BINARY") {
     const std::optional<std::size_t> beside_place = bytes_beside_place(magic);
-    if (!beside_place) scanner.fail("a binary OFF file starts with OFF, after ST, C and N in this order");
+    if (!beside_place)
+      scanner.fail("a binary OFF file starts with OFF; only ST, C and N may stand before it, in this order");
     ahead.line();
     return read_binary_off(ahead, *beside_place);
   }

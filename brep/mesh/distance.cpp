@@ -674,8 +674,8 @@ std::vector<double> SurfaceTree::signed_distances_mm(const std::vector<glm::dvec
   tree_->check_not_empty();
   // Blocks are fixed, so that the start of each search does not depend on the threads.
   constexpr std::size_t block = 256;
-  // The ball about a point that ends at the surface has no surface in it, so that points whose balls overlap
-  // lie on one side of it. Far above the rounding of distances.
+  // The ball about a point whose radius is the distance to the surface contains no surface, so that points
+  // with overlapping balls lie on the same side. The margin is far above the rounding of distances.
   constexpr double surely = 1.0 - 1e-9;
   tbb::parallel_for(std::size_t{0}, (points_mm.size() + block - 1) / block, [&](std::size_t b) {
     std::uint32_t triangle = 0;

@@ -258,7 +258,7 @@ JoinedSurface joined_surface(Triangles triangles) {
     if (still.open < unfit.open) {
       joined.findings.push_back("unwelded: " + std::to_string(unfit.open - still.open) + " of " +
                                 std::to_string(unfit.open) +
-                                " open edges closed by taking points that coincide for one");
+                                " open edges closed by merging points that coincide");
       triangles = std::move(welded);
       unfit = still;
     }

@@ -146,7 +146,7 @@ class Decimater : public OpenMesh::Decimater::DecimaterT<CollapsedMesh> {
  public:
   explicit Decimater(CollapsedMesh& mesh) : BaseDecimaterT(mesh), DecimaterT(mesh) {}
 
-  /// Makes those of the collapses that may still be, in their order.
+  /// Repeats the given collapses in their order, and leaves out those that are no longer allowed.
   void make_again(const std::vector<Collapse>& collapses) {
     for (const auto& [from, to] : collapses) {
       if (mesh().status(from).locked()) continue;

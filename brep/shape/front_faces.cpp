@@ -3,7 +3,7 @@
 // Which triangles are hidden. Divide the view into cells. In one cell, join triangles across the edges that
 // they share. A sheet made so has no border within the cell, unless an edge of it lies there beyond which the
 // surface turns away: then it covers the cell wholly or not at all, and it covers the cell if it covers the
-// cell's middle. Whatever lies deeper than all corners of such a sheet's triangles is hidden in that cell.
+// cell's middle. Parts deeper than all corners of such a sheet's triangles are hidden in that cell.
 #include "brep/shape/front_faces.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -616,11 +616,10 @@ bool is_within_share(double before_mm3, double now_mm3, const RepairOptions& opt
 void check_volume(double before_mm3, const Triangles& now, const RepairOptions& options, const char* step) {
   const double now_mm3 = volume_inside_mm3(now);
   if (!is_within_share(before_mm3, now_mm3, options))
-    refuse_volume(
-        before_mm3, now_mm3, options, step,
-        "take --solid instead, which unites closed shells and makes other surfaces anew, or accept it by "
-        "--max-volume-share " +
-            short_text(1.01 * std::abs(now_mm3 - before_mm3) / before_mm3));
+    refuse_volume(before_mm3, now_mm3, options, step,
+                  "take --solid instead, which unites closed shells and rebuilds other surfaces, or "
+                  "accept the change by --max-volume-share " +
+                      short_text(1.01 * std::abs(now_mm3 - before_mm3) / before_mm3));
 }
 
 /// An answer that was tried, if it has one.
@@ -733,7 +732,7 @@ void make_solid(Mender& mender, double before_mm3, const RepairOptions& options)
 
 Repair mended(const Triangles& surface, const RepairOptions& options, bool offers_ways);
 
-/// Points of a surface in loose pieces that could be joined, if that closes it. Empty if it does not.
+/// Suggests the option --weld for a surface in loose pieces if joining their points closes it; else empty.
 std::string weld_way(const Triangles& given, double extent_mm, const RepairOptions& options) {
   if (options.weld_mm) return {};
   for (const double share : {3e-4, 1e-3, 3e-3}) {
@@ -742,7 +741,7 @@ std::string weld_way(const Triangles& given, double extent_mm, const RepairOptio
     welded.weld_mm = std::stod(apart);
     try {
       const Repair made = mended(given, welded, false);
-      // Some pieces may close by chance and the others be taken out.
+      // Rejects an answer in which a few pieces closed by chance and the others were removed.
       constexpr double most = 0.8;
       if (size_of(made.surface).area_mm2 < most * size_of(given).area_mm2) continue;
       return "--weld " + apart + " joins points up to " + apart + " mm apart and encloses " +

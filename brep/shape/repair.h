@@ -59,13 +59,12 @@ struct Repair {
 /// set, where intersections are taken out or the surface is enclosed. Edges of three and more triangles, and
 /// points where several fans meet, are split as split_fans() does wherever a step or the result needs it.
 /// Orients last, until health() agrees. Triangles with points that are not finite are taken out where `solid`
-/// is asked for. Ask health() what is left to be wished for. Throws std::invalid_argument if an option is out
-/// of its range, Error (Input) if a triangle refers to no point or to one that is not finite, Error
-/// (Geometry) with both volumes if the volume changes by more than its share, of an enclosing with what would
-/// be accepted in its place, or as enclose(); Stopped. Cost:
-/// n log n, and most for triangles that intersect: those are taken out of up to 100 000 triangles only, when
-/// `solid` can enclose instead. Source: holes after Liepa, "Filling holes in meshes", SGP 2003; both holes
-/// and intersections as CGAL has them.
+/// is asked for. health() reports the faults that remain. Throws std::invalid_argument if an option is out of
+/// its range, Error (Input) if a triangle refers to no point or to one that is not finite, Error (Geometry)
+/// with both volumes if the volume changes by more than its share, of an enclosing with what would be
+/// accepted in its place, or as enclose(); Stopped. Cost: n log n, and most for triangles that intersect:
+/// those are taken out of up to 100 000 triangles only, when `solid` can enclose instead. Source: holes after
+/// Liepa, "Filling holes in meshes", SGP 2003; both holes and intersections as CGAL has them.
 Repair repair(const Triangles& surface, const RepairOptions& options);
 
 /// The differences between a surface and the one from which it was made.

@@ -8,8 +8,8 @@
 // 5 Each covered face makes one triangle at its depth and one in the end plane; each edge between faces of
 //   different depths makes a wall.
 //
-// Whatever triangle step 3 finds, step 5 closes the surface: each wall's upper and lower edges are those of
-// the two faces beside it, and walls meet along all the depths of a point. Rounding can therefore move the
+// Step 5 closes the surface for any triangle that step 3 finds: each wall's upper and lower edges are those
+// of the two faces beside it, and walls meet along all the depths of a point. Rounding can therefore move the
 // surface but not open it.
 //
 // Departure from the exact lower envelope (Halperin and others, CGAL's Envelope_3): points at which edges

@@ -28,7 +28,7 @@ struct Shadow {
 /// belong to it. Exact but for rounding: the surface consists of the parts of the object's triangles that are
 /// seen first, with those triangles' own points, of walls along the direction below the edges at which the
 /// view jumps, and of the plane. No triangle is left out or simplified. Points where edges cross in the view
-/// are rounded to doubles, so the proof is Rounded; the surface is closed whatever the rounding.
+/// are rounded to doubles, so the proof is Rounded; the surface is closed for any rounding.
 ///
 /// Where `end_mm` is less than the far end of the solid, the plane is at the far end. The empty set has an
 /// empty shadow. Throws std::invalid_argument if the direction is not a unit vector or the end is not

@@ -34,7 +34,8 @@ std::vector<glm::dvec3> corner_normals(const Triangles& triangles) {
       normals[face[k]] += normal * std::acos(std::clamp(glm::dot(next, last), -1.0, 1.0));
     }
   }
-  // Angles around a point sum to a full turn at most for a plain surface: a sum this short is rounding.
+  // A sum of unit normals times angles is as long as a few radians unless the normals cancel out; a sum
+  // shorter than this is only rounding.
   const double rounding = 64.0 * std::numeric_limits<double>::epsilon();
   for (glm::dvec3& normal : normals) normal = unit(normal, rounding);
   return normals;

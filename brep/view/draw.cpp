@@ -165,7 +165,7 @@ class Painter {
     }
   }
 
-  /// The number of triangles that face away and were left out.
+  /// Adds the facets of a surface. Returns the number of triangles that face away and were left out.
   std::uint64_t add_facets(const Triangles& triangles, std::uint32_t item) {
     const bool is_smooth =
         options_.shading == FacetShading::Gouraud || options_.shading == FacetShading::Phong;
@@ -201,7 +201,7 @@ class Painter {
     return culled;
   }
 
-  /// The part of a triangle beyond the nearest depth: a polygon of three or four corners.
+  /// Adds the part of a triangle beyond the nearest depth: a polygon of three or four corners.
   void add_clipped(const Triangles& triangles, const std::array<std::uint32_t, 3>& face,
                    const std::vector<glm::dvec3>& normals, Facet facet) {
     std::vector<std::uint32_t> polygon;
@@ -397,8 +397,8 @@ class Painter {
     }
   }
 
-  /// How much nearer a line counts: its width, so that a surface of up to 63 degrees from the picture's plane, which
-  /// rises by twice the radius beside it, does not hide the outline that lies on it.
+  /// The length by which a line counts as nearer: its width, so that a surface of up to 63 degrees from the
+  /// picture's plane, which rises by twice the radius beside it, does not hide the outline that lies on it.
   double lead_mm(std::uint32_t id) const {
     if (id < facets_.size() || id >= facets_.size() + pieces_.size()) return 0.0;
     return 2.0 * pieces_[id - facets_.size()].radius_px * camera_.pixel_mm;

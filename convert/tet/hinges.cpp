@@ -50,7 +50,7 @@ std::optional<std::string> hinge_in(const Tetrahedra& tetrahedra) {
   std::sort(parts.begin(), parts.end());
   const auto part_count = std::unique(parts.begin(), parts.end()) - parts.begin();
   const auto node_count = std::unique(nodes.begin(), nodes.end()) - nodes.begin();
-  return std::to_string(part_count) + " parts hang together by edges or nodes alone, at " +
+  return std::to_string(part_count) + " parts are connected only by edges or nodes, at " +
          std::to_string(node_count) + (node_count == 1 ? " node, at " : " nodes, the first at ") +
          voxel::rounded(tetrahedra.nodes_mm[nodes.front()]) +
          " mm: they turn there as on a hinge; close the gap beside it in the object, or hold each part";

@@ -8,9 +8,10 @@
 
 namespace octotomy::convert {
 
-/// Where parts of a filling hang together by edges or nodes alone, as voxels do that share an edge: the solver
-/// lets them turn there as on a hinge, or ends with a singular stiffness. None where elements that share a node
-/// are linked by faces. Parts that share no node are separate bodies and not reported. Cost: n log n.
+/// A finding on parts of a filling that are connected by edges or nodes alone, like two voxels that share an
+/// edge: in the solver they turn there as on a hinge, or the stiffness is singular. None if all elements that
+/// share a node are also connected by faces. Parts that share no node are separate bodies and not reported.
+/// Cost: n log n.
 std::optional<std::string> hinge_in(const Tetrahedra& tetrahedra);
 
 }  // namespace octotomy::convert

@@ -71,8 +71,8 @@ struct Labels {
   int share_step = 1;
 
   /// The label with the largest trilinear share of the eight samples about a point, of equal ones the lowest.
-  /// So surfaces between labels are smooth and not in the voxels' steps. Labels that meet in a plane count as
-  /// one beside others, and the side of the plane decides between them.
+  /// So surfaces between labels are smooth and do not follow the voxels' steps. Labels that meet in a plane
+  /// count as one label when they are compared with others; then the side of the plane decides between them.
   int at(const Point& p) const {
     std::array<double, 3> place{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -101,7 +101,7 @@ struct Labels {
     return std::find(labels.begin(), labels.end(), label) != labels.end();
   }
 
-  /// Labels with the lowest one that they are joined to by planes.
+  /// For each label, the lowest label that planes connect it with.
   std::array<std::uint8_t, 8> grouped(const std::array<std::uint8_t, 8>& labels) const {
     std::array<std::uint8_t, 8> groups = labels;
     for (const convert::LabelPlane& plane : planes) {

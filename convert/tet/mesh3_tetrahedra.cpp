@@ -15,8 +15,8 @@
 //   slivers. Nodes beside sharp edges of the given surface move onto these (sharp_edges.h).
 // 2 The nodes of its surface lie on the given one, so its facets are chords: they lose volume on a convex
 //   surface and gain some on a hollow one. Every node of the surface, except those of flat faces and sharp
-//   edges, moves along its normal by the same share of the distance that a facet's middle may have there. The share is at most 1: a larger one would mean
-//   that something else was lost.
+//   edges, moves along its normal by the same share of the distance that the middle of a facet may lie off
+//   the given surface there. The share is at most 1: a larger one would mean that something else was lost.
 // 3 Nodes move to mend flat elements (improve_tetrahedra.h).
 // 4 The answer counts only if the volumes are positive, their sum is the surface's, each point of the given
 //   surface is near the new one, and little of the volume lies outside: otherwise the loss of a thin spike or
@@ -260,7 +260,7 @@ std::optional<std::string> misplaced(const Tetrahedra& made, const Given& given)
          " % of the volume outside of the given surface: walls are thinner than elements";
 }
 
-/// The play without that of nodes on flat faces, whose facets lose nothing.
+/// How far nodes may move, with 0 for nodes on flat faces, whose facets lose no volume.
 std::vector<double> play_off_flats_mm(const Tetrahedra& made, std::vector<double> play_mm) {
   constexpr double flat_cosine = 0.99985;  // a degree
   const brep::Triangles surface = surface_of(made);

@@ -20,15 +20,15 @@
 #include "voxel/tree/slice_build.h"
 
 // 1 The regions' voxels become an image of labels: their box and a voxel all round.
-//   Where voxels cannot tell an interface from a plane, it is one, and the side of the plane decides between its
-//   regions.
+//   An interface that is flat to within the voxels' resolution counts as a plane, and the side of the plane
+//   decides between its regions.
 // 2 Mesh_3 starts from the middles between voxels of different labels, a size apart, so that it misses no
-// region
-//   and no part of one, and from rims, where three labels meet: else it finds these half a voxel off. Denser
-//   start points would show it the voxels' steps, on which refinement for good angles never ends.
+//   region and no part of one, and from rims, where three labels meet, because it would otherwise put these
+//   half a voxel off. Denser start points would lie on the voxels' steps, where refinement for good angles
+//   never ends.
 // 3 The nodes are moved to the patient's frame. Where regions meet in a plane, the nodes along its rim, where
-//   three labels meet, are put on it: a contact that is not flat interlocks. Then nodes move
-//   to mend flat elements.
+//   three labels meet, are put on it, because surfaces in contact that are not flat interlock. Then nodes
+//   move to mend flat elements.
 // 4 The answer counts only if all volumes are positive and each region's is near that of its voxels.
 
 namespace octotomy::convert {
@@ -129,13 +129,14 @@ struct Counted {
   double exposed_mm2 = 0.0;  ///< faces towards other labels
 };
 
-/// A plane through the points that are near it.
+/// A plane by a point and its unit normal.
 struct InterfacePlane {
   glm::dvec3 on_mm{0.0}, normal{0.0};
   double away_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm - on_mm, normal); }
 };
 
-/// The plane of least squares through the points that are near a plane.
+/// The plane of least squares through the points within `near_mm` of it, found by iteration from a first
+/// plane.
 InterfacePlane fitted(const std::vector<glm::dvec3>& points_mm, InterfacePlane plane, double near_mm) {
   constexpr int rounds = 5;
   for (int round = 0; round < rounds; ++round) {
@@ -173,9 +174,10 @@ InterfacePlane fitted(const std::vector<glm::dvec3>& points_mm, InterfacePlane p
 
 using LabelPair = std::pair<std::uint8_t, std::uint8_t>;  // the lower first
 
-/// Planes that may be what two regions were cut by. The middle between two voxels on either side of a plane is
-/// within half a voxel's edge of it, so that an interface whose middles all are is as flat as voxels can tell.
-/// The fitted plane is not the cut itself, hence a tenth of an edge more.
+/// Planes of the interfaces that may be plane cuts. If a plane cuts two regions apart, the middle between two
+/// voxels on either side of it lies within half a voxel's edge of it; an interface all of whose middles do is
+/// flat to within the voxels' resolution. The fitted plane is not the cut itself, hence a tenth of an edge
+/// more.
 std::vector<LabelPlane> planes_between(const Labelled& labelled) {
   constexpr std::size_t fewest = 16;
   constexpr double most_edges = 0.6, near_share = 0.99;
@@ -227,8 +229,9 @@ const LabelPlane* plane_between(const std::vector<LabelPlane>& planes, std::uint
   return found == planes.end() ? nullptr : &*found;
 }
 
-/// Seed points on the interface of one label pair are at least `size_mm` apart. They keep clear of rims, too: one
-/// beside a rim, half-way between two of its points, would be taken for the rim.
+/// Seed points on the interface of one label pair are at least `size_mm` apart. They also keep a distance
+/// from rims: the mesher would take a point beside a rim, half-way between two of the rim's points, for a
+/// point of the rim.
 class Starts {
  public:
   explicit Starts(double size_mm, const std::vector<glm::dvec3>& rims_mm = {}) : size_mm_(size_mm) {
@@ -248,7 +251,7 @@ class Starts {
   using Pair = std::pair<std::uint8_t, std::uint8_t>;
   using Key = std::tuple<Pair, int, int, int>;
 
-  /// Of no interface, whose labels differ.
+  /// The key of rim points: a pair that no interface has, because the labels of an interface differ.
   static Pair rim() { return {1, 1}; }
 
   glm::ivec3 cell_of(const glm::dvec3& p_mm) const { return glm::ivec3(glm::floor(p_mm / size_mm_)); }
@@ -270,9 +273,9 @@ class Starts {
   std::multimap<Key, glm::dvec3> in_cell_;
 };
 
-/// Where three regions meet about an edge of the dual lattice, in the square between four voxels' centres: of
-/// their bilinear shares three are equal there. None where fewer than three labels meet, or where the twice
-/// seen one lies across the diagonal.
+/// The point of the square between four voxels' centres where three regions meet: three bilinear shares are
+/// equal there. None if the corners have fewer than three labels, or if both corners of a diagonal have one
+/// label.
 std::optional<glm::dvec2> triple_point(const std::array<std::uint8_t, 4>& labels) {
   // Corners 0 and 1 share a side, as do 0 and 2; 3 is across from 0.
   const auto [a, b, c, d] = labels;

@@ -11,9 +11,9 @@
 
 #include "convert/tet/element_faces.h"
 
-// Meshers that make a surface of their own put its nodes on the given one, and its triangles cut the edges off.
-// After Labelle and Shewchuk (isosurface_stuffing.h), who snap lattice nodes to the surface: here nodes snap to
-// edges of the surface.
+// Some meshers make a surface of their own with nodes on the given one; its triangles then cut sharp edges
+// off. Here such nodes move onto these edges, as Labelle and Shewchuk (isosurface_stuffing.h) move lattice
+// nodes onto the surface.
 
 namespace octotomy::convert {
 namespace {
@@ -59,7 +59,7 @@ void for_each_near(const std::map<Cell, std::vector<Entry>>& cells, const Cell& 
   }
 }
 
-/// The sharp edges of a surface, found by place, and the points where at least three end.
+/// The sharp edges of a surface, sorted into cells of space, and the points where at least three end.
 class SharpEdges {
  public:
   SharpEdges(const brep::Triangles& surface, const std::vector<glm::dvec3>& normals, double cell_mm)
@@ -97,7 +97,7 @@ class SharpEdges {
   }
 
  private:
-  /// Into the cells of points a half of a cell's side apart: no point of the edge is further than that from one.
+  /// Adds the edge to the cells of points on it that are at most half a cell's side apart.
   void add(const Ends& edge) {
     const glm::dvec3 &a = surface_.points_mm[edge.first], &b = surface_.points_mm[edge.second];
     const int steps = std::max(1, static_cast<int>(std::ceil(2.0 * glm::distance(a, b) / cell_mm_)));
@@ -137,7 +137,8 @@ class Putting {
     const double side_mm = sum_mm / static_cast<double>(sides.size());
     const SharpEdges edges(given_.triangles, normals_, side_mm);
     put_on_corners(edges, side_mm);
-    // A second round reaches sides whose nearer end had been kept by an element that has changed since.
+    // The second round moves nodes that an element kept in place in the first round and that may move since
+    // it changed.
     constexpr int rounds = 2;
     for (int round = 0; round < rounds; ++round) put_on_edges(edges, sides);
     std::sort(moved_.begin(), moved_.end());

@@ -9,7 +9,7 @@
 
 namespace octotomy::convert {
 
-/// A surface to be kept to, with its search tree.
+/// The surface whose edges are restored, with its search tree.
 struct KeptSurface {
   const brep::Triangles& triangles;
   const brep::SurfaceTree& tree;
@@ -17,9 +17,9 @@ struct KeptSurface {
 
 /// Moves nodes of the elements' surface onto corners and sharp edges of the given one, where the elements'
 /// surface cuts them off: where a side of it goes from one face to another across a sharp edge, the end that is
-/// nearer moves onto that edge. Edges are sharp from 40 degrees on. No element comes to have a smaller dihedral
-/// angle than `least_deg`, unless it had one before, then none smaller; nodes for which that cannot be stay.
-/// Returns the nodes that were moved, ascending. Deterministic. Cost: about n log n.
+/// nearer moves onto that edge. Edges are sharp from 40 degrees on. No element's smallest dihedral angle
+/// falls below `least_deg`, or below its old value if that was smaller; nodes that cannot move within this
+/// bound stay. Returns the nodes that were moved, ascending. Deterministic. Cost: about n log n.
 std::vector<std::uint32_t> put_on_sharp_edges(Tetrahedra& tetrahedra, const KeptSurface& given,
                                               double least_deg);
 

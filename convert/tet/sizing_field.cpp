@@ -256,7 +256,8 @@ std::optional<std::string> coarse_place(const Tetrahedra& tetrahedra, const std:
   return "elements at " + voxel::rounded(at_mm) + " mm have sides of " + voxel::rounded(side_mm) +
          " mm where " + voxel::rounded(asked_mm) + " mm were asked for" +
          (count > 1 ? ", the worst of " + std::to_string(count) + " such places" : "") +
-         ": they grow inward from the surface: ask at the surface, or bound the volume of all";
+         ": fine elements grow inward from the surface only: choose a place on the surface, or bound the "
+         "volume of all elements";
 }
 
 }  // namespace octotomy::convert

@@ -421,7 +421,7 @@ std::optional<Tetrahedra> by_stuffing(const MesherInput& surface, double surface
     attempts.code = voxel::ErrorCode::Geometry;
     return std::nullopt;
   }
-  // Stuffing's own least angle.
+  // Just below stuffed_dihedral_deg(), the least angle that isosurface stuffing guarantees.
   constexpr double least_deg = 10.0;
   put_on_sharp_edges(made, {triangles, brep::SurfaceTree(triangles)}, least_deg);
   std::vector<double> apart_mm = brep::SurfaceTree(surface_of(made)).distances_mm(surface.points_mm);

@@ -92,7 +92,7 @@ std::string user_information() {
                         item(0x52, "2.25.107031158870021870421842158015462014722") + item(0x55, "OCTOTOMY"));
 }
 
-/// The longest unit that the other side takes, from its user information; none where it states none.
+/// The longest unit that the other side accepts, from its user information; 16 KB if it states none.
 std::size_t most_of(std::string_view information) {
   std::size_t most = 16384;
   each_item(information, [&](int kind, std::string_view value) {
@@ -223,8 +223,8 @@ Association Association::request(Connection connection, const AssociationTitles&
   made.connection_.write(unit(asks, text + user_information()));
   const int kind = made.read_unit(most_negotiation);
   if (kind == rejects)
-    throw PeerError(made.peer() + ": refuses the association: is '" + titles.called +
-                    "' its title, and does it know '" + titles.calling + "'?");
+    throw PeerError(made.peer() + ": refuses the association: check that '" + titles.called +
+                    "' is its title and that it accepts '" + titles.calling + "'");
   if (kind != accepts_it || made.unit_.size() < 68)
     made.break_off("does not answer the request for an association");
   const bool is_whole = each_item(std::string_view(made.unit_).substr(68), [&](int of,
@@ -292,7 +292,7 @@ void Association::refuse_for_now(Connection connection) {
     made.connection_.set_deadline(std::chrono::milliseconds(200));
     made.connection_.write(unit(rejects, std::string("\0\2\3\2", 4)));
   } catch (const PeerError&) {
-    // It has gone, which is what was wanted.
+    // The other side has already closed the connection, so there is nothing to refuse.
   }
 }
 
@@ -331,7 +331,7 @@ bool Association::next_fragment(Fragment& fragment) {
       connection_.write(unit(is_released, std::string(4, '\0')));
       return false;
     }
-    if (kind == aborts) throw PeerError(peer() + ": broke the association off");
+    if (kind == aborts) throw PeerError(peer() + ": aborted the association");
     if (kind != data) break_off("sends a unit out of order");
     at_ = 0;
   }
@@ -353,7 +353,7 @@ bool Association::receive(DicomCommand& command, int& context) {
     if (!fragment.is_command) break_off("sends data without a command");
     if (!accepted_.contains(fragment.context)) break_off("uses a context that was not agreed on");
     context = fragment.context;
-    if (bytes.size() + fragment.bytes.size() > most_command) break_off("sends a command without end");
+    if (bytes.size() + fragment.bytes.size() > most_command) break_off("sends a command that is too long");
     bytes.append(fragment.bytes);
     if (fragment.is_last) break;
   }

@@ -10,15 +10,15 @@
 
 #include "planner/network/connection.h"
 
-// DICOM's upper layer and messages (PS3.8, 9.3; PS3.7, 6.3 and 9.1), for both sides, as far as echo and storage need
-// them. Every length that a peer states is compared with a bound before it is used.
+// DICOM's upper layer and messages (PS3.8, 9.3; PS3.7, 6.3 and 9.1), for both sides, reduced to what echo and
+// storage need. Every length that a peer states is compared with a bound before it is used.
 namespace octotomy::planner {
 
 inline constexpr const char* verification_class = "1.2.840.10008.1.1";
 inline constexpr const char* implicit_little_endian = "1.2.840.10008.1.2";
 inline constexpr const char* explicit_little_endian = "1.2.840.10008.1.2.1";
 
-/// A pair of class and transfer syntax; as one proposes it, all syntaxes of one context are one.
+/// A class and its transfer syntaxes: several when it is proposed, one when it is accepted.
 struct PresentationContext {
   std::string class_uid;
   std::vector<std::string> syntaxes;
@@ -39,11 +39,11 @@ struct DicomCommand {
   std::string class_uid, instance_uid;
 };
 
-/// An association over a connection, of which it takes hold.
+/// An association over a connection, which it owns.
 class Association {
  public:
-  /// Asks for one. `patience` is the time for each message or part of one. Throws PeerError, with the reason that
-  /// the other side states. Precondition: at most 128 contexts.
+  /// Requests an association. `patience` is the time limit for each message or part of a message. Throws
+  /// PeerError, with the reason that the other side states. Precondition: at most 128 contexts.
   static Association request(Connection connection, const AssociationTitles& titles,
                              const std::vector<PresentationContext>& contexts,
                              std::chrono::milliseconds patience);
@@ -53,7 +53,7 @@ class Association {
       Connection connection, const std::string& title,
       const std::function<bool(const std::string& class_uid, const std::string& syntax)>& accepts,
       std::chrono::milliseconds patience);
-  /// Refuses the next request for the time being, because there are too many.
+  /// Rejects the next request as temporarily impossible, because too many associations are open.
   static void refuse_for_now(Connection connection);
 
   /// The number of an accepted context; 0 if there is none.
@@ -65,7 +65,8 @@ class Association {
   /// Sends a part of a message's data.
   void send_data(int context, std::string_view bytes, bool is_last);
 
-  /// The next command and its context; false after the other side's release, which is answered.
+  /// The next command and its context; false after the other side has released the association; the release
+  /// is answered.
   bool receive(DicomCommand& command, int& context);
   /// Receives the data of the last command in parts.
   void receive_data(int context, const std::function<void(std::string_view)>& part);

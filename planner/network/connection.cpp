@@ -128,7 +128,8 @@ struct Connection::State {
     }
   }
 
-  /// Waits for what TLS needs after `result`; throws for other results.
+  /// Waits until the connection is ready for the operation that TLS needs next after `result`; throws for
+  /// errors.
   void wait_for_tls(int result) const {
     const int error = SSL_get_error(session.get(), result);
     if (error == SSL_ERROR_WANT_READ) return wait(POLLIN);

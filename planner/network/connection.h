@@ -12,7 +12,7 @@
 
 namespace octotomy::planner {
 
-/// The other side does not answer, breaks the protocol or a limit, or refuses.
+/// The other side does not answer, violates the protocol, exceeds a limit, or refuses.
 struct PeerError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

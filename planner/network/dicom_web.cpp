@@ -65,7 +65,8 @@ class Request {
     add_header("Expect:");
   }
 
-  /// Runs it: the body of a status 200 goes to `answer`. Returns the status; reason() is what other answers state.
+  /// Runs the request and passes the body to `answer` if the status is 200. Returns the status; reason()
+  /// returns the text of other answers.
   long run(const std::function<void(const std::string& type, std::string_view bytes)>& answer) {
     answer_ = &answer;
     const CURLcode code = curl_easy_perform(curl_.get());
@@ -81,7 +82,7 @@ class Request {
     curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &number);
     return number;
   }
-  /// The beginning of what the other side states with a refusal, as one printable line.
+  /// The beginning of the text that the other side sends with a refusal, as one printable line.
   std::string reason() const {
     std::string text = reason_.substr(0, 200);
     for (char& c : text)
@@ -177,7 +178,8 @@ class FileBody {
 }  // namespace
 
 void store_by_web(const WebArchive& archive, const fs::path& path, const std::stop_token& stop) {
-  // Occurs in no DICOM file but by intention, which would spoil nothing but the sender's own object.
+  // A DICOM file contains this text only if somebody put it there, which would damage only that sender's own
+  // object.
   const std::string boundary = "octotomy-4c7e1f0a9b2d4e58a1c36b7790de5f42";
   FileBody body("--" + boundary + "\r\nContent-Type: application/dicom\r\n\r\n", path,
                 "\r\n--" + boundary + "--\r\n");
@@ -187,10 +189,11 @@ void store_by_web(const WebArchive& archive, const fs::path& path, const std::st
   request.post(body.bytes(), [&](char* to, std::size_t count) { return body.read(to, count); });
   std::string said;
   const long status = request.run([&](const std::string&, std::string_view bytes) {
-    if (said.size() + bytes.size() > most_answer) throw PeerError(archive.url + ": answers without end");
+    if (said.size() + bytes.size() > most_answer)
+      throw PeerError(archive.url + ": answers with more than 16 MB");
     said.append(bytes);
   });
-  // The reason of a failure stands in the items of instances that were not stored (PS3.18, I.2).
+  // The answer lists instances that were not stored with the reason (PS3.18, I.2).
   if (status != 200 || said.find("00081197") != std::string::npos)
     refuse(path.string() + ": not stored", status, status == 200 ? said.substr(0, 200) : request.reason());
 }
@@ -200,7 +203,8 @@ std::string search_by_web(const WebArchive& archive, const std::string& query, c
   request.add_header("Accept: application/dicom+json");
   std::string found;
   const long status = request.run([&](const std::string&, std::string_view bytes) {
-    if (found.size() + bytes.size() > most_answer) throw PeerError(archive.url + ": answers without end");
+    if (found.size() + bytes.size() > most_answer)
+      throw PeerError(archive.url + ": answers with more than 16 MB");
     found.append(bytes);
   });
   if (status == 204) return "[]";  // nothing was found
@@ -218,7 +222,7 @@ void retrieve_by_web(const WebArchive& archive, const std::string& resource, Rec
     parts->add(bytes);
   });
   if (status != 200) refuse(archive.url + ", " + resource, status, request.reason());
-  if (!parts) throw PeerError(archive.url + ": answers with nothing");
+  if (!parts) throw PeerError(archive.url + ": sends an empty answer");
   parts->finish();
 }
 

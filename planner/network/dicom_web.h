@@ -29,11 +29,13 @@ std::string search_by_web(const WebArchive& archive, const std::string& query,
                           const std::stop_token& stop = {});
 
 /// Retrieves a study, a series or an instance (WADO-RS) into a folder: `resource` is its path, such as
-/// "studies/1.2.3/series/1.2.4". Throws PeerError; objects that arrived whole before stay.
+/// "studies/1.2.3/series/1.2.4". Throws PeerError; objects that have arrived completely before stay in the
+/// folder.
 void retrieve_by_web(const WebArchive& archive, const std::string& resource, ReceivedFiles& folder,
                      const std::stop_token& stop = {});
 
-/// A text as a value in an address, with percent signs. The wildcards * and ? stay, as some archives expect.
+/// A text as a value in an address, with percent encoding. The wildcards * and ? stay unencoded, because some
+/// archives expect that.
 std::string web_text(const std::string& text);
 
 }  // namespace octotomy::planner

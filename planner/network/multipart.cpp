@@ -33,7 +33,7 @@ Multipart::Multipart(const std::string& type, ReceivedFiles& folder)
     : folder_(folder), boundary_(boundary_of(type)), held_("\r\n") {}
 
 void Multipart::add(std::string_view bytes) {
-  // In blocks, so that what is held stays small.
+  // Works on blocks, so that `held_` stays small.
   constexpr std::size_t block = 1 << 16;
   while (!bytes.empty()) {
     const std::string_view now = bytes.substr(0, block);
@@ -57,7 +57,7 @@ bool Multipart::step() {
         need_end(before);
       held_.erase(0, before);
       if (at == std::string::npos) return false;
-      // Two bytes more tell whether another part follows.
+      // The next two bytes show whether another part follows.
       if (held_.size() < boundary_.size() + 2) return false;
       if (part_) part_->finish("", "");
       part_.reset();
@@ -70,7 +70,7 @@ bool Multipart::step() {
     case Place::Header: {
       const std::size_t end = held_.find("\r\n\r\n");
       if (std::min(end, held_.size()) > most_header)
-        throw PeerError("the archive's answer has a header without end");
+        throw PeerError("the archive's answer has a part whose header is longer than 8 KB");
       if (end == std::string::npos) return false;
       held_.erase(0, end + 4);
       place_ = Place::Part;
@@ -87,7 +87,7 @@ bool Multipart::step() {
 
 void Multipart::need_end(std::size_t more) {
   beside_ += more;
-  if (beside_ > most_beside) throw PeerError("the archive's answer goes on without objects");
+  if (beside_ > most_beside) throw PeerError("the archive's answer has too many bytes outside of its parts");
 }
 
 void Multipart::finish() const {

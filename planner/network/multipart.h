@@ -9,8 +9,8 @@
 
 namespace octotomy::planner {
 
-/// Takes a multipart body (RFC 2046, 5.1) apart as it arrives and puts each part into a folder. Holds at most a part's
-/// header and a boundary in memory.
+/// Splits a multipart body (RFC 2046, 5.1) into its parts as it arrives and writes each part into a folder.
+/// Holds at most 64 KB of the body, a part's header and a boundary in memory.
 class Multipart {
  public:
   /// `type`: the answer's Content-Type. Throws PeerError if it names no boundary.
@@ -22,7 +22,7 @@ class Multipart {
 
  private:
   enum class Place { Before, Header, Part, After };
-  /// Takes what it can of `held_`; false if it needs more.
+  /// Consumes the next piece of `held_`; false if more bytes are needed.
   bool step();
   /// Throws PeerError if too many bytes belong to no part.
   void need_end(std::size_t more);

@@ -94,16 +94,17 @@ ReceivedFile ReceivedFiles::Part::finish(const std::string& class_uid, const std
   made.bytes = state_->bytes;
   try {
     if (state_->head.size() < 132 || state_->head.compare(128, 4, "DICM") != 0)
-      throw PeerError("an object is no DICOM file");
+      throw PeerError("an object is not a DICOM file");
     const voxel::DicomFile file(state_->head, made.bytes);
     made.class_uid = file.text(0x00080016);
     made.instance_uid = file.text(0x00080018);
   } catch (const voxel::DicomFile::NeedsMore&) {
-    // Attributes before the pixels of more than the checked bytes: identified by the peer's word alone.
+    // The attributes before the pixels are longer than the checked bytes: the identifiers are those that the
+    // peer announced.
     made.class_uid = class_uid;
     made.instance_uid = instance_uid;
   } catch (const voxel::DicomFile::Deflated&) {
-    throw PeerError("an object is deflated, which is not received");
+    throw PeerError("an object has the deflated transfer syntax, which is not supported");
   } catch (const voxel::Error& error) {
     throw PeerError(std::string("an object's attributes are damaged: ") + error.what());
   }

@@ -30,7 +30,7 @@ class ReceivedFiles {
   /// Makes the folder. Throws std::runtime_error with path and reason.
   ReceivedFiles(std::filesystem::path folder, const ReceiveLimits& limits);
 
-  /// An object on its way, in a file that is removed unless finish() succeeds.
+  /// An object that is being received, in a file that is removed unless finish() succeeds.
   class Part {
    public:
     explicit Part(ReceivedFiles& owner);

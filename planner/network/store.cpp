@@ -43,9 +43,10 @@ Connection connected(const StorePeer& peer) {
 DicomCommand answer_to(Association& association, int message) {
   DicomCommand answer;
   int context = 0;
-  if (!association.receive(answer, context)) throw PeerError(association.peer() + ": ends without an answer");
+  if (!association.receive(answer, context))
+    throw PeerError(association.peer() + ": releases the association without an answer");
   if ((answer.kind & 0x8000) == 0 || answer.answered != message)
-    throw PeerError(association.peer() + ": answers another message than the last");
+    throw PeerError(association.peer() + ": answers a message other than the last one");
   return answer;
 }
 
@@ -53,8 +54,8 @@ void send_file(Association& association, const OutgoingFile& file, std::uint16_t
                std::vector<std::string>& warnings) {
   const int context = association.context_of(file.class_uid, file.syntax);
   if (context == 0)
-    throw PeerError(file.path.string() + ": the other side does not take objects of class " + file.class_uid +
-                    " in transfer syntax " + file.syntax);
+    throw PeerError(file.path.string() + ": the other side does not accept objects of class " +
+                    file.class_uid + " in transfer syntax " + file.syntax);
   DicomCommand command;
   command.kind = 0x0001;
   command.message = message;
@@ -95,7 +96,8 @@ bool is_stored(const std::string& class_uid) {
   return class_uid.starts_with("1.2.840.10008.5.1.4.");
 }
 
-/// The bytes of a file before its data set. Whatever the peer's own meta header was, these state only what was agreed.
+/// The bytes of a file before its data set. They state only what the association agreed on; the peer sends no
+/// meta header.
 std::string file_head(const std::string& class_uid, const std::string& instance_uid,
                       const std::string& syntax) {
   voxel::DicomAttributes meta;
@@ -135,7 +137,7 @@ class Receiver {
       if (command.kind != 0x0001 || !command.has_data || command.instance_uid.empty() ||
           command.class_uid != agreed.class_uid || !is_stored(agreed.class_uid)) {
         association.abort();
-        throw PeerError(association.peer() + ": asks for more than to store objects");
+        throw PeerError(association.peer() + ": sends a request other than storing an object or an echo");
       }
       take(association, context, agreed.syntaxes.front(), command);
       association.send(context, answer);
@@ -206,7 +208,7 @@ void echo(const StorePeer& peer) {
   Association association = Association::request(
       connected(peer), peer.titles, {{verification_class, {implicit_little_endian}}}, peer.timeout);
   const int context = association.context_of(verification_class, implicit_little_endian);
-  if (context == 0) throw PeerError(association.peer() + ": does not answer echoes");
+  if (context == 0) throw PeerError(association.peer() + ": does not accept echoes (C-ECHO)");
   DicomCommand command;
   command.kind = 0x0030;
   command.message = 1;
@@ -221,7 +223,7 @@ std::vector<std::string> store(const StorePeer& peer, const std::vector<Outgoing
                                const std::stop_token& stop) {
   std::vector<std::string> warnings;
   for (std::size_t first = 0; first < files.size();) {
-    // As many files as there is room for their kinds in one association.
+    // Takes files until one association has no context left for another kind.
     std::set<std::pair<std::string, std::string>> kinds;
     std::size_t last = first;
     while (last < files.size() &&
@@ -271,7 +273,7 @@ void receive_by_store(ReceivedFiles& folder, const ReceiveOptions& options, cons
     if (served.size() >= static_cast<std::size_t>(options.associations)) {
       refused(next->peer() + ": refused for now, because " + std::to_string(served.size()) +
               " associations are open");
-      // Before a TLS handshake nothing can be stated.
+      // Before the TLS handshake no rejection can be sent.
       if (!options.tls) Association::refuse_for_now(std::move(*next));
       continue;
     }

@@ -32,28 +32,29 @@ struct OutgoingFile {
 /// Reads a file's meta header. Throws std::runtime_error with the path.
 OutgoingFile outgoing_file(const std::filesystem::path& path);
 
-/// Asks whether the other side is there (C-ECHO). Throws PeerError.
+/// Checks that the other side answers (C-ECHO). Throws PeerError.
 void echo(const StorePeer& peer);
 
-/// Sends files by C-STORE, their data sets as they are. Returns warnings that the other side stated. Throws PeerError
-/// with the file if it is refused, and voxel::Stopped.
+/// Sends files by C-STORE, with their data sets unchanged. Returns warnings that the other side stated.
+/// Throws PeerError with the file if it is refused, and voxel::Stopped.
 std::vector<std::string> store(const StorePeer& peer, const std::vector<OutgoingFile>& files,
                                const std::stop_token& stop = {});
 
 struct ReceiveOptions {
   std::string address = "127.0.0.1";
   int port = 11112;
-  std::string title = "OCTOTOMY";  ///< only associations with this title are accepted; empty: with any
+  std::string title = "OCTOTOMY";  ///< only associations with this title are accepted; empty: any title
   std::optional<TlsFiles> tls = std::nullopt;
   std::chrono::milliseconds patience{30000};  ///< for each unit of an association
-  int associations = 8;                       ///< most at a time; others are refused for the time being
-  std::optional<std::size_t> objects = std::nullopt;  ///< ends after so many; none: until it is stopped
+  int associations = 8;                       ///< largest number at a time; others are rejected as temporary
+  std::optional<std::size_t> objects =
+      std::nullopt;  ///< ends after this number of objects; none: when it is stopped
   std::function<void(int port)> listening = {};
   std::function<void(const std::string&)> refused = {};  ///< what a peer did wrong; one call at a time
 };
 
 /// Receives objects by C-STORE, and answers C-ECHO, until it is stopped. An object is acknowledged when it is in the
-/// folder. Memory: two units of an association each, whatever peers send. Throws as Listener does.
+/// folder. Memory: two units for each association, which peers cannot increase. Throws as Listener does.
 void receive_by_store(ReceivedFiles& folder, const ReceiveOptions& options, const std::stop_token& stop);
 
 }  // namespace octotomy::planner

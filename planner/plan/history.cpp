@@ -5,10 +5,11 @@
 // change of state consists of
 //   1 one transaction of the database: the edit and the current state; 2 the plan's file, as a whole; 3 a
 //   record of the checksum of the file written in step 2.
-// Steps 2 and 3 and every opening make file and state agree (settle()). Whoever comes first does it, also for
-// a process that was killed after step 1. If the file's checksum is the recorded one but not the current
-// state's, step 2 is due. If it is neither, another program wrote the file, and its text becomes an edit. Two
-// writers' steps may alternate in any order: tests/planner/plan/history_model_test.cpp goes through all orders.
+// Steps 2 and 3, and every opening of the history, make file and state agree (settle()). The next process
+// does this for a process that was killed after step 1. If the file's checksum is the recorded one but not
+// the current state's, step 2 is due. If it is neither, another program wrote the file, and its text becomes
+// an edit. The steps of two writers may interleave in any order: tests/planner/plan/history_model_test.cpp
+// tests all orders.
 //
 // The journal is deleted at each commit, so that between edits the history is complete in one file and can be
 // copied. A write-ahead log would make edits a third faster but store the newest ones in a second file.
@@ -59,8 +60,8 @@ constexpr const char* tables = R"(
 /// Refuses because some states are not yet in the history's file but in files beside it.
 [[noreturn]] void refuse_read_only(const fs::path& path) {
   throw std::runtime_error(path.string() +
-                           ": cannot be written, which its newest states need: copy the plan and all files "
-                           "whose names begin with " +
+                           ": its newest states can be read only where it can be written: copy the plan and "
+                           "all files whose names begin with " +
                            path.filename().string() + " to a folder of yours");
 }
 
@@ -437,7 +438,8 @@ class PlanHistory::Database {
       branch_ = branch;
       throw;
     }
-    // Another writer may be ahead by now. This one stays where it is, so that its next change is refused.
+    // Another writer may have changed the state since. The position of this writer is not updated, so that
+    // its next change is refused.
     const std::int64_t made = current_;
     const std::string made_on = branch_;
     locked([&] { settle(read_text(plan_)); });

@@ -24,8 +24,8 @@ voxel::Box around(const voxel::Box& a, const voxel::Box& b) {
   return {glm::min(a.low_mm, b.low_mm), glm::max(a.high_mm, b.high_mm)};
 }
 
-/// Whether a part of the object itself, not of an object it was made of, lies outside of the universe, and
-/// box_of() has its place.
+/// Whether a part of the object lies outside of the universe, and box_of() states where. Does not count parts
+/// that an object it was made of has already lost.
 bool has_left(const Object& made) {
   if (!made.image && !made.mesh.whole) return false;
   return std::any_of(made.caveats.begin(), made.caveats.end(), [](const Caveat& caveat) {

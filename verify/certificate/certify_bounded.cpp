@@ -115,9 +115,9 @@ void add_specks(Certificate& certificate, const Specks& specks) {
 /// Compares area and distances; for a resolved object with a witness, at first on a sample of the surfaces'
 /// points. If a bound is exceeded, looks for parts thinner than a voxel. A resolved object that differs only
 /// by those is not resolved there, and the certificate states the lost area. Surfaces beside `lost_voxels`, which the
-/// certificate lists as lost by resampling, do not count for the mean and the percentile. Nor do, with a
-/// witness and in doubt, parts of the mesh that `digitised`, its own voxels, do not have: the witness judges
-/// their triangles, and every voxel where both kernels differ.
+/// certificate lists as lost by resampling, do not count for the mean and the percentile. If there is a
+/// witness and a bound is exceeded, parts of the mesh that its own voxels, `digitised`, do not represent do
+/// not count either: the witness judges their triangles and every voxel in which the kernels differ.
 void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
                       const brep::Solid& solid, const voxel::Octree& digitised,
                       const std::vector<glm::ivec3>& lost_voxels) {

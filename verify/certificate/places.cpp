@@ -10,10 +10,10 @@
 //   So the witness is read at every eighth voxel wherever the object may be: at the voxels with x + 2y + 4z a
 //   multiple of 8, one in each block of two voxels a side.
 // 4 Groups. Voxels that fail, joined by faces, edges and corners; the largest is the worst place.
-// 5 Limit. Errors are injected at random places of this object and judged as above: groups of voxels next to
-//   the boundary are removed and added, pieces of the mesh are removed, the whole is shifted along both
-//   directions of three axes. The limit is the smallest size from which every such error is detected.
-// One source, because step 5 judges its errors by the functions of the steps before it.
+// 5 Detection limit. Errors are injected at random places of this object and judged as above: groups of
+//   voxels next to the boundary are removed and added, pieces of the mesh are removed, the whole is shifted
+//   along both directions of three axes. The limit is the smallest size from which every such error is
+//   detected. One source, because step 5 judges its errors by the functions of the steps before it.
 #include "verify/certificate/places.h"
 
 #include <algorithm>

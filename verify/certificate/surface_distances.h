@@ -40,8 +40,9 @@ class SurfaceDistances {
   /// distance then covers the points that mean and percentile use.
   double leave_out_thin();
   /// Removes the points of the solid further than reach_mm from the boundary of `digitised`, the voxels whose
-  /// centres the solid holds, because no set of voxels has them: the rims of thin sheets, and rods, which are
-  /// thick along their own normals. Returns their area as leave_out_thin() does.
+  /// centres the solid holds, because voxels cannot represent them: rims of thin sheets and thin rods, which
+  /// leave_out_thin() does not find, because they are thick along their own normals. Returns their area as
+  /// leave_out_thin() does.
   double leave_out_unheld(const voxel::Octree& digitised, double reach_mm);
   /// Removes the points in or beside these voxels from both surfaces; one that leaves no point is 0 apart.
   /// Precondition: the voxels are in the order of before().

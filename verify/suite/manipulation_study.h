@@ -5,9 +5,10 @@
 
 namespace octotomy::verify {
 
-/// Tables 7.2, 7.4, 7.6 and 7.7 of the thesis on its sphere and a box in place of its volume of interest, which was
-/// drawn by hand. The thesis prints seconds of two computers; ours are counts of nodes, and whether operations in one
-/// walk make the trees that operations one after the other make. Deterministic. Cost: a second of processor time.
+/// Tables 7.2, 7.4, 7.6 and 7.7 of the thesis on the thesis's sphere, with a box in place of the volume of
+/// interest that was drawn by hand. The thesis prints seconds on two computers. The study counts nodes
+/// instead, and tests whether combined operations make the same trees as operations one after the other.
+/// Deterministic. Cost: a second of processor time.
 RepresentationStudy manipulation_study();
 
 }  // namespace octotomy::verify

@@ -310,7 +310,8 @@ void table_7_5(const Octree& skull, RepresentationStudy& study) {
 
 // ---------------------------------------------------------------------------------------------- chapter 5
 
-/// The least angle between a surface and the light at which the next vector follows, and the largest.
+/// The slopes that a filter of depths can represent: their number, the steepest one, and the largest angle
+/// between neighbouring ones.
 void figure_5_8(RepresentationStudy& study) {
   struct Curve {
     const char* name;

@@ -13,7 +13,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// A scan's samples by the class that each belongs to, computed where it is asked for.
+/// The class of each sample of a scan, computed on request.
 class Classed {
  public:
   Classed(std::shared_ptr<const voxel::Scene> scan, ClassedBy by)

@@ -12,17 +12,18 @@
 namespace octotomy::verify {
 
 /// Classes of samples by density, x, in the scan's unit, and length of the gradient, y, in that unit per
-/// millimetre; and the class that is meant.
+/// millimetre; and the number of the class that the witness describes.
 struct ClassedBy {
   std::vector<glm::dvec2> centres;
   glm::dvec2 scale{1.0};  ///< both features are divided by it before distances are compared
   std::size_t meant = 0;
 };
 
-/// The samples whose features lie nearest to the centre that is meant, by gradients of this source's own. At a
-/// sample both sides are certain, unless two centres are equally near within rounding, or padding lies beside
-/// it; beyond the scan all is outside. Elsewhere a point is certain where the eight samples about it agree.
-/// Shares the scan. Throws std::invalid_argument if the class that is meant is none.
+/// A witness of the samples whose features lie nearest to the centre `meant`. Computes the gradients by its
+/// own code. At a sample both sides are certain, unless two centres are equally near within rounding, or
+/// padding lies beside it; beyond the scan all is outside. Elsewhere a point is certain where the eight
+/// samples about it agree. Shares the scan. Throws std::invalid_argument if `meant` is not the number of a
+/// centre.
 Witness witness_of_class(std::shared_ptr<const voxel::Scene> scan, const ClassedBy& by);
 
 }  // namespace octotomy::verify

@@ -24,8 +24,8 @@ struct GrownFrom {
   double rounding = 0.0;
   /// With a tolerance: grows in rounds. In each, all neighbours join whose samples lie within the tolerance of
   /// the mean of the region's samples before the round. Samples count as their nearest multiples of this,
-  /// halves upwards: a mean depends on all samples, so that their rounding belongs to the definition. None:
-  /// the seeds alone fix the range.
+  /// halves upwards: the mean depends on all samples, so that their rounding is part of the definition. None:
+  /// only the seeds determine the range.
   std::optional<double> mean_of_steps = {};
 };
 

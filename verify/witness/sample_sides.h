@@ -9,10 +9,10 @@
 // Sides of a point by the sides of the samples about it. Private to this room.
 namespace octotomy::verify {
 
-/// How far a point may lie from a sample and still be it, in samples: the rounding of coordinates.
+/// A point this near a sample, in samples, counts as that sample: the rounding of coordinates.
 constexpr double same_place = 1e-6;
 
-/// What is known of a sample.
+/// Whether a sample is certainly inside or certainly outside.
 struct SampleSide {
   bool is_in = false;   ///< surely inside
   bool is_out = false;  ///< surely outside
@@ -26,7 +26,7 @@ AllowedSides sides_by_samples(const glm::dvec3& place, const glm::ivec3& dims, c
   if (glm::any(glm::greaterThan(glm::abs(place - glm::dvec3(dims - 1) * 0.5),
                                 glm::dvec3(dims) * 0.5 + same_place)))
     return certainly_out;
-  // Along an axis on which the point lies at a sample, that one alone.
+  // Along an axis on which the point lies at a sample, only that sample counts.
   glm::ivec3 low(glm::floor(place)), high = low + 1;
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(place[axis] - nearest[axis]) <= same_place)

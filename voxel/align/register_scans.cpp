@@ -29,7 +29,8 @@ constexpr double coarsest_mm = 8.0;
 constexpr std::size_t coarse_points = 12000, fine_points = 100000;
 constexpr double turned_deg = 30.0;
 constexpr std::size_t most_refined = 6;
-/// Likeness that scans of unrelated bodies reach, because any two heads are roundish: below, an answer means nothing.
+/// Likeness that scans of unrelated bodies reach, because any two heads are roundish. An answer with less
+/// likeness is meaningless.
 constexpr double least_correlation = 0.4, least_entropy = 0.05;
 /// A rival this near the best one could be the true motion.
 constexpr double rival_share = 0.95;
@@ -112,12 +113,14 @@ class Search {
   double value(const ScanPair& pair, const Parameters& at) {
     ++motions_;
     const Likeness likeness = pair.likeness(motion(at));
-    // Below every likeness, and better with more overlap, so that the search returns from there.
+    // A value below every likeness that rises with the overlap, so that the search returns to motions with
+    // enough overlap.
     if (likeness.overlap < options_.least_overlap) return likeness.overlap - 3.0;
     return likeness.value;
   }
 
-  /// A length as a step of parameter k: rotations move points at half the scan's diagonal by so much.
+  /// Converts a length to a step of parameter k. A rotation by this step moves points at half the scan's
+  /// diagonal by the length.
   double step_of(std::size_t k, double step_mm) const { return k < 3 ? step_mm / radius_mm_ : step_mm; }
 
   Found improved(const ScanPair& pair, double resolution_mm, const Parameters& from, double first_mm,
@@ -155,7 +158,7 @@ class Search {
     return best;
   }
 
-  /// Without the sign of -0, which matrices' products leave.
+  /// Replaces -0, which products of matrices may contain, by 0.
   glm::dmat4 fixed_from_moving(const Parameters& at) const {
     glm::dmat4 matrix = glm::inverse(motion(at));
     for (int column = 0; column < 4; ++column) matrix[column] += 0.0;
@@ -223,7 +226,9 @@ class Search {
     const bool is_correlation = options_.by == ScanLikeness::Correlation;
     const double least = is_correlation ? least_correlation : least_entropy;
     if (fit.overlap < options_.least_overlap)
-      find(Verdict::Fail, "the scans cover only " + rounded(100.0 * fit.overlap) + " % of each other");
+      find(Verdict::Fail, "the scans overlap in only " + rounded(100.0 * fit.overlap) +
+                              " % of the smaller one; lay them on each other by landmarks first, or allow a "
+                              "smaller least overlap");
     else if (fit.likeness < least)
       find(Verdict::Fail,
            std::string("no motion makes the scans alike: the ") +
@@ -238,8 +243,7 @@ class Search {
       find(Verdict::Warn, "only one of " + std::to_string(fit.refined) + " searches ended at this motion");
     if (!(fit.least_drop > 0.0))
       find(Verdict::Warn, "a motion of " + rounded(fit.probe_mm) +
-                              " mm aside is no worse: the scans do not "
-                              "determine the motion");
+                              "  mm away is no worse: the scans do not determine the motion");
   }
 
   const Scene& moving_;

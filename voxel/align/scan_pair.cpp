@@ -10,10 +10,11 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Bins a scan of the joint histogram: enough for bone, soft tissue, fat and air, few enough that thousands of points
-/// fill them.
+/// Bins of the joint histogram per scan: enough for bone, soft tissue, fat and air, and few enough that
+/// thousands of points fill them.
 constexpr int bins = 40;
-/// Parts of a sum, added in their order, so that the number of threads changes no bit.
+/// Number of partial sums, which are added in their order, so that the result does not depend on the number
+/// of threads.
 constexpr std::size_t parts = 32;
 
 /// Scatters the bits of a number (Steele, Lea, Flood, Fast splittable pseudorandom number generators, 2014).

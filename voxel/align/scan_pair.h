@@ -10,7 +10,7 @@
 
 namespace octotomy::voxel {
 
-/// Means of blocks of samples, as wide as a resolution along each axis.
+/// Means of blocks of samples; along each axis a block is about as wide as the resolution.
 struct CoarseScan {
   glm::ivec3 dims{0};
   std::vector<float> values;  ///< x fastest; NaN: a block without measured samples

@@ -109,7 +109,7 @@ std::string renewed(const std::string& uid, IdentityChoice choice) {
   return digest.uid(std::string(word_of(choice))) + (hash == std::string::npos ? "" : uid.substr(hash));
 }
 
-/// Applies a rule to an attribute; returns whether it stays, and adds what was changed.
+/// Applies a rule to an attribute. Returns whether the attribute stays, and adds a line on what was changed.
 bool apply(const RuledAttribute& ruled, IdentityChoice choice, DicomSource::Text& text,
            std::vector<std::string>& changes) {
   const std::vector<std::string> values = values_of(text.value);
@@ -130,14 +130,14 @@ bool apply(const RuledAttribute& ruled, IdentityChoice choice, DicomSource::Text
       return true;
     case Rule::Number:
       if (std::all_of(values.begin(), values.end(), is_number)) return true;
-      noted("emptied, as it is no number");
+      noted("emptied, because it is not a number");
       text.value.clear();
       return true;
     case Rule::Word:
       break;
   }
   if (std::all_of(values.begin(), values.end(), is_defined)) return true;
-  noted("removed, as it is no word of the standard");
+  noted("removed, because the standard does not define it");
   return false;
 }
 
@@ -177,7 +177,7 @@ DecidedIdentity decide_identity(std::optional<DicomSource> source, IdentityChoic
     } else if (at->first != character_set_tag && !at->second.value.empty()) {
       decided.changes.push_back(described(at->first, "Attribute", "removed"));
     }
-    // No text of the source is left, so its character set is needed no more.
+    // No text of the source is left, so its character set is no longer needed.
     at = stays ? std::next(at) : made.attributes.erase(at);
   }
   if (choice == IdentityChoice::New) name_new_patient(made);

@@ -10,7 +10,7 @@
 
 namespace octotomy::voxel {
 
-/// Whose a written DICOM object is.
+/// Whose identity a written DICOM object has.
 enum class IdentityChoice {
   Keep,  ///< patient and study of the source
   Remove,  ///< none: the source's, de-identified by the Basic Application Level Confidentiality Profile of PS3.15
@@ -26,11 +26,11 @@ struct DecidedIdentity {
   std::vector<std::string> changes;
 };
 
-/// The one place that decides whose a written object is. Remove empties, removes or replaces attributes as PS3.15,
-/// table E.1-1, states for its profile, and keeps of the others only numbers and the words that the standard
-/// defines, because free text may name anybody. Remove and New replace the unique identifiers of study, series,
-/// images and frame of reference by ones that are computed from these: objects of one source stay together, and
-/// whoever has the source can recompute them. Keep changes nothing.
+/// Decides the identity of written DICOM objects; no other code does. Remove empties, removes or replaces
+/// attributes as PS3.15, table E.1-1, states for its profile, and keeps of the others only numbers and the
+/// words that the standard defines, because free text may name a person. Remove and New replace the unique
+/// identifiers of study, series, images and frame of reference by ones that are computed from these: objects
+/// of one source stay together, and whoever has the source can recompute them. Keep changes nothing.
 DecidedIdentity decide_identity(std::optional<DicomSource> source, IdentityChoice choice);
 
 /// The modality if the standard defines it, else none.

@@ -144,7 +144,8 @@ class BiTreeReader {
     cursor_.advance();
     const Status low = read(box.half(axis, 0)), high = read(box.half(axis, 1));
     if (low == high && low != Status::Partial)
-      cursor_.refuse_at(start, "its halves are both Full or both Empty: write the node so");
+      cursor_.refuse_at(
+          start, "its halves are both Full or both Empty: write one Full or Empty node in their place");
     return Status::Partial;
   }
   void expect_end() { cursor_.expect_end(); }

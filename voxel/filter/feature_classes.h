@@ -34,12 +34,12 @@ struct FeatureClasses {
 Scene gradient_length(const Scene& scene, const Progress& progress = {});
 
 /// K-means clusters of the samples' densities and gradients, on a histogram of 256 by 256 bins between the
-/// features' 0.1st and 99.9th percentiles, which also bound what a far sample weighs. Starts with one cluster,
+/// features' 0.1st and 99.9th percentiles, which also limit the weight of outliers. Starts with one cluster,
 /// and splits the one of greatest variance at its middle, across the feature in which it varies most, until
 /// there are enough; after each split the means are iterated until no bin changes its cluster. Edges are
-/// classes of their own, one or two by their height: three tissues need five. Throws std::invalid_argument unless there are 2 to 8
-/// classes, and as gradient_length(); Error, Geometry, if all samples or all gradients are equal, or fewer
-/// clusters exist; Stopped. Same bits on any thread count.
+/// classes of their own, one or two by their height: three tissues need five. Throws std::invalid_argument
+/// unless there are 2 to 8 classes, and as gradient_length(); Error, Geometry, if all samples or all
+/// gradients are equal, or fewer clusters exist; Stopped. Same bits on any thread count.
 FeatureClasses feature_classes(const Scene& scene, int classes, const Progress& progress = {});
 
 /// The class of each sample, from 1, as a label map; padding is 0. Throws as gradient_length().

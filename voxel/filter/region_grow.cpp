@@ -34,8 +34,8 @@ void check(const GreyOctree& grey, const GrowOptions& options) {
   }
 }
 
-/// A region that grows by the mean of its samples. Rejected neighbours wait in lists by their samples: those
-/// that a later mean admits are the lists of a range.
+/// A region that grows by the mean of its samples. Rejected neighbours wait in one list for each sample
+/// value; a later mean admits the lists of a range of values.
 class GrowingRegion {
  public:
   GrowingRegion(const GreyOctree& grey, Neighbours neighbours)
@@ -113,7 +113,8 @@ class GrowingRegion {
 
   void admit(double tolerance) {
     const double reach = tolerance * static_cast<double>(count_);
-    // One sample more at each end, for the rounding of the mean; each is then compared exactly.
+    // Tries one more sample value at each end, because the mean is rounded; each value is then compared
+    // exactly.
     const double mean = static_cast<double>(sum_) / static_cast<double>(count_);
     const auto bound = [](double value) { return static_cast<int>(std::clamp(value, -32768.0, 32767.0)); };
     const std::int64_t count = count_, sum = sum_;

@@ -24,14 +24,15 @@ struct GrowOptions {
 /// Departure: the seeds alone fix the window, so that the result does not depend on the order of growth.
 Octree grow_region(const GreyOctree& grey, const GrowOptions& options);
 
-/// The voxels that a region reaches that grows in rounds. In each round all its neighbours join whose samples
-/// lie within the tolerance of the mean of the region's samples before the round; the growth ends with the
-/// first round that adds none. The region follows a slow change of brightness and ends at a step of it. Seeds
+/// The voxels of a region that grows in rounds. In each round all its neighbours join whose samples lie
+/// within the tolerance of the mean of the region's samples before the round; the growth ends with the first
+/// round that adds none. The region follows a slow change of brightness and ends at a step of it. Seeds
 /// belong to the region in any case. Independent of the order of seeds; sums are exact. Throws as
 /// grow_region(); Stopped. Source: thesis 2.3.3; Zucker, Computer Graphics and Image Processing 5, 1976.
-/// Departure: rounds, because a mean after every voxel depends on the order of voxels. Cost: the region and
-/// its rejected neighbours, and per round the tolerance in steps. Memory: two bits per voxel of the
-/// universe, 12 bytes per rejected neighbour.
+/// Departure: rounds, because a mean updated after every voxel would depend on the order of voxels. Cost: the
+/// region, its rejected neighbours and, for each round, the number of sample values within the tolerance.
+/// Memory: two bits per voxel of the universe,
+/// 12 bytes per rejected neighbour.
 Octree grow_by_running_mean(const GreyOctree& grey, const GrowOptions& options);
 
 }  // namespace octotomy::voxel

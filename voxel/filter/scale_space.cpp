@@ -43,7 +43,7 @@ Numbers ascended(const FloatSamples& samples, const glm::ivec3& dims, Flat flat,
     for (int y = 0; y < dims.y; ++y)
       for (int x = 0; x < dims.x; ++x, ++at) {
         std::size_t highest = at;
-        // Neighbours in ascending index: of equal ones above the sample the first is kept.
+        // Visits neighbours in ascending index, and keeps the first of equal ones that exceed the sample.
         for (int k = std::max(0, z - 1); k <= std::min(dims.z - 1, z + 1); ++k)
           for (int j = std::max(0, y - 1); j <= std::min(dims.y - 1, y + 1); ++j)
             for (int i = std::max(0, x - 1); i <= std::min(dims.x - 1, x + 1); ++i) {

@@ -13,7 +13,7 @@ struct ScaleSpaceOptions {
   double sigma_mm = 4.0;  ///< of the coarsest blur; objects nearer than about this become one
   double low = 0.0;  ///< the window, in sample units, both bounds included: samples outside have no label
   double high = 0.0;
-  bool is_dark = false;  ///< follows minima, for objects that are darker than what is around them
+  bool is_dark = false;  ///< follows minima, for objects that are darker than their surroundings
   Progress progress{};
 };
 
@@ -30,11 +30,12 @@ struct ScaleSpace {
 /// the coarsest to about a voxel, then the scan. At each level samples ascend to a maximum, each to the
 /// highest of its 26 neighbours. Each maximum of the coarsest blur is a label; from there to the scan, each
 /// maximum of a finer level takes the label of the coarser level at its place, and its samples take it, too.
-/// So touching objects part where brightness falls between them, and noise, which the coarsest blur removes,
-/// makes no objects. A flat top of the coarsest blur is one maximum; of a finer level each of its samples is
-/// one, so that a saturated object does not lead across a neck. Throws std::invalid_argument for label
-/// maps, a window without numbers, and as gaussian(); Error, Geometry, if no sample is in the window, or more
-/// than 32767 regions are; Stopped. Same bits on any thread count. Memory: 16 bytes per sample.
+/// So touching objects are separated where brightness falls between them, and noise, which the coarsest blur
+/// removes, makes no objects. A flat top of the coarsest blur is one maximum; on a finer level each of its
+/// samples is a maximum, so that a saturated object does not lead across a neck. Throws std::invalid_argument
+/// for label maps, a window without numbers, and as gaussian(); Error, Geometry, if no sample is in the
+/// window, or more than 32767 regions are; Stopped. Same bits on any thread count. Memory: 16 bytes per
+/// sample.
 ScaleSpace scale_space(const Scene& scene, const ScaleSpaceOptions& options);
 
 }  // namespace octotomy::voxel

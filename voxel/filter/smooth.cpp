@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Beside bias_field.cpp the only unit that includes ITK's filters. They read the scene's own samples. Local filters run slab by
-// slab along z, so that a slab bounds the extra memory and the delay of a stop, and ITK need not report
-// progress from its threads.
+// Only this unit and bias_field.cpp include ITK's filters. They read the scene's own samples. Local filters
+// run slab by slab along z, so that a slab bounds the extra memory and the delay of a stop, and ITK need not
+// report progress from its threads.
 #include "voxel/filter/smooth.h"
 
 #include "voxel/space/itk_compiler.h"

@@ -126,7 +126,7 @@ std::vector<std::uint8_t> encode_png(const glm::ivec2& size_px, const std::vecto
   png += png_chunk("oFFs", std::string(9, '\0'));
   png += png_chunk("tEXt", std::string("oiio:ColorSpace\0sRGB", 20));
   const std::string_view all(reinterpret_cast<const char*>(stream.data()), stream.size());
-  // A stream of whole chunks ends with an empty one, as libpng has it.
+  // A stream of whole chunks ends with an empty one, like libpng's.
   for (std::size_t at = 0; at <= all.size(); at += chunk_bytes)
     png += png_chunk("IDAT", all.substr(at, chunk_bytes));
   png += png_chunk("IEND", "");

@@ -650,7 +650,9 @@ class SeriesAssembler {
              (choice_count_ > 1 ? ", or put each into a folder of its own"
                                 : ": put each into a folder of its own"));
     tell(copies, " stored twice and left out: ", "");
-    tell(renamed, " with the pixels and place of another, under a new identifier, left out: ", "");
+    tell(renamed,
+         " left out, because they have the pixels and the position of another image under a new identifier: ",
+         "");
     const Verdict verdict = !rivals.empty() ? Verdict::Fail : !all.empty() ? Verdict::Warn : Verdict::Pass;
     find("duplicates", verdict, all.empty() ? "every slice has its own position" : told, all);
   }

@@ -491,11 +491,10 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
                    unusable};
   slice.pixels = pixels_of(file);
   if (!is_sound(slice.pixels))
-    return NoSlice{
-        print("pixels of %u bits, of which %u are stored and bit %u is the highest: that does not fit, or "
-              "is not of 8, 12, 16 or 32 bits",
-              slice.pixels.allocated, slice.pixels.stored, slice.pixels.high),
-        unusable};
+    return NoSlice{print("pixels of %u bits, of which %u are stored and bit %u is the highest: these numbers "
+                         "contradict each other, or the pixels do not have 8, 12, 16 or 32 bits",
+                         slice.pixels.allocated, slice.pixels.stored, slice.pixels.high),
+                   unusable};
   slice.inverted = photometric == "MONOCHROME1";
   slice.lossy = lossy_of(file);
   slice.class_uid = file.text(0x00080016);

@@ -116,7 +116,8 @@ class DecidedRays {
 
   bool in_scan(const glm::dvec3& p) const { return grey_.scan().contains(glm::ivec3(glm::floor(p + 0.5))); }
 
-  /// Whether the samples that a change at p depends on are of the scan: those of the cell and one around it.
+  /// Whether all samples on which a change at p depends belong to the scan: those of the cell and its
+  /// neighbours.
   bool deep_in_scan(const glm::dvec3& p) const {
     const glm::ivec3 cell(glm::floor(p));
     for (int corner = 0; corner < 8; ++corner) {
@@ -182,7 +183,7 @@ class DecidedRays {
     const double most = static_cast<double>(range.high) - range.low;
     const double distance_mm =
         decision_.by == Criterion::Derivative ? 2.0 * step_mm_ : 4.0 * step_mm_ / std::sqrt(3.0);
-    // A ten-thousandth for rounding.
+    // A margin of a ten-thousandth for rounding.
     return 1.0001 * most < steeper_ * distance_mm;
   }
 

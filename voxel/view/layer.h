@@ -50,8 +50,8 @@ struct Layer {
   SeenAt seen_at;                      ///< owns its data; any number of threads may call it
 };
 
-/// The objects without the parts that the options' cuts remove. Builds their octrees unless node tracing along
-/// an axis alone reads them.
+/// The objects without the parts that the options' cuts remove. Builds their octrees, unless they are only
+/// read by node tracing along an axis, which evaluates expressions where they are visible.
 std::vector<DrawnObject> to_trace(const std::vector<DrawnObject>& objects, const RenderOptions& options,
                                   Algorithm algorithm);
 

@@ -230,7 +230,7 @@ class AttenuationOfRay {
   };
 
   static constexpr bool is_weighted = std::is_same_v<Mapped, WeightedSamples>;
-  /// Of an interpolated value of mapped_.
+  /// The attenuation relative to water of an interpolated value of mapped_.
   double relative(double value) const {
     if constexpr (is_weighted) return value;
     return std::max(0.0, 1.0 + value * per_step_);

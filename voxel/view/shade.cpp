@@ -186,7 +186,7 @@ struct Rows {
   std::array<std::vector<int>, 3> root;
 };
 
-/// The mirrored light of a row for any exponent; light_row() has the default one.
+/// Computes the mirrored light of a row for any exponent; light_row() computes it for the default one.
 void mirror_row(const Lighting& lighting, const glm::ivec2& lit, Rows& rows) {
   for (int x = lit.x; x < lit.y; ++x) {
     const auto i = static_cast<std::size_t>(x);

@@ -86,7 +86,7 @@ export class Wire {
     }
   }
 
-  /// Asks the server; the promise is refused with a Refusal. Its id is told at once where `on_id` is given.
+  /// Asks the server; the promise is refused with a Refusal. `on_id` is called with its id at once.
   ask<Answer>(word: string, fields: object = {}, on_id?: (id: number) => void): Promise<Answer> {
     const id = this.next_id++;
     on_id?.(id);

@@ -254,8 +254,8 @@ ProcedureInput input_of(const Json& said, const Json& plan, const Procedure& pro
   return input;
 }
 
-/// The plan without what the same procedure added before, to which it is added anew: its steps alone, or those
-/// that are called after it.
+/// The plan without the steps that an earlier addition of the same procedure left in it, alone or chained
+/// after another procedure's.
 Json without_steps_of(const Procedure& procedure, const Json& plan) {
   Json kept = plan;
   kept["steps"] = Json::array();

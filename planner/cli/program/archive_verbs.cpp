@@ -48,8 +48,8 @@ bool is_web(const std::string& address) {
 
 [[noreturn]] void refuse_address(const std::string& address) {
   throw std::runtime_error(address +
-                           ": is no archive: give http://HOST:PORT/PATH or https:// for DICOMweb, or "
-                           "dicom://TITLE@HOST:PORT or dicoms:// (TLS) for C-STORE");
+                           ": is not the address of an archive: give http://HOST:PORT/PATH or https:// for "
+                           "DICOMweb, or dicom://TITLE@HOST:PORT or dicoms:// (TLS) for C-STORE");
 }
 
 StorePeer store_peer(const ArchiveText& text) {
@@ -84,7 +84,7 @@ WebArchive web_archive(const ArchiveText& text) {
   return {text.address, text.tls, user == nullptr ? "" : user, text.timeout_s};
 }
 
-/// The DICOM files among the paths and below folders, sorted. Refuses a named file that is none.
+/// The DICOM files among the paths and in folders, sorted. Refuses a named file that is not DICOM.
 std::vector<OutgoingFile> files_to_send(const std::vector<fs::path>& paths,
                                         std::vector<std::string>& findings) {
   std::vector<OutgoingFile> files;
@@ -100,13 +100,13 @@ std::vector<OutgoingFile> files_to_send(const std::vector<fs::path>& paths,
       try {
         files.push_back(outgoing_file(each));
       } catch (const std::runtime_error&) {
-        findings.push_back(each.string() + ": not sent, as it is no DICOM file with a meta header");
+        findings.push_back(each.string() + ": not sent, because it is not a DICOM file with a meta header");
       }
     }
   }
   if (files.empty()) throw std::runtime_error("no DICOM file is named: give files or folders of them");
   if (files.size() > most_files)
-    throw std::runtime_error("these are more than 1 000 000 files: send them in parts");
+    throw std::runtime_error("there are more than 1 000 000 files: send them in parts");
   return files;
 }
 
@@ -116,7 +116,7 @@ int send(const Program& program, const SendText& text) {
   Json json = answer(timings);
   json["to"] = text.address;
   if (text.echo) {
-    if (is_web(text.address)) throw std::runtime_error("--echo is of dicom:// addresses");
+    if (is_web(text.address)) throw std::runtime_error("--echo needs a dicom:// or dicoms:// address");
     echo(store_peer(text));
     json["echo"] = true;
     program.say(json, text.address + " answers\n");
@@ -175,13 +175,17 @@ int find_studies(const Program& program, const ReceiveText& text) {
   for (const std::string& word : text.find) {
     const std::size_t equals = word.find('=');
     if (equals == std::string::npos)
-      throw std::runtime_error("--find '" + word + "': give KEY=VALUE, as PatientID=17 or PatientName=Doe*");
+      throw std::runtime_error("--find '" + word +
+                               "': give KEY=VALUE, for example PatientID=17 or PatientName=Doe*");
     query += (query.find('?') == std::string::npos ? "?" : "&") + web_text(word.substr(0, equals)) + "=" +
              web_text(word.substr(equals + 1));
   }
   const Json found =
       Json::parse(search_by_web(web_archive(text), query, program.stop.get_token()), nullptr, false);
-  if (!found.is_array()) throw PeerError(text.address + ": does not answer a search with a list in JSON");
+  if (!found.is_array())
+    throw PeerError(
+        text.address +
+        ": the answer to the search is not a list in JSON; check the path of the DICOMweb service");
   Json json = answer({});
   json["studies"] = Json::array();
   std::vector<std::pair<std::string, std::string>> rows;
@@ -206,11 +210,13 @@ void listen(Program& program, const ReceiveText& text, ReceivedFiles& folder) {
   options.title = text.any_title ? "" : text.title;
   if (text.with_tls) {
     if (text.tls.certificate.empty() || text.tls.key.empty())
-      throw std::runtime_error("--tls: a receiver shows a certificate: give --certificate and --key");
+      throw std::runtime_error("--tls: the receiver needs a certificate: give --certificate and --key");
     options.tls = text.tls;
   }
   if (!text.with_tls && text.on != "127.0.0.1" && text.on != "::1" && text.on != "localhost")
-    warn("--listen " + text.on + ": everybody on this network can send and listen in; --tls protects both");
+    warn("--listen " + text.on +
+         ": everybody on this network can send objects and can read what others send; --tls prevents reading "
+         "and, with --authorities, sending");
   options.patience = std::chrono::seconds(text.timeout_s);
   options.associations = text.associations;
   options.objects = text.objects;
@@ -267,10 +273,9 @@ void add_archive_options(CLI::App& verb, ArchiveText& text) {
   verb.add_option("--certificate", text.tls.certificate, "This side's TLS certificate, PEM")
       ->check(CLI::ExistingFile);
   verb.add_option("--key", text.tls.key, "Its private key, PEM")->check(CLI::ExistingFile);
-  verb.add_option(
-          "--authorities", text.tls.authorities,
-          "Certificates, PEM, by which the other side's has to be signed. Default: the system's; a receiver "
-          "without it takes every client")
+  verb.add_option("--authorities", text.tls.authorities,
+                  "Certificates, PEM, one of which must have signed the other side's certificate. Default: "
+                  "the system's; a receiver without this option accepts every client")
       ->check(CLI::ExistingFile);
   verb.add_option("--timeout", text.timeout_s, "Seconds to wait for the other side at each step. Default: 30")
       ->check(CLI::Range(1L, 3600L));
@@ -282,8 +287,8 @@ void add_archive_verbs(Program& program) {
   const auto sent = std::make_shared<SendText>();
   CLI::App& sends = program.verb(
       "send",
-      "Sends DICOM files to an archive, by DICOMweb (STOW-RS) or C-STORE. The password of DICOMweb stands in "
-      "OCTOTOMY_ARCHIVE_USER, NAME:PASSWORD",
+      "Sends DICOM files to an archive, by DICOMweb (STOW-RS) or C-STORE. For a password of DICOMweb, set "
+      "the environment variable OCTOTOMY_ARCHIVE_USER to NAME:PASSWORD",
       "octotomy send skull.dcm --to http://localhost:8042/dicom-web\n"
       "  octotomy send dicom_folder --to dicom://ORTHANC@localhost:4242\n"
       "  octotomy send --echo --to dicoms://ARCHIVE@pacs.example:2762 --authorities hospital.pem",
@@ -293,7 +298,7 @@ void add_archive_verbs(Program& program) {
       .add_option("--to", sent->address,
                   "http:// or https:// of a DICOMweb service; dicom://TITLE@HOST:PORT, or dicoms:// for TLS")
       ->required();
-  sends.add_flag("--echo", sent->echo, "Only asks whether the archive answers (C-ECHO)");
+  sends.add_flag("--echo", sent->echo, "Sends nothing; checks that the archive answers (C-ECHO)");
   add_archive_options(sends, *sent);
 
   const auto got = std::make_shared<ReceiveText>();
@@ -311,19 +316,25 @@ void add_archive_verbs(Program& program) {
   receives.add_option("--study", got->study, "The study to fetch, its unique identifier");
   receives.add_option("--series", got->series, "Only this series of it");
   receives.add_option("--instance", got->instance, "Only this instance of the series");
-  receives.add_option("--find", got->find, "Lists studies: KEY=VALUE, again for more, as PatientID=17");
+  receives.add_option("--find", got->find,
+                      "Lists studies: KEY=VALUE, for example PatientID=17; may be repeated");
   receives.add_option("--port", got->port, "Waits for C-STORE on this port; 0: any free one")
       ->check(CLI::Range(0, 65535));
-  receives.add_option("--listen", got->on, "The address to wait on. Default: 127.0.0.1, this machine alone");
-  receives.add_flag("--tls", got->with_tls, "Waits for TLS, with --certificate and --key");
+  receives.add_option("--listen", got->on,
+                      "The address to wait on. Default: 127.0.0.1, for senders on this computer only");
+  receives.add_flag("--tls", got->with_tls, "Accepts only TLS; needs --certificate and --key");
   receives.add_flag("--any-title", got->any_title, "Accepts associations for any title, not only --title");
-  receives.add_option("--objects", got->objects, "Ends after so many objects. Default: when it is stopped")
+  receives
+      .add_option("--objects", got->objects,
+                  "Number of objects after which the program ends. Default: it runs until it is stopped")
       ->check(CLI::PositiveNumber);
-  receives.add_option("--object-mb", got->object_mb, "The largest object, MB. Default: 4096")
+  receives.add_option("--object-mb", got->object_mb, "Largest size of an object, MB. Default: 4096")
       ->check(CLI::Range(1, 1000000));
-  receives.add_option("--total-mb", got->total_mb, "The most of all objects, MB. Default: 65536")
+  receives
+      .add_option("--total-mb", got->total_mb, "Largest size of all objects together, MB. Default: 65536")
       ->check(CLI::Range(1, 100000000));
-  receives.add_option("--associations", got->associations, "The most at a time. Default: 8")
+  receives
+      .add_option("--associations", got->associations, "Largest number of associations at a time. Default: 8")
       ->check(CLI::Range(1, 256));
   add_archive_options(receives, *got);
 }

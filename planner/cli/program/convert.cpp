@@ -35,7 +35,7 @@ bool is_volume(const fs::path& path) {
 void need_used(const ConvertText& text, bool writes_dicom, bool writes_segments) {
   const auto need = [&](bool is_given, const std::string& option, bool is_used, const std::string& of) {
     if (is_given && !is_used)
-      throw std::runtime_error(text.out.string() + ": " + option + " is of " + of +
+      throw std::runtime_error(text.out.string() + ": " + option + " applies only to " + of +
                                ", which is not written: leave it out, or write " + of);
   };
   need(!text.label.empty(), "--label", writes_segments, "a DICOM segmentation (.dcm)");
@@ -132,7 +132,7 @@ int convert_labels(const Program& program, const ConvertText& text) {
 /// Writes the kind of DICOM object that --as names; none if it names none.
 std::optional<int> convert_as(const Program& program, const ConvertText& text) {
   if (text.planes != "images" && text.as != "structures")
-    throw std::runtime_error("--planes is of --as structures, which is not written: leave it out");
+    throw std::runtime_error("--planes applies only to --as structures: leave it out");
   const bool is_report = voxel::extension_of(text.in) == ".pdf";
   if (text.as.empty() && !is_mesh(text.in) && !is_report) return std::nullopt;
   need_extension(text.out, {".dcm"}, "such a DICOM object is");
@@ -155,23 +155,23 @@ std::optional<int> convert_as(const Program& program, const ConvertText& text) {
                              "fractions writes the share of each voxel");
   if (text.as == "stl" || text.as == "obj")
     throw std::runtime_error(text.in.string() + ": is no surface, which --as " + text.as +
-                             " is of: octotomy mesh makes one");
+                             " needs: octotomy mesh makes one");
   return std::nullopt;
 }
 
-/// Leaves out what a scan's file may state of anybody beside its samples: names of labels, and words that the
-/// standard does not define.
+/// Removes what may name a person in a scan's file: names of labels, and words that the standard does not
+/// define.
 void leave_out_words(voxel::Scene& scene, LabelTable& table, std::vector<std::string>& changes) {
   constexpr std::array<const char*, 3> units{"HU", "US", "OD"};
   if (!table.names.empty()) changes.emplace_back("Names of labels: removed");
   table.names.clear();
   if (std::string kept = voxel::defined_modality(scene.modality); kept != scene.modality) {
-    changes.emplace_back("Modality (0008,0060): written as OT, as it is no word of the standard");
+    changes.emplace_back("Modality (0008,0060): written as OT, because the standard does not define it");
     scene.modality = "OT";
   }
   if (!scene.declared_unit.empty() &&
       std::find(units.begin(), units.end(), scene.declared_unit) == units.end()) {
-    changes.emplace_back("Rescale Type (0028,1054): removed, as it is no word of the standard");
+    changes.emplace_back("Rescale Type (0028,1054): removed, because the standard does not define it");
     scene.declared_unit.clear();
   }
 }

@@ -28,9 +28,9 @@ struct ConvertText {
   bool keeps_identity() const { return identity == "keep"; }
 };
 
-/// The DICOM series to which the output refers, with the identity that --identity chooses; none if it was not made
-/// from one. Refuses a series of another patient than the input. Adds findings on values that could not be compared and, for --source, each WARN
-/// and FAIL of its audit.
+/// The DICOM series to which the output refers, with the identity that --identity chooses; none if the input
+/// was not made from a series. Refuses a series of another patient than the input's. Adds findings on values
+/// that could not be compared and, for --source, each WARN and FAIL of its audit.
 std::optional<voxel::DicomSource> source_of(const Program& program, const ConvertText& text, bool reads_dicom,
                                             const voxel::Identity& identity,
                                             std::vector<std::string>& findings);
@@ -55,12 +55,14 @@ struct LabelObjects {
   std::vector<voxel::Label> labels;
   std::vector<voxel::DicomSegment> objects;  ///< one for each label
 };
-/// Reads a label map; names are left out if --identity removes or replaces it, as anything may stand there. Adds findings on its labels and names. Throws std::runtime_error if it is none.
+/// Reads a label map; names are left out if --identity removes or replaces the identity, because they may
+/// name the patient. Adds findings on its labels and names. Throws std::runtime_error if the file is not a
+/// label map.
 LabelObjects read_label_objects(const Program& program, const ConvertText& text, Timings& timings,
                                 std::vector<std::string>& findings);
 
-/// The binary octree of a file, with the name of --label, else its own unless --identity leaves it out. Throws std::runtime_error if the file
-/// holds another kind of octree.
+/// The binary octree of a file, with the name that --label gives, else with its own name unless --identity
+/// removes it. Throws std::runtime_error if the file holds another kind of octree.
 voxel::DicomSegment binary_object(const ConvertText& text, const voxel::OctreeFile& file);
 
 /// Writes the objects of an .octree or a label map as a DICOM structure set.

@@ -4,7 +4,7 @@
 //   1 The words of its options become the JSON of a step, which is read like a step of a plan.
 //   2 The files that it names become objects: meshes, checked to be solids, or octrees. Where both kinds meet,
 //     each kernel gets all of them: meshes by the voxels whose centres they hold, octrees by the boundary of
-//     their voxels. Both kernels then share their operands, which the certificate says.
+//     their voxels. Both kernels then share their operands; the certificate states this.
 //   3 The kernel that the output's format needs computes the answer; with --certify both do and are
 //     compared. If only the mesh kernel has an answer, an octree is made from its voxels.
 //   4 The answer is written, measured and printed.
@@ -177,7 +177,7 @@ class OperationRun {
     object.voxel.lineage = "voxel centres inside of " + object.definition;
   }
 
-  /// The surface of an octree that stands beside meshes.
+  /// Makes the surface of an octree that is combined with meshes.
   void add_surface(Object& object) {
     if (object.mesh.whole) return;
     if (object.voxel.octree.is_empty()) throw std::runtime_error(object.id + ": holds no voxel");
@@ -213,7 +213,8 @@ class OperationRun {
         [](const Object& object) -> const auto& { return object.mesh.makers; });
   }
 
-  /// The voxels are those of the operand that is an octree, so that a mesh beyond them is cut off.
+  /// The answer's universe is that of the operand that is an octree. Reports a mesh that extends beyond it,
+  /// because its voxels are cut off there.
   void check_room(const Object& object) {
     if (!object.mesh.whole || object.mesh.whole->empty()) return;
     const voxel::Lattice lattice = universe_.lattice();
@@ -246,7 +247,7 @@ class OperationRun {
     operation_.mesh(value(), {box.low_mm, box.high_mm, objects_, no_scan_, expressions, timings_, progress()},
                     made.mesh);
     made.findings = made.mesh.findings;
-    // An empty answer is an answer, of volume 0, and its file has no triangles.
+    // An empty result is valid: its volume is 0 and its file has no triangles.
     if (made.mesh.whole->empty())
       made.findings.push_back("empty: nothing is left of " + made.definition + ", so " +
                               text_.out.filename().string() + " has no triangles");

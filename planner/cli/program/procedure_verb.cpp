@@ -73,7 +73,8 @@ int explain(const Program& program, const ProcedureText& text) {
 ProcedureInput input_of(const ProcedureText& text) {
   if ((text.after.empty() && (text.scan.empty() || text.landmarks.empty())) || text.out.empty())
     throw std::runtime_error(
-        "to plan it, give --scan, --landmarks and -o, or --after PLAN and -o; without them it is explained");
+        "to plan it, give --scan, --landmarks and -o, or --after PLAN and -o; without options the verb "
+        "explains the procedure");
   std::vector<fs::path> inputs = text.landmarks;
   inputs.push_back(text.name);
   if (!text.after.empty()) inputs.push_back(text.after);

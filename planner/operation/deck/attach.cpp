@@ -133,9 +133,9 @@ class Attacher {
     std::vector<std::string> findings;
     for (std::size_t h = 0; h < holders_.size(); ++h)
       if (freed[h] > 0)
-        findings.push_back("tissue is lifted off '" + holders_[h].id + "' at " + std::to_string(freed[h]) +
+        findings.push_back("tissue is not held by '" + holders_[h].id + "' at " + std::to_string(freed[h]) +
                            " of " + std::to_string(held[h]) +
-                           " nodes, nearer to a moved piece than twice its motion");
+                           "  nodes, because these are nearer to a moved piece than twice its motion");
     return findings;
   }
 

@@ -61,14 +61,16 @@ void check_regions(const Deck& deck, const FieldLocation& place) {
                         : !deck.sliding.empty()   ? "sliding"
                         : !deck.materials.empty() ? "materials"
                                                   : nullptr;
-    if (alone != nullptr) place.at(alone).refuse("is of several regions: add 'regions', or leave it out");
+    if (alone != nullptr)
+      place.at(alone).refuse("applies only to several regions: add 'regions', or leave it out");
     return;
   }
   if (deck.fallback && !deck.smooth_mm)
     place.at("fallback").refuse("regions are made of voxels unless 'smooth_mm' is there: leave it out");
   if (!deck.smooth_mm) return;
   if (deck.element_mm)
-    place.at("element_mm").refuse("is of voxels, and 'smooth_mm' of smooth elements: leave one out");
+    place.at("element_mm")
+        .refuse("applies only to voxels, and 'smooth_mm' only to smooth elements: leave one out");
   for (const std::vector<ObjectName>* holders : {&deck.moved, &deck.fixed})
     for (const ObjectName& holder : *holders)
       if (holder.name != deck.object.name && !contains(deck.regions, holder.name))
@@ -83,12 +85,13 @@ void check(const Deck& deck, const FieldLocation& place) {
   if (deck.fallback && deck.is_held() && !deck.smooth_mm)
     place.at("fallback").refuse("what others hold is made of its voxels anyhow: leave it out");
   if (deck.order == 2 && deck.path.extension() == ".node")
-    place.at("order").refuse("is of tetrahedra in .inp, .feb, .vtu or .msh: leave it out");
+    place.at("order").refuse("applies only to tetrahedra in .inp, .feb, .vtu or .msh: leave it out");
   check_regions(deck, place);
   if (deck.stiffness && (deck.is_held() || !deck.regions.empty()))
-    place.at("stiffness").refuse("is of one object that is filled: leave it out, or 'regions' and holders");
+    place.at("stiffness")
+        .refuse("applies only to one object that is filled: leave it out, or 'regions' and holders");
   if (!deck.finer.empty() && !deck.smooth_mm && (deck.is_held() || !deck.regions.empty()))
-    place.at("finer").refuse("is not of voxels' elements: add 'smooth_mm', or leave it out");
+    place.at("finer").refuse("does not apply to voxels' elements: add 'smooth_mm', or leave it out");
 }
 
 /// The reason why there is nothing to write, or an empty text.

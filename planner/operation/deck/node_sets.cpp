@@ -27,7 +27,7 @@ constexpr double on_surface_share() {
   return 0.25;
 }
 
-/// As a share of the distance that counts as on a plane: what a mesher's nodes stand off a flat face by.
+/// The distance of a mesher's nodes from a flat face, as a share of the distance that counts as on a plane.
 constexpr double rounding_share() {
   return 0.1;
 }
@@ -96,8 +96,8 @@ class Picker {
     return of_faces;
   }
 
-  /// Leaves out nodes that stand off the plane much more than most do: they round the face's edges, and holding
-  /// them would clamp the sides beside it.
+  /// Leaves out nodes that lie much farther off the plane than most: they belong to the rounded edges of the
+  /// face, and holding them would clamp the neighbouring faces.
   void keep_along(const glm::dvec3& point_mm, const glm::dvec3& normal,
                   std::vector<std::uint32_t>& nodes) const {
     constexpr double most_medians = 3.0;
@@ -221,7 +221,7 @@ std::vector<convert::Prescribed> prescribed_of(const std::vector<std::string>& f
   }
   if (fixed.empty() && !moved.empty())
     throw std::runtime_error(
-        "--move: nothing stays, so that the whole body would go along: name a set by --fix");
+        "--move: no nodes are fixed, so that the whole body would move: name a set by --fix");
   return step;
 }
 

@@ -20,9 +20,9 @@ void check_set_names(const std::vector<std::string>& words);
 ///   TEXT           the node nearest to a landmark of that name, or the nodes on the surface of a mesh file
 /// On a plane or surface means nearer than a quarter of the mean side of the elements' surface triangles. Where
 /// triangles of the elements' surface lie along a plane, within 30 degrees, only their nodes are on it: other
-/// nodes that near belong to the faces beside it. Of these, nodes more than thrice as far off the plane as the
-/// median are left out, which round the face's edges.
-/// Throws std::runtime_error as check_set_names(), where the text is none of these, or a set is empty.
+/// nodes that near belong to the faces beside it. Nodes more than three times as far off the plane as the
+/// median are left out, because they belong to the rounded edges of the face. Throws std::runtime_error as
+/// check_set_names(), where the text is none of these, or a set is empty.
 std::vector<convert::NodeSet> picked_node_sets(const std::vector<std::string>& words,
                                                const std::vector<brep::Landmark>& landmarks,
                                                const convert::Tetrahedra& tetrahedra);

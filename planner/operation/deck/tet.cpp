@@ -312,7 +312,7 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
   refinements(asked);
   check_set_names(asked.nodes);
   if (!asked.finer.empty() && of_voxels && !asked.size_mm)
-    throw std::runtime_error("--finer is not of voxels' own elements: give --size, too");
+    throw std::runtime_error("--finer does not apply to voxels' own elements: give --size, too");
   TetResult filled = of_voxels ? of_octrees(bench, asked) : of_mesh(bench, asked);
   const convert::Tetrahedra& tetrahedra = filled.tetrahedra;
   if (std::optional<std::string> hinge = convert::hinge_in(tetrahedra))

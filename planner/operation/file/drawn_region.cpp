@@ -117,7 +117,7 @@ DrawnRegion of_svg(const std::optional<voxel::View>& view, const fs::path& path)
   if (const std::size_t holes = holes_among(made.region.polygons_mm); holes > 0)
     made.findings.push_back(path.filename().string() + ": " + std::to_string(holes) +
                             (holes == 1 ? " outline lies" : " outlines lie") +
-                            " within another and count as holes, whatever their fill is");
+                            " within another and count as holes, even if they are filled");
   return made;
 }
 

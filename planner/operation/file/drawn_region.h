@@ -17,7 +17,7 @@ struct DrawnRegion {
   std::vector<std::string> findings;
 };
 
-/// Lines that stand for a curve are nowhere farther from it.
+/// Lines that approximate a curve are nowhere farther from it.
 inline constexpr double curve_tolerance_mm = 0.02;
 
 /// VIEW:FILE, or FILE alone of an SVG drawing over a picture. The file is

@@ -161,7 +161,7 @@ void add_disagreements(const fs::path& label_map, const std::set<int>& occurring
     const LabelTable other = table_or_why(beside, occurring, why);
     if (!why.empty()) continue;
     if (const std::string differs = disagreement(taken, other); !differs.empty())
-      taken.passed_over.push_back(beside.string() + ": passed over, as it contradicts " +
+      taken.passed_over.push_back(beside.string() + ": not used, because it contradicts " +
                                   taken.file.string() + ", whose names are used: " + differs +
                                   "; remove the wrong one, or choose one by --names");
   }
@@ -183,8 +183,9 @@ LabelTable label_table_of(const fs::path& label_map, const std::set<int>& occurr
       add_disagreements(label_map, occurring, table);
       return table;
     }
-    passed_over.push_back(beside.string() + ": passed over, as it is no table of this label map's names: " +
-                          why + "; --names takes a table as it is");
+    passed_over.push_back(beside.string() +
+                          ": not used, because it is not a table of this label map's names: " + why +
+                          "; --names uses a table without this check");
   }
   LabelTable none;
   none.passed_over = std::move(passed_over);

@@ -178,7 +178,10 @@ std::vector<brep::Landmark> fcsv_landmarks(const std::string& text, Audit& audit
   }
   if (landmarks.empty()) throw std::runtime_error("there is no point");
   if (!is_stated)
-    assume("frame", "the file names no CoordinateSystem: RAS is assumed, as 3D Slicer had it then", audit);
+    assume("frame",
+           "the file names no CoordinateSystem: RAS is assumed, which versions of 3D Slicer without this "
+           "entry wrote",
+           audit);
   return landmarks;
 }
 

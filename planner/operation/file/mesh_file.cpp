@@ -142,8 +142,7 @@ std::optional<std::string> rounding_finding(const std::filesystem::path& written
   const Stopwatch watch(timings, "health");
   const brep::Health health = brep::health(brep::read_triangles(written));
   if (health.solid()) return std::nullopt;
-  return "WARN rounding: the surface is a solid, but as .stl has it, rounded to single precision, it is none "
-         "(" +
+  return "WARN rounding: the surface is a solid, but not after rounding to the single precision of .stl (" +
          health.findings.front() + "): write .ply, .off or .vtp";
 }
 

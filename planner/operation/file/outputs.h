@@ -17,7 +17,7 @@ namespace octotomy::planner {
 void need_outputs(const std::vector<std::filesystem::path>& outs,
                   const std::vector<std::filesystem::path>& read);
 
-/// Refuses an output whose name nobody typed where it means a file of `read`. Throws std::runtime_error.
+/// Refuses an output with a derived name that is the same file as one of `read`. Throws std::runtime_error.
 void need_unread(const std::filesystem::path& out, const std::vector<std::filesystem::path>& read);
 
 /// Refuses a surface's file whose name nobody typed, before the work: throws as need_folder_of() and

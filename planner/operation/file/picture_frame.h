@@ -10,8 +10,8 @@
 #include "voxel/space/view.h"
 #include "voxel/view/camera.h"
 
-// Where the pixels of a picture lie. Pictures in true scale that the program writes as PNG hold it, so that a
-// region can be told by their pixels.
+// Where the pixels of a picture lie. PNG files in true scale that the program writes store it, so that a
+// region can be given by their pixels.
 namespace octotomy::planner {
 
 struct PictureFrame {

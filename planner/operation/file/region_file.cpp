@@ -103,7 +103,7 @@ voxel::View view_across(const glm::dvec3& area) {
 
 using Slices = std::vector<voxel::SliceMask::Slice>;
 
-/// Of planes that count as one though they are not.
+/// The finding on planes so near each other that they count as one plane.
 std::string too_near(double gap_mm) {
   return plain(gap_mm) + " mm apart, and planes within " + plain(2.0 * off_plane_mm()) +
          " mm count as one: draw it on planes that are further apart, or check that positions are in mm";
@@ -310,9 +310,9 @@ bool are_interleaved(const std::vector<Slices>& parts) {
   });
 }
 
-/// Parts that are drawn on planes between each other's, each as thick as it is alone: a plane speaks for half
-/// the gap to the part's next one, and for half its usual distance beyond its ends and beside gaps that are
-/// not bridged. Nothing is interpolated.
+/// Joins parts that are drawn on alternating planes. Each part has the thickness that it would have alone: a
+/// plane covers half the gap to the part's next one, and for half its usual distance beyond its ends and
+/// beside gaps that are not bridged. Nothing is interpolated.
 Slices joined_parts(const std::vector<Slices>& parts, const Bridges& bridges) {
   struct Slab {
     double low_mm, high_mm;
@@ -507,9 +507,9 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
     for (const Slices& part : parts) tell_gaps(part, usual_distance_mm(part), bridges, where, drawn.findings);
     drawn.findings.push_back(
         where + ": its " + std::to_string(parts.size()) +
-        " parts are drawn on planes between each other's, first at " + plain(planes[0].position_mm) +
+        " parts are drawn on different planes that alternate, first at " + plain(planes[0].position_mm) +
         " and " + plain(planes[1].position_mm) +
-        " mm: each part is as thick as it is alone, and nothing is interpolated; draw all "
+        " mm: each part gets the thickness that it would have alone, and nothing is interpolated; draw all "
         "parts on the same planes to avoid this");
     drawn.mask.slices = joined_parts(parts, bridges);
   }

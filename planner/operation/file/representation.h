@@ -15,12 +15,12 @@ std::vector<std::string> representation_names();
 
 /// The octree as that representation's file: a line end closes a text. Multivalued codes take several objects of one
 /// universe, numbered from 1 in their order; a voxel of several belongs to the first. Throws std::invalid_argument
-/// for a name that is none, with the nearest, and for several objects of another code; std::length_error where the
-/// universe is too deep for a representation that holds every voxel, saying which depth is not.
+/// for a name that is none, with the nearest, and for several objects of another code; std::length_error if
+/// the universe is too deep for a representation that holds every voxel, with the largest depth.
 std::string represented(const std::vector<voxel::Octree>& objects, std::string_view name);
 
-/// The inverse, in a universe that the representation does not tell: of a multivalued code the object of this number.
-/// Throws std::invalid_argument with the position of what is wrong.
+/// The inverse. The representation does not state the universe, so the caller passes it. Of a multivalued
+/// code, returns the object of this number. Throws std::invalid_argument with the position of what is wrong.
 voxel::Octree octree_of_representation(const voxel::Universe& universe, std::string_view name,
                                        std::string_view content, int number = 1);
 

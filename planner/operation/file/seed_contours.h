@@ -9,7 +9,7 @@
 // Contours whose thresholds come from seed pixels (thesis 2.3.2.2.1).
 namespace octotomy::planner {
 
-/// What a seed led to.
+/// The contour that was found for a seed.
 struct SeedContour {
   glm::dvec3 seed_mm{0.0};   ///< as given, LPS
   double threshold = 0.0;    ///< the sample nearest to it
@@ -24,10 +24,10 @@ struct SeedContours {
 };
 
 /// For each seed, the contour nearest to it among those of its slice at the threshold of its own sample;
-/// seeds that lead to the same contour give it once. The mask has the seeds' slices, and where the scan goes
-/// on an empty one at either end. Throws std::runtime_error naming the seed if it lies outside of the scan or
-/// on padding, or if its slice has no contour at its threshold; if two contours of a slice cross, which is
-/// possible where seeds there have different samples; and as slice_contours().
+/// a contour that several seeds lead to appears once. The mask has the seeds' slices and, where the scan
+/// continues, an empty slice at either end. Throws std::runtime_error naming the seed if it lies outside of
+/// the scan or on padding, or if its slice has no contour at its threshold; if two contours of a slice cross,
+/// which is possible where seeds there have different samples; and as slice_contours().
 SeedContours contours_at_seeds(const voxel::Scene& scene, const std::vector<glm::dvec3>& seeds_mm);
 
 }  // namespace octotomy::planner

@@ -81,7 +81,7 @@ Polygon refined_at(const Polygon& polygon, const Refinement& refinement, const v
   Refined done = refined_contour(polygon, refinement);
   if (done.is_left)
     findings.push_back(place_of(slice) + ": a contour of " + std::to_string(polygon.size()) +
-                       " points would come to cross itself and stays as it is");
+                       " points would cross itself after this change and stays unchanged");
   else if (done.harmonics > 0)
     findings.push_back(place_of(slice) + ": a contour of " + std::to_string(polygon.size()) +
                        " points would cross itself with " + std::to_string(*refinement.harmonics) +

@@ -195,7 +195,8 @@ void draw_path(Pencil& pencil, const XmlTags& elements, const XmlTag& element) {
       pencil.begin(here);
       drawing = true;
     }
-    // The reflected control point, of a curve of the same kind.
+    // The last control point mirrored at the current point, if the last command was a curve of the same kind;
+    // else the current point.
     const auto mirrored = [&](const char* kinds) {
       return std::string_view(kinds).find(before) != std::string_view::npos ? 2.0 * here - handle : here;
     };

@@ -180,7 +180,7 @@ class Face {
     double beyond_mm = 0.0;  ///< beyond the window, unless the bone ended there
   };
 
-  /// Places of the map from this side in a column that reach at least as far as `least`.
+  /// The points of a column of the map seen from this side that lie at `least` or beyond.
   std::vector<std::pair<double, glm::dvec3>> reaching(int column, const Window& window, const Reach& reach,
                                                       double least) const {
     const HeadMap& map = from_side();

@@ -337,7 +337,7 @@ Profile profile_of(const HeadMap& front, double within_mm) {
   Profile profile;
   profile.step_mm = front.step_mm();
   profile.top_mm = front.y_mm(front.size().y - 1);
-  // The middle of every few rows; then the median of five of them.
+  // Takes the middle of a row every 4 mm, then the median of five of these.
   const int apart = std::max(1, static_cast<int>(std::lround(4.0 / front.step_mm())));
   std::vector<double> middles;
   for (int j = front.size().y - 1; j >= 0; j -= apart) middles.push_back(middle_at(front, j));

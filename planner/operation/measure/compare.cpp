@@ -217,7 +217,8 @@ Operation compare_operation() {
                            Makes::Measurement)
       .takes(field("a", &Compare::a, "An object.").required().positional("a"))
       .takes(field("b", &Compare::b, "Another one in the same frame.").required().positional("b"))
-      .takes(field("tolerances_mm", &Compare::tolerances_mm, "Bands whose share of the area is told."))
+      .takes(field("tolerances_mm", &Compare::tolerances_mm,
+                   "Distances; for each, the share of the area within it is reported."))
       .takes(field("spacing_mm", &Compare::spacing_mm,
                    "Distance of the samples. Default: 200 000 samples a surface.")
                  .greater_than(0.0))

@@ -74,7 +74,7 @@ Operation contacts_operation() {
       .takes(field("object", &ContactMap::object, "The object whose surface is marked, as the lower teeth.")
                  .required())
       .takes(field("against", &ContactMap::against, "What it touches.").required())
-      .takes(field("within_mm", &ContactMap::within_mm, "What is nearer than this is a contact.")
+      .takes(field("within_mm", &ContactMap::within_mm, "Surfaces nearer than this are in contact.")
                  .greater_than(0.0)
                  .to(20.0))
       .takes(

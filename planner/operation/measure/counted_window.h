@@ -19,11 +19,11 @@ double faces_mm2(const voxel::Scene& scan, double low, double high);
 /// The volume of one sample's cell.
 double sample_mm3(const voxel::Scene& scan);
 
-/// The error, in 99 of 100 cases, of a volume that is counted by samples, each of which states whether its
-/// own position is inside. Systematic sampling by the planes across each axis (Matheron 1971; Gundersen,
-/// Jensen 1987, The efficiency of systematic sampling in stereology) has a variance of (3 C0 - 4 C1 + C2) /
-/// 12, Ck the sum of products of sections k apart. Adds the error of a boundary that is unrelated to the
-/// lattice. Cost: two passes.
+/// The bound that the error of a counted volume keeps in 99 of 100 cases. Each sample counts if its own
+/// position is inside. Systematic sampling by the planes across each axis (Matheron 1971; Gundersen, Jensen
+/// 1987, The efficiency of systematic sampling in stereology) has a variance of (3 C0 - 4 C1 + C2) / 12, Ck
+/// the sum of products of sections k apart. Adds the error of a boundary that is unrelated to the lattice.
+/// Cost: two passes.
 double counting_doubt_mm3(const voxel::Scene& scan, double low, double high);
 
 /// Ones for samples in a window, zeros elsewhere, for surfaces of labels half way between samples.

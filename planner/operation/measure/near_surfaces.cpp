@@ -261,7 +261,7 @@ Contacts contacts_between(const voxel::Octree& one, const voxel::Octree& other,
   const double half_voxel_mm = 0.5 * std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   const Points points =
       made.by_mesh ? mesh_points(*solid_one, *solid_other, options.within_mm, half_voxel_mm) : voxels;
-  // Neighbouring points always belong to one place, whatever `apart_mm` is.
+  // Neighbouring points always belong to one place, for any `apart_mm`.
   const double between_points_mm =
       made.by_mesh ? half_voxel_mm : std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   int count = 0;

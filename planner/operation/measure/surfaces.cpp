@@ -320,7 +320,7 @@ Operation surfaces_operation() {
       .takes(
           field("labels", &Surfaces::labels, "Only these labels. Default: all but 0.").for_example("[1, 2]"))
       .takes(field("smooth", &Surfaces::smooth,
-                   "Smooths over so many voxels; 0 leaves the surfaces half-way between voxels.")
+                   "Width of the smoothing in voxels; 0 leaves the surfaces half-way between voxels.")
                  .from(0)
                  .to(4))
       .verb_takes(field("out", &Surfaces::out,

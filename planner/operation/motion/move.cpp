@@ -159,7 +159,7 @@ void check_ways(const Move& move, const FieldLocation& place) {
         "moves nothing: add 'translate_mm', 'rotate' or both, 'by' and 'turn', 'from' and 'to', "
         "'points', 'matrix' or 'with'");
   if (ways > 1)
-    place.refuse("says its motion twice: 'points', 'matrix' and 'with' stand alone, keep one of them");
+    place.refuse("states its motion twice: 'points', 'matrix' and 'with' each exclude all others; keep one");
   if (move.from.has_value() != move.to.has_value())
     place.refuse(std::string("'") + (move.from ? "to" : "from") +
                  "' is missing: marks go from one to another");
@@ -323,7 +323,7 @@ Operation move_operation() {
                   field("axis", &Rotation::axis, "The direction of the axis, LPS.").direction(),
                   field("about_mm", &Rotation::about_mm, "A point on the axis, LPS, or a landmark."),
                   field("through", &Rotation::through,
-                        "The axis from one point to another, as both condyles, in place of 'axis'.")
+                        "In place of 'axis': two points that the axis passes, for example both condyles.")
                       .from(2)
                       .to(2)}))
       .takes(record("by", &Move::by, "The translation in words of the head.",

@@ -230,13 +230,13 @@ ScanFitAsked scan_fit_asked(const Register& asked) {
   return {asked.by == "correlation", asked.least_overlap, asked.finest_mm, asked.watch};
 }
 
-/// The scan that an object was made of, and the object's motion since.
+/// The scan that an object was made of, and the object's motion since then.
 const Shown& shown_of(const Objects& objects, const std::string& name) {
   const Object& object = objects.at(name);
   if (!object.shown || !object.shown->samples)
-    throw std::runtime_error("'" + name +
-                             "' comes from no scan whose samples could be compared: register it by "
-                             "surfaces or landmarks");
+    throw std::runtime_error(
+        "'" + name +
+        "' was not made from a scan, so it has no samples to compare: register it by surfaces or landmarks");
   return *object.shown;
 }
 
@@ -246,8 +246,7 @@ FittedScans by_scans_of(const Register& asked, const SettleBench& bench, Laid& l
   const Shown& fixed = shown_of(bench.objects, asked.onto.name);
   if (moving.scan == fixed.scan)
     throw std::runtime_error("'" + asked.object.name + "' and '" + asked.onto.name +
-                             "' come from one scan, '" + moving.scan +
-                             "', which already lies on itself: register them by surfaces");
+                             "' come from one scan, '" + moving.scan + "': compare them by surfaces");
   FittedScans fitted =
       fit_scans(*moving.samples, *fixed.samples, scan_fit_asked(asked), bench.progress, bench.timings);
   laid.onto_from_object =
@@ -276,7 +275,7 @@ Register settle(const Register& asked, const SettleBench& bench) {
                 !asked.landmarks.empty(), bench.progress, bench.timings, laid);
   bench.details = {{"transform", to_json(laid.onto_from_object)}};
   if (laid.rms_mm) bench.details["rms_mm"] = *laid.rms_mm;
-  // Of scans there is no record of a fit of surfaces.
+  // A fit of scans has its own details; a fit of surfaces or landmarks has a record.
   bench.details.update(is_by_samples(asked) ? of_scans : print_record(laid.details));
   bench.findings.insert(bench.findings.end(), laid.findings.begin(), laid.findings.end());
   Register settled = asked;
@@ -313,7 +312,7 @@ void write_moved(const Register& asked, const glm::dmat4& moved_from_still, Timi
   write_surface(mesh, asked.out, timings);
 }
 
-/// The answer of all ways, with the motion and what it is.
+/// The parts of the answer that all ways of registration share: the motion, its definition and its text.
 FileAnswer answer_of(const Register& asked, const Laid& laid, const Json& details) {
   FileAnswer answer;
   answer.json = {{"transform", to_json(laid.onto_from_object)},
@@ -334,16 +333,17 @@ FileAnswer answer_of(const Register& asked, const Laid& laid, const Json& detail
   return answer;
 }
 
-/// Two scans. What moves keeps its samples: the written scan has another frame.
+/// Registers two scans. The written scan has the samples of the moving scan, unchanged, in another frame.
 FileAnswer scans_on_files(const Register& asked, const FileBench& bench) {
   if (!asked.landmarks.empty() || asked.landmarks_only)
-    throw std::runtime_error("--landmarks: of two scans it is their samples that are compared: leave it out");
-  // The options of surfaces, which a folder of DICOM does not show to be of none.
+    throw std::runtime_error("--landmarks: two scans are compared by their samples: leave it out");
+  // Refuses the options for surfaces here, because the name of a DICOM folder does not show that it is a
+  // scan.
   const Register fresh;
   if (asked.overlap != fresh.overlap || asked.samples != fresh.samples || asked.rounds != fresh.rounds ||
       asked.rest_mm)
     throw std::runtime_error(
-        "--overlap, --samples, --rounds and --rest are of surfaces: leave them out of scans");
+        "--overlap, --samples, --rounds and --rest apply only to surfaces: leave them out for scans");
   if (!asked.out.empty()) {
     if (!voxel::volume_format(asked.out))
       throw std::runtime_error(asked.out.string() +
@@ -376,12 +376,11 @@ bool are_scans(const Register& asked) {
   };
   const bool a = is_scan(asked.object.name), b = is_scan(asked.onto.name);
   if (a != b)
-    throw std::runtime_error(
-        (a ? asked.object.name : asked.onto.name) +
-        ": is a scan and the other file is none: give two scans, or make a surface of this one "
-        "by octotomy mesh");
+    throw std::runtime_error((a ? asked.object.name : asked.onto.name) +
+                             ": is a scan, and the other file is not: give two scans, or make a surface of "
+                             "this one by octotomy mesh");
   if (!a && is_by_samples(asked))
-    throw std::runtime_error("--by: " + asked.by + " is of two scans: leave it out");
+    throw std::runtime_error("--by: " + asked.by + "  applies only to two scans: leave it out");
   if (a && asked.by == "surfaces")
     throw std::runtime_error("--by: two scans have no surfaces: make them by octotomy mesh");
   return a;
@@ -435,8 +434,9 @@ bool may_be_of_samples(const Register& asked) {
   return is_of_samples(asked) || (asked.by.empty() && !is_mesh(asked.object.name) &&
                                   !is_json(asked.object.name) && std::filesystem::exists(asked.object.name));
 }
-constexpr const char* of_surfaces = "is of surfaces: leave it out of scans";
-constexpr const char* of_samples = "is of two scans, compared 'by' correlation or mutual_information";
+constexpr const char* of_surfaces = "applies only to surfaces: leave it out for scans";
+constexpr const char* of_samples =
+    "applies only to two scans that are compared 'by' correlation or mutual_information";
 
 }  // namespace
 
@@ -488,12 +488,12 @@ Operation register_operation() {
               "mutual_information, for any two. Default: surfaces; of two files of scans mutual_information.")
               .one_of({"surfaces", "correlation", "mutual_information"}))
       .takes(field("least_overlap", &Register::least_overlap,
-                   "Share of the smaller scan that the other one covers at least.")
+                   "Least share of the smaller scan that the other one must cover.")
                  .from(0.05)
                  .to(1.0)
                  .read_if<Register>(may_be_of_samples, of_samples))
       .takes(field("finest_mm", &Register::finest_mm,
-                   "The resolution of the last search among motions of scans.")
+                   "The resolution at which the search for the motion of a scan ends.")
                  .from(0.5)
                  .to(8.0)
                  .read_if<Register>(may_be_of_samples, of_samples))

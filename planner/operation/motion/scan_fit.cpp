@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Edge of a pixel of the pictures of the difference, mm: a head's three planes are a screen's width.
+/// Edge of a pixel of the difference pictures, mm. Three planes of a head side by side then fit the width of
+/// a screen.
 constexpr double watched_pixel_mm = 1.0;
 
 /// Pictures of the difference of two scans while one moves.
@@ -78,7 +79,7 @@ class Watched {
   }
 
  private:
-  /// Black and white: all but the lowest and the highest hundredth of what is seen.
+  /// The values shown as black and white: the 1st and the 99th percentile of the visible samples.
   static voxel::Range tones_of(const std::vector<voxel::SheetSamples>& seen) {
     std::vector<float> values;
     for (const voxel::SheetSamples& samples : seen)

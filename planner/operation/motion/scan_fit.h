@@ -27,9 +27,10 @@ struct FittedScans {
   std::string summary;  ///< of the verdict, for people
 };
 
-/// Lays a scan on another one by voxel::register_scans(), whose facts are the details. Pictures in the folder `watch`
-/// show the two scans in the middle planes of the one that stays: what moves in magenta, what stays in green, so that
-/// equal tones are grey. Throws as register_scans(), and voxel::Error if the folder is there or cannot be made.
+/// Registers a scan to another one by voxel::register_scans() and returns its results as details. Pictures in
+/// the folder `watch` show the two scans in the middle planes of the one that stays: what moves in magenta,
+/// what stays in green, so that equal tones are grey. Throws as register_scans(), and voxel::Error if the
+/// folder exists or cannot be created.
 FittedScans fit_scans(const voxel::Scene& moving, const voxel::Scene& fixed, const ScanFitAsked& asked,
                       const voxel::Progress& progress, Timings& timings);
 

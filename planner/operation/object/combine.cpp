@@ -83,7 +83,7 @@ void bound(const Combine& combine, const BoundBench& bench, Object& made) {
   bound_of_operands(uses(combine), bench, made);
   made.is_surely_empty = is_empty_of_any(combine.expression);
   if (made.is_surely_empty)
-    made.findings.push_back("'" + combine.expression + "' is empty, whatever its objects are");
+    made.findings.push_back("'" + combine.expression + "' is empty for all objects: check the expression");
   else if (made.voxel.octree.is_empty())
     made.findings.push_back("no voxel is in '" + combine.expression +
                             "': it is empty, or thinner than the voxels are apart");

@@ -45,7 +45,7 @@ void check(const Contours& contours, const FieldLocation& place) {
     place.refuse("'window' is missing: add it, for example \"bone\", or 'seeds_mm'");
 }
 
-/// Follows the contours on a scan. Those of seeds add what each led to.
+/// Follows the contours on a scan. For each seed, adds the contour found to `of_seeds`.
 voxel::SliceMask followed(const Contours& asked, const voxel::Scene& scene, Timings& timings, Json& of_seeds,
                           std::vector<std::string>& findings) {
   const Stopwatch watch(timings, "follow");
@@ -121,8 +121,7 @@ FileAnswer on_files(const Contours& asked, const FileBench& bench) {
     throw std::runtime_error(file.string() + ": holds contours already: leave --window out");
   if (!is_json(file) && !asked.window && asked.seeds_mm.empty())
     throw std::runtime_error(
-        "--window: what are the contours of? for example --window 300: or --window skin, or --seed X,Y,Z on "
-        "an "
+        "--window: choose what the contours outline: --window 300: or --window skin, or --seed X,Y,Z on an "
         "edge");
   std::vector<std::string> findings;
   Json of_seeds = Json::array();

@@ -77,12 +77,12 @@ Operation import_operation() {
       .takes(field("path", &Import::path,
                    std::string("The file: ") + brep::mesh_formats_read + ", relative to the plan's folder.")
                  .required())
-      .takes(
-          field("frame", &Import::frame,
-                "Where x, y and z of the file point, whatever it says: LPS, RAS, or three other letters of "
-                "L or R, A or P, S or I. Default: what the file says, else LPS."))
+      .takes(field("frame", &Import::frame,
+                   "Directions of x, y and z in the file, in place of what the file states: LPS, RAS, or "
+                   "three other letters of "
+                   "L or R, A or P, S or I. Default: what the file says, else LPS."))
       .takes(field("unit", &Import::unit,
-                   "The file's unit, whatever it says. Default: what the file says, else mm.")
+                   "The file's unit, in place of the one that the file states. Default: the file's, else mm.")
                  .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
       .check(check)
       .example(R"({"id": "plate", "do": "import", "path": "plate.stl"})")

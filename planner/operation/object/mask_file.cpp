@@ -159,8 +159,9 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
       if (octree == nullptr)
         throw std::runtime_error(asked.edit.string() + ": only a binary octree is a mask that can be edited");
       if (!universe && asked.voxel_mm)
-        throw std::runtime_error(asked.edit.string() +
-                                 ": the mask has its voxels: leave --voxel out, or give a scan as --like");
+        throw std::runtime_error(
+            asked.edit.string() +
+            ": the mask already has a voxel size: leave --voxel out, or give a scan as --like");
       if (!universe) universe = octree->universe();
       expression = *octree;
     }

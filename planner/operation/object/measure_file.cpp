@@ -209,7 +209,7 @@ FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked,
     if (asked.asks_surface() || !asked.out.empty())
       throw std::runtime_error(
           file.string() + ": is not a closed, oriented surface (" + health.findings.front() +
-          "), which sections, walls and curvature are asked of: mend it first, octotomy repair --solid");
+          "), which sections, walls and curvature need: mend it first by octotomy repair --solid");
     return measure_open(triangles, health);
   }
   const brep::Solid solid = brep::trusted_solid(std::move(one->triangles), brep::Proof::Connection);

@@ -212,12 +212,12 @@ Operation mesh_operation() {
                         "greatest-volume, least-angle; overlay: no strips.")
                       .one_of({"shortest-span", "least-area", "greatest-volume", "least-angle", "overlay"})
                       .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "contours"; },
-                                       "is of contours: add 'surface' contours"))
+                                       "applies only to contours: add 'surface' contours"))
       .takes(field("touching", &Meshed::touching,
                    "Of a cuberille, voxels that meet at an edge or corner only: apart or together.")
                  .one_of({"apart", "together"})
                  .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "cuberille"; },
-                                  "is of a cuberille: add 'surface' cuberille"))
+                                  "applies only to a cuberille: add 'surface' cuberille"))
       .takes(field("smooth", &Meshed::smooth, "Takes noise off the surface and keeps its volume."))
       .takes(field("faces", &Meshed::faces, "Number of triangles to decimate to.").from(4).to(100000000))
       .takes(field("path", &Meshed::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.")

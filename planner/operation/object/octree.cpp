@@ -99,7 +99,7 @@ voxel::OctreeFile from_scan(const FileBench& bench, const Build& asked) {
     throw std::runtime_error(asked.file.name + ": is a mesh: octotomy voxelise makes an octree of one");
   if (!asked.window && !asked.grey)
     throw std::runtime_error(asked.file.name +
-                             ": is a scan, say what of it: --window LOW:HIGH for an object, for example "
+                             ": is a scan: choose --window LOW:HIGH for an object, for example "
                              "--window 300:, or --grey for all samples");
   const std::optional<SampleWindow>& window = asked.window;
   const voxel::Scene scene = bench.read_scan(asked.in());
@@ -141,20 +141,20 @@ std::string tracked(const Build& asked, const voxel::Octree& octree, Json& json)
 const voxel::Octree& binary_of(const Build& asked, const std::string& name, const voxel::OctreeFile& file) {
   const auto* octree = std::get_if<voxel::Octree>(&file.tree);
   if (octree == nullptr)
-    throw std::runtime_error(name + ": only a binary octree has the form " + asked.as +
+    throw std::runtime_error(name + ": only a binary octree can be written as " + asked.as +
                              (std::holds_alternative<voxel::GreyOctree>(file.tree)
-                                  ? ": choose an object of the samples with --window LOW:HIGH"
+                                  ? ": choose an object by --window LOW:HIGH"
                                   : ": this one holds fractions, digitise it as centre or half"));
   return *octree;
 }
 
-/// The object, and those beside it in its universe.
+/// The object and the further objects in its universe.
 std::vector<voxel::Octree> objects_of(const FileBench& bench, const Build& asked,
                                       const voxel::OctreeFile& file) {
   std::vector<voxel::Octree> objects{binary_of(asked, asked.file.name, file)};
   for (const ObjectName& other : asked.with) {
     if (!names_octree(other.name, bench))
-      throw std::runtime_error("--with: " + other.name + ": is no .octree file");
+      throw std::runtime_error("--with: " + other.name + ": is not an .octree file");
     objects.push_back(binary_of(asked, other.name, octree_named(other.name, bench)));
     if (objects.back().universe() != objects.front().universe())
       throw std::runtime_error("--with: " + other.name + ": has another universe than " + asked.file.name +
@@ -270,7 +270,7 @@ Operation octree_operation() {
                    "Further objects of a multivalued code, from number 2 on, in the universe of the first.")
                  .repeated()
                  .read_if<Build>([](const Build& build) { return build.as == "multivalued"; },
-                                 "is of multivalued codes: add 'as' multivalued"))
+                                 "applies only to multivalued codes: add 'as' multivalued"))
       .takes(field("seed_face_mm", &Build::seed_face_mm,
                    "Writes only the connected surface from the face nearest to this point, LPS: of one part, "
                    "without its cavities, or of one cavity.")
@@ -279,20 +279,20 @@ Operation octree_operation() {
       .takes(field("neighbours", &Build::neighbours,
                    "Voxels of the tracked surface are joined by faces (6) or also by edges (18).")
                  .read_if<Build>([](const Build& build) { return build.seed_face_mm.has_value(); },
-                                 "is of 'seed_face_mm': add it"))
+                                 "needs 'seed_face_mm': add it"))
       .verb_takes(field("from", &Build::from, "Reads the file as such a representation.")
                       .one_of(representation_names()))
       .verb_takes(
           field("depth", &Build::depth, "With --from: the universe has 2^N voxels a side.")
               .from(2)
               .to(voxel::Universe::max_depth)
-              .read_if<Build>([](const Build& build) { return !build.from.empty(); }, "is of 'from': add it"))
+              .read_if<Build>([](const Build& build) { return !build.from.empty(); }, "needs 'from': add it"))
       .verb_takes(
           field("number", &Build::number, "The object of a multivalued code that is read. Default: 1.")
               .from(1)
               .to(254)
               .read_if<Build>([](const Build& build) { return build.from == "multivalued"; },
-                              "is of multivalued codes: add 'from' multivalued"))
+                              "applies only to multivalued codes: add 'from' multivalued"))
       .reads_scans()
       .example(R"({"id": "tree", "do": "octree", "object": "skull", "path": "skull.octree"})")
       .on_files(

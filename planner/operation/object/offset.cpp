@@ -159,8 +159,8 @@ void triangles(const Offset& offset, const MeshBench& bench, MeshSide& made) {
   made.lineage = "level set of the distance to the mesh";
 }
 
-/// The cell that the mesh was made with. Where the user chose none, it is finer than cell_for() if the volume
-/// needed that.
+/// The cell that the mesh was made with. If the user chose none, it may be finer than cell_for(), because the
+/// volume required it.
 double cell_of(const Offset& offset, const brep::Solid& operand, const MeshSide& made) {
   const auto cell = made.details.find("cell_mm");
   return cell != made.details.end() && cell->is_number()

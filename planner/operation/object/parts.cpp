@@ -173,7 +173,8 @@ std::optional<Parts> with_parts(const Parts& parts, const std::vector<glm::dvec3
 
 void check(const Parts& parts, const FieldLocation& place) {
   if (int{parts.largest.has_value()} + int{parts.at_least_mm3.has_value()} + int{!parts.at_mm.empty()} != 1)
-    place.refuse("needs one of 'largest', a number of parts, 'at_least_mm3', a volume, and 'at_mm', points");
+    place.refuse(
+        "needs one of 'largest' (a number of parts), 'at_least_mm3' (a volume) and 'at_mm' (points)");
   check(bridges_of(parts), place);
 }
 

@@ -21,7 +21,7 @@ namespace octotomy::planner {
 
 /// Decisions on thin necks between parts. Each neck is a point, LPS: the centre of a cube along the axes.
 struct BridgeDecisions {
-  std::vector<glm::dvec3> keep_mm;  ///< the parts that reach into the cube stay, whatever their size
+  std::vector<glm::dvec3> keep_mm;  ///< the parts that reach into the cube stay, also small ones
   std::vector<glm::dvec3> cut_mm;   ///< the object loses what lies within the cube
   double edge_mm = 5.0;             ///< of the cubes
   /// Points of further parts that stay: parts that only one of the kernels connects, by a neck too thin to

@@ -40,7 +40,7 @@ void check(const Repair& repair, const FieldLocation& place) {
     place.at(repair.hull      ? "hull"
              : repair.cell_mm ? "cell_mm"
                               : "wall_mm")
-        .refuse("is of a surface that is made anew: add 'solid'");
+        .refuse("applies only to a surface that is rebuilt: add 'solid'");
 }
 
 Json changes_json(const std::vector<brep::Change>& changes) {
@@ -222,10 +222,11 @@ Operation repair_operation() {
                  .positional("mesh")
                  .a_file())
       .takes(field("frame", &Repair::frame,
-                   "Where x, y and z of the file point, whatever it says: LPS, RAS, or three other letters. "
+                   "Directions of x, y and z in the file, in place of what the file states: LPS, RAS, or "
+                   "three other letters. "
                    "Default: what the file says, else LPS."))
       .takes(field("unit", &Repair::unit,
-                   "The file's unit, whatever it says. Default: what the file says, else mm.")
+                   "The file's unit, in place of the one that the file states. Default: the file's, else mm.")
                  .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
       .takes(field("weld_mm", &Repair::weld_mm,
                    "Points no further apart than this become one; 0 joins equal points.")

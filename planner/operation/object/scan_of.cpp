@@ -237,7 +237,7 @@ Compared compare(const ScanOf& step, const ScanBench& bench, const voxel::Expres
   return result;
 }
 
-/// The windows of an object that give the made scan samples: not so the distances of offset surfaces.
+/// The windows of an object whose samples enter the made scan; the distances of offset surfaces do not.
 std::vector<voxel::Window> giving_of(const Objects& objects, const Object& object, const LoadedScan& frame) {
   std::vector<voxel::Window> giving = voxel::positive_windows(sampled(objects, object));
   std::erase_if(giving, [&](const voxel::Window& window) { return window.grey.step() != frame.grey.step(); });

@@ -309,7 +309,7 @@ std::string definition(const Segment& segment, const Objects&) {
 /// The reason why the object has no mesh; null where the mesh kernel can make one.
 const char* why_voxels_alone(const Segment& segment) {
   if (segment.label || segment.named) return "a label map has no samples for an isosurface to run between";
-  if (segment.clusters) return "classes by density and gradient are of voxels";
+  if (segment.clusters) return "classes by density and gradient exist for voxels only";
   if (segment.tolerance) return "growing from seeds goes from voxel to voxel";
   if (!segment.regions.empty()) return "regions on slices choose voxels";
   if (segment.open_mm || segment.close_mm) return "opening and closing go by voxels";
@@ -534,8 +534,7 @@ Operation segment_operation() {
                    "Keeps the voxels within regions drawn on slices, a JSON file or a DICOM structure set.")
                  .a_file())
       .takes(field("structure", &Segment::structure,
-                   "The name or ROI number of the structure that is meant, where the regions are a structure "
-                   "set."))
+                   "If the regions are a structure set: the name or ROI number of the structure to use."))
       .takes(field("other_identity", &Segment::other_identity,
                    "Takes a structure set that states another patient, study or frame of reference than the "
                    "scan, and reports a FAIL."))

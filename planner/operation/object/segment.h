@@ -100,7 +100,7 @@ struct OtsuWindow {
 };
 OtsuWindow otsu_window(const voxel::Scene& scene, int classes, int number);
 
-/// The clusters of the samples' densities and gradients, and the same for people.
+/// The clusters of the samples' densities and gradients, and the same as text for the answer.
 struct Clusters {
   voxel::FeatureClasses classes;
   nlohmann::ordered_json suggestion;

@@ -223,7 +223,7 @@ void check(const Voxelise& asked, const FieldLocation& place) {
   if (!labels && asked.meshes.size() > 1)
     place.at("path").refuse("an .octree holds one object: write several as a label map, .nrrd");
   if (labels && asked.digitise == "partial")
-    place.at("digitise").refuse("a label map has no shares of voxels: write an .octree for those");
+    place.at("digitise").refuse("a label map cannot store shares of voxels: write an .octree");
 }
 
 FileAnswer on_files(const Voxelise& asked, const FileBench& bench) {
@@ -255,7 +255,7 @@ Operation voxelise_operation() {
                  .required()
                  .called("out"))
       .takes(field("voxel_mm", &Voxelise::voxel_mm,
-                   "Edge of a voxel. Default: 1; of a step that of the plan's universe.")
+                   "Edge of a voxel. Default: 1; in a plan, that of the plan's universe.")
                  .greater_than(0.0))
       .verb_takes(
           field("like", &Voxelise::like, "Takes the universe of this .octree file, to combine with it."))

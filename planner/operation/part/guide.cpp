@@ -9,8 +9,8 @@
 //   that reach as far before the bone as the slot is deep: that shadow moved back along the saw; a rod for each
 //   sleeve. Edges of the walls are rounded.
 // 4 3 less 2, then less slots and holes.
-// 5 Walls thinner than a printer's are cut off: slots and holes leave slivers at the edges of the bone.
-// 6 The largest piece, with points that files for printers can hold.
+// 5 The largest piece, with points that files for printers can hold. Slots and holes may leave slivers at the
+//   edges of the bone, which `printable` finds.
 //
 // 1 is settled once and is a shared value of both kernels.
 #include <algorithm>
@@ -72,12 +72,12 @@ struct Guide {
   double sleeve_radius_mm() const { return hole_radius_mm() + sleeve_wall_mm; }
 };
 
-/// Cells of the mesh's offsets: of the fitting surface, and of the outer one. Triangles of the fitting surface
-/// lie within a 16th of a cell of it, a third of a printer's error of 0.16 mm.
+/// Cell sizes of the mesh's offsets: for the fitting surface and for the outer surface. Triangles of the
+/// fitting surface lie within a 16th of a cell of it, a third of a printer's error of 0.16 mm.
 constexpr double base_cell_mm = 1.0, outer_cell_mm = 2.0;
 /// Room about the region beyond what the guide needs.
 constexpr double room_mm = 1.0;
-/// How far rods and holes go on below the bone's surface, which is not known to a hair at a screw's point.
+/// How far rods and holes extend below the bone's surface, because a screw's point may lie slightly off it.
 constexpr double below_mm = 5.0;
 
 void check(const Guide& guide, const FieldLocation& place) {
@@ -344,7 +344,7 @@ Operation guide_operation() {
                  .from(3.0)
                  .to(60.0)
                  .read_if<Guide>([](const Guide& guide) { return !guide.region; },
-                                 "is of 'points': leave it out"))
+                                 "applies only to 'points': leave it out"))
       .takes(record("region", &Guide::region, "In place of the points, a region drawn in a view.",
                     {field("view", &DrawnSite::view, "The view in which the region is drawn.").required(),
                      field("polygons_mm", &DrawnSite::polygons_mm,
@@ -388,11 +388,10 @@ Operation guide_operation() {
                    "The thickness of the walls beside a slot; the default is a project's choice.")
                  .from(1.0)
                  .to(10.0))
-      .takes(
-          field("slot_end_mm", &Guide::slot_end_mm,
-                "What is left of the guide beyond a slot's closed ends; the default is a project's choice.")
-              .from(1.0)
-              .to(30.0))
+      .takes(field("slot_end_mm", &Guide::slot_end_mm,
+                   "The wall of the guide beyond a slot's closed ends; the default is a project's choice.")
+                 .from(1.0)
+                 .to(30.0))
       .takes(field("slot_form", &Guide::slot_form,
                    "closed: both ends of slots are closed; three_sided: the end of the line's last point is "
                    "open.")

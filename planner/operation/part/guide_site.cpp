@@ -111,7 +111,8 @@ void draw_outlines(const SiteAsked& asked, const SettleBench& bench, GuideSite& 
     for (std::size_t i = 1; i < frame.points_mm.size(); ++i)
       if (glm::distance(frame.points_mm[i - 1], frame.points_mm[i]) < least_apart_mm)
         throw std::runtime_error("points " + std::to_string(i) + " and " + std::to_string(i + 1) +
-                                 " lie behind each other as the " + asked.part + " is put on: leave one out");
+                                 " lie behind each other, seen along the direction in which the " +
+                                 asked.part + " is put on: leave one out");
     site.base.outline_mm = outline_about(frame.points_mm, asked.radius_mm);
     site.near.outline_mm = outline_about(frame.points_mm, asked.radius_mm + asked.margin_mm);
   }
@@ -154,10 +155,10 @@ void need_points_seen(const SiteAsked& asked, const brep::Solid& bone,
     const std::optional<Seen> seen = site.front.first(site.base.frame.project(feet[i].p_mm));
     const double behind_mm = seen ? glm::dot(feet[i].p_mm, site.base.frame.look) - seen->depth_mm : 0.0;
     if (behind_mm > hidden_mm)
-      throw std::runtime_error(point + " lies " + three_figures(behind_mm) + " mm behind other bone as the " +
-                               asked.part +
-                               " is put on: the surgeon reaches what is "
-                               "seen from the side alone, so move it or choose another 'side'");
+      throw std::runtime_error(point + " lies " + three_figures(behind_mm) +
+                               "  mm behind other bone, seen along the direction in which the " + asked.part +
+                               " is put on: the surgeon reaches only what is seen from the side; move it or "
+                               "choose another 'side'");
   }
 }
 

@@ -33,7 +33,7 @@ struct SawSlot {
   Blade opening, walls;         ///< the walls go on beyond closed ends
 };
 
-/// What slots are cut into, and how.
+/// The region of the guide that slots are cut into, and the measures of the slots.
 struct SlotsAsked {
   Slab base;                  ///< the guide's region
   glm::dvec3 along{0, 1, 0};  ///< unit: in which the guide is put on

@@ -5,10 +5,12 @@
 //   screws' axes.
 // 2 The bone near the band and all that lies behind it along the way in which the plate is put on; grown by the
 //   bending radius and the clearance, then shrunk by the radius: its surface has no hollow narrower than the
-//   radius, so that the plate bridges gaps. As 2 holds all that lies behind it, so does this: the plate slides on.
+//   radius, so that the plate bridges gaps. It still contains all that lies behind it, so that the plate slides
+//   on.
 // 3 What is left of the thickness above the rounding, on a band narrower by the rounding; grown by the rounding,
 //   so that all outer edges are round. Less 2.
-// 4 Less the holes, and less walls thinner than a printer's. The largest piece, with points that files for printers can hold.
+// 4 Less the holes. The largest piece, with points that files for printers can hold. Thin walls may remain,
+//   which `printable` finds.
 //
 // 1 is settled once and is a shared value of both kernels.
 #include <algorithm>
@@ -50,7 +52,7 @@ struct Plate {
   double play_mm = 0.2, hole_wall_mm = 1.0;
   std::vector<ObjectName> away_from;
   double least_mm = 1.0;
-  // Settled.
+  // Set by settle().
   GuideSite site;
   Slab ridge;  ///< the band that the rounding makes as wide as the plate
   std::vector<ScrewAxis> axes;
@@ -60,18 +62,19 @@ struct Plate {
 };
 
 constexpr double plate_room_mm = 1.0;
-/// A screw may go in at up to this angle to the way in which the plate is put on.
+/// Largest angle between a screw and the direction in which the plate is put on.
 constexpr double steepest_screw_deg = 45.0;
-/// How far off the bone a screw's point may be: it was placed by hand.
+/// Largest distance of a screw's point from the bone; the point was placed by hand.
 constexpr double screw_off_bone_mm = 3.0;
 /// Cells of the mesh's offsets. Triangles lie within a 16th of their cell, and on the mean within a third of that.
-/// A ball of the bending radius touches all triangles of the patch on which it rests, so that their number decides
-/// about the time.
+/// A ball of the bending radius touches all triangles of the patch on which it rests, so that their number
+/// determines the running time.
 constexpr double plate_fit_cell_mm = 1.0, plate_outer_cell_mm = 1.5;
 double grown_cell_mm(const Plate& plate) {
   return plate.bend_radius_mm / 5.0;
 }
-/// Triangles whose normal lies within 60 degrees of the way in face the bone.
+/// Triangles face the bone if their normal lies within 60 degrees of the direction in which the plate is put
+/// on.
 constexpr double faces_bone = 0.5;
 
 void check(const Plate& plate, const FieldLocation& place) {
@@ -87,11 +90,11 @@ void check(const Plate& plate, const FieldLocation& place) {
   if (!(plate.bend_radius_mm >= 2.0 * plate.thickness_mm))
     place.at("bend_radius_mm")
         .refuse(
-            "is less than twice 'thickness_mm': a plate that bends so sharply breaks, and its outer "
+            "is less than twice 'thickness_mm': a plate that is bent this sharply breaks, and its outer "
             "side would cross itself");
 }
 
-/// The least distance of a place from the border of an outline; below 0 beside it.
+/// The distance of a place from the border of an outline; negative outside.
 double within_mm(const std::vector<glm::dvec2>& outline_mm, const glm::dvec2& p_mm) {
   double least_mm = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < outline_mm.size(); ++i) {
@@ -103,7 +106,8 @@ double within_mm(const std::vector<glm::dvec2>& outline_mm, const glm::dvec2& p_
   return voxel::contains({outline_mm}, p_mm) ? least_mm : -least_mm;
 }
 
-/// The axes of the screws, each in the bone as planned, within the band and beside the other holes.
+/// The axes of the screws. Throws std::runtime_error unless each starts at the planned bone, lies within the
+/// band and leaves a wall to the other holes.
 std::vector<ScrewAxis> axes_of(const Plate& plate, const SettleBench& bench) {
   std::vector<ScrewAxis> axes;
   const brep::Solid& bone = bench.object(plate.object.name);
@@ -111,13 +115,14 @@ std::vector<ScrewAxis> axes_of(const Plate& plate, const SettleBench& bench) {
     const ScrewAxis axis = screw_axis(name.name, bench);
     std::uint32_t start = 0;
     if (const double off_mm = bone.tree().distance_mm(axis.head_mm, start); off_mm > screw_off_bone_mm)
-      throw std::runtime_error("the screw '" + name.name + "' lies " + three_figures(off_mm) +
-                               " mm off the surface of '" + plate.object.name +
-                               "': name the screw as a move step carried it with its piece");
+      throw std::runtime_error(
+          "the screw '" + name.name + "' lies " + three_figures(off_mm) + " mm off the surface of '" +
+          plate.object.name +
+          "': name the object that a move step made of the screw when it moved the screw with its piece");
     if (glm::dot(axis.along, plate.site.along) < std::cos(glm::radians(steepest_screw_deg)))
       throw std::runtime_error("the screw '" + name.name +
-                               "' points more than 45 degrees off the way in which the plate is put on: turn "
-                               "the screw, or choose another 'side'");
+                               "' points more than 45 degrees off the direction in which the plate is put "
+                               "on: turn the screw, or choose another 'side'");
     // Where the axis passes the middle of the plate's wall.
     const glm::dvec3 middle_mm = axis.head_mm - (plate.clearance_mm + 0.5 * plate.thickness_mm) * axis.along;
     const double wall_mm = within_mm(plate.site.base.outline_mm, plate.site.base.frame.project(middle_mm)) -
@@ -145,8 +150,8 @@ std::vector<ScrewAxis> axes_of(const Plate& plate, const SettleBench& bench) {
   return axes;
 }
 
-/// What is known of each screw: its axis as planned, and how far it stays from what it must not touch, before
-/// the motion as its own step says and at its planned place.
+/// Reports each screw: its planned axis, and its distances from objects that it must not touch, before the
+/// motion (from its own step) and at its planned place.
 void report_screws(const Plate& plate, const SettleBench& bench) {
   bench.details["screws"] = nlohmann::ordered_json::array();
   for (const ScrewAxis& axis : plate.axes) {
@@ -215,7 +220,8 @@ std::string definition(const Plate& plate, const Objects&) {
          plate.object.name + " from " + plate.side + ", " + std::to_string(plate.axes.size()) + " holes";
 }
 
-/// How far a hole goes to both sides of its screw's head: through the plate where it bridges a gap too.
+/// Length of a hole to both sides of its screw's head: long enough to pass through the plate where it bridges
+/// a gap.
 double through_mm(const Plate& plate) {
   return plate.clearance_mm + plate.thickness_mm + plate.bend_radius_mm + plate_room_mm;
 }
@@ -287,7 +293,7 @@ std::optional<FitGap> mesh_gap(const brep::Solid& plate, const glm::dvec3& along
   return gap;
 }
 
-/// The same between the crossings of both objects' surfaces with the lattice.
+/// The gap computed from the points where both objects' surfaces cross the lattice.
 std::optional<FitGap> voxel_gap(const VoxelSide& plate, const glm::dvec3& along, const VoxelSide& bone,
                                 const voxel::Expression& near, const voxel::Universe& universe) {
   const voxel::Expression world(voxel::bounds(universe.lattice()));
@@ -370,7 +376,7 @@ void triangles(const Plate& plate, const MeshBench& bench, MeshSide& made) {
     if (off_mm) made.details["holes"].back()["off_axis_mm"] = *off_mm;
     if (!off_mm)
       made.findings.push_back("the plate has no hole for '" + axis.screw +
-                              "': it is on a piece that is left out, so lead 'points' over bone");
+                              "': it lies in a separate piece, which is left out; lead 'points' over bone");
     else if (*off_mm > goal_mm)
       made.findings.push_back("the hole of '" + axis.screw + "' lies " + three_figures(*off_mm) +
                               " mm off its axis, more than 0.01 mm");
@@ -385,7 +391,8 @@ void triangles(const Plate& plate, const MeshBench& bench, MeshSide& made) {
                            {"largest_at_mm", to_json(gap->largest_at_mm)}};
 }
 
-/// The half-widths of the gap: how far both kernels are apart, and the noise of surfaces of digitised samples.
+/// The half-widths of the gap: the difference between both kernels plus the noise of surfaces of digitised
+/// samples, a tenth of a voxel.
 void bound_gap(const Plate& plate, const BoundBench& bench, const Object& bone, Object& made) {
   const auto json = made.mesh.details.find("gap");
   if (json == made.mesh.details.end() || !made.voxel.symbol || made.voxel.octree.is_empty() ||
@@ -415,7 +422,8 @@ void bound(const Plate& plate, const BoundBench& bench, Object& made) {
          plate.site.bone.solid, is_whole_voxels(bone.voxel)},
         {plate.bend_radius_mm + plate.clearance_mm, grown_cell_mm(plate)},
         made.mesh.whole->measures().area_mm2);
-    // Later offsets are of smooth surfaces. Triangles lie within a third of their tolerance on the mean.
+    // Later offsets start from smooth surfaces, where triangles are off by a third of the tolerance on
+    // average.
     for (const auto& [by_mm, cell_mm] : {std::pair(plate.bend_radius_mm, plate_fit_cell_mm),
                                          std::pair(plate.rounding_mm, plate_outer_cell_mm)})
       apart_mm += brep::offset_tolerance_mm({by_mm, cell_mm, {}}) / 3.0;
@@ -450,12 +458,9 @@ Operation plate_operation() {
                    "about the first and the last: [x, y, z] or landmarks.")
                  .required()
                  .from(2))
-      .takes(field("width_mm", &Plate::width_mm, "The plate's width; 7 is asked for by this project.")
-                 .from(3.0)
-                 .to(20.0))
+      .takes(field("width_mm", &Plate::width_mm, "The plate's width.").from(3.0).to(20.0))
       .takes(field("thickness_mm", &Plate::thickness_mm,
-                   "The plate's thickness; 2.5 is asked for by this project, and usual for plates that bear "
-                   "the jaw's load.")
+                   "The plate's thickness; 2.5 is usual for plates that bear the jaw's load.")
                  .from(0.8)
                  .to(6.0))
       .takes(
@@ -474,15 +479,15 @@ Operation plate_operation() {
                    "The radius of the outer edges; the default is a project's choice.")
                  .from(0.2)
                  .to(2.5))
-      .takes(
-          field("reach_mm", &Plate::reach_mm,
-                "How far the plate reaches back from the foremost bone along it; the default is a project's "
-                "choice.")
-              .from(2.0)
-              .to(150.0))
+      .takes(field("reach_mm", &Plate::reach_mm,
+                   "How far the plate extends backwards from the foremost bone, along the direction in which "
+                   "it is put on; the default is a project's "
+                   "choice.")
+                 .from(2.0)
+                 .to(150.0))
       .takes(field("screws", &Plate::screws,
-                   "Screws of this plan, as motions carried them with their pieces: the plate has its holes "
-                   "there.")
+                   "Screws of this plan at their planned places, as moved with their pieces: the plate's "
+                   "holes are there.")
                  .in_plans_only())
       .takes(field("play_mm", &Plate::play_mm,
                    "By how much holes are wider than their screws; the default is a project's choice.")

@@ -14,8 +14,8 @@ namespace octotomy::planner {
 voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench);
 struct MeshRounding {
   double radius_mm = 1.0;
-  /// Of the mesh's offsets. Flat parts lie within a 16th of it, which must be less than cuts stand off: at most
-  /// the radius.
+  /// Cell size of the mesh's offsets, at most the radius. Flat parts lie within a 16th of it, which must be
+  /// less than the distance of the cuts from the balls.
   double cell_mm = 1.0;
 };
 /// The same of a mesh. Empty if no ball fits. Throws as brep::offset() and brep::boolean().

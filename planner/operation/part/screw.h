@@ -38,27 +38,28 @@ struct ScrewAxis {
 /// object, if it is no screw.
 ScrewAxis screw_axis(const std::string& name, const SettleBench& bench);
 
-/// How far a screw stays from one object, in both kernels.
+/// The distance of a screw from one object, in both kernels.
 struct ScrewClear {
   std::string object;
   bool is_cut = false;
   double mesh_mm = 0.0;
   std::optional<double> voxel_mm;
 };
-/// How far a screw at its place stays from objects at theirs. Throws std::runtime_error where one has no mesh.
+/// The distances of a screw from objects, all at their places. Throws std::runtime_error if an object has no
+/// mesh.
 std::vector<ScrewClear> clear_of_objects(const ScrewAxis& axis, const std::vector<ObjectName>& away_from,
                                          const SettleBench& bench);
 nlohmann::ordered_json to_json(const ScrewClear& clear);
-/// What a surgeon should know of it: "the screw comes within 0.4 mm of 'roots', ..."; `screw` is "the screw".
-/// Empty where it is at least `least_mm`.
+/// The finding on a screw that is too near an object: "the screw comes within 0.4 mm of 'roots', ...";
+/// `screw` is the sentence's subject. Empty if the distance is at least `least_mm`.
 std::string too_near(const std::string& screw, const ScrewClear& clear, double least_mm);
 
-/// A rod between two points as meshes have it: a prism of 48 sides whose volume is the cylinder's.
-/// Preconditions: the points are apart, the radius is above 0.
+/// The mesh of a rod between two points: a prism of 48 sides with the volume of the cylinder of this radius.
+/// Preconditions: the points differ, and the radius is above 0.
 brep::Solid rod(const glm::dvec3& from_mm, const glm::dvec3& to_mm, double radius_mm);
 
-/// How far the hole in a mesh lies off a screw's axis: a circle's middle by least squares through the hole's
-/// points. None where too few are left to tell.
+/// The distance of the hole in a mesh from a screw's axis: the centre of the circle fitted by least squares
+/// to the hole's points. None if too few points are left for a fit.
 std::optional<double> hole_off_mm(const brep::Solid& solid, const ScrewAxis& axis, double radius_mm);
 
 }  // namespace octotomy::planner

@@ -36,7 +36,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// What is settled of a jaw.
+/// The values of a jaw that settle() determines.
 struct SplintJaw {
   Slab near;                  ///< the part of the jaw that counts
   glm::dvec3 along{0, 0, 1};  ///< unit, LPS: in which the splint moves onto it

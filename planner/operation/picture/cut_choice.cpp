@@ -9,7 +9,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// The samples in the tones that are asked for; by default from the smallest to the largest sample.
+/// The samples with the grey tones of --tones; by default from the smallest to the largest sample.
 voxel::CutTones tones_of(const Render& render, voxel::GreyOwners samples) {
   if (render.tones.empty()) {
     double black = std::numeric_limits<double>::infinity(), white = -black;
@@ -26,7 +26,9 @@ voxel::CutTones tones_of(const Render& render, voxel::GreyOwners samples) {
   std::string numbers = render.tones;
   if (colon != std::string::npos) numbers[colon] = ',';
   const auto n = numbers_of<2>("--tones", numbers, "-500:1500");
-  if (!(n[1] > n[0])) throw std::runtime_error("--tones: '" + render.tones + "' has no room between");
+  if (!(n[1] > n[0]))
+    throw std::runtime_error("--tones: '" + render.tones +
+                             "': the second number must be larger than the first");
   return {std::move(samples), n[0], n[1]};
 }
 
@@ -41,7 +43,7 @@ glm::ivec2 size_of(const Render& render) {
   constexpr int most = 8192;
   if (!read || width < 1 || height < 1 || width > most || height > most)
     throw std::runtime_error("--size: '" + text +
-                             "' is no size: give WxH of 1 to 8192 pixels, for example 512x512");
+                             "' is not a size: give WxH of 1 to 8192 pixels, for example 512x512");
   return {width, height};
 }
 
@@ -51,7 +53,8 @@ std::optional<voxel::CutTones> cut_tones_of(const Render& render,
   std::vector<voxel::SampleSource> sources;
   for (const Object* object : made)
     if (object->voxel.symbol) sources.push_back({*object->voxel.symbol, object->voxel.octree});
-  // What was filled or grown in an object of one scan lies in that scan, too, and moved with it.
+  // Parts of an object of one scan that were filled or grown take their samples from that scan, too, and
+  // moved with it.
   const auto first = std::find_if(objects.begin(), objects.end(),
                                   [](const voxel::DrawnObject& object) { return object.grey.has_value(); });
   for (const voxel::DrawnObject& object : objects)
@@ -79,8 +82,7 @@ std::vector<voxel::Cutaway> cuts_of(const Render& render) {
     const auto n = numbers_of<6>("--cut-box", box, "0,-100,0,80,0,90");
     const voxel::Box removed{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
     if (!glm::all(glm::lessThan(removed.low_mm, removed.high_mm)))
-      throw std::runtime_error(std::string("--cut-box: '") + box +
-                               "' holds nothing: give the lower corner first");
+      throw std::runtime_error(std::string("--cut-box: '") + box + "' is empty: give the lower corner first");
     cuts.emplace_back(removed);
   }
   return cuts;

@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// More sections of one surface than this are a typing error.
+/// More sections of one surface than this count as a typing error.
 constexpr double most_sections = 2000.0;
 
 const std::map<std::string, brep::FacetShading> facet_shadings{{"flat", brep::FacetShading::Flat},
@@ -73,21 +73,21 @@ std::string name_of(const std::string& name) {
   return fs::path(name).stem().string();
 }
 
-/// One thing that is drawn, for the answer and the legend.
+/// A drawn surface, line set or slice, as the answer and the legend list it.
 struct Item {
   std::string name, kind;
   std::optional<glm::vec3> colour;  ///< none: its own tones
   Json said = Json::object();
 };
 
-/// A scene that keeps the triangles which it draws.
+/// A scene that owns the triangles that it draws.
 struct DrawnItems {
   std::deque<brep::Triangles> triangles;
   brep::DrawnScene scene;
   std::vector<Item> items;  ///< in the scene's numbers
 };
 
-/// The first of the colours without a stated one is bone's, which suits areas and is too pale for lines.
+/// Lines start with the second default colour, because the first, for bone, is too pale for lines.
 glm::vec3 colour_of_item(const Draw& asked, std::size_t number, bool is_of_lines) {
   return number < asked.colours.size() ? need_colour(asked.colours[number])
                                        : colour_of(is_of_lines ? number + 1 : number);
@@ -209,7 +209,7 @@ void add_box(const std::optional<voxel::Scene>& scene, DrawnItems& drawing, std:
                         {{"low_mm", to_json(box.low_mm)}, {"high_mm", to_json(box.high_mm)}}});
 }
 
-/// The octree whose inside slices show.
+/// The octree inside of which slices show samples.
 voxel::Octree shown_inside(const std::string& name, const voxel::Lattice& lattice, const FileBench& bench) {
   if (bench.step == nullptr && is_mesh(name)) {
     const glm::dvec3 spacing = lattice.spacing_mm();
@@ -219,8 +219,7 @@ voxel::Octree shown_inside(const std::string& name, const voxel::Lattice& lattic
   const auto* octree = std::get_if<voxel::Octree>(&file.tree);
   if (octree == nullptr)
     throw std::runtime_error(name +
-                             ": only a binary octree has an inside: choose an object with octotomy "
-                             "octree --window LOW:HIGH");
+                             ": is not a binary octree: make one with octotomy octree --window LOW:HIGH");
   return *octree;
 }
 
@@ -314,7 +313,7 @@ glm::ivec2 picked_pixel(const std::string& text, const glm::ivec2& size_px) {
   const glm::dvec2 pixel(n[0], n[1]);
   if (pixel != glm::floor(pixel) || !glm::all(glm::greaterThanEqual(pixel, glm::dvec2(0.0))) ||
       !glm::all(glm::lessThan(pixel, glm::dvec2(size_px))))
-    throw std::runtime_error("--pick: '" + text + "' is no pixel of a picture of " +
+    throw std::runtime_error("--pick: '" + text + "' is not a pixel of a picture of " +
                              std::to_string(size_px.x) + " x " + std::to_string(size_px.y));
   return glm::ivec2(pixel);
 }
@@ -443,15 +442,15 @@ void check(const Draw& asked, const FieldLocation& place) {
     refuse("objects",
            "there is nothing to draw: give surfaces, 'contours' or a 'scan' with positions of slices");
   if (!asked.scan.name.empty() && !has_places)
-    refuse("scan", "is drawn as slices: say where, by 'axial', 'coronal' or 'sagittal'");
+    refuse("scan", "is drawn as slices: give their positions by 'axial', 'coronal' or 'sagittal'");
   if (asked.colours.size() > asked.objects.size() + asked.contours.size())
     refuse("colours", "has more colours than there are surfaces and contours");
   for (const std::string& colour : asked.colours) need_colour(colour);
   if (asked.grid_mm && asked.eye_mm) refuse("grid_mm", "needs a picture in true scale: leave out 'eye_mm'");
   if (!asked.level.empty() && !(asked.level[1] > 0.0))
-    refuse("level", "is CENTRE and WIDTH, which is above zero");
+    refuse("level", "must be CENTRE and WIDTH, with a width above zero");
   if (asked.light && !(glm::length(*asked.light) > 0.0))
-    refuse("light", "has no direction: for example -1,1,2");
+    refuse("light", "has no direction: give numbers that are not all zero, for example -1,1,2");
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".png", ".jpg", ".webp"}, place.at("path"));
   try {
@@ -473,8 +472,8 @@ bool shades(const Draw& asked) {
 bool has_scan(const Draw& asked) {
   return !asked.scan.name.empty();
 }
-constexpr const char* of_shaded = "is of shaded surfaces: leave it out";
-constexpr const char* of_scan = "is of a scan's slices: add 'scan'";
+constexpr const char* of_shaded = "applies only to shaded surfaces: leave it out";
+constexpr const char* of_scan = "applies only to a scan's slices: add 'scan'";
 
 }  // namespace
 
@@ -483,12 +482,14 @@ Operation draw_operation() {
                         "Draws surfaces as facets or wire frames, contours as lines and slices at their "
                         "places in space.",
                         Makes::File)
-      .takes(field("objects", &Draw::objects,
-                   "Surfaces, drawn as their triangles are; of the verb mesh files, open ones too.")
-                 .positional("files"))
+      .takes(
+          field("objects", &Draw::objects,
+                "Surfaces, drawn triangle by triangle. On the command line: mesh files, which may be open.")
+              .positional("files"))
       .takes(field("path", &Draw::out, "A .png, .jpg or .webp file.").required().called("out"))
       .takes(field("contours", &Draw::contours,
-                   "What is drawn as lines: sections of surfaces; of the verb also a .json file of contours.")
+                   "Objects drawn as lines: horizontal sections of surfaces. On the command line also a "
+                   ".json file of contours.")
                  .repeated())
       .takes(field("apart_mm", &Draw::apart_mm, "Distance of the horizontal sections of surfaces.")
                  .greater_than(0.0)
@@ -497,8 +498,8 @@ Operation draw_operation() {
                        return std::any_of(asked.contours.begin(), asked.contours.end(),
                                           [](const ObjectName& of) { return !is_contour_file(of.name); });
                      },
-                     "is of sections of surfaces: add them to 'contours'"))
-      .takes(field("scan", &Draw::scan, "The scan whose slices stand at their places."))
+                     "applies only to sections of surfaces: add them to 'contours'"))
+      .takes(field("scan", &Draw::scan, "A scan, of which slices are drawn at their places in space."))
       .takes(field("axial", &Draw::axial, "z of slices, mm, one or more.")
                  .comma_separated()
                  .read_if<Draw>(has_scan, of_scan))
@@ -509,26 +510,26 @@ Operation draw_operation() {
                  .comma_separated()
                  .read_if<Draw>(has_scan, of_scan))
       .takes(field("window", &Draw::window,
-                   "LOW:HIGH or LOW: of the samples that slices show, or a tissue. Default: all.")
+                   "Samples that slices show: LOW:HIGH or LOW:, or a tissue. Default: all.")
                  .read_if<Draw>(has_scan, of_scan))
       .takes(field("level", &Draw::level,
                    "Slices' grey tones as a centre and a width. Default: 500 and 2000 for Hounsfield units.")
                  .from(2)
                  .to(2)
                  .comma_separated()
-                 .for_example("CENTRE,WIDTH as 500,2000")
+                 .for_example("CENTRE,WIDTH, for example 500,2000")
                  .read_if<Draw>(has_scan, of_scan))
-      .takes(
-          field("within", &Draw::within,
-                "The object whose inside slices show; of the verb a binary octree or a mesh. Default: all.")
-              .read_if<Draw>(has_scan, of_scan))
+      .takes(field("within", &Draw::within,
+                   "Slices show only samples inside of this object; on the command line a binary octree or a "
+                   "mesh. Default: all samples.")
+                 .read_if<Draw>(has_scan, of_scan))
       .takes(field("box", &Draw::box, "Draws the edges of the box about everything and the whole scan."))
       .takes(field("view", &Draw::view,
                    "anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees."))
       .takes(field("size", &Draw::size, "WxH in pixels."))
-      .takes(
-          field("width_mm", &Draw::width_mm, "What the picture spans. Default: the extent of what is drawn.")
-              .greater_than(0.0))
+      .takes(field("width_mm", &Draw::width_mm,
+                   "Width that the picture shows. Default: the extent of what is drawn.")
+                 .greater_than(0.0))
       .takes(field("centre_mm", &Draw::centre_mm,
                    "X,Y,Z in LPS of a point in the picture's middle. Default: the middle of what is drawn.")
                  .called("centre"))
@@ -542,7 +543,7 @@ Operation draw_operation() {
                 "flat (one tone a triangle), gouraud (corners' tones interpolated), phong (corners' normals "
                 "interpolated) or wire (edges).")
               .one_of({"flat", "gouraud", "phong", "wire"})
-              .read_if<Draw>(draws_facets, "is of surfaces: add one"))
+              .read_if<Draw>(draws_facets, "applies only to surfaces: add one"))
       .takes(
           field("light", &Draw::light,
                 "RIGHT,UP,FRONT in the picture, the direction from the surface to the only lamp. Default: a "
@@ -558,11 +559,11 @@ Operation draw_operation() {
                  .read_if<Draw>(shades, of_shaded))
       .takes(field("cull", &Draw::cull, "Leaves out triangles that face away.")
                  .read_if<Draw>([](const Draw& asked) { return shades(asked) || asked.hide; },
-                                "is of shaded surfaces, and of wire frames with 'hide'"))
+                                "applies only to shaded surfaces, and to wire frames with 'hide'"))
       .takes(
           field("hide", &Draw::hide, "Triangles of a wire frame hide what lies behind them.")
               .read_if<Draw>([](const Draw& asked) { return asked.shading == "wire" && draws_facets(asked); },
-                             "is of wire frames: add 'shading' wire"))
+                             "applies only to wire frames: add 'shading' wire"))
       .takes(field("colours", &Draw::colours, "#RRGGBB of the surfaces in their order, then of the contours.")
                  .repeated()
                  .called("colour"))
@@ -572,9 +573,9 @@ Operation draw_operation() {
                  .called("pick"))
       .takes(field("annotate", &Draw::annotate,
                    "Writes a scale, the patient's sides, a legend and a title on the picture."))
-      .takes(field("title", &Draw::title, "Of an annotated picture. Default: the view.")
+      .takes(field("title", &Draw::title, "Title of an annotated picture. Default: the view.")
                  .read_if<Draw>([](const Draw& asked) { return asked.annotate; },
-                                "is of annotated pictures: add 'annotate'"))
+                                "applies only to annotated pictures: add 'annotate'"))
       .takes(field("grid_mm", &Draw::grid_mm,
                    "Draws lines at multiples of this distance, mm; a margin that is added at the right and "
                    "below shows their places in the view.")

@@ -23,8 +23,8 @@ namespace {
 void set_window(voxel::DrawnObject& object, const voxel::GreyOctree& grey, const Render& render) {
   const SampleWindow& window = render.window;
   object.octree = voxel::combine(grey.universe(), voxel::Expression(window_on(grey, window)));
-  // The depth is interpolated at the lower bound. An upper bound inside the object would make it wrong, so that
-  // the samples are kept only where they give no depth.
+  // The depth is interpolated at the lower bound. With an upper bound inside the object this would be wrong,
+  // so samples are kept then only for pictures whose depth does not come from samples.
   const bool gives_no_depth =
       is_decided(render) || render.shading == "density" || render.shading == "gradient";
   if (!window.high || gives_no_depth) object.grey = grey;
@@ -131,7 +131,7 @@ std::vector<ObjectName> files_of(const Render& render) {
       render.expression.empty() ? std::vector<std::string>{} : voxel::names_in(render.expression);
   for (const std::string& name : names) {
     if (!bound.contains(name))
-      throw std::runtime_error("--expression: nothing is called '" + name + "'" + suggestion(name, known) +
+      throw std::runtime_error("--expression: no object is called '" + name + "'" + suggestion(name, known) +
                                ": bind it with --let " + name + "=FILE");
     files.push_back({bound[name]});
   }

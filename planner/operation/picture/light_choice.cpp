@@ -16,10 +16,11 @@ bool is_lit(const Render& render) {
 bool has_gloss(const Render& render) {
   return is_lit(render) && render.shading != "composite";
 }
-constexpr const char* of_lit = "is of lit surfaces: choose another 'shading', and no 'relief'";
-constexpr const char* of_gloss = "is of lit surfaces, which composite pictures do not mirror: leave it out";
+constexpr const char* of_lit = "applies only to lit surfaces: choose another 'shading', and no 'relief'";
+constexpr const char* of_gloss =
+    "applies only to mirrored light, which composite pictures do not have: leave it out";
 
-/// A light without a strength of its own has none here.
+/// A light as typed; no strength if the text states none.
 struct TypedLight {
   glm::vec3 towards{0.0f};
   std::optional<float> strength;
@@ -30,7 +31,7 @@ TypedLight typed_light(const std::string& text) {
   if (n.size() != 3 && n.size() != 4)
     throw std::runtime_error(
         "--light: '" + text +
-        "' is no light: give RIGHT,UP,FRONT, for example -1,1,1, and perhaps a strength");
+        "' is not a light: give RIGHT,UP,FRONT, for example -1,1,1, or with a strength -1,1,1,0.5");
   TypedLight light{{n[0], n[1], -n[2]}, std::nullopt};
   const float length = glm::length(light.towards);
   if (!(length > 0.0f && length < 1e18f))
@@ -62,13 +63,12 @@ std::vector<Field> light_fields() {
           .from(0.0)
           .to(1.0)
           .read_if<Render>(is_lit, of_lit));
-  fields.push_back(
-      field("diffuse", &Render::diffuse,
-            "Share of the first light that a surface facing it scatters, 0 to 1; the other default "
-            "light in proportion. Default: 0.9.")
-          .from(0.0)
-          .to(1.0)
-          .read_if<Render>(is_lit, of_lit));
+  fields.push_back(field("diffuse", &Render::diffuse,
+                         "Share of the first light that a surface facing it scatters, 0 to 1; the second "
+                         "default light changes in proportion. Default: 0.9.")
+                       .from(0.0)
+                       .to(1.0)
+                       .read_if<Render>(is_lit, of_lit));
   fields.push_back(field("specular", &Render::specular,
                          "Share of the first light that a surface mirrors, 0 to 1. Default: 0.06.")
                        .from(0.0)
@@ -81,7 +81,7 @@ std::vector<Field> light_fields() {
           .to(1000.0)
           .read_if<Render>(has_gloss, of_gloss)
           .read_if<Render>([](const Render& render) { return render.specular.value_or(1.0) > 0.0; },
-                           "is of the mirrored light, of which there is none: give 'specular'"));
+                           "applies only to mirrored light, and 'specular' is 0: give a larger 'specular'"));
   return fields;
 }
 

@@ -12,11 +12,11 @@ namespace octotomy::planner {
 /// The fields of the lights and the shares.
 std::vector<Field> light_fields();
 
-/// Throws std::runtime_error for lights that cannot be read and shares that change nothing.
+/// Throws std::runtime_error for lights that cannot be read and for shares that would have no effect.
 void check_lights(const Render& render);
 
-/// The lights as typed, or the default ones, of the strengths that the diffuse share states; empty: nothing
-/// was chosen. Throws as check_lights().
+/// The lights as typed, or the default ones; the diffuse share sets the strength of lights without one. Empty
+/// if nothing was chosen. Throws as check_lights().
 std::vector<voxel::Light> lights_of(const Render& render);
 
 }  // namespace octotomy::planner

@@ -33,7 +33,7 @@ struct Montage {
   std::vector<std::string> inputs() const { return {}; }
 };
 
-/// A position to a tenth of a millimetre, in letters that pictures have: "-19", "2.5".
+/// A position to a tenth of a millimetre, in characters that can be drawn in pictures: "-19", "2.5".
 std::string rounded_text(double position_mm) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", std::round(10.0 * position_mm) / 10.0 + 0.0);
@@ -63,7 +63,7 @@ Stack stack_of(const voxel::Lattice& lattice, const std::string& plane) {
   return stack;
 }
 
-/// The middle ones of the scan's own slices, or equally far apart from a first one.
+/// Positions of the slices: the middle ones of the scan's own slices, or equally spaced from --first on.
 std::vector<double> positions_of(const Montage& asked, const Stack& stack) {
   const double step_mm = asked.apart_mm.value_or(stack.spacing_mm);
   double first_mm = 0.0;
@@ -114,7 +114,7 @@ FileAnswer on_files(const Montage& asked, const FileBench& bench) {
   for (const double position_mm : positions) {
     tiles.push_back(tile_of(asked, scene, position_mm, level, bench));
     const nlohmann::ordered_json& said = tiles.back().said;
-    // All have the tones of the first, so that they compare.
+    // All slices have the grey tones of the first, so that they can be compared.
     const double black = said["window"][0], white = said["window"][1];
     if (level.empty()) level = {0.5 * (black + white), white - black};
     inside.push_back(said["inside_pixels"]);
@@ -176,7 +176,7 @@ FileAnswer on_files(const Montage& asked, const FileBench& bench) {
 
 void check(const Montage& asked, const FieldLocation& place) {
   if (!asked.level.empty() && !(asked.level[1] > 0.0))
-    place.at("level").refuse("is CENTRE and WIDTH, which is above zero");
+    place.at("level").refuse("must be CENTRE and WIDTH, with a width above zero");
   if (place.scope != nullptr) check_output_path(asked.out, {".png", ".jpg", ".webp"}, place.at("path"));
 }
 
@@ -186,26 +186,28 @@ Operation montage_operation() {
   return Describe<Montage>("montage", "Draws consecutive slices of a scan side by side.", Makes::File)
       .takes(field("scan", &Montage::scan, "The scan.").required().positional("file"))
       .takes(field("path", &Montage::out, "A .png, .jpg or .webp file.").required().called("out"))
-      .takes(field("plane", &Montage::plane, "Of the slices, which are seen as 'slice' draws them.")
+      .takes(field("plane", &Montage::plane, "Plane of the slices, which are drawn as by 'slice'.")
                  .one_of({"axial", "coronal", "sagittal"}))
       .takes(field("count", &Montage::count, "Number of slices.").from(1).to(400))
-      .takes(field("columns", &Montage::columns, "Slices a row. Default: as many as there are rows.")
+      .takes(field("columns", &Montage::columns, "Slices in a row. Default: about as many as rows.")
                  .from(1)
                  .to(400))
       .takes(field("first_mm", &Montage::first_mm,
-                   "z, y or x of the first slice. Default: so that the middle slice is the scan's."))
+                   "z, y or x of the first slice. Default: the slices are centred in the scan."))
       .takes(field("apart_mm", &Montage::apart_mm,
-                   "From one slice to the next. Default: as the scan's samples are.")
+                   "Distance from one slice to the next. Default: the spacing of the scan's samples.")
                  .greater_than(0.0))
-      .takes(field("level", &Montage::level,
-                   "Grey tones as a centre and a width. Default: those of 'slice' for the first.")
-                 .from(2)
-                 .to(2)
-                 .comma_separated()
-                 .for_example("CENTRE,WIDTH as 500,2000"))
+      .takes(
+          field(
+              "level", &Montage::level,
+              "Grey tones as a centre and a width. Default: those that 'slice' chooses for the first slice.")
+              .from(2)
+              .to(2)
+              .comma_separated()
+              .for_example("CENTRE,WIDTH, for example 500,2000"))
       .takes(field("pixel_mm", &Montage::pixel_mm, "Edge of a pixel. Default: the scan's smallest spacing.")
                  .greater_than(0.0))
-      .takes(field("plain", &Montage::plain, "No positions, letters and scale bar."))
+      .takes(field("plain", &Montage::plain, "Leaves out positions, letters and scale bar."))
       .reads_scans()
       .example(R"({"id": "series", "do": "montage", "scan": "ct", "path": "series.png", "count": 9})")
       .on_files(

@@ -22,7 +22,7 @@ std::vector<std::string> pieces_of(const std::string& text) {
   return pieces;
 }
 
-/// LOW:HIGH in the first two pieces; none where they are no such range.
+/// The range LOW:HIGH of the first two pieces; none if they are not a range.
 std::optional<std::array<double, 2>> range_of(const std::vector<std::string>& pieces) {
   if (pieces.size() < 2) return std::nullopt;
   const std::optional<double> low = number_in(pieces[0]), high = number_in(pieces[1]);
@@ -36,7 +36,7 @@ voxel::RangeWeight weight_of(const std::string& text) {
   const std::optional<double> weight = pieces.size() == 3 ? number_in(pieces[2]) : 0.0;
   if (!range || pieces.size() > 3 || !weight || *weight < 0.0 || *weight > voxel::RangeWeight::max_weight)
     throw std::runtime_error("--dissolve: '" + text +
-                             "' is no range: give LOW:HIGH, or LOW:HIGH:SHARE with a share from 0 to 100");
+                             "' is not a range: give LOW:HIGH, or LOW:HIGH:SHARE with a share from 0 to 100");
   return {(*range)[0], (*range)[1], *weight};
 }
 
@@ -46,7 +46,7 @@ voxel::DensityColour density_colour_of(const std::string& text) {
   const auto colour = pieces.size() == 3 ? colour_of_text(pieces[2]) : std::nullopt;
   if (!range || !colour)
     throw std::runtime_error("--density-colour: '" + text +
-                             "' is no coloured range: give LOW:HIGH:#RRGGBB, for example 300:700:#cc7a29");
+                             "' is not a coloured range: give LOW:HIGH:#RRGGBB, for example 300:700:#cc7a29");
   return {(*range)[0], (*range)[1], *colour};
 }
 
@@ -60,7 +60,7 @@ bool shows_surface_colours(const Render& render) {
   return !render.relief && std::find(painted.begin(), painted.end(), render.shading) != painted.end();
 }
 
-/// Refuses what a relief, black lines on white, does not show.
+/// Refuses options without an effect on a relief, which is black lines on white.
 void check_relief(const Render& render) {
   if (!render.colours.empty() || !render.opacities.empty() || !render.colour_by.empty() || render.annotate ||
       render.grid_mm || render.stereo_deg || render.cut_face != "plain")
@@ -80,21 +80,21 @@ std::vector<Field> ray_fields() {
             "direction). Default: the objects' surfaces.")
           .one_of({"range", "derivative", "gradient"})
           .read_if<Render>([](const Render& render) { return !is_ray_picture(render); },
-                           "is of pictures of surfaces: choose another 'shading'"));
+                           "applies only to pictures of surfaces: choose another 'shading'"));
   fields.push_back(
       field("steeper_per_mm", &Render::steeper_per_mm,
             "Change of samples, in their unit per mm, above which rays end.")
           .greater_than(0.0)
           .called("steeper")
-          .read_if<Render>(decides_by_change, "is of 'decide' derivative or gradient: add one of them"));
-  fields.push_back(
-      field("peel", &Render::peel,
-            "Layers to take off: stretches of each ray on which 'decide' holds (default: range) that lie "
-            "before the surface that is shown.")
-          .from(1)
-          .to(1000)
-          .read_if<Render>([](const Render& render) { return !is_ray_picture(render); },
-                           "is of pictures of surfaces: choose another 'shading'"));
+          .read_if<Render>(decides_by_change,
+                           "applies only to 'decide' derivative or gradient: choose one of them"));
+  fields.push_back(field("peel", &Render::peel,
+                         "Number of layers to take off: the surface shown lies behind this many stretches of "
+                         "the ray on which 'decide' (default: range) holds.")
+                       .from(1)
+                       .to(1000)
+                       .read_if<Render>([](const Render& render) { return !is_ray_picture(render); },
+                                        "applies only to pictures of surfaces: choose another 'shading'"));
   fields.push_back(
       field(
           "dissolve", &Render::dissolve,
@@ -103,7 +103,7 @@ std::vector<Field> ray_fields() {
           "holds a sample applies.")
           .repeated()
           .read_if<Render>([](const Render& render) { return render.shading == "radiograph"; },
-                           "is of radiographs: add 'shading' radiograph"));
+                           "applies only to radiographs: add 'shading' radiograph"));
   fields.push_back(
       field(
           "gradient_opacity", &Render::gradient_opacity,
@@ -111,7 +111,7 @@ std::vector<Field> ray_fields() {
           "or less is clear, by OPAQUE or more as opaque as its transfer function says. Default: opacity "
           "from density alone.")
           .read_if<Render>([](const Render& render) { return render.shading == "composite"; },
-                           "is of composite pictures: add 'shading' composite"));
+                           "applies only to composite pictures: add 'shading' composite"));
   fields.push_back(
       field(
           "density_colours", &Render::density_colours,
@@ -120,7 +120,7 @@ std::vector<Field> ray_fields() {
           .repeated()
           .called("density-colour")
           .read_if<Render>(shows_surface_colours,
-                           "is of coloured surfaces: choose another 'shading', and no 'relief'")
+                           "applies only to coloured surfaces: choose another 'shading', and no 'relief'")
           .read_if<Render>([](const Render& render) { return render.colour_by.empty(); },
                            "and 'colour_by' colour the same surface: leave one out"));
   return fields;
@@ -136,7 +136,7 @@ void check_ray_choices(const Render& render) {
   if (render.relief) check_relief(render);
   if (!is_decided(render)) return;
   const auto refuse = [](const std::string& option) {
-    throw std::runtime_error(option + ": rays that end by --decide or --peel do not have it: leave it out");
+    throw std::runtime_error(option + ": has no effect with --decide or --peel: leave it out");
   };
   if (!render.algorithm.empty()) refuse("--algorithm");
   if (render.count) refuse("--count");
@@ -178,8 +178,9 @@ std::optional<voxel::GradientOpacity> gradient_opacity_of(const Render& render) 
   const std::vector<std::string> pieces = pieces_of(render.gradient_opacity);
   const auto range = range_of(pieces);
   if (!range || pieces.size() != 2 || (*range)[0] < 0.0 || !((*range)[1] > (*range)[0]))
-    throw std::runtime_error("--gradient-opacity: '" + render.gradient_opacity +
-                             "' is no ramp: give CLEAR:OPAQUE, for example 20:200, with 0 <= CLEAR < OPAQUE");
+    throw std::runtime_error(
+        "--gradient-opacity: '" + render.gradient_opacity +
+        "' is not a ramp: give CLEAR:OPAQUE, for example 20:200, with 0 <= CLEAR < OPAQUE");
   return voxel::GradientOpacity{(*range)[0], (*range)[1]};
 }
 

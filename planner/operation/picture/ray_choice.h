@@ -9,13 +9,14 @@
 #include "voxel/view/decide.h"
 #include "voxel/view/radiograph.h"
 
-// What pictures take of the samples along rays (thesis 4.4.2.3), and how surfaces show their density (5.2.1.2).
+// How pictures use the samples along rays (thesis 4.4.2.3), and how surfaces show their density (5.2.1.2).
 namespace octotomy::planner {
 
 /// The fields of decision functions, layers, ranges, opacity and density.
 std::vector<Field> ray_fields();
 
-/// Throws std::runtime_error for what cannot be read, and for combinations of which a part changes nothing.
+/// Throws std::runtime_error for text that cannot be read, and for combinations in which one option has no
+/// effect.
 void check_ray_choices(const Render& render);
 
 /// Whether rays end by a decision function, not at the objects' surfaces.

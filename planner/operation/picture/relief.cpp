@@ -13,7 +13,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// The heights of a grid's corners above the farthest lit depth, mm.
+/// The heights of the grid's corners above the plane of the farthest lit depth, mm.
 struct Heights {
   glm::ivec2 corners{0};
   double cell_px = 1.0;
@@ -57,7 +57,7 @@ Heights heights_of(const voxel::Picture& picture, int cells, Relief& relief) {
   std::set<float> levels;
   for (int y = 0; y < heights.corners.y; ++y)
     for (int x = 0; x < heights.corners.x; ++x) {
-      // The pixel at the middle of the corner's share of the picture.
+      // The pixel that a corner of the grid stands for.
       const glm::ivec2 pixel(glm::dvec2(x + 0.5, y + 0.5) * heights.cell_px);
       const float depth =
           picture.depth_mm[static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(picture.size_px.x) +
@@ -102,7 +102,7 @@ Relief relief_of(const voxel::Picture& picture, int cells) {
     for (int x = std::max(0, far - heights.corners.y + 2); x <= std::min(far, heights.corners.x - 2); ++x) {
       const int y = far - x;
       const std::vector<glm::dvec2> cell{at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)};
-      // Halves, because a bent cell is not convex in the picture.
+      // Two triangles, because a bent cell is not convex in the picture.
       fill_white(canvas, {cell[0], cell[1], cell[2]});
       fill_white(canvas, {cell[0], cell[2], cell[3]});
       voxel::draw_lines(canvas, {{cell[0], cell[1], cell[2], cell[3], cell[0]}}, pen);

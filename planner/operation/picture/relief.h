@@ -16,8 +16,8 @@ struct Relief {
 };
 
 /// Draws the depths of a picture as a grid of `cells` squares along its longer side, seen isometrically from
-/// the lower right, in black lines of which near cells hide far ones. Depth and the picture's plane have one
-/// scale; the background lies in the plane of the farthest lit depth. Precondition: 1 <= cells.
+/// the lower right, in black lines; near cells hide far ones. Depth and the picture's plane have one scale;
+/// the background lies in the plane of the farthest lit depth. Precondition: 1 <= cells.
 Relief relief_of(const voxel::Picture& picture, int cells);
 
 }  // namespace octotomy::planner

@@ -126,7 +126,7 @@ std::vector<std::uint8_t> side_by_side(const voxel::Picture& left, const voxel::
 struct Samples {
   std::optional<voxel::CutTones> on_cuts;
   std::optional<voxel::CutTones> on_surfaces;
-  /// The highest sample of the object whose samples rays are decided by.
+  /// The highest sample of the object whose samples end the rays.
   double highest = std::numeric_limits<double>::infinity();
 };
 
@@ -148,7 +148,7 @@ Samples samples_of(const Render& render, const std::vector<voxel::DrawnObject>& 
   return samples;
 }
 
-/// Draws the objects, or the surface in the samples of the only one that a decision function finds.
+/// Draws the objects or, with a decision function, the surface that it finds in the only object's samples.
 voxel::Picture drawn_picture(const Render& render, const std::vector<voxel::DrawnObject>& objects,
                              double highest, const voxel::RenderOptions& options) {
   if (!is_decided(render)) return voxel::render(objects, options);
@@ -157,12 +157,12 @@ voxel::Picture drawn_picture(const Render& render, const std::vector<voxel::Draw
                              ": needs the samples of one scan or grey octree, which was not moved");
   voxel::DrawnObject object = objects.front();
   const voxel::Decision decision = decision_of(render, object.threshold, highest);
-  // A change of samples may lie anywhere in the scan, not only about the window.
+  // A change of samples may lie anywhere in the scan, not only at the window's surface.
   if (decision.by != voxel::Criterion::Range) object.octree = object.grey->scan();
   return voxel::decide(object, options, decision);
 }
 
-/// `counted` are the objects as visits to them are counted, where that is not as they are drawn; else empty.
+/// `counted` are the objects in which visits are counted, if these differ from the drawn ones; else empty.
 RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> drawn,
                          const std::vector<voxel::DrawnObject>& counted, Samples samples, Timings& timings,
                          const std::stop_token& stop) {
@@ -174,7 +174,7 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
   std::vector<glm::ivec2> picks;
   for (const std::string& pick : render.picks) picks.push_back(pixel_of(pick, options.size_px));
   if (!render.expression.empty()) {
-    // The frame of the operands, because that of the expression is known only once it is built.
+    // Uses the frame of the operands, because the frame of the expression would require building it.
     const voxel::Frame frame = voxel::frame_about(drawn, options.view, options.size_px);
     if (!options.centre_mm) options.centre_mm = frame.centre_mm;
     if (!options.width_mm) options.width_mm = frame.width_mm;
@@ -239,10 +239,10 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
   return made;
 }
 
-/// The grammar and the names of an expression of a plan's objects.
+/// Checks the grammar and the names of an expression of a plan's objects.
 void check_expression(const Render& render, const FieldLocation& place) {
   try {
-    // Any object will do.
+    // Only the grammar and the names matter, so any object stands for each name.
     voxel::parse_expression(render.expression, {[&](std::string_view name) -> voxel::Expression {
                                                   place.need_object(std::string(name));
                                                   return voxel::Sphere{};
@@ -335,7 +335,7 @@ FileAnswer on_files(const Render& asked, const FileBench& bench) {
   if (is_ray_picture(render)) render.window = ray_window(render);
   voxel::parse_view(render.view);
   size_of(render);
-  // A change of samples ends rays, whatever the samples are.
+  // A change of samples ends rays at any sample value, so the window covers all values.
   if (is_decided(render) && render.steeper_per_mm) render.window = {std::numeric_limits<std::int16_t>::min()};
   std::vector<ObjectName> files = files_of(render);
   if (!render.colour_by.empty()) {
@@ -382,7 +382,7 @@ std::string bound_file(const std::string& text) {
   return text.substr(std::min(text.size(), text.find('=') + 1));
 }
 
-/// The file whose voxels all are drawn in; empty if there is none.
+/// The file that determines the voxels of all objects; empty if there is none.
 std::string first_file(const Render& render) {
   if (!render.objects.empty()) return render.objects.front().name;
   return render.lets.empty() ? "" : bound_file(render.lets.front());
@@ -452,17 +452,15 @@ voxel::Annotation annotation_of(const Render& render, const std::vector<voxel::D
 
 Operation render_operation() {
   return Describe<Render>("render", "Draws scans' windows and octrees as shaded surfaces.", Makes::File)
-      .takes(
-          field(
-              "objects", &Render::objects,
-              "What is drawn; of the verb octrees (.octree), or scans: a DICOM folder or file, NIfTI, NRRD, "
-              "MetaImage, images, or a raw file. May be left out if there is an expression.")
-              .from(1)
-              .positional("files"))
+      .takes(field("objects", &Render::objects,
+                   "Objects to draw; on the command line octrees (.octree), or scans: DICOM folders or "
+                   "files, NIfTI, NRRD, MetaImage, images, raw files. Optional if there is an expression.")
+                 .from(1)
+                 .positional("files"))
       .takes(field(
           "expression", &Render::expression,
-          "A Boolean expression, drawn after the objects without a step or file of it: & | - ^ ~ and "
-          "parentheses, for example \"skull - cut\"; of the verb its names are bound by 'let'. Along an "
+          "A Boolean expression, drawn after the objects; it needs no step or file. It uses & | - ^ ~ and "
+          "parentheses, for example \"skull - cut\". On the command line 'let' binds its names. Along an "
           "axis it is evaluated only where it is visible. The picture spans the objects that it "
           "names."))
       .takes(field("path", &Render::path, "The .png, .jpg or .webp file within the result's folder.")
@@ -470,8 +468,9 @@ Operation render_operation() {
       .takes(field("view", &Render::view,
                    "anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees."))
       .takes(field("size", &Render::size, "WxH in pixels."))
-      .takes(field("width_mm", &Render::width_mm, "What the picture spans. Default: the objects' extents.")
-                 .greater_than(0.0))
+      .takes(
+          field("width_mm", &Render::width_mm, "Width that the picture shows. Default: the objects' extents.")
+              .greater_than(0.0))
       .takes(field("centre_mm", &Render::centre_mm,
                    "X,Y,Z in LPS of a point in the picture's middle. Default: the objects' middle.")
                  .called("centre"))
@@ -499,7 +498,7 @@ Operation render_operation() {
                  .called("colour")
                  .read_if<Render>(draws_surfaces, along_rays)
                  .read_if<Render>([](const Render& render) { return render.shading != "density"; },
-                                  "is not of the shading density, which shows samples: leave it out"))
+                                  "does not apply to the shading density, which shows samples: leave it out"))
       .takes(field("opacities", &Render::opacities, "0 (hidden) to 1, one an object in their order.")
                  .repeated()
                  .called("opacity")
@@ -511,7 +510,7 @@ Operation render_operation() {
       .takes(field("range_mm", &Render::range_mm, "Distance of the last colours by distance. Default: 5.")
                  .greater_than(0.0)
                  .read_if<Render>([](const Render& render) { return !render.colour_by.empty(); },
-                                  "is of 'colour_by': add it"))
+                                  "needs 'colour_by': add it"))
       .takes(
           field("transfer", &Render::transfer,
                 "How samples look in composite pictures: bone, skin, vessels (CT in HU; default: bone), or a "
@@ -530,28 +529,28 @@ Operation render_operation() {
       .takes(field("cut_face", &Render::cut_face,
                    "What cut faces show: plain (the object's colour) or grey (the scan's samples).")
                  .one_of({"plain", "grey"}))
-      .takes(field("tones", &Render::tones,
-                   "BLACK:WHITE in sample units of grey cut faces and of the shading density. Default: the "
-                   "samples' range.")
-                 .read_if<Render>(
-                     [](const Render& render) {
-                       return render.cut_face == "grey" || render.shading == "density";
-                     },
-                     "is of grey cut faces and of the shading density: add 'cut_face' or 'shading'"))
+      .takes(
+          field("tones", &Render::tones,
+                "BLACK:WHITE in sample units of grey cut faces and of the shading density. Default: the "
+                "samples' range.")
+              .read_if<Render>(
+                  [](const Render& render) {
+                    return render.cut_face == "grey" || render.shading == "density";
+                  },
+                  "applies only to grey cut faces and to the shading density: add 'cut_face' or 'shading'"))
       .takes(field("picks", &Render::picks,
                    "X,Y of a pixel, from the top left (of the left eye's picture), whose object and point "
-                   "are told; "
-                   "may be repeated.")
+                   "are reported; may be repeated.")
                  .repeated()
                  .called("pick"))
       .takes(field("annotate", &Render::annotate,
                    "Writes a scale, the patient's sides, a legend and a title on the picture."))
-      .takes(field("title", &Render::title, "Of an annotated picture. Default: the view.")
+      .takes(field("title", &Render::title, "Title of an annotated picture. Default: the view.")
                  .read_if<Render>([](const Render& render) { return render.annotate; },
-                                  "is of annotated pictures: add 'annotate'"))
+                                  "applies only to annotated pictures: add 'annotate'"))
       .takes(field("grid_mm", &Render::grid_mm,
                    "Draws lines at multiples of this distance, mm; a margin that is added at the right and "
-                   "below tells their places in the view.")
+                   "below shows their places in the view.")
                  .from(0.1)
                  .to(1000.0)
                  .called("grid"))
@@ -564,19 +563,20 @@ Operation render_operation() {
                 "seen isometrically, in black lines.")
               .from(4)
               .to(512)
-              .read_if<Render>(draws_surfaces, "is of pictures with depths: choose another 'shading'"))
-      .verb_takes(field("lets", &Render::lets, "NAME=FILE: what a name of the expression stands for.")
-                      .repeated()
-                      .called("let")
-                      .read_if<Render>([](const Render& render) { return !render.expression.empty(); },
-                                       "is of 'expression': add it"))
+              .read_if<Render>(draws_surfaces,
+                               "applies only to pictures with depths: choose another 'shading'"))
+      .verb_takes(
+          field("lets", &Render::lets, "NAME=FILE: the file of a name in the expression; may be repeated.")
+              .repeated()
+              .called("let")
+              .read_if<Render>([](const Render& render) { return !render.expression.empty(); },
+                               "needs 'expression': add it"))
       .verb_takes(field("out", &Render::out, "A .png, .jpg or .webp file.").required())
       .verb_takes(field("window", &Render::window, "LOW:HIGH or LOW: in sample units, or a tissue.")
                       .read_if<Render>(draws_surfaces, along_rays)
                       .read_if<Render>(draws_samples, "only scans and grey octrees have one: leave it out")
                       .read_if<Render>([](const Render& render) { return !render.steeper_per_mm; },
-                                       "changes of samples end the rays, whatever the samples are: leave it "
-                                       "out"))
+                                       "changes of samples end the rays at any sample value: leave it out"))
       .verb_takes(
           field("voxel_mm", &Render::voxel_mm,
                 "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")

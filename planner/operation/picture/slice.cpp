@@ -423,7 +423,7 @@ void check(const Slice& slice, const FieldLocation& place) {
   if (slice.window && !slice.level.empty())
     place.at("level").refuse("says the same as 'window': leave one out");
   if (slice.grid_mm && !slice.curve_mm.empty())
-    place.at("grid_mm").refuse("is of planes; a curved picture has none");
+    place.at("grid_mm").refuse("applies only to planes; a curved picture has none");
   if (slice.colours.size() > slice.objects.size() + slice.hatched.size())
     place.at("colours").refuse("has more colours than there are objects and hatched objects");
   if (!slice.level.empty() && !(slice.level[1] > 0.0))
@@ -526,13 +526,13 @@ Operation slice_operation() {
                  .in_plans_only())
       .takes(field("height_mm", &Slice::height_mm, "Height of a curved sheet.")
                  .greater_than(0.0)
-                 .read_if<Slice>(is_curved, "is of curved sheets: add 'curve'"))
-      .takes(
-          field("up", &Slice::up, "Upwards in an oblique or curved picture. Default: the head.")
-              .direction()
-              .read_if<Slice>([](const Slice& slice) { return is_curved(slice) || !slice.oblique.empty(); },
-                              "is of oblique and curved pictures: axial, coronal and sagittal ones have "
-                              "theirs"))
+                 .read_if<Slice>(is_curved, "applies only to curved sheets: add 'curve'"))
+      .takes(field("up", &Slice::up, "Upwards in an oblique or curved picture. Default: the head.")
+                 .direction()
+                 .read_if<Slice>(
+                     [](const Slice& slice) { return is_curved(slice) || !slice.oblique.empty(); },
+                     "applies only to oblique and curved pictures: axial, coronal and sagittal ones have "
+                     "theirs"))
       .takes(field("window", &Slice::window, "Black and white as LOW:HIGH, or a tissue.")
                  .read_if<Slice>(cuts_samples, no_samples))
       .takes(field("level", &Slice::level,
@@ -560,13 +560,13 @@ Operation slice_operation() {
               .greater_than(0.0))
       .takes(field("size", &Slice::size, "WxH in pixels. Default: all of the scan.")
                  .read_if<Slice>([](const Slice& slice) { return !is_curved(slice); },
-                                 "is of planes; a curve's picture is as long as the curve"))
+                                 "applies only to planes; a curve's picture is as long as the curve"))
       .takes(field("centre_mm", &Slice::centre_mm,
                    "X,Y,Z in LPS of a point whose place on the plane is the picture's middle. Default: the "
                    "scan's middle.")
                  .called("centre")
                  .read_if<Slice>([](const Slice& slice) { return !slice.size.empty(); },
-                                 "is of pictures of a 'size': add it"))
+                                 "applies only to pictures of a 'size': add it"))
       .takes(field("interpolate", &Slice::interpolate, "Between samples.")
                  .one_of({"nearest", "linear", "cubic"})
                  .read_if<Slice>(cuts_samples, no_samples))

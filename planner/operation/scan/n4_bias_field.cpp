@@ -32,8 +32,8 @@ MadeScan made(const BiasField& step, const ScanBench& bench) {
                  {"field", {corrected.field_low, corrected.field_high}}}};
   if (!step.threshold)
     made.findings.push_back("the field is fitted to samples above " + plain(corrected.threshold) +
-                            ", a threshold guessed from the histogram by Otsu's method: where they are not "
-                            "the patient's tissue, give 'threshold'");
+                            ", a threshold guessed from the histogram by Otsu's method: if these are not the "
+                            "patient's tissue, give 'threshold'");
   return made;
 }
 
@@ -45,7 +45,7 @@ Operation n4_bias_field_operation() {
              "Evens out the brightness of an MR scan: divides it by the slowly changing field "
              "that N4 estimates.",
              Makes::Scan)
-      .takes(field("scan", &BiasField::scan, "The scan, of magnetic resonance.").required())
+      .takes(field("scan", &BiasField::scan, "The MR scan.").required())
       .takes(field("threshold", &BiasField::threshold,
                    "Samples above it determine the field. Default: Otsu's threshold, which is a guess.")
                  .from(0.0)
@@ -57,8 +57,10 @@ Operation n4_bias_field_operation() {
       .takes(field("levels", &BiasField::levels, "Levels of the fit; each halves the distance of the knots.")
                  .from(1)
                  .to(6))
-      .takes(field("iterations", &BiasField::iterations, "Most iterations at each level.").from(1).to(1000))
-      .example(R"({"id": "even", "do": "n4_bias_field", "scan": "mr", "threshold": 20})")
+      .takes(field("iterations", &BiasField::iterations, "Largest number of iterations at each level.")
+                 .from(1)
+                 .to(1000))
+      .example(R"({"id": "even", "do": "n4_bias_field", "scan": "ct", "threshold": 20})")
       .on_files("n4_bias_field=THRESHOLD,KNOTS,LEVELS,ITERATIONS (samples, mm)")
       .scan(made);
 }

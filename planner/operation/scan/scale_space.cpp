@@ -30,7 +30,7 @@ MadeScan made(const ScaleSpaceStep& step, const ScanBench& bench) {
   Json stack = Json::array();
   for (std::size_t level = 0; level < space.sigmas_mm.size(); ++level)
     stack.push_back({{"sigma_mm", space.sigmas_mm[level]}, {"maxima", space.maxima[level]}});
-  // A scan's many small regions would fill pages.
+  // Lists only the largest, because a scan may have thousands of small regions.
   constexpr std::size_t most_listed = 20;
   Json largest = Json::array();
   for (std::size_t i = 0; i < std::min(most_listed, space.samples.size()); ++i)
@@ -49,20 +49,21 @@ MadeScan made(const ScaleSpaceStep& step, const ScanBench& bench) {
 Operation scale_space_operation() {
   return Describe<ScaleSpaceStep>(
              "scale_space",
-             "Makes a label map that parts objects which touch: each region belongs to one maximum of the "
+             "Makes a label map that separates touching objects: each region belongs to one maximum of the "
              "blurred scan, followed from coarse to fine.",
              Makes::Scan)
       .takes(field("scan", &ScaleSpaceStep::scan, "The scan.").required())
-      .takes(field("sigma_mm", &ScaleSpaceStep::sigma_mm,
-                   "Standard deviation of the coarsest blur: about half the width of the objects to part.")
-                 .required()
-                 .greater_than(0.0))
+      .takes(
+          field("sigma_mm", &ScaleSpaceStep::sigma_mm,
+                "Standard deviation of the coarsest blur: about half the width of the objects to separate.")
+              .required()
+              .greater_than(0.0))
       .takes(field("window", &ScaleSpaceStep::window,
                    "Samples that belong to regions: LOW:HIGH or LOW: in the scan's unit, or a tissue.")
                  .required()
                  .for_example("\"300:\""))
       .takes(field("objects", &ScaleSpaceStep::objects,
-                   "Whether they are brighter or darker than what is around them.")
+                   "Whether the objects are brighter or darker than their surroundings.")
                  .one_of({"bright", "dark"}))
       .example(R"({"id": "teeth", "do": "scale_space", "scan": "ct", "sigma_mm": 2.5, "window": "1200:"})")
       .on_files("scale_space=SIGMA,WINDOW,OBJECTS (mm; bright or dark)")

@@ -60,8 +60,8 @@ LandmarkPlaces with_means(const Cephalometry& definitions, LandmarkPlaces points
 /// Throws std::runtime_error with the position in the text for an unknown key, kind, landmark or measure (a
 /// measure must be defined before it is used), or a wrong number of points.
 Cephalometry parse_cephalometry(const std::string& json);
-/// Definitions of the program by their name, or in a file that ends in .json. Throws std::runtime_error, with
-/// the nearest name, if there are none.
+/// Reads definitions: those of the program by their name, or a file that ends in .json. Throws
+/// std::runtime_error, with the nearest name, if the program has none of this name.
 Cephalometry read_cephalometry(const std::string& name_or_path);
 std::vector<std::string> cephalometries();
 

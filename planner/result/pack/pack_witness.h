@@ -9,8 +9,8 @@
 
 namespace octotomy::planner {
 
-/// What a pack carries of an object, so that somebody else can compute its numbers again. Names and contents of
-/// .npy files:
+/// The data of an object in a pack, from which anybody can recompute its numbers. Names and contents of .npy
+/// files:
 /// - runs: one row z, y, x of its first voxel and x behind its last for each run of voxels, in ascending order;
 /// - points, LPS mm, and triangles, three numbers of points each, of the surface within the universe, where the
 ///   object has one and is no tool;

@@ -183,7 +183,7 @@ function trials(one: Measurement): Child {
   ];
 }
 
-/// Measurements that have a verdict of their own, as those of parts that are printed.
+/// Measurements that have a verdict of their own, such as those of printed parts.
 function verdicts(all: Measurement[]): Child {
   const rows = all.filter((one) => one.verdict !== undefined).map((one) => [
     one.id, one.object, one.verdict ? pill(one.verdict) : "not measured", list(one.findings)

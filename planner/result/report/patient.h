@@ -26,9 +26,10 @@ std::vector<std::string> patient_lines(const Evaluation& evaluation);
 /// completely, because it quotes files that the result does not store. File names are unchanged.
 void leave_out_patients(Result& result);
 
-/// Also leaves out everything else of an evaluated result that may name anybody: the paths of its scans, in the plan's
-/// text too, the plan's name, its readers' signatures, and the details of the scans' audits, which quote files. What
-/// was left out is returned, one line each. What the plan's steps are called stays.
+/// Like leave_out_patients(), and removes everything else of an evaluated result that may name a person: the
+/// paths of its scans, in the plan's text too, the plan's name, its readers' signatures, and the details of
+/// the scans' audits, which quote files. Returns one line for each removed item. The names of the plan's
+/// steps stay.
 std::vector<std::string> leave_out_names(Result& result);
 /// Whether leave_out_names() was applied.
 bool names_nobody(const Result& result);

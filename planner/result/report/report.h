@@ -67,12 +67,12 @@ nlohmann::ordered_json to_json(const VerdictCounts& counts);
 /// "6 PASS (1 not resolved), 0 WARN, 0 FAIL", and ", 2 without a certificate" if there are any.
 std::string text_of(const VerdictCounts& counts);
 
-/// Measurements by their own verdict, as those of parts that are printed have one.
+/// Counts of the measurements that have a verdict of their own, such as those of printed parts.
 struct MeasuredVerdicts {
   int pass = 0, warn = 0, fail = 0;
   std::vector<std::string> failed;  ///< of each FAIL its step, and the finding of it
 };
-/// Of measurements_json(). Measurements without a verdict count nowhere.
+/// Counts the verdicts in measurements_json(). Measurements without a verdict are not counted.
 MeasuredVerdicts measured_verdicts(const nlohmann::ordered_json& measurements);
 /// {"PASS": ..., "WARN": ..., "FAIL": ...}
 nlohmann::ordered_json to_json(const MeasuredVerdicts& verdicts);

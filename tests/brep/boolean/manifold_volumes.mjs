@@ -19,8 +19,8 @@ function numbers(type, count) {
   at += size;
   return part;
 }
-// Meshes come in single precision. Numbers go in as points, and the points themselves by a warp, which is of
-// double precision.
+// Manifold reads meshes in single precision. So each point is passed as its number, and a warp, which computes in
+// double precision, replaces the numbers by the points.
 function surface() {
   const [points, triangles] = numbers(Uint32Array, 2);
   const places = numbers(Float64Array, 3 * points);

@@ -69,8 +69,7 @@ TEST(JoinedSurface, WeldsOnlyWhereThatClosesOpenEdges) {
   const Triangles ball = sphere({1, 2, 3}, 5, 2);
   const JoinedSurface closed = joined_surface(unwelded(ball));
   ASSERT_EQ(closed.findings.size(), 1u);
-  EXPECT_EQ(closed.findings[0],
-            "unwelded: 960 of 960 open edges closed by taking points that coincide for one");
+  EXPECT_EQ(closed.findings[0], "unwelded: 960 of 960 open edges closed by merging points that coincide");
   EXPECT_TRUE(health(closed.surface).closed);
   const Triangles touching = together(box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1}));
   EXPECT_TRUE(joined_surface(touching).findings.empty());

@@ -117,7 +117,7 @@ TEST(DeckElements, HalvesInContactSlideAlongAFlatCutWithoutForce) {
   const tests::ScratchFolder folder;
   const glm::dvec3 force_n = reaction_n(folder, t, options, "HIGH");
   EXPECT_LT(force_n.z, -100.0) << "pressed";
-  // What is left comes of the ball's halves, whose cuts no longer cover each other wholly.
+  // The rest of the force is from the ball's halves, whose cut faces no longer cover each other completely.
   EXPECT_LT(std::abs(force_n.x), 0.03 * std::abs(force_n.z));
 }
 

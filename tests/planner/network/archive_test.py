@@ -170,7 +170,7 @@ class Archive(unittest.TestCase):
                             "--objects", 1)
         to = ["--to", f"dicoms://OCTOTOMY@127.0.0.1:{receiver.port}", "--timeout", 5]
         file = self.folder / "model.dcm"
-        # A server that nobody known has signed; a client of nobody known; none; and no TLS at all.
+        # A server whose certificate no known authority signed; a client with such a certificate; one without; no TLS.
         self.assertIn("TLS", octotomy("send", file, *to, status=2))
         self.assertIn("TLS", octotomy("send", file, *to, "--authorities", stranger, status=2))
         octotomy("send", file, *to, "--authorities", pem, status=2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Peers that mean harm, in raw bytes: whatever they send, the receiver refuses it, writes nothing outside its folder, keeps
+"""Hostile peers that send raw bytes: the receiver refuses what they send, writes nothing outside its folder, keeps
 its memory, and serves the next honest peer. The same for an archive that answers a fetch with harm."""
 import os
 import random
@@ -135,7 +135,7 @@ class Receiver(unittest.TestCase):
     def need_honest_peer_served(self, number):
         instance = b"1.2.3." + str(number).encode()
         answer = b""
-        for _ in range(100):  # while many associations are open, it is told to come again
+        for _ in range(100):  # rejected while too many associations are open
             answer = self.store(instance, data_set(instance))
             if answer:
                 break

@@ -224,7 +224,7 @@ class Model {
     if (before.reverted < limits_.reverts && before.file != before.text[1]) {
       State state = before;
       state.file = state.text[1];
-      // What it saved before was its own to replace.
+      // The program replaces a text that it saved itself, so that text need not survive.
       state.outside = 0;
       ++state.reverted;
       state.is_settled = false;

@@ -58,7 +58,7 @@ double corner_error_mm(const Scene& scene, const glm::dmat4& found, const glm::d
   return error;
 }
 
-/// Of the scan moved by a known motion, laid back.
+/// The error of the fit for a scan that was moved by a known motion.
 double error_of(Scene moved, const glm::dmat4& moved_from_still, const ScanFitOptions& options,
                 ScanFit& fit) {
   const glm::dmat4 still = moved.lattice.lps_from_voxel;
@@ -94,7 +94,7 @@ TEST(RegisterScans, AnotherContrastAndAPartOfTheHeadAreLaidBackByMutualInformati
   EXPECT_LT(error_of(other, moved, options, fit), 1.0);
   EXPECT_EQ(fit.verdict, Verdict::Pass) << testing::PrintToString(fit.findings);
   EXPECT_GT(fit.overlap, 0.9);
-  // The correlation of these two has its largest value elsewhere, or says that it found nothing.
+  // The correlation must either find the motion or report that it found nothing.
   options.by = ScanLikeness::Correlation;
   ScanFit failed;
   const double error = error_of(other, moved, options, failed);

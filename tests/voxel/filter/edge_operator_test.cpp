@@ -85,7 +85,8 @@ TEST(RobertsAndPrewitt, SeeAStepOneCellWideAndTwoSamplesWide) {
   const Scene scene =
       field_scene<std::int16_t>(lattice, [](const glm::dvec3& p) { return p.x > 0 ? 1000.0 : 0.0; });
   const Scene sharp = roberts(scene), plane = prewitt(scene);
-  // The step lies between samples 9 and 10, which is the middle of cell 9: the cell's place says so.
+  // The step lies between samples 9 and 10, which is the middle of cell 9: the result's lattice puts the
+  // sample there.
   EXPECT_EQ(sharp.lattice.lps_mm({9, 9, 9}), glm::dvec3(0.0));
   EXPECT_EQ(plane.lattice.lps_mm({9, 9, 9}), lattice.lps_mm({9, 9, 9}));
   for_each_index(lattice, 1, [&](const glm::ivec3& p) {

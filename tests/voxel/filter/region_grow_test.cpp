@@ -61,9 +61,9 @@ TEST(RegionGrow, ByItsRunningMeanFollowsARampToTheStep) {
   // The seed's own sample reaches to 100, the mean of the region to its middle and 105 beyond.
   EXPECT_EQ(grow_region(grey, from_end).voxel_count(), 11U * 32 * 32);
   EXPECT_EQ(grow_by_running_mean(grey, from_end).voxel_count(), 20U * 32 * 32);
-  // Neither passes the step; a tolerance of all does.
+  // Neither passes the step; a tolerance that covers all samples does.
   EXPECT_EQ(grow_by_running_mean(grey, {.seeds = {{0, 5, 5}}, .tolerance = 2000}).voxel_count(), 32768U);
-  // The mean of 0 admits 10 and then stands at 5: 20 is too far for ever.
+  // The mean of 0 admits 10 and is then 5; 20 is beyond the tolerance and no later round admits it.
   EXPECT_EQ(grow_by_running_mean(grey, {.seeds = {{0, 5, 5}}, .tolerance = 10}).voxel_count(), 2U * 32 * 32);
 }
 

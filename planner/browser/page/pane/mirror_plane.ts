@@ -28,7 +28,7 @@ export function plane_of(step: Step): Plane|null {
 
 /// A view shows the plane as a line where it looks along it to within this cosine.
 const most_tilt = 0.2;
-/// Of a handle at an end of the trace, as a share of the pane's shorter side.
+/// The distance of the handles from the middle of the trace, as a share of the pane's shorter side.
 const reach_share = 0.3;
 const near_px = 12;
 

@@ -65,7 +65,7 @@ export class Pane {
   private get lacks_planes(): boolean {
     return this.picture?.header.quality === "rest" && this.picture.planes === null;
   }
-  /// Whether a picture takes so long that the person is told.
+  /// Whether a picture takes so long that the page shows a message.
   get is_slow(): boolean {
     return this.in_flight > 0 && performance.now() - this.waiting_since > slow_after_ms;
   }

@@ -32,7 +32,7 @@ const basis = (step: Step): string =>
     JSON.stringify([state.plan?.path, step, makers_of(step.scan), state.plan?.plan.scans]);
 const is_cleaned = (step: Step): boolean => step.do === "window";
 
-// The steps that stand in the window's place for a picture: of a cleaned scan the window on it.
+// The steps that replace the window for a picture; for a cleaned scan, the window on the cleaned scan.
 function trial_of(step: Step, {made}: Proposal): Step[] {
   return made.scan === undefined ? [made] : [made, {...step, id: free_id(`${step.id}_tried`), scan: made.id}];
 }
@@ -206,7 +206,8 @@ function proposal_card(step: Step, proposal: Proposal): Child {
           {class: "primary", "data-key": `${name}-do`}));
 }
 
-// The picture of a proposal ends with the panel on which it stands, and with what it was computed of.
+// Removes the picture of a proposal when its panel closes, or when the plan from which it was computed
+// changes.
 watch(["plan", "selected", "right_tab", "tool", "draft_window", "draft_step"], () => {
   const {preview, cleaning} = state;
   if (!preview?.steps) return;

@@ -39,7 +39,8 @@ async function take_part(near_mm: Vec3): Promise<void> {
   const on = target();
   if (!on) return notify("Select the object first, then click on one of its parts.", "warning");
   const {step, going_on} = on;
-  // A part that is to be removed is one of what is left; one that is to be kept, too, is one of the whole.
+  // A part to remove is chosen among the remaining parts; a part to keep is chosen among all parts of the
+  // object.
   const object = going_on && keeps ? going_on.source : step.id;
   const part = await try_to<Part>("part", {object, near_mm});
   if (!part?.at_mm || state.selected !== step.id) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Moves and turns a piece by handles in a pane; the overlap is told and drawn meanwhile.
+// Moves and turns a piece by handles in a pane; the overlap is reported and drawn meanwhile.
 import {Direction, directions, lps, motion_words, Turn, turns, word_of} from "../base/anatomical";
 import {el} from "../base/html";
 import {dot_at, ink, text} from "../base/ink";

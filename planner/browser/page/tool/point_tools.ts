@@ -39,7 +39,7 @@ function landmark_at(pane: Pane, at: Vec2): {name: string; point: Vec3}|undefine
   });
 }
 /// The place under the pointer. A view shows no depth beside its surfaces: nothing is placed there, and the
-/// person is told.
+/// page shows a message.
 export function place_at(pane: Pane, at: Vec2): Vec3|null {
   if (!pane.has_places) {
     notify("The picture is still being drawn: click again once it is at rest.", "warning");

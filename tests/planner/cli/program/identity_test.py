@@ -179,7 +179,7 @@ class Identity(unittest.TestCase):
         self.assertEqual(said["choice"], "remove")
         for line in ["Patient's Name (0010,0010): emptied", "Patient's Age (0010,1010): removed",
                      "Study Instance UID (0020,000d): replaced",
-                     "Body Part Examined (0018,0015): removed, as it is no word of the standard"]:
+                     "Body Part Examined (0018,0015): removed, because the standard does not define it"]:
             self.assertIn(line, said["changes"])
         self.assertNotIn("PLANTED", "".join(said["changes"]))
 

@@ -20,7 +20,7 @@ TEST_F(PictureOptions, OfDrawAreRefusedInOneLineEach) {
   const std::string draw = "draw -o " + at("d.png") + " ";
   expect_refused(run(draw), "nothing to draw");
   expect_refused(run(draw + ball("stl") + "--axial 3"), "--scan");
-  expect_refused(run(draw + "--scan" + ball("nrrd")), "say where");
+  expect_refused(run(draw + "--scan" + ball("nrrd")), "give their positions");
   expect_refused(run(draw + "--scan" + ball("nrrd") + "--axial 900"), "900");
   expect_refused(run(draw + "--scan" + ball("nrrd") + "--axial 0 --level 3,0"), "above zero");
   expect_refused(run(draw + "--scan" + ball("nrrd") + "--axial 0 --within" + ball("nrrd")), "octree");
@@ -33,7 +33,7 @@ TEST_F(PictureOptions, OfDrawAreRefusedInOneLineEach) {
   expect_refused(run(draw + ball("stl") + "--gloss=-1"), "0");
   expect_refused(run(draw + ball("stl") + "--hide"), "--shading");
   expect_refused(run(draw + ball("stl") + "--shading wire --cull"), "--hide");
-  expect_refused(run(draw + ball("stl") + "--pick 600,0"), "no pixel");
+  expect_refused(run(draw + ball("stl") + "--pick 600,0"), "is not a pixel");
   expect_refused(run(draw + ball("stl") + "--colour red"), "red");
   expect_refused(run(draw + ball("stl") + "--grid 10 --eye 300"), "true scale");
   expect_refused(run("draw -o " + at("d.stl") + ball("stl")), ".png");

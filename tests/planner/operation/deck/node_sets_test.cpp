@@ -53,7 +53,7 @@ TEST_F(NodeSets, WhatNamesNoPlaceOrNoMotionIsRefusedByName) {
     expect_refused(tet("--nodes " + own + "=5,5,0"), "a set that every deck has");
   expect_refused(tet("--nodes 9A=5,5,0"), "no name that solvers take");
   expect_refused(tet("--nodes A=5,5,0 --fix B"), "none of the sets");
-  expect_refused(tet("--nodes A=5,5,0 --move A=0,0,1"), "nothing stays");
+  expect_refused(tet("--nodes A=5,5,0 --move A=0,0,1"), "no nodes are fixed");
   expect_refused(tet("--nodes A=5,5,0 --nodes B=5,5,20 --fix B --move A=1"), "is not a motion");
   expect_refused(tet("--nodes A=0,0,0,0,0,1 --nodes B=-5,-5,0 --fix A --move B=0,0,1"), "shares nodes");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "column.inp"));

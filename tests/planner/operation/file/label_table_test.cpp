@@ -259,7 +259,7 @@ TEST(LabelTable, ATableThatContradictsTheUsedOneIsReportedAndOneThatAgreesIsNot)
     const LabelTable table = label_table_of(map, {1, 2});
     EXPECT_EQ(table.names, (Names{{1, "Fat"}, {2, "Bone"}}));
     ASSERT_EQ(table.passed_over.size(), 1U) << other;
-    EXPECT_NE(table.passed_over[0].find("a.csv: passed over, as it contradicts"), std::string::npos)
+    EXPECT_NE(table.passed_over[0].find("a.csv: not used, because it contradicts"), std::string::npos)
         << table.passed_over[0];
   }
   const auto slicer =

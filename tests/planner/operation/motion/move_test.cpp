@@ -103,7 +103,7 @@ TEST_F(MoveStep, RefusalsPointAtThePlace) {
   says(R"(, "by": {"forward_mm": 1}, "along": ["front", "rear", [0, 0, 0]])", "on one line");
   says(R"(, "translate_mm": [1, 0, 0], "along": ["front", "rear", "left"])", "along: says along which plane");
   says(R"(, "with": "ball")", "with: 'ball' was made by 'window'");
-  says(R"(, "with": "ball", "translate_mm": [1, 0, 0])", "stand alone");
+  says(R"(, "with": "ball", "translate_mm": [1, 0, 0])", "exclude all others");
   says(R"(, "rotate": {"degrees": 3})", "rotate: 'axis' is missing");
   says(R"(, "rotate": {"degrees": 3, "axis": [1, 0, 0]}, "turn": {"about_mm": "rear"})", "twice");
   says(R"(, "points": [{"at": "front", "up_mm": 1}, {"at": "front", "up_mm": 1}])",

@@ -150,7 +150,7 @@ TEST(SegmentStep, WhatOnlyVoxelsKnowHasNoMeshAndSaysWhy) {
   EXPECT_NEAR(evaluation.object("seeded").voxel.measures.volume_mm3 / ball_mm3(8), 1.0, 0.03);
 }
 
-/// How many of the voxels a witness is certain about, and how many of those the kernel has otherwise.
+/// Number of voxels about which a witness is certain, and on how many of these the kernel differs.
 struct Witnessed {
   std::size_t certain = 0, wrong = 0, inside = 0;
 };

@@ -100,7 +100,8 @@ TEST(PlateStep, BridgesTheGapAndHasItsHolesWhereTheMotionBringsTheScrews) {
   EXPECT_FALSE(screws[1].at("is_carried"));
   EXPECT_NEAR(screws[0].at("at_mm")[1].get<double>(), -19.33, 1e-9);
   EXPECT_NEAR(screws[0].at("at_mm")[2].get<double>(), 9.5, 1e-9);
-  // Its own step measured 5 mm to the cut before the motion; at its place it is off the lower piece.
+  // The screw's own step measured 5 mm to the cut before the motion; the second distance is that to the lower
+  // piece at the planned place.
   ASSERT_EQ(screws[0].at("clearances").size(), 2u) << screws.dump(1);
   EXPECT_FALSE(screws[0].at("clearances")[0].at("is_planned_place"));
   EXPECT_NEAR(screws[0].at("clearances")[0].at("distance_mm").get<double>(), 5.0, 0.05);
@@ -130,7 +131,7 @@ TEST(PlateStep, RefusesWhatMakesNoPlateInASentenceThatSaysWhy) {
   expect_refused(plate_step(R"("points": [[3, -30, 0], [0, -20, 0]])"), "10.1 mm off the surface of 'ball'");
   expect_refused(plate_step(R"("points": [[0, 20, 0], [0, -20, 0]])"), "lie behind each other");
   expect_refused(plate_step(R"("points": [[0, 18.33, 8], [0, -20, 0]])"),
-                 "behind other bone as the plate is put on");
+                 "behind other bone, seen along the direction in which the plate is put on");
   expect_refused(plate_step(across + R"(, "direction": [1, 0, 0])"),
                  "nobody on that side can put the plate on");
   expect_refused(plate_step(across + R"(, "screws": ["ball"])"), "'ball' is no screw");
@@ -150,7 +151,7 @@ TEST(PlateStep, RefusesWhatMakesNoPlateInASentenceThatSaysWhy) {
   expect_refused(two_pieces("[0, -6, 0]", plate_step(R"("points": [[0, -24.33, 8], [0, -18.33, -8]],
                      "screws": ["up"])",
                                                      "planned")),
-                 "name the screw as a move step carried it with its piece");
+                 "name the object that a move step made of the screw");
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST(DrawStep, WhatCannotBeDrawnOrChangesNothingIsRefused) {
   };
   const std::vector<std::pair<std::string, std::string>> refused{
       {R"("view": "front")", "nothing to draw"},
-      {R"("scan": "ct")", "say where"},
+      {R"("scan": "ct")", "give their positions"},
       {R"("objects": ["ball"], "axial": [3])", "add 'scan'"},
       {R"("objects": ["ball"], "window": "0:")", "add 'scan'"},
       {R"("objects": ["ball"], "within": "ball")", "add 'scan'"},
