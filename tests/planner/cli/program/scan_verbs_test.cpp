@@ -69,7 +69,7 @@ TEST_F(ScanVerbs, AnExpressionIsDrawnAsTheOctreeThatEvalMakesOfIt) {
   expect_refused(run("render --expression a" + lets + rest), "--let b");
   expect_refused(run("render --expression a --let a" + rest), "NAME=FILE");
   expect_refused(run("render --expression \"a -\" --let a=" + at("a.octree") + rest), "expected");
-  expect_refused(run("render " + at("a.octree") + " --let a=" + at("a.octree") + rest), "'expression'");
+  expect_refused(run("render " + at("a.octree") + " --let a=" + at("a.octree") + rest), "--expression");
   expect_refused(run("render" + rest), "expression");
   expect_refused(run("render " + at("ball.nrrd") + " --window 0: --decide gradient --steeper 5" + rest),
                  "--window");
