@@ -189,9 +189,9 @@ Span in_box(const Line& line, const voxel::Box& box) {
       if (line.from_mm[axis] < box.low_mm[axis] || line.from_mm[axis] > box.high_mm[axis]) return {1.0, 0.0};
       continue;
     }
-    const auto [enters, leaves] = std::minmax((box.low_mm[axis] - line.from_mm[axis]) / line.along[axis],
-                                              (box.high_mm[axis] - line.from_mm[axis]) / line.along[axis]);
-    span = {std::max(span.low_mm, enters), std::min(span.high_mm, leaves)};
+    const double a = (box.low_mm[axis] - line.from_mm[axis]) / line.along[axis],
+                 b = (box.high_mm[axis] - line.from_mm[axis]) / line.along[axis];
+    span = {std::max(span.low_mm, std::min(a, b)), std::min(span.high_mm, std::max(a, b))};
   }
   return span;
 }

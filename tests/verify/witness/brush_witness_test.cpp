@@ -56,14 +56,14 @@ Drawn random_brush(unsigned seed) {
 
 TEST(BrushWitness, AgreesWithBothKernelsOnRandomStrokes) {
   std::size_t in = 0, out = 0;
-  for (unsigned seed = 0; seed < 20; ++seed) {
+  for (unsigned seed = 0; seed < 12; ++seed) {
     const Drawn drawn = random_brush(seed);
     const Witness witness = witness_of_brush(drawn.ways);
     const voxel::Membership voxels(tests::unit_universe(5), voxel::brush(drawn.strokes));
     const brep::Solid mesh = brep::brush_solid(drawn.traces).solid;
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> place(-12.0, 12.0);
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 1500; ++i) {
       const glm::dvec3 p_mm(place(random), place(random), place(random));
       const AllowedSides sides = witness.mesh_sides(p_mm);
       ASSERT_FALSE(sides.near) << seed;
@@ -82,8 +82,8 @@ TEST(BrushWitness, AgreesWithBothKernelsOnRandomStrokes) {
       EXPECT_TRUE(witness.mesh_sides(middle_mm).near) << seed;
     }
   }
-  EXPECT_GT(in, 1000u);
-  EXPECT_GT(out, 1000u);
+  EXPECT_GT(in, 200u);
+  EXPECT_GT(out, 200u);
 }
 
 TEST(BrushWitness, LinesAgreeWithPointsAndWithTheMeshesVolume) {
