@@ -240,7 +240,7 @@ function panel(): Child {
       },
       {class: now === value ? "on" : "", "aria-pressed": String(now === value), "data-key": `brush-${label}`});
   const slider = (label: string, value: number, most: number, key: string, take: (mm: number) => void): Child => {
-    const shared = {min: least_mm, max: most, step: 0.5, value, "aria-label": label};
+    const shared = {min: least_mm, max: most, step: 0.5, value, "aria-label": `${label} in mm`};
     const number = (event: Event): number => Number((event.target as HTMLInputElement).value);
     const typed = el("input", {type: "number", ...shared, "data-key": key, name: key, onchange: (event: Event) => take(number(event))});
     return el(
@@ -263,8 +263,8 @@ function panel(): Child {
     el("div", {class: "presets", role: "group", "aria-label": "Shape of the brush"},
        choice<Shape>("Ball", "Reaches as deep as it is wide", shape, "ball", (value) => shape = value),
        choice<Shape>("Slab", "A disc that faces you, as thick as you set it", shape, "slab", (value) => shape = value)),
-    slider("Radius, mm", radius_mm, 30, "brush-radius", set_radius),
-    shape === "slab" ? slider("Thickness, mm", thickness_mm, 60, "brush-thickness", (mm) => {
+    slider("Radius", radius_mm, 30, "brush-radius", set_radius),
+    shape === "slab" ? slider("Depth", thickness_mm, 60, "brush-thickness", (mm) => {
       if (mm > 0) thickness_mm = Math.min(200, Math.max(least_mm, Math.round(mm * 10) / 10));
     }) :
                        null,

@@ -32,8 +32,8 @@ before(async () => {
   }));
   server = await start_server(folder, [plan_path]);
   one = await PlannerWindow.open(server.url, { theme });
-  await one.page.locator('.pane canvas').first().waitFor();
-  if (await one.page.getByRole('button', { name: 'Continue' }).count()) await one.click('Continue');
+  await one.click('Continue');
+  await one.command('Views and slices');
   await one.at_rest();
   await one.select('skull');
 });
