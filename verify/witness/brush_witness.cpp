@@ -18,7 +18,7 @@ namespace octotomy::verify {
 namespace {
 
 /// As of other shapes from a plan: rounding of a vertex, relative to its coordinates.
-constexpr double on_face = 1e-8;
+constexpr double on_hull = 1e-8;
 
 /// Faces of a brush about the origin: normal . p <= reach_mm.
 struct Face {
@@ -235,7 +235,7 @@ LineReading lines_of(const std::shared_ptr<const std::vector<Piece>>& pieces) {
 Witness witness_of_brush(const std::vector<DrawnBrush>& ways) {
   const auto pieces = std::make_shared<const std::vector<Piece>>(pieces_of(ways));
   const auto read = [pieces](const glm::dvec3& p_mm, double slack_mm) {
-    const double near_mm = on_face * (1.0 + glm::length(p_mm)) + slack_mm;
+    const double near_mm = on_hull * (1.0 + glm::length(p_mm)) + slack_mm;
     int faces = 0;
     for (const Piece& piece : *pieces) {
       if (!piece.may_hold(p_mm, near_mm) || !piece.covers(p_mm, near_mm)) continue;

@@ -89,6 +89,8 @@ std::vector<verify::DrawnBrush> drawn_ways(const Brush& brush) {
 
 /// Points that are nearer to each other, and not equal, make a hull whose faces are thinner than rounding.
 constexpr double least_way_mm = 1e-3;
+/// Farther from the origin, rounding would turn the faces of a small brush.
+constexpr double most_mm = 1e6;
 
 void check_stroke(const Stroke& stroke, const FieldLocation& place) {
   if (stroke.is_slab()) {
@@ -99,6 +101,11 @@ void check_stroke(const Stroke& stroke, const FieldLocation& place) {
     if (stroke.thickness_mm)
       place.at("thickness_mm").refuse("is of a slab: set 'shape' to \"slab\", or leave it out");
   }
+  for (std::size_t i = 0; i < stroke.points_mm.size(); ++i)
+    if (!(glm::length(stroke.points_mm[i]) <= most_mm))
+      place.at("points_mm")
+          .refuse("point " + std::to_string(i) +
+                  " lies over 1000 m from the origin: give LPS coordinates in mm");
   for (std::size_t i = 1; i < stroke.points_mm.size(); ++i) {
     const double way_mm = glm::distance(stroke.points_mm[i - 1], stroke.points_mm[i]);
     if (way_mm > 0.0 && way_mm < least_way_mm)
@@ -264,8 +271,8 @@ Operation brush_operation() {
       .verb_takes(&Brush::drawn, stroke_fields())
       .example(
           R"({"id": "clean", "do": "brush", "object": "skull", "strokes": [
-        {"points_mm": [[-20, -90, -28], [0, -95, -28]], "radius_mm": 4}]})")
-      .on_files("octotomy brush skull.stl --points -20,-90,-28 0,-95,-28 --radius 4 -o clean.stl")
+        {"points_mm": [[-15, -84, 45], [15, -84, 45]], "radius_mm": 4}]})")
+      .on_files("octotomy brush skull.stl --points -15,-84,45 15,-84,45 --radius 4 -o clean.stl")
       .check(check)
       .object(definition, voxels, triangles, bound);
 }

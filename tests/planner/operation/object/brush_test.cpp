@@ -9,7 +9,7 @@ namespace {
 
 using namespace tests;
 
-const char* const across = R"("points_mm": [[-12, -18, 3], [-4, -20, 3], [4, -20, 5], [12, -18, 4]])";
+const char* const bent_line = R"("points_mm": [[-12, -18, 3], [-4, -20, 3], [4, -20, 5], [12, -18, 4]])";
 
 std::string brush(const std::string& id, const std::string& stroke, const std::string& more = "") {
   return R"({"id": ")" + id + R"(", "do": "brush", "object": "ball", "strokes": [{)" + stroke + "}]" + more +
@@ -38,7 +38,7 @@ TEST(BrushStep, WithinTheBallADabTakesABallsVolumeInBothKernels) {
 
 TEST(BrushStep, StrokesThatEraseAndPaintOverlapAlikeInBothKernels) {
   const ScratchFolder folder;
-  const std::string stroke = across + std::string(R"(, "radius_mm": 5)");
+  const std::string stroke = bent_line + std::string(R"(, "radius_mm": 5)");
   const Evaluation evaluation = evaluate(
       ball_plan(folder, brush("erased", stroke) + ", " + brush("painted", stroke, R"(, "mode": "paint")")));
   const Object &erased = evaluation.object("erased"), &painted = evaluation.object("painted");
@@ -74,9 +74,9 @@ TEST(BrushStep, AnAlteredAnswerOfOneKernelIsFound) {
   const ScratchFolder folder;
   const auto evaluation = evaluate(ball_plan(
       folder,
-      brush("right", across + std::string(R"(, "radius_mm": 5)")) + ", " +
-          brush("same", across + std::string(R"(, "radius_mm": 5)")) + ", " +
-          brush("wider", across + std::string(R"(, "radius_mm": 6)")) + ", " +
+      brush("right", bent_line + std::string(R"(, "radius_mm": 5)")) + ", " +
+          brush("same", bent_line + std::string(R"(, "radius_mm": 5)")) + ", " +
+          brush("wider", bent_line + std::string(R"(, "radius_mm": 6)")) + ", " +
           brush("short", R"("points_mm": [[-12, -18, 3], [-4, -20, 3], [4, -20, 5]], "radius_mm": 5)")));
   EXPECT_EQ(verify::to_string(altered_certificate(evaluation, "right", "same").verdict), "PASS");
   for (const char* other : {"wider", "short", "ball"})
@@ -108,6 +108,7 @@ TEST(BrushStep, RefusesWhatCannotBeDrawn) {
               "normal");
   expect_said(refused(R"("points_mm": [[0, 0, 0]], "thickness_mm": 2)"), "is of a slab");
   expect_said(refused(R"("points_mm": [[0, 0, 0], [0, 0, 0.0001]])"), "0.001 mm apart");
+  expect_said(refused(R"("points_mm": [[0, 0, 1e300]])"), "1000 m from the origin");
 }
 
 }  // namespace
