@@ -328,6 +328,7 @@ def numbers_at_their_ends_do_not_crash(subject):
         ("render", "head.nrrd", "--window", "300:", "--view", "N,N", "--size", "32x32", "-o", "p.png"),
         ("measure", "ball.stl", "--section", "N,0,0", "0,0,N"),
         ("saw", "ball.stl", "--line", "N,0,0", "1,N,0", "--direction", "0,0,1", "--depth", "N", "-o", "m.stl"),
+        ("brush", "ball.stl", "--points", "N,0,0", "1,N,0", "--radius", "N", "-o", "m.stl"),
         ("tet", "ball.stl", "--max-edge", "N", "-o", "m.inp"))
 
 

@@ -375,6 +375,7 @@ class Kinds {
           {"smooth", "MUTANT", "--rounds", "1", "--max-volume-share", "0.9", "-o", "OUT.ply"},
           {"decimate", "MUTANT", "--faces", "100", "-o", "OUT.obj"},
           {"saw", "MUTANT", "--line", "-60,-120,-20", "60,-120,-20", "--direction", "0,1,0", "-o", "OUT.stl"},
+          {"brush", "MUTANT", "--points", "-20,-90,-28", "0,-95,-28", "-o", "OUT.stl"},
           {"parts", "MUTANT", "--largest", "1", "-o", "OUT.off"},
           {"separate", "MUTANT", "-o", "OUT.stl"},
           {"compare", "MUTANT", at("box.stl"), "--spacing", "10"},

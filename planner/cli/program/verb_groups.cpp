@@ -56,6 +56,7 @@ constexpr std::array verb_table{
     GroupedVerb{cutting, "boolean"},
     GroupedVerb{cutting, "eval"},
     GroupedVerb{cutting, "saw"},
+    GroupedVerb{cutting, "brush"},
     GroupedVerb{cutting, "mask"},
     GroupedVerb{cutting, "parts"},
     GroupedVerb{cutting, "separate"},

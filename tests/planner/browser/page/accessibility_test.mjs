@@ -45,7 +45,7 @@ const screens = {
   movement: (one) => one.tab('Movement'),
   ...Object.fromEntries([['window', 'w'], ['region', 'r'], ['move', 'g'], ['marks', 'j'], ['landmark', 'l'], ['distance', 'd'], ['segment', 'p'], ['cut plane', 'k'], ['compare', 'c'], ['palette', 'Control+k'], ['help', '?'], ['open', 'Control+o'], ['export', 'Control+e']]
     .map(([name, key]) => [name, (one) => one.press(key)])),
-  ...Object.fromEntries(['Procedure from landmarks', "Show the scan's audit", 'Outcome of the operation', 'New branch', 'Add step: measure', 'Tool: Dental arch', 'Views and slices', 'Radiograph and landmarks']
+  ...Object.fromEntries(['Procedure from landmarks', "Show the scan's audit", 'Outcome of the operation', 'New branch', 'Add step: measure', 'Tool: Dental arch', 'Tool: Brush', 'Views and slices', 'Radiograph and landmarks']
     .map((name) => [name, (one) => one.command(name)])),
 };
 

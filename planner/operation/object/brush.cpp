@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A brush that takes away from an object along strokes, or adds to it.
+#include "brep/shape/brush.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+
+#include "brep/boolean/boolean.h"
+#include "planner/operation/object/provenance.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "verify/witness/brush_witness.h"
+#include "verify/witness/witness.h"
+#include "voxel/solid/brush.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Stroke {
+  std::vector<glm::dvec3> points_mm;
+  double radius_mm = 3.0;
+  std::string shape = "ball";
+  std::optional<glm::dvec3> normal;    ///< of a slab, of any length
+  std::optional<double> thickness_mm;  ///< of a slab
+
+  bool is_slab() const { return shape == "slab"; }
+};
+
+struct Brush {
+  ObjectName object;
+  std::vector<Stroke> strokes;
+  std::string mode = "erase";
+  Stroke drawn;  ///< the verb's stroke
+
+  bool paints() const { return mode == "paint"; }
+  std::vector<Stroke> all() const { return strokes.empty() ? std::vector{drawn} : strokes; }
+};
+
+/// A slab's frame. The direction of its first corner is a choice that both kernels must share.
+struct SlabFrame {
+  glm::dvec3 normal, across;
+};
+SlabFrame frame_of(const Stroke& stroke) {
+  const glm::dvec3 normal = glm::normalize(*stroke.normal);
+  int least = 0;
+  for (int axis = 1; axis < 3; ++axis)
+    if (std::abs(normal[axis]) < std::abs(normal[least])) least = axis;
+  glm::dvec3 across(0.0);
+  across[least] = 1.0;
+  return {normal, glm::normalize(across - normal * normal[least])};
+}
+
+std::vector<voxel::BrushStroke> voxel_strokes(const Brush& brush) {
+  std::vector<voxel::BrushStroke> made;
+  for (const Stroke& stroke : brush.all()) {
+    made.push_back({stroke.points_mm, stroke.radius_mm});
+    if (!stroke.is_slab()) continue;
+    const SlabFrame frame = frame_of(stroke);
+    made.back().slab = {frame.normal, frame.across, *stroke.thickness_mm};
+  }
+  return made;
+}
+
+std::vector<brep::BrushTrace> mesh_traces(const Brush& brush) {
+  std::vector<brep::BrushTrace> made;
+  for (const Stroke& stroke : brush.all()) {
+    made.push_back({stroke.points_mm, stroke.radius_mm});
+    if (!stroke.is_slab()) continue;
+    const SlabFrame frame = frame_of(stroke);
+    made.back().disc = {frame.normal, frame.across, *stroke.thickness_mm};
+  }
+  return made;
+}
+
+std::vector<verify::DrawnBrush> drawn_ways(const Brush& brush) {
+  std::vector<verify::DrawnBrush> made;
+  for (const Stroke& stroke : brush.all()) {
+    made.push_back({stroke.points_mm, stroke.radius_mm});
+    if (!stroke.is_slab()) continue;
+    const SlabFrame frame = frame_of(stroke);
+    made.back().disc = {frame.normal, frame.across, *stroke.thickness_mm};
+  }
+  return made;
+}
+
+/// Points that are nearer to each other, and not equal, make a hull whose faces are thinner than rounding.
+constexpr double least_way_mm = 1e-3;
+/// Farther from the origin, rounding would turn the faces of a small brush.
+constexpr double most_mm = 1e6;
+
+void check_stroke(const Stroke& stroke, const FieldLocation& place) {
+  if (stroke.is_slab()) {
+    if (!stroke.normal) place.at("normal").refuse("is missing: a slab has one");
+    if (!stroke.thickness_mm) place.at("thickness_mm").refuse("is missing: a slab has one");
+  } else {
+    if (stroke.normal) place.at("normal").refuse("is of a slab: set 'shape' to \"slab\", or leave it out");
+    if (stroke.thickness_mm)
+      place.at("thickness_mm").refuse("is of a slab: set 'shape' to \"slab\", or leave it out");
+  }
+  for (std::size_t i = 0; i < stroke.points_mm.size(); ++i)
+    if (!(glm::length(stroke.points_mm[i]) <= most_mm))
+      place.at("points_mm")
+          .refuse("point " + std::to_string(i) +
+                  " lies over 1000 m from the origin: give LPS coordinates in mm");
+  for (std::size_t i = 1; i < stroke.points_mm.size(); ++i) {
+    const double way_mm = glm::distance(stroke.points_mm[i - 1], stroke.points_mm[i]);
+    if (way_mm > 0.0 && way_mm < least_way_mm)
+      place.at("points_mm")
+          .refuse("points " + std::to_string(i - 1) + " and " + std::to_string(i) +
+                  " are less than 0.001 mm apart: leave one of them out");
+  }
+}
+
+void check(const Brush& brush, const FieldLocation& place) {
+  if (place.scope == nullptr && brush.strokes.empty()) return check_stroke(brush.drawn, place);
+  if (brush.strokes.empty()) place.refuse("'strokes' is missing: add one");
+  for (std::size_t i = 0; i < brush.strokes.size(); ++i)
+    check_stroke(brush.strokes[i], place.at("strokes[" + std::to_string(i) + "]"));
+}
+
+std::string definition(const Brush& brush, const Objects&) {
+  const std::size_t count = brush.all().size();
+  const std::string strokes = std::to_string(count) + (count == 1 ? " stroke" : " strokes") + " of a brush";
+  return brush.object.name + (brush.paints() ? " and " : " less ") + strokes;
+}
+
+constexpr const char* not_measured = "; no scan measured what is painted";
+
+void voxels(const Brush& brush, const VoxelBench& bench, VoxelSide& made) {
+  const voxel::Expression touched = voxel::brush(voxel_strokes(brush));
+  const VoxelSide& object = bench.object(brush.object.name);
+  const voxel::Expression octree(object.octree);
+  made.octree = bench.combined(brush.paints() ? octree | touched : octree - touched);
+  made.symbol = bench.within_universe(brush.paints() ? *object.symbol | touched : *object.symbol - touched);
+  made.lineage = brush.paints()
+                     ? std::string("the object's voxels and voxel centres in the brush") + not_measured
+                     : "voxel centres outside of the brush";
+}
+
+void triangles(const Brush& brush, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "boolean_mesh");
+  const brep::Solid& solid = bench.object(brush.object.name);
+  const brep::BooleanResult touched = brep::brush_solid(mesh_traces(brush), bench.progress.stop);
+  brep::BooleanResult result =
+      brep::boolean(solid, brush.paints() ? brep::Operation::Union : brep::Operation::Difference,
+                    touched.solid, bench.progress.stop);
+  made.shift_mm = touched.shift_mm + result.shift_mm;
+  made.findings = touched.findings;
+  made.findings.insert(made.findings.end(), result.findings.begin(), result.findings.end());
+  const std::optional<double> residual =
+      result.residual ? std::max(*result.residual, touched.residual.value_or(0.0)) : touched.residual;
+  made.details["residuals"] = {{"volume_relative", residual ? nlohmann::ordered_json(*residual) : nullptr}};
+  made.details["brush_mm3"] = brep::volume_mm3(touched.solid);
+  made.details[brush.paints() ? "painted_mm3" : "erased_mm3"] =
+      std::abs(brep::volume_mm3(result.solid) - brep::volume_mm3(solid));
+  made.whole = result.solid;
+  made.lineage =
+      std::string("corefinement with the hulls of the brush") + (brush.paints() ? not_measured : "");
+}
+
+/// Distance from a dab's centre to the plane, normal to an axis, that touches it.
+double reach_mm(const Stroke& stroke, int axis) {
+  // A ball's outermost edges along an axis lie between two hexagons.
+  if (!stroke.is_slab())
+    return 0.9675583399663303 * std::numbers::sqrt3 / std::numbers::phi * stroke.radius_mm;
+  const SlabFrame frame = frame_of(stroke);
+  const glm::dvec3 third = glm::cross(frame.normal, frame.across);
+  constexpr double turn = std::numbers::pi / 8.0;
+  double most = 0.0;
+  for (int corner = 0; corner < 16; ++corner)
+    most =
+        std::max(most, std::cos(corner * turn) * frame.across[axis] + std::sin(corner * turn) * third[axis]);
+  return 0.993537015401427 / std::cos(0.5 * turn) * stroke.radius_mm * most +
+         0.5 * *stroke.thickness_mm * std::abs(frame.normal[axis]);
+}
+
+/// The planes of walls normal to an axis: a piece of a stroke that is itself normal to the axis leaves one on
+/// either side, and a slab that is normal to it at each of its points.
+std::vector<CutPlane> walls_of(const std::vector<Stroke>& strokes) {
+  constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
+  std::array<std::set<double>, 3> offsets_mm;
+  for (const Stroke& stroke : strokes)
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool is_flat = stroke.is_slab() && std::abs(frame_of(stroke).normal[axis]) >= 1.0 - rounding;
+      const double reach = reach_mm(stroke, axis);
+      for (std::size_t i = 0; i < stroke.points_mm.size(); ++i) {
+        const double at_mm = stroke.points_mm[i][axis];
+        const auto is_level = [&](std::size_t other) {
+          return std::abs(stroke.points_mm[other][axis] - at_mm) <= rounding * (1.0 + std::abs(at_mm));
+        };
+        if (is_flat || (i > 0 && is_level(i - 1)) || (i + 1 < stroke.points_mm.size() && is_level(i + 1)))
+          offsets_mm[static_cast<std::size_t>(axis)].insert({at_mm - reach, at_mm + reach});
+      }
+    }
+  std::vector<CutPlane> planes;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double offset_mm : offsets_mm[static_cast<std::size_t>(axis)]) {
+      glm::dvec3 normal(0.0);
+      normal[axis] = 1.0;
+      planes.push_back({axis, normal, offset_mm});
+    }
+  return planes;
+}
+
+void bound(const Brush& brush, const BoundBench& bench, Object& made) {
+  const Object& object = bench.objects.at(brush.object.name);
+  inherit(object, made);
+  made.shown = object.shown;
+  const verify::Witness touched = verify::witness_of_brush(drawn_ways(brush));
+  if (!brush.paints())
+    made.witness = verify::without(object.witness, touched);
+  else if (object.witness)
+    made.witness = verify::witness_of_expression("object | brush", [&](const std::string& name) {
+      return name == "brush" ? touched : object.witness;
+    });
+  made.ends_with_universe = true;
+  const std::vector<CutPlane> walls = walls_of(brush.all());
+  made.bound.planes.insert(made.bound.planes.end(), walls.begin(), walls.end());
+  const double before = static_cast<double>(object.voxel.octree.voxel_count());
+  const double changed = std::abs(static_cast<double>(made.voxel.octree.voxel_count()) - before);
+  if (changed == 0.0)
+    made.findings.push_back("the brush changes no voxel of '" + brush.object.name +
+                            "': look where its strokes lie, and draw them again");
+  else if (brush.paints())
+    made.findings.push_back("painted: " + three_figures(changed * bench.universe.lattice().voxel_mm3()) +
+                            " mm\u00b3 are drawn by hand and not measured by a scan");
+}
+
+std::vector<Field> stroke_fields() {
+  std::vector<Field> fields;
+  fields.push_back(field("points_mm", &Stroke::points_mm, "The points of the stroke, one or more, LPS.")
+                       .required()
+                       .from(1)
+                       .to(2000));
+  fields.push_back(
+      field("radius_mm", &Stroke::radius_mm,
+            "The radius of the brush. A ball is a polyhedron of 32 faces with the ball's volume, "
+            "its surface 3.2 % of the radius inside to 4.9 % outside of the ball's; a slab is a "
+            "disc of 16 sides, 0.6 % inside to 1.3 % outside.")
+          .from(0.1)
+          .to(100.0));
+  fields.push_back(field("shape", &Stroke::shape, "The shape of the brush.").one_of({"ball", "slab"}));
+  fields.push_back(field("normal", &Stroke::normal, "The direction across a slab, LPS.").direction());
+  fields.push_back(field("thickness_mm", &Stroke::thickness_mm,
+                         "The thickness of a slab, half on either side of the points.")
+                       .from(0.1)
+                       .to(200.0));
+  return fields;
+}
+
+}  // namespace
+
+Operation brush_operation() {
+  return Describe<Brush>("brush", "Takes away from an object along the strokes of a brush, or adds to it.",
+                         Makes::Object)
+      .takes(field("object", &Brush::object, "The object.").required().positional("solid"))
+      .takes(records("strokes", &Brush::strokes,
+                     "The strokes. Between two points the brush is the convex hull of both.", stroke_fields())
+                 .from(1)
+                 .to(500)
+                 .in_plans_only())
+      .takes(
+          field(
+              "mode", &Brush::mode,
+              "Whether the strokes take away from the object or add to it. No scan measures what is painted.")
+              .one_of({"erase", "paint"}))
+      .verb_takes(&Brush::drawn, stroke_fields())
+      .example(
+          R"({"id": "clean", "do": "brush", "object": "skull", "strokes": [
+        {"points_mm": [[-15, -84, 45], [15, -84, 45]], "radius_mm": 4}]})")
+      .on_files("octotomy brush skull.stl --points -15,-84,45 15,-84,45 --radius 4 -o clean.stl")
+      .check(check)
+      .object(definition, voxels, triangles, bound);
+}
+
+}  // namespace octotomy::planner
