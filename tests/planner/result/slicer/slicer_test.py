@@ -432,6 +432,35 @@ class RoundTrip(unittest.TestCase):
         self.assertIn("gone.mrk.json", self.refusal([
             {"id": "side", "do": "mask", "planes": ["gone.mrk.json"]}])[0])
 
+    def test_a_nifti_label_map_holds_every_object_and_its_name(self):
+        low = self.low
+        steps = [{"id": "skull", "do": "window", "scan": "ct", "low": 300},
+                 {"id": "cut", "do": "mask", "regions": [
+                     {"view": "anterior", "polygons_mm": [[[-40, low], [40, low], [40, low + 45], [-40, low + 45]]]}]},
+                 {"id": "piece", "do": "combine", "expression": "skull & cut"},
+                 {"id": "rest", "do": "combine", "expression": "skull - cut"},
+                 {"id": "apart", "do": "label_map", "object": "piece", "also": ["rest"], "path": "apart.nii.gz"},
+                 {"id": "over", "do": "label_map", "object": "piece", "also": ["skull"], "path": "over.nii.gz"}]
+        made = self.result("labels", steps)
+        counts = {name: made[name]["voxel"]["voxels"] for name in ("piece", "rest", "skull")}
+        folder = self.folder / "labels_result"
+        found = {}
+        for path in folder.rglob("*.nii.gz"):
+            data = gzip.decompress(path.read_bytes())
+            self.assertEqual(int(np.frombuffer(data[70:72], "<i2")[0]), 4)  # int16
+            self.assertEqual(int(np.frombuffer(data[68:70], "<i2")[0]), 1002)  # NIFTI_INTENT_LABEL
+            labels = np.frombuffer(data[int(np.frombuffer(data[108:112], "<f4")[0]):], "<i2")
+            table = path.with_name(path.name.replace(".nii.gz", ".tsv")).read_text().splitlines()
+            found[path.name] = ({n: int((labels == n).sum()) for n in (1, 2)}, table)
+        self.assertEqual(found["apart.nii.gz"][0], {1: counts["piece"], 2: counts["rest"]})
+        self.assertEqual(found["apart.nii.gz"][1], ["index\tname", "1\tpiece", "2\trest"])
+        # A voxel has one label: the first object's, with a warning.
+        self.assertEqual(found["over.nii.gz"][0], {1: counts["piece"], 2: counts["rest"]})
+        result = json.loads((folder / "result.json").read_text())
+        findings = {row["id"]: json.dumps(row) for row in result["exports"]}
+        self.assertIn("WARN, labels", findings["over"])
+        self.assertNotIn("WARN, labels", findings["apart"])
+
     def test_a_guessed_frame_is_a_warning(self):
         three = {"markups": [{"type": "Plane", "controlPoints": [{"position": p} for p in (
             [0, 0, self.low], [10, 0, self.low], [0, 10, self.low])]}]}
