@@ -23,18 +23,25 @@ Json numbers(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
+/// The files that the fields of an operation, and of the records in it, name.
+void add_files(const std::vector<Field>& fields, void* owner, std::vector<std::filesystem::path>& files) {
+  for (const Field& field : fields) {
+    const Slot slot = field.slot(owner);
+    if (const auto* path = std::get_if<std::filesystem::path*>(&slot); path != nullptr && !(*path)->empty())
+      files.push_back(**path);
+    if (const auto* list = std::get_if<std::vector<std::string>*>(&slot); list != nullptr && field.is_input)
+      files.insert(files.end(), (*list)->begin(), (*list)->end());
+    if (const auto* records = std::get_if<Records>(&slot))
+      for (std::size_t i = 0; i < records->count; ++i) add_files(field.fields, records->at(i), files);
+  }
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> files_read(const Step& step) {
   std::vector<std::filesystem::path> files;
   if (step.action.operation().makes == Makes::File) return files;
-  for (const Field& field : step.action.operation().fields) {
-    const Slot slot = field.slot(const_cast<void*>(step.action.value()));
-    if (const auto* path = std::get_if<std::filesystem::path*>(&slot); path != nullptr && !(*path)->empty())
-      files.push_back(**path);
-    if (const auto* list = std::get_if<std::vector<std::string>*>(&slot); list != nullptr && field.is_input)
-      files.insert(files.end(), (*list)->begin(), (*list)->end());
-  }
+  add_files(step.action.operation().fields, const_cast<void*>(step.action.value()), files);
   return files;
 }
 

@@ -42,6 +42,9 @@ int write_scene_of(Program& program, const SceneText& text) {
                            {"models", names(written["models"])},
                            {"transforms", names(written["transforms"])},
                            {"landmarks", names(written["landmarks"])},
+                           {"planes", names(written["planes"])},
+                           {"curves", names(written["curves"])},
+                           {"lines", names(written["lines"])},
                            {"written", text.out.string()}}));
   return done;
 }
@@ -50,11 +53,12 @@ int write_scene_of(Program& program, const SceneText& text) {
 
 void add_scene(Program& program) {
   const auto text = std::make_shared<SceneText>();
-  CLI::App& verb = program.verb(
-      "scene",
-      "Replays a plan into a scene of 3D Slicer: scans, segments, models, motions and landmarks, uncertified",
-      "octotomy scene planner/le_fort_i.plan.json --scan ct=head.nrrd -o le_fort_i.mrb",
-      [&program, text] { return write_scene_of(program, *text); });
+  CLI::App& verb =
+      program.verb("scene",
+                   "Replays a plan into a scene of 3D Slicer: scans, segments, models, motions, landmarks "
+                   "and cuts, uncertified",
+                   "octotomy scene planner/le_fort_i.plan.json --scan ct=head.nrrd -o le_fort_i.mrb",
+                   [&program, text] { return write_scene_of(program, *text); });
   verb.add_option("plan", text->plan, "A .plan.json")->required()->check(CLI::ExistingFile);
   add_plan_options(verb, *text);
   verb.add_option("-o,--out", text->out, "One .mrb, or a new folder for scene.mrml and its files")

@@ -62,6 +62,7 @@ constexpr std::array verb_table{
     GroupedVerb{cutting, "separate"},
     GroupedVerb{cutting, "mirror"},
     GroupedVerb{cutting, "register"},
+    GroupedVerb{cutting, "transform"},
     GroupedVerb{shaping, "mesh"},
     GroupedVerb{shaping, "octree"},
     GroupedVerb{shaping, "voxelise"},

@@ -8,9 +8,9 @@
 #include <sstream>
 
 #include "planner/operation/file/contour_findings.h"
-#include "planner/operation/file/landmarks_file.h"
 #include "planner/operation/file/picture_frame.h"
 #include "planner/operation/file/region_file.h"
+#include "planner/operation/file/slicer_markup.h"
 #include "planner/operation/file/svg_outlines.h"
 #include "planner/operation/table/comma_numbers.h"
 #include "planner/operation/table/json.h"
@@ -121,69 +121,9 @@ DrawnRegion of_svg(const std::optional<voxel::View>& view, const fs::path& path)
   return made;
 }
 
-/// How far the closed spline through the points (Catmull and Rom's) bends away from its chords.
-double spline_bend_mm(const std::vector<glm::dvec3>& points) {
-  double most = 0.0;
-  const std::size_t count = points.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::dvec3 &a = points[(i + count - 1) % count], &b = points[i], &c = points[(i + 1) % count],
-                     &d = points[(i + 2) % count];
-    // At the middle: (9 (b + c) - (a + d)) / 16.
-    most = std::max(most, glm::distance((9.0 * (b + c) - (a + d)) / 16.0, 0.5 * (b + c)));
-  }
-  return most;
-}
-
 DrawnRegion of_markups(const voxel::View& view, const fs::path& path) {
-  const SortedJson json = read_json(path);
-  const SortedJson& lists = need(json, "markups", path.string());
-  if (!lists.is_array()) refuse(path.string() + ": markups", "must be a list");
-  std::vector<Polygon> polygons;
   std::vector<std::string> findings;
-  for (std::size_t number = 0; number < lists.size(); ++number) {
-    const SortedJson& list = lists[number];
-    const std::string where = path.string() + ": markups[" + std::to_string(number) + "]";
-    const std::string type = word_of(need(list, "type", where), where + ".type");
-    if (type != "ClosedCurve") {
-      findings.push_back(path.filename().string() + ": a markup of type " + type + " is left out");
-      continue;
-    }
-    glm::dvec3 lps_mm(1.0);
-    try {
-      lps_mm = lps_mm_of_markup(list);
-    } catch (const std::runtime_error& error) {
-      refuse(where, error.what());
-    }
-    if (!list.contains("coordinateSystem"))
-      findings.push_back(
-          path.filename().string() +
-          ": WARN, frame: the file names no coordinateSystem: LPS is assumed; where its program "
-          "means RAS, left and right are exchanged");
-    if (!list.contains("coordinateUnits"))
-      findings.push_back(path.filename().string() +
-                         ": WARN, unit: the file names no coordinateUnits: mm is assumed");
-    std::vector<glm::dvec3> points;
-    const SortedJson& controls = need(list, "controlPoints", where);
-    for (std::size_t i = 0; i < controls.size(); ++i) {
-      const std::string at = where + ".controlPoints[" + std::to_string(i) + "]";
-      if (controls[i].value("positionStatus", "defined") != "defined") continue;
-      const SortedJson& p = need(controls[i], "position", at);
-      if (!p.is_array() || p.size() != 3) refuse(at + ".position", "must be a point [x, y, z]");
-      points.emplace_back(number_of(p[0], at), number_of(p[1], at), number_of(p[2], at));
-      points.back() *= lps_mm;
-    }
-    if (points.size() < 3)
-      refuse(where, "has " + std::to_string(points.size()) + " points that are placed: a region takes three");
-    polygons.emplace_back();
-    for (const glm::dvec3& p : points) polygons.back().push_back(view.project(p));
-    if (const double bend_mm = spline_bend_mm(points); bend_mm > curve_tolerance_mm)
-      findings.push_back(path.filename().string() +
-                         ": straight between control points; a spline through them "
-                         "is up to " +
-                         three_figures(bend_mm) + " mm away: resample the curve in Slicer for more points");
-  }
-  if (polygons.empty()) refuse(path.string(), "has no markup of type ClosedCurve");
-  DrawnRegion made = drawn_in(view, std::move(polygons));
+  DrawnRegion made = drawn_in(view, read_closed_curves(path, view.right, view.up, findings));
   made.findings = std::move(findings);
   return made;
 }
@@ -222,11 +162,7 @@ DrawnRegion read_drawn_region(const std::string& text) {
   if (is_drawing)
     drawn = of_svg(view, path);
   else if (voxel::lower_case(path.string()).ends_with(".mrk.json"))
-    try {
-      drawn = of_markups(*view, path);
-    } catch (const SortedJson::exception& error) {
-      refuse(path.string(), error.what());
-    }
+    drawn = of_markups(*view, path);
   else
     drawn = {name_of(*view), read_region(*view, path), {}};
   check_drawn(drawn, path.string());

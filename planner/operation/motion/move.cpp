@@ -136,20 +136,6 @@ glm::dmat4 motion_of(const Move& move, const MarkPlaces& places) {
   return glm::translate(glm::dmat4(1.0), by_mm) * turn_of(move, places);
 }
 
-/// The largest deviation of a matrix from a rigid motion: its numbers are copied with six decimals.
-constexpr double rigid_to = 1e-5;
-
-void check_matrix(const glm::dmat4& matrix, const FieldLocation& place) {
-  const glm::dmat3 turn(matrix);
-  const glm::dmat3 off = glm::transpose(turn) * turn - glm::dmat3(1.0);
-  double worst = 0.0;
-  for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row) worst = std::max(worst, std::abs(off[column][row]));
-  const glm::dvec4 last = glm::transpose(matrix)[3];
-  if (!(worst <= rigid_to) || glm::determinant(turn) < 0.0 || last != glm::dvec4(0, 0, 0, 1))
-    place.refuse("is no rigid motion: its first three columns must be a rotation, its last row [0, 0, 0, 1]");
-}
-
 void check_ways(const Move& move, const FieldLocation& place) {
   const bool by_parts = is_translated(move) || is_turned(move) || move.to;
   const int ways =
@@ -175,7 +161,9 @@ void check(const Move& move, const FieldLocation& place) {
       rotate.refuse(move.rotate->axis ? "says its axis twice, as 'axis' and 'through': keep one of them"
                                       : "'axis' is missing: add it, or 'through', two points");
   }
-  if (move.matrix) check_matrix(*move.matrix, place.at("matrix"));
+  if (move.matrix && !is_rigid(*move.matrix))
+    place.at("matrix").refuse(
+        "is no rigid motion: its first three columns must be a rotation, its last row [0, 0, 0, 1]");
   for (std::size_t i = 0; i < move.points.size(); ++i) {
     const Move::Point& point = move.points[i];
     const bool is_typed = point.forward_mm != 0.0 || point.left_mm != 0.0 || point.up_mm != 0.0;
@@ -269,6 +257,17 @@ void bound(const Move& move, const BoundBench& bench, Object& made) {
 }
 
 }  // namespace
+
+bool is_rigid(const glm::dmat4& matrix) {
+  constexpr double rigid_to = 1e-5;  // the numbers are copied with six decimals
+  const glm::dmat3 turn(matrix);
+  const glm::dmat3 off = glm::transpose(turn) * turn - glm::dmat3(1.0);
+  double worst = 0.0;
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row) worst = std::max(worst, std::abs(off[column][row]));
+  const glm::dvec4 last = glm::transpose(matrix)[3];
+  return worst <= rigid_to && glm::determinant(turn) > 0.0 && last == glm::dvec4(0, 0, 0, 1);
+}
 
 MarkPlaces places_of(const Objects& objects) {
   return {[&objects](const Mark& mark) { return mark_mm(mark, objects); }, objects.lps_from_head,

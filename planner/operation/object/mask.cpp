@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/operation/object/mask.h"
 
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/move.h"
 #include "brep/shape/prism.h"
 #include "planner/operation/file/contour_findings.h"
 #include "planner/operation/file/region_file.h"
+#include "planner/operation/file/slicer_markup.h"
 #include "planner/operation/object/mask_file.h"
 #include "planner/operation/object/provenance.h"
 #include "planner/operation/table/fault.h"
@@ -48,14 +54,58 @@ std::optional<glm::dmat4> held(const Mask& mask, const Objects& objects) {
   return glm::dmat4(objects.lps_from_head);
 }
 
+bool has_regions(const Mask& mask) {
+  return !mask.regions.empty() || !mask.planes.empty();
+}
+
+/// The files of curves and planes.
+std::vector<std::string> files_of(const Mask& mask) {
+  std::vector<std::string> files = mask.planes;
+  for (const Mask::Region& region : mask.regions)
+    files.insert(files.end(), region.curves.begin(), region.curves.end());
+  return files;
+}
+
+/// The name of a view that looks along a plane: level, or from in front where the plane is.
+std::string view_along(const glm::dvec3& normal) {
+  const double level = std::hypot(normal.x, normal.y);
+  if (level < 1e-12) return "anterior";
+  // look = z x normal, and a view's look is (-sin azimuth, cos azimuth, 0).
+  const double azimuth_deg = std::atan2(normal.y, normal.x) * 180.0 / std::numbers::pi;
+  const std::array<std::pair<double, const char*>, 5> named{
+      {{0.0, "anterior"}, {90.0, "left"}, {-90.0, "right"}, {180.0, "posterior"}, {-180.0, "posterior"}}};
+  for (const auto& [at_deg, name] : named)
+    if (azimuth_deg == at_deg) return name;
+  std::array<char, 32> text{};
+  return std::string(text.data(), std::to_chars(text.data(), text.data() + text.size(), azimuth_deg).ptr) +
+         ",0";
+}
+
+/// The half-space to which a plane's normal points, as a region.
+Mask::Region region_of(const glm::dvec3& origin_mm, const glm::dvec3& normal) {
+  constexpr double far_mm = 2e3;
+  Mask::Region region{view_along(normal), {}, {}};
+  const voxel::View view = voxel::parse_view(region.view);
+  const glm::dvec2 at = view.project(origin_mm), into = glm::normalize(view.project(normal));
+  const glm::dvec2 along(-into.y, into.x);
+  const glm::dvec2 ahead = 2.0 * far_mm * into, aside = far_mm * along;
+  region.polygons_mm = {{at - aside, at + aside, at + aside + ahead, at - aside + ahead}};
+  return region;
+}
+
 void check(const Mask& mask, const FieldLocation& place) {
   const char* const of_set = "is about a structure set: add the set as 'slices'";
   if (mask.slices.empty() && !mask.structure.empty()) place.at("structure").refuse(of_set);
   if (mask.slices.empty() && mask.bridge_mm) place.at("bridge_mm").refuse(of_set);
   if (mask.slices.empty() && mask.other_identity) place.at("other_identity").refuse(of_set);
   if (place.scope == nullptr) return;
-  if (mask.regions.empty() && mask.slices.empty()) place.refuse("'regions' is missing: add it, or 'slices'");
-  if (mask.regions.empty()) return;
+  if (!has_regions(mask) && mask.slices.empty())
+    place.refuse("'regions' is missing: add it, 'planes' or 'slices'");
+  if (!has_regions(mask)) return;
+  for (std::size_t i = 0; i < mask.regions.size(); ++i)
+    if (mask.regions[i].polygons_mm.empty() && mask.regions[i].curves.empty())
+      place.at("regions[" + std::to_string(i) + "]")
+          .refuse("'polygons_mm' is missing: add it, or 'curves', files of closed curves");
   std::size_t index = 0;
   for (const Mask::Region& region : mask.regions) try {
       voxel::parse_view(region.view);
@@ -63,9 +113,17 @@ void check(const Mask& mask, const FieldLocation& place) {
     } catch (const voxel::InvalidInput& error) {
       place.at("regions[" + std::to_string(index) + "]").at("view").refuse(error.what());
     }
+  for (const std::string& file : files_of(mask))
+    if (!std::filesystem::exists(place.scope->folder() / file)) return;
+  Mask read;
   try {
-    voxel::check(mask_of(mask));
-    for (const Mask::Region& region : mask.regions)
+    read = with_files_read(mask, place.scope->folder(), glm::dmat3(1.0));
+  } catch (const std::exception& error) {
+    rethrow_at(place.where + ": ", error);
+  }
+  try {
+    voxel::check(mask_of(read));
+    for (const Mask::Region& region : read.regions)
       brep::solid_of(prism_of(region, glm::dvec3(0.0), glm::dvec3(1.0)));
   } catch (const std::invalid_argument& error) {
     if (fault_of(error) != Fault::Input) throw;
@@ -77,6 +135,8 @@ std::string definition(const Mask& mask, const Objects&) {
   std::string views;
   for (const Mask::Region& region : mask.regions)
     views += (views.empty() ? "regions in " : ", ") + region.view;
+  for (const std::string& plane : mask.planes)
+    views += (views.empty() ? "beyond " : ", beyond ") + std::filesystem::path(plane).filename().string();
   if (mask.slices.empty()) return views;
   return views + (views.empty() ? "" : ", ") +
          (mask.structure.empty() ? "slices" : "'" + mask.structure + "'") + " of " +
@@ -120,7 +180,8 @@ std::vector<std::string> findings_of_slices(const Mask& mask, const DrawnSlices&
   return findings;
 }
 
-void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
+void voxels(const Mask& typed, const VoxelBench& bench, VoxelSide& made) {
+  const Mask mask = with_files_read(typed, bench.folder, bench.objects.lps_from_head, made.findings);
   if (!mask.regions.empty()) made.symbol = voxel::Expression(mask_of(mask));
   if (const auto turned = held(mask, bench.objects); turned && made.symbol)
     made.symbol = moved(*made.symbol, *turned);
@@ -143,7 +204,8 @@ void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
         plain(bench.box_mm()) + "; draw them within it");
 }
 
-void triangles(const Mask& mask, const MeshBench& bench, MeshSide& made) {
+void triangles(const Mask& typed, const MeshBench& bench, MeshSide& made) {
+  const Mask mask = with_files_read(typed, bench.folder, bench.objects.lps_from_head);
   if (!mask.slices.empty())
     throw std::runtime_error("what lies between slices is interpolated for voxels alone");
   const Stopwatch watch(bench.timings, "boolean_mesh");
@@ -184,7 +246,12 @@ void bound_regions(const Mask& mask, const BoundBench& bench, Object& made) {
   if (made.mesh.whole) made.walls = {{made.id, *made.mesh.whole}};
 }
 
-void bound(const Mask& mask, const BoundBench& bench, Object& made) {
+void bound(const Mask& typed, const BoundBench& bench, Object& made) {
+  std::vector<std::string> findings;
+  const Mask mask = with_files_read(typed, bench.folder, bench.objects.lps_from_head, findings);
+  for (const std::string& finding : findings)
+    if (finding.find(": WARN, ") != std::string::npos)
+      made.caveats.push_back({voxel::Verdict::Warn, finding});
   if (!mask.regions.empty()) bound_regions(mask, bench, made);
   if (mask.slices.empty()) return;
   verify::Witness slices =
@@ -194,16 +261,53 @@ void bound(const Mask& mask, const BoundBench& bench, Object& made) {
 
 }  // namespace
 
+Mask with_files_read(const Mask& mask, const std::filesystem::path& folder, const glm::dmat3& lps_from_head,
+                     std::vector<std::string>& findings) {
+  Mask read = mask;
+  const glm::dmat3 lps_from_view = mask.views_of == "head" ? lps_from_head : glm::dmat3(1.0);
+  for (Mask::Region& region : read.regions) {
+    if (region.curves.empty()) continue;
+    const voxel::View view = voxel::parse_view(region.view);
+    for (const std::string& file : region.curves)
+      for (auto& polygon :
+           read_closed_curves(folder / file, lps_from_view * view.right, lps_from_view * view.up, findings))
+        region.polygons_mm.push_back(std::move(polygon));
+    region.curves.clear();
+  }
+  for (const std::string& file : read.planes) {
+    const MarkupPlane plane = read_plane(folder / file, findings);
+    const glm::dmat3 view_from_lps = glm::transpose(lps_from_view);
+    read.regions.push_back(region_of(view_from_lps * plane.origin_mm, view_from_lps * plane.normal));
+  }
+  read.planes.clear();
+  return read;
+}
+
+Mask with_files_read(const Mask& mask, const std::filesystem::path& folder, const glm::dmat3& lps_from_head) {
+  std::vector<std::string> findings;
+  return with_files_read(mask, folder, lps_from_head, findings);
+}
+
 Operation mask_operation() {
   return Describe<Mask>("mask", "Makes a volume of interest from regions drawn in views.", Makes::Object)
-      .takes(records("regions", &Mask::regions,
-                     "The regions; the mask is what all of their back-projections enclose.",
-                     {field("view", &Mask::Region::view, "The view in which the region is drawn.").required(),
-                      field("polygons_mm", &Mask::Region::polygons_mm,
-                            "Closed polygons of points [u, v] in the view's millimetres.")
-                          .required()})
-                 .from(1)
-                 .in_plans_only())
+      .takes(
+          records("regions", &Mask::regions,
+                  "The regions; the mask is what all of their back-projections enclose.",
+                  {field("view", &Mask::Region::view, "The view in which the region is drawn.").required(),
+                   field("polygons_mm", &Mask::Region::polygons_mm,
+                         "Closed polygons of points [u, v] in the view's millimetres."),
+                   field("curves", &Mask::Region::curves,
+                         "Files of 3D Slicer's closed curves, .mrk.json: polygons of the region, projected "
+                         "along the view.")
+                       .a_file()})
+              .from(1)
+              .in_plans_only())
+      .takes(
+          field(
+              "planes", &Mask::planes,
+              "Files of 3D Slicer's planes, .mrk.json: the mask is on the side to which their normals point.")
+              .a_file()
+              .in_plans_only())
       .takes(field("views_of", &Mask::views_of,
                    "Whose views they are: of the head as it is held, or of the scan as it lies, which a head "
                    "position does not turn.")

@@ -16,8 +16,10 @@ struct Mask {
   struct Region {
     std::string view;  ///< a view's name or angles as for pictures: "anterior", "35,15"
     Polygons polygons_mm;
+    std::vector<std::string> curves;  ///< files of closed curves of 3D Slicer, more polygons of the region
   };
   std::vector<Region> regions;
+  std::vector<std::string> planes;  ///< files of 3D Slicer's planes; the mask is where their normals point
   std::string views_of = "head";    ///< "head": views of the head as it is positioned; "scan": views along
                                     ///< the scan's axes
   std::filesystem::path slices;     ///< a file of regions on parallel slices; the mask is within them as well
@@ -30,5 +32,13 @@ struct Mask {
   std::filesystem::path edit, like, out;
   std::optional<double> voxel_mm;
 };
+
+/// The mask with the regions of its files: curves become polygons of their region, a plane becomes a region of its
+/// own, a rectangle of four kilometres that ends at the plane, in a view that looks along it. Files are in LPS. Where
+/// the mask's views are the head's, their points are turned into its directions first, so that the mask lies where
+/// the files have it. Findings on the files are added. Throws std::runtime_error as read_slicer_markups().
+Mask with_files_read(const Mask& mask, const std::filesystem::path& folder, const glm::dmat3& lps_from_head,
+                     std::vector<std::string>& findings);
+Mask with_files_read(const Mask& mask, const std::filesystem::path& folder, const glm::dmat3& lps_from_head);
 
 }  // namespace octotomy::planner

@@ -6,7 +6,9 @@
 #include "brep/mesh/components.h"
 #include "brep/mesh/error.h"
 #include "brep/shape/saw.h"
+#include "planner/operation/file/slicer_markup.h"
 #include "planner/operation/object/provenance.h"
+#include "planner/operation/table/fault.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "verify/witness/witness.h"
@@ -19,28 +21,49 @@ brep::SawCut cut_of(const Saw& saw) {
   return {saw.line_mm, saw.direction, saw.depth_mm, saw.kerf_mm};
 }
 
+voxel::SawLine line_of(const Saw& saw) {
+  return {saw.line_mm, saw.direction, saw.depth_mm, saw.kerf_mm};
+}
+
 void check(const Saw& saw, const FieldLocation& place) {
+  if (saw.line_mm.empty() == saw.plane.empty())
+    place.at("line_mm").refuse(saw.plane.empty() ? "is missing: add it, or 'plane'"
+                                                 : "says the cut twice, with 'plane': keep one of them");
+  if (saw.plane.empty()) {
+    try {
+      brep::saw_blade(cut_of(saw));
+    } catch (const brep::InvalidInput& error) {
+      place.refuse(error.what());
+    }
+    return;
+  }
+  if (place.scope == nullptr || !std::filesystem::exists(place.scope->folder() / saw.plane)) return;
   try {
-    brep::saw_blade(cut_of(saw));
-  } catch (const brep::InvalidInput& error) {
-    place.refuse(error.what());
+    brep::saw_blade(cut_of(with_plane_read(saw, place.scope->folder())));
+  } catch (const std::exception& error) {
+    rethrow_at(place.at("plane").where + ": ", error);
   }
 }
 
 std::string definition(const Saw& saw, const Objects&) {
+  if (!saw.plane.empty())
+    return saw.object.name + " sawn along the plane of " + saw.plane.filename().string() + ", kerf " +
+           plain(saw.kerf_mm) + " mm";
   return saw.object.name + " sawn along " + std::to_string(saw.line_mm.size()) + " points, kerf " +
          plain(saw.kerf_mm) + " mm, depth " + plain(saw.depth_mm) + " mm";
 }
 
-void voxels(const Saw& saw, const VoxelBench& bench, VoxelSide& made) {
-  const voxel::Expression blade = voxel::saw_blade({saw.line_mm, saw.direction, saw.depth_mm, saw.kerf_mm});
+void voxels(const Saw& typed, const VoxelBench& bench, VoxelSide& made) {
+  const Saw saw = with_plane_read(typed, bench.folder, made.findings);
+  const voxel::Expression blade = voxel::saw_blade(line_of(saw));
   const VoxelSide& object = bench.object(saw.object.name);
   made.octree = bench.combined(voxel::Expression(object.octree) - blade);
   made.symbol = bench.within_universe(*object.symbol - blade);
   made.lineage = "voxel centres outside of the blade";
 }
 
-void triangles(const Saw& saw, const MeshBench& bench, MeshSide& made) {
+void triangles(const Saw& typed, const MeshBench& bench, MeshSide& made) {
+  const Saw saw = with_plane_read(typed, bench.folder);
   const Stopwatch watch(bench.timings, "boolean_mesh");
   const brep::Solid& solid = bench.object(saw.object.name);
   brep::BooleanResult rest =
@@ -57,32 +80,66 @@ void triangles(const Saw& saw, const MeshBench& bench, MeshSide& made) {
   made.lineage = "corefinement with the blade's mesh";
 }
 
-void bound(const Saw& saw, const BoundBench& bench, Object& made) {
+void bound(const Saw& typed, const BoundBench& bench, Object& made) {
+  std::vector<std::string> findings;
+  const Saw saw = with_plane_read(typed, bench.folder, findings);
+  if (!saw.plane.empty()) made.shared_values.push_back("the plane in " + saw.plane.filename().string());
+  for (const std::string& finding : findings)
+    if (finding.find(": WARN, ") != std::string::npos)
+      made.caveats.push_back({voxel::Verdict::Warn, finding});
   const Object& object = bench.objects.at(saw.object.name);
   inherit(object, made);
   made.shown = object.shown;
   made.witness = verify::without(
       object.witness, verify::witness_of_blade({saw.line_mm, saw.direction, saw.depth_mm, saw.kerf_mm}));
   made.ends_with_universe = true;
-  const std::vector<CutPlane> sides =
-      planes_of(voxel::saw_blade_sides({saw.line_mm, saw.direction, saw.depth_mm, saw.kerf_mm}));
+  const std::vector<CutPlane> sides = planes_of(voxel::saw_blade_sides(line_of(saw)));
   made.bound.planes.insert(made.bound.planes.end(), sides.begin(), sides.end());
 }
 
 }  // namespace
 
+Saw with_plane_read(const Saw& saw, const std::filesystem::path& folder, std::vector<std::string>& findings) {
+  if (saw.plane.empty()) return saw;
+  const MarkupPlane plane = read_plane(folder / saw.plane, findings);
+  if (!plane.low_mm)
+    throw std::runtime_error(
+        saw.plane.string() +
+        ": the plane states no bounds, so the saw has no depth: give it a size in Slicer");
+  const glm::dvec2 low = *plane.low_mm, high = *plane.high_mm;
+  Saw read = saw;
+  const glm::dvec3 entry_mm = plane.origin_mm + low.y * plane.up;
+  read.line_mm = {entry_mm + low.x * plane.right, entry_mm + high.x * plane.right};
+  read.direction = plane.up;
+  read.depth_mm = high.y - low.y;
+  return read;
+}
+
+Saw with_plane_read(const Saw& saw, const std::filesystem::path& folder) {
+  std::vector<std::string> findings;
+  return with_plane_read(saw, folder, findings);
+}
+
 Operation saw_operation() {
+  const char* const of_plane = "is the plane's: leave it out";
   return Describe<Saw>("saw", "Cuts an object along a line swept in one direction, as wide as the saw.",
                        Makes::Object)
       .takes(field("object", &Saw::object, "The object that is cut.").required().positional("solid"))
-      .takes(field("line_mm", &Saw::line_mm, "Two or more points of the line, LPS.").required().from(2))
-      .takes(field("direction", &Saw::direction, "The direction in which the blade goes in, LPS.")
-                 .required()
-                 .direction())
+      .takes(field("line_mm", &Saw::line_mm, "Two or more points of the line, LPS.").from(2))
+      .takes(field("direction", &Saw::direction,
+                   "The direction in which the blade goes in, LPS. Default: backwards, [0, 1, 0].")
+                 .direction()
+                 .read_if<Saw>([](const Saw& saw) { return saw.plane.empty(); }, of_plane))
       .takes(field("depth_mm", &Saw::depth_mm,
                    "The depth of the cut, from the first point of the line that the blade meets.")
-                 .greater_than(0.0))
+                 .greater_than(0.0)
+                 .read_if<Saw>([](const Saw& saw) { return saw.plane.empty(); }, of_plane))
       .takes(field("kerf_mm", &Saw::kerf_mm, "The width of what is sawn away.").greater_than(0.0))
+      .takes(
+          field("plane", &Saw::plane,
+                "A plane of 3D Slicer, .mrk.json, in the place of line, direction and depth: the blade goes "
+                "along its second axis, across its rectangle.")
+              .a_file())
       .example(
           R"({"id": "sawn", "do": "saw", "object": "skull", "line_mm": [[-60, -120, -20], [60, -120, -20]],
         "direction": [0, 1, 0], "depth_mm": 80, "kerf_mm": 0.8})")

@@ -414,9 +414,10 @@ std::vector<SawSlot> slots_of(const std::string& cut, const SlotsAsked& asked, c
   double longest_mm = 0.0;
   std::vector<SawSlot> slots;
   if (const Saw* saw = maker == nullptr ? nullptr : maker->get_if<Saw>())
-    slots = slots_of_saw(cut, *saw, asked, longest_mm);
+    slots = slots_of_saw(cut, with_plane_read(*saw, bench.folder), asked, longest_mm);
   else if (const Mask* mask = maker == nullptr ? nullptr : maker->get_if<Mask>())
-    slots = slots_of_mask(*mask, bench.objects.lps_from_head, asked, longest_mm);
+    slots = slots_of_mask(with_files_read(*mask, bench.folder, bench.objects.lps_from_head),
+                          bench.objects.lps_from_head, asked, longest_mm);
   else
     throw std::runtime_error("'" + cut + "' is no cut: name a saw step or a mask whose walls are cuts");
   if (slots.empty() && longest_mm <= 0.0)

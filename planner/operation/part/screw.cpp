@@ -58,9 +58,11 @@ ScrewClear clear_of_object(const Object& object, const brep::Solid& rod, const v
 
 /// From the walls of a mask, on whichever side the screw is, or from what a saw takes away.
 ScrewClear clear_of_cut(const Object& object, const Action& maker, const brep::Solid& rod,
-                        const voxel::Octree& voxels) {
+                        const voxel::Octree& voxels, const std::filesystem::path& folder) {
   const voxel::Universe universe = voxels.universe();
-  if (const Saw* saw = maker.get_if<Saw>()) {
+  if (const Saw* typed = maker.get_if<Saw>()) {
+    const Saw sawn = with_plane_read(*typed, folder);
+    const Saw* const saw = &sawn;
     const brep::Solid blade = brep::saw_blade({saw->line_mm, saw->direction, saw->depth_mm, saw->kerf_mm});
     const voxel::Octree taken = voxel::combine(
         universe, voxel::saw_blade({saw->line_mm, saw->direction, saw->depth_mm, saw->kerf_mm}));
@@ -101,7 +103,7 @@ std::vector<ScrewClear> clearances(const Screw& screw, const SettleBench& bench)
     if (maker == nullptr)
       throw std::runtime_error("'" + name.name + "' is no step of this plan: cuts are saw steps and masks");
     if (maker->get_if<Saw>() == nullptr) need_mesh(object);
-    found.push_back(clear_of_cut(object, *maker, body, voxels));
+    found.push_back(clear_of_cut(object, *maker, body, voxels, bench.folder));
   }
   return found;
 }

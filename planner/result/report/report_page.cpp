@@ -19,14 +19,16 @@ Json pair_json(const glm::dvec2& p) {
 Json outlines(const Plan& plan, const ScenePicture& picture) {
   Json polygons = Json::array();
   for (const Step& step : plan.steps)
-    if (const auto* mask = step.action.get_if<Mask>())
-      for (const Mask::Region& region : mask->regions) {
-        if (region.view != picture.view || (mask->views_of == "scan" && plan.lps_from_head)) continue;
+    if (const auto* typed = step.action.get_if<Mask>()) {
+      const Mask mask = with_files_read(*typed, plan.folder, plan.lps_from_head.value_or(glm::dmat3(1.0)));
+      for (const Mask::Region& region : mask.regions) {
+        if (region.view != picture.view || (mask.views_of == "scan" && plan.lps_from_head)) continue;
         for (const auto& polygon : region.polygons_mm) {
           Json& points = polygons.emplace_back(Json::array());
           for (const glm::dvec2& p_mm : polygon) points.push_back(pair_json(p_mm));
         }
       }
+    }
   return polygons;
 }
 

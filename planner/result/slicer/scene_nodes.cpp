@@ -66,9 +66,12 @@ void SceneNodes::add_model(const std::string& name, const std::string& file, con
   add("Model", next("Model"), name, references);
 }
 
-void SceneNodes::add_markups(const std::string& name, const std::string& file) {
-  const std::string references = stored("MarkupsJson", file, "MarkupsDisplay", "");
-  add("MarkupsFiducial", next("MarkupsFiducial"), name, references);
+void SceneNodes::add_markups(const std::string& type, const std::string& name, const std::string& file) {
+  const bool is_plane = type == "Plane";
+  const std::string references = stored(is_plane ? "MarkupsPlaneJson" : "MarkupsJson", file,
+                                        is_plane ? "MarkupsPlaneDisplay" : "MarkupsDisplay", "");
+  add("Markups" + type, next("Markups" + type), name, references,
+      type.ends_with("Curve") ? attribute("curveType", "linear") : "");
 }
 
 std::string SceneNodes::text() const {

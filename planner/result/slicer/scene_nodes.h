@@ -18,7 +18,8 @@ class SceneNodes {
   /// `transform` is that of add_transform(), or empty.
   void add_model(const std::string& name, const std::string& file, const glm::vec3& colour,
                  const std::string& transform);
-  void add_markups(const std::string& name, const std::string& file);
+  /// `type` is a markup's: "Fiducial", "Plane", "ClosedCurve". Curves are straight between their points.
+  void add_markups(const std::string& type, const std::string& name, const std::string& file);
 
   /// The text of scene.mrml.
   std::string text() const;

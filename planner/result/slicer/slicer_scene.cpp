@@ -3,13 +3,14 @@
 
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <set>
 #include <vector>
 
 #include "brep/io/write_mesh.h"
+#include "planner/operation/file/itk_transform.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/result/pack/zip_writer.h"
+#include "planner/result/slicer/scene_markups.h"
 #include "planner/result/slicer/scene_nodes.h"
 #include "voxel/archive/write_segmentation.h"
 #include "voxel/scan/write_scene.h"
@@ -53,45 +54,6 @@ class FileNames {
   std::set<std::string> taken_;
 };
 
-/// The shortest text that reads back to the same number.
-std::string exact(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
-/// The text of an ITK transform file. ITK's transforms map from the fixed to the moving image, which is from the
-/// place after the motion to the one before.
-std::string itk_transform(const glm::dmat4& after_from_before) {
-  const glm::dmat4 before_from_after = glm::inverse(after_from_before);
-  std::string text =
-      "#Insight Transform File V1.0\n#Transform 0\nTransform: AffineTransform_double_3_3\nParameters:";
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) text += " " + exact(before_from_after[column][row]);
-  for (int row = 0; row < 3; ++row) text += " " + exact(before_from_after[3][row]);
-  return text + "\nFixedParameters: 0 0 0\n";
-}
-
-Json markups_of(const std::vector<NamedPoint>& landmarks) {
-  Json points = Json::array();
-  for (const NamedPoint& landmark : landmarks)
-    points.push_back({{"id", std::to_string(points.size() + 1)},
-                      {"label", landmark.name},
-                      {"position", {landmark.p_mm.x, landmark.p_mm.y, landmark.p_mm.z}},
-                      {"selected", true},
-                      {"locked", false},
-                      {"visibility", true},
-                      {"positionStatus", "defined"}});
-  return {{"@schema",
-           "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
-           "markups-schema-v1.0.3.json#"},
-          {"markups",
-           {{{"type", "Fiducial"},
-             {"coordinateSystem", "LPS"},
-             {"coordinateUnits", "mm"},
-             {"labelFormat", "%N-%d"},
-             {"controlPoints", points}}}}};
-}
-
 /// Writes the files of a scene into a folder.
 class SceneFolder {
  public:
@@ -104,12 +66,7 @@ class SceneFolder {
     for (const ScanRecord& scan : evaluation_.scans) write_scan(scan.name);
     write_segments();
     for (std::size_t i = 0; i < evaluation_.objects.size(); ++i) write_model(evaluation_.objects[i], i);
-    if (!plan_.landmarks.empty()) {
-      voxel::write_file(folder_ / "Data/landmarks.mrk.json",
-                        json_text(markups_of(plan_.landmarks), 1) + "\n");
-      nodes_.add_markups("landmarks", "landmarks.mrk.json");
-      for (const NamedPoint& landmark : plan_.landmarks) written_["landmarks"].push_back(landmark.name);
-    }
+    for (const SceneMarkup& markup : scene_markups(plan_, evaluation_)) write_markup(markup);
     voxel::write_file(folder_ / "scene.mrml", nodes_.text());
     return written_;
   }
@@ -143,6 +100,19 @@ class SceneFolder {
     nodes_.add_segmentation("objects", "objects.seg.nrrd");
   }
 
+  void write_markup(const SceneMarkup& markup) {
+    const std::string file = names_.of(markup.name, ".mrk.json");
+    voxel::write_file(folder_ / "Data" / file, json_text(markup.json, 1) + "\n");
+    nodes_.add_markups(markup.type, markup.name, file);
+    if (markup.type == "Fiducial")
+      for (const NamedPoint& landmark : plan_.landmarks) written_["landmarks"].push_back(landmark.name);
+    else
+      written_[markup.type == "Plane"  ? "planes"
+               : markup.type == "Line" ? "lines"
+                                       : "curves"]
+          .push_back(file);
+  }
+
   void write_model(const Object& object, std::size_t index) {
     if (object.is_tool || !object.mesh.whole || object.mesh.whole->empty()) return;
     need_no_stop();
@@ -154,7 +124,7 @@ class SceneFolder {
     std::string transform;
     if (is_moved) {
       const std::string motion = names_.of(object.id + "_motion", ".tfm");
-      voxel::write_file(folder_ / "Data" / motion, itk_transform(object.image->image_from_object));
+      voxel::write_file(folder_ / "Data" / motion, itk_transform_text(object.image->image_from_object));
       transform = nodes_.add_transform(object.id + " motion", motion);
       written_["transforms"].push_back(object.id);
     }
@@ -168,11 +138,9 @@ class SceneFolder {
   std::stop_token stop_;
   FileNames names_;
   SceneNodes nodes_;
-  Json written_{{"scans", Json::array()},
-                {"segments", Json::array()},
-                {"models", Json::array()},
-                {"transforms", Json::array()},
-                {"landmarks", Json::array()}};
+  Json written_{{"scans", Json::array()},      {"segments", Json::array()},  {"models", Json::array()},
+                {"transforms", Json::array()}, {"landmarks", Json::array()}, {"planes", Json::array()},
+                {"curves", Json::array()},     {"lines", Json::array()}};
 };
 
 /// Writes a folder as a zip archive whose entries lie in one folder of the archive's name.

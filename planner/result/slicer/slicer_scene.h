@@ -15,8 +15,10 @@ namespace octotomy::planner {
 /// - each object that has a surface as a model, .vtp. The model of a moved object is the surface before it moved,
 ///   below a linear transform, so that its motion can be seen and changed;
 /// - each motion as an ITK transform, .tfm. As everywhere in ITK it maps from the place after to the place before;
-/// - the plan's landmarks as .mrk.json, at their places before any motion.
-/// Equal plans make equal files. Returns {"scans", "segments", "models", "transforms", "landmarks"}: names.
+/// - as .mrk.json, all at their places before any motion: the plan's landmarks, its saws and the sides of its masks as
+///   planes, the regions of its masks as closed curves; and each screw's axis as a line, at its object's place.
+/// Equal plans make equal files. Returns {"scans", "segments", "models", "transforms", "landmarks"}, names, and
+/// {"planes", "curves", "lines"}, files.
 /// Precondition: the evaluation has stored its scans (EvaluateOptions::keep_scans). Throws voxel::Error (Input) if
 /// `path` is a folder with files in it, voxel::Error and brep::Error as the writers do, and Stopped; then nothing
 /// is written. Sources: 3D Slicer's documentation, "MRML overview", "Coordinate systems" and the schema of its

@@ -90,9 +90,11 @@ interface Region {
   view: string;
   polygons_mm: Vec2[][];
 }
-/// Whether a mask's views are the panes': where the head is held, a mask of the scan's views has others.
+/// Whether a mask's regions are drawn and changed in the panes: not where they are in files, and where the head is
+/// held, a mask of the scan's views has other views.
 export const is_of_panes = (step: Step|undefined): boolean =>
-    step?.do === "mask" &&
+    step?.do === "mask" && Array.isArray(step.regions) &&
+    (step.regions as unknown as Region[]).every((region) => Array.isArray(region.polygons_mm)) &&
     !(step.views_of === "scan" && steps().some(({do: word}) => word === "head_position"));
 export const regions_of = (step: Step|undefined): Region[] =>
     is_of_panes(step) && Array.isArray(step?.regions) ? (step?.regions as unknown as Region[]) : [];

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/file/itk_transform.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <optional>
+#include <sstream>
+#include <string_view>
+
+#include "planner/operation/table/json_file.h"
+#include "voxel/space/file_text.h"
+
+namespace octotomy::planner {
+namespace {
+
+/// A transform as the file lists it.
+struct Listed {
+  std::string type;  ///< "AffineTransform"
+  std::string where;
+  std::vector<double> parameters, fixed;
+};
+
+/// Files of linear transforms hold some hundred bytes; a larger one is another file.
+constexpr std::uintmax_t most_bytes = 1 << 20;
+
+std::vector<double> numbers_of(const std::string& text, const std::string& where) {
+  std::vector<double> numbers;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(number))
+      refuse(where, "'" + word.substr(0, 40) + "' is no finite number");
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+/// "AffineTransform" of "AffineTransform_double_3_3".
+std::string type_of_word(const std::string& word, const std::string& where) {
+  for (const std::string_view ending : {"_double_3_3", "_float_3_3"})
+    if (word.ends_with(ending)) return word.substr(0, word.size() - ending.size());
+  refuse(where,
+         "'" + word.substr(0, 60) + "' is no transform of points in space, whose names end in _double_3_3");
+}
+
+std::vector<Listed> listed(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  if (!std::filesystem::is_regular_file(path)) refuse(file, "is no file");
+  if (std::filesystem::file_size(path) > most_bytes)
+    refuse(file, "is larger than any linear transform: save a linear one");
+  std::istringstream lines(voxel::file_bytes(path));
+  std::vector<Listed> found;
+  std::string line;
+  int number = 0;
+  bool is_first = true;
+  while (std::getline(lines, line)) {
+    ++number;
+    line = voxel::trimmed(line);
+    if (is_first && !line.starts_with("#Insight Transform File"))
+      refuse(file,
+             "is no transform of ITK, whose text begins with '#Insight Transform File': save it in 3D Slicer "
+             "as .tfm");
+    is_first = false;
+    if (line.empty() || line.front() == '#') continue;
+    const std::string where = file + ", line " + std::to_string(number);
+    const auto colon = line.find(':');
+    const std::string key = line.substr(0, colon);
+    const std::string value = colon == std::string::npos ? "" : voxel::trimmed(line.substr(colon + 1));
+    if (key == "Transform") {
+      found.push_back({type_of_word(value, where), where, {}, {}});
+    } else if ((key == "Parameters" || key == "FixedParameters") && !found.empty()) {
+      (key == "Parameters" ? found.back().parameters : found.back().fixed) = numbers_of(value, where);
+    } else {
+      refuse(where, "'" + key.substr(0, 40) + "' is none of Transform, Parameters and FixedParameters");
+    }
+  }
+  if (found.empty()) refuse(file, "holds no transform");
+  return found;
+}
+
+void need_count(const Listed& each, std::size_t count) {
+  if (each.parameters.size() != count)
+    refuse(each.where, each.type + " has " + std::to_string(each.parameters.size()) +
+                           " parameters: it takes " + std::to_string(count));
+}
+
+glm::dvec3 three(const std::vector<double>& numbers, std::size_t from) {
+  return {numbers[from], numbers[from + 1], numbers[from + 2]};
+}
+
+/// x -> turn (x - centre) + centre + shift.
+glm::dmat4 about_centre(const glm::dmat3& turn, const glm::dvec3& shift, const Listed& each) {
+  if (each.fixed.size() != 3 && each.fixed.size() != 4 && !each.fixed.empty())
+    refuse(each.where, each.type + " has " + std::to_string(each.fixed.size()) +
+                           " fixed parameters: it takes the three of its centre");
+  const glm::dvec3 centre = each.fixed.empty() ? glm::dvec3(0.0) : three(each.fixed, 0);
+  glm::dmat4 matrix(turn);
+  // In this order, so that a centre of zero rounds nothing.
+  matrix[3] = glm::dvec4(shift + (centre - turn * centre), 1.0);
+  return matrix;
+}
+
+glm::dmat3 euler(const Listed& each) {
+  const auto about = [&](std::size_t axis) {
+    glm::dvec3 direction(0.0);
+    direction[static_cast<int>(axis)] = 1.0;
+    return glm::dmat3(glm::rotate(glm::dmat4(1.0), each.parameters[axis], direction));
+  };
+  const bool is_zyx = each.fixed.size() == 4 && each.fixed[3] != 0.0;
+  return is_zyx ? about(2) * about(1) * about(0) : about(2) * about(0) * about(1);
+}
+
+glm::dmat3 versor(const Listed& each) {
+  const glm::dvec3 v = three(each.parameters, 0);
+  const double square = glm::dot(v, v);
+  // A file's digits may put a half turn a little beyond one.
+  if (square > 1.0 + 1e-6) refuse(each.where, "its versor is longer than 1");
+  return glm::mat3_cast(glm::normalize(glm::dquat(std::sqrt(std::max(0.0, 1.0 - square)), v.x, v.y, v.z)));
+}
+
+glm::dmat4 matrix_of(const Listed& each) {
+  const std::string& type = each.type;
+  if (type == "IdentityTransform") return glm::dmat4(1.0);
+  if (type == "TranslationTransform") {
+    need_count(each, 3);
+    return glm::translate(glm::dmat4(1.0), three(each.parameters, 0));
+  }
+  if (type == "AffineTransform" || type == "MatrixOffsetTransformBase" || type == "Rigid3DTransform") {
+    need_count(each, 12);
+    glm::dmat3 turn;
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column)
+        turn[column][row] = each.parameters[static_cast<std::size_t>(3 * row + column)];
+    return about_centre(turn, three(each.parameters, 9), each);
+  }
+  if (type == "Euler3DTransform" || type == "VersorRigid3DTransform") {
+    need_count(each, 6);
+    return about_centre(type == "Euler3DTransform" ? euler(each) : versor(each), three(each.parameters, 3),
+                        each);
+  }
+  refuse(each.where,
+         "'" + type +
+             "' is not read: save a linear transform, in 3D Slicer by Transforms, after hardening "
+             "any grid or spline");
+}
+
+/// The shortest text that reads back to the same number.
+std::string exact(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+}  // namespace
+
+TransformFile read_itk_transform(const std::filesystem::path& path) {
+  std::vector<Listed> all = listed(path);
+  const bool is_composite = all.front().type == "CompositeTransform";
+  if (is_composite) all.erase(all.begin());
+  if (all.empty()) refuse(path.string(), "holds a composite of no transforms");
+  if (all.size() > 1 && !is_composite)
+    refuse(path.string(),
+           "holds " + std::to_string(all.size()) +
+               " transforms, and no composite says in which order: save each as a file of its own");
+  glm::dmat4 still_from_moved(1.0);
+  for (const Listed& each : all) still_from_moved = still_from_moved * matrix_of(each);
+  if (std::abs(glm::determinant(glm::dmat3(still_from_moved))) < 1e-6)
+    refuse(path.string(), "its transform flattens space and has no inverse");
+  return {
+      glm::inverse(still_from_moved),
+      {path.filename().string() +
+       ": LPS, mm, from after the motion to before, as all of ITK's transforms: the motion is the inverse"}};
+}
+
+std::string itk_transform_text(const glm::dmat4& moved_from_still) {
+  const glm::dmat4 still_from_moved = glm::inverse(moved_from_still);
+  std::string text =
+      "#Insight Transform File V1.0\n#Transform 0\nTransform: AffineTransform_double_3_3\nParameters:";
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) text += " " + exact(still_from_moved[column][row]);
+  for (int row = 0; row < 3; ++row) text += " " + exact(still_from_moved[3][row]);
+  return text + "\nFixedParameters: 0 0 0\n";
+}
+
+}  // namespace octotomy::planner

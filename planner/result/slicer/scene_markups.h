@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "planner/plan/evaluate.h"
+
+namespace octotomy::planner {
+
+/// A markup of 3D Slicer: LPS, millimetres.
+struct SceneMarkup {
+  std::string type;  ///< "Fiducial", "Plane", "ClosedCurve", "Curve" or "Line"
+  std::string name;  ///< of its node and file
+  nlohmann::ordered_json json;
+};
+
+/// The markups of a plan:
+/// - its landmarks, one list;
+/// - of each saw a plane for each piece of its line, the rectangle that the blade sweeps, entering where the plane's
+///   second axis is least; and the line itself where it has several pieces;
+/// - of each mask a closed curve for each polygon, in the plane through the universe's centre across the view, and
+///   where all of a polygon's sides are few enough to be cuts (`most_sides`), a plane for each, with its normal into
+///   the mask;
+/// - of each screw, also of a moved one, a line from its head to its tip.
+/// Precondition: the plan was evaluated. Throws as the readers of the plan's files do.
+std::vector<SceneMarkup> scene_markups(const Plan& plan, const Evaluation& evaluation);
+
+/// Polygons with more sides were drawn by hand: they are curves alone.
+inline constexpr std::size_t most_sides = 8;
+
+}  // namespace octotomy::planner
