@@ -31,6 +31,11 @@ constexpr double least_small_ratio() {
 constexpr double least_lead() {
   return 0.12;
 }
+/// A fit that matches less shows nothing, whatever others match: bumps of a rounded body match a fifth of it by
+/// chance.
+constexpr double least_share() {
+  return 0.2;
+}
 
 /// Motions that match at least this share of what the best one matches are equal answers.
 constexpr double equal_ratio() {
@@ -185,7 +190,7 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
   trust.rival_share = rival[near_rungs - 1];
   const auto leads = [&](std::size_t rung) {
     const double ratio = own[rung] < small_share() ? least_small_ratio() : least_ratio();
-    return own[rung] >= ratio * rival[rung] && own[rung] >= rival[rung] + least_lead();
+    return own[rung] >= std::max({ratio * rival[rung], rival[rung] + least_lead(), least_share()});
   };
   for (std::size_t rung = 0; rung < near_rungs; ++rung)
     if (leads(rung)) {

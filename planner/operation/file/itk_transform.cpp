@@ -17,7 +17,7 @@ namespace octotomy::planner {
 namespace {
 
 /// A transform as the file lists it.
-struct Listed {
+struct ListedTransform {
   std::string type;  ///< "AffineTransform"
   std::string where;
   std::vector<double> parameters, fixed;
@@ -47,13 +47,13 @@ std::string type_of_word(const std::string& word, const std::string& where) {
          "'" + word.substr(0, 60) + "' is no transform of points in space, whose names end in _double_3_3");
 }
 
-std::vector<Listed> listed(const std::filesystem::path& path) {
+std::vector<ListedTransform> listed(const std::filesystem::path& path) {
   const std::string file = path.string();
   if (!std::filesystem::is_regular_file(path)) refuse(file, "is no file");
   if (std::filesystem::file_size(path) > most_bytes)
     refuse(file, "is larger than any linear transform: save a linear one");
   std::istringstream lines(voxel::file_bytes(path));
-  std::vector<Listed> found;
+  std::vector<ListedTransform> found;
   std::string line;
   int number = 0;
   bool is_first = true;
@@ -82,7 +82,7 @@ std::vector<Listed> listed(const std::filesystem::path& path) {
   return found;
 }
 
-void need_count(const Listed& each, std::size_t count) {
+void need_count(const ListedTransform& each, std::size_t count) {
   if (each.parameters.size() != count)
     refuse(each.where, each.type + " has " + std::to_string(each.parameters.size()) +
                            " parameters: it takes " + std::to_string(count));
@@ -93,7 +93,7 @@ glm::dvec3 three(const std::vector<double>& numbers, std::size_t from) {
 }
 
 /// x -> turn (x - centre) + centre + shift.
-glm::dmat4 about_centre(const glm::dmat3& turn, const glm::dvec3& shift, const Listed& each) {
+glm::dmat4 about_centre(const glm::dmat3& turn, const glm::dvec3& shift, const ListedTransform& each) {
   if (each.fixed.size() != 3 && each.fixed.size() != 4 && !each.fixed.empty())
     refuse(each.where, each.type + " has " + std::to_string(each.fixed.size()) +
                            " fixed parameters: it takes the three of its centre");
@@ -104,7 +104,7 @@ glm::dmat4 about_centre(const glm::dmat3& turn, const glm::dvec3& shift, const L
   return matrix;
 }
 
-glm::dmat3 euler(const Listed& each) {
+glm::dmat3 euler(const ListedTransform& each) {
   const auto about = [&](std::size_t axis) {
     glm::dvec3 direction(0.0);
     direction[static_cast<int>(axis)] = 1.0;
@@ -114,7 +114,7 @@ glm::dmat3 euler(const Listed& each) {
   return is_zyx ? about(2) * about(1) * about(0) : about(2) * about(0) * about(1);
 }
 
-glm::dmat3 versor(const Listed& each) {
+glm::dmat3 versor(const ListedTransform& each) {
   const glm::dvec3 v = three(each.parameters, 0);
   const double square = glm::dot(v, v);
   // A file's digits may put a half turn a little beyond one.
@@ -122,7 +122,7 @@ glm::dmat3 versor(const Listed& each) {
   return glm::mat3_cast(glm::normalize(glm::dquat(std::sqrt(std::max(0.0, 1.0 - square)), v.x, v.y, v.z)));
 }
 
-glm::dmat4 matrix_of(const Listed& each) {
+glm::dmat4 matrix_of(const ListedTransform& each) {
   const std::string& type = each.type;
   if (type == "IdentityTransform") return glm::dmat4(1.0);
   if (type == "TranslationTransform") {
@@ -157,7 +157,7 @@ std::string exact(double value) {
 }  // namespace
 
 TransformFile read_itk_transform(const std::filesystem::path& path) {
-  std::vector<Listed> all = listed(path);
+  std::vector<ListedTransform> all = listed(path);
   const bool is_composite = all.front().type == "CompositeTransform";
   if (is_composite) all.erase(all.begin());
   if (all.empty()) refuse(path.string(), "holds a composite of no transforms");
@@ -166,7 +166,7 @@ TransformFile read_itk_transform(const std::filesystem::path& path) {
            "holds " + std::to_string(all.size()) +
                " transforms, and no composite says in which order: save each as a file of its own");
   glm::dmat4 still_from_moved(1.0);
-  for (const Listed& each : all) still_from_moved = still_from_moved * matrix_of(each);
+  for (const ListedTransform& each : all) still_from_moved = still_from_moved * matrix_of(each);
   if (std::abs(glm::determinant(glm::dmat3(still_from_moved))) < 1e-6)
     refuse(path.string(), "its transform flattens space and has no inverse");
   return {

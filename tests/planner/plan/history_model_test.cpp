@@ -35,10 +35,10 @@ namespace fs = std::filesystem;
 enum class Settles { CurrentState, OwnState };
 
 // A step of a writer. Locked steps hold the database's lock.
-enum Step : std::uint8_t { Closed, Idle, Settle, Reading, Writing, Committing };
+enum WriterStep : std::uint8_t { Closed, Idle, Settling, Reading, Writing, Committing };
 
-struct Writer {
-  Step step = Closed;
+struct ModelWriter {
+  WriterStep step = Closed;
   std::uint8_t current = 0;  ///< the state that it believes to be current
   std::uint8_t read = 0;     ///< the text of the file as it read it
   std::uint8_t changes = 0;  ///< begun in all
@@ -47,11 +47,11 @@ struct Writer {
 
 constexpr int most_edits = 12;
 
-/// Texts are numbers. State 0 is none; the first state is 1, with text 0.
-struct State {
+/// Texts are numbers. ModelState 0 is none; the first state is 1, with text 0.
+struct ModelState {
   std::uint8_t edits = 1, current = 1, written = 0, file = 0, texts = 1;
   std::uint8_t parent[most_edits + 1] = {}, text[most_edits + 1] = {};
-  Writer writers[2];
+  ModelWriter writers[2];
   std::uint8_t lock = 2;  ///< the writer that holds it; 2: none
   std::uint8_t saved = 0, reverted = 0, kills = 0;
   std::uint8_t outside = 0;   ///< the newest text of the outside program, 0: none
@@ -59,41 +59,41 @@ struct State {
   std::uint8_t recorded = 0;  ///< the newest state whose record() returned, 0: none
 };
 
-static_assert(std::has_unique_object_representations_v<State>);
+static_assert(std::has_unique_object_representations_v<ModelState>);
 
-std::string key(const State& state) {
+std::string key(const ModelState& state) {
   return {reinterpret_cast<const char*>(&state), sizeof state};
 }
 
-struct Limits {
+struct ModelLimits {
   int changes, saves, reverts, kills;
 };
 
-bool has_text(const State& state, std::uint8_t text) {
+bool has_text(const ModelState& state, std::uint8_t text) {
   return std::find(state.text + 1, state.text + 1 + state.edits, text) != state.text + 1 + state.edits;
 }
 
 /// What is wrong with a state; empty if nothing is.
-std::string fault(const State& state) {
+std::string fault(const ModelState& state) {
   if (state.outside != 0 && state.file != state.outside && !has_text(state, state.outside))
     return "a text that another program saved is lost";
-  const bool is_quiet =
-      std::all_of(state.writers, state.writers + 2, [](const Writer& writer) { return writer.step <= Idle; });
+  const bool is_quiet = std::all_of(state.writers, state.writers + 2,
+                                    [](const ModelWriter& writer) { return writer.step <= Idle; });
   if (is_quiet && state.is_settled && state.file != state.text[state.current])
     return "the plan's file is not the current state's";
   if (state.recorded > state.edits) return "a recorded state is lost";
   return {};
 }
 
-class Model {
+class ProtocolModel {
  public:
-  Model(Settles settles, Limits limits) : settles_(settles), limits_(limits) {}
+  ProtocolModel(Settles settles, ModelLimits limits) : settles_(settles), limits_(limits) {}
 
   /// Visits all states; returns the first fault, or none.
   std::string check() {
-    visit(State{});
+    visit(ModelState{});
     while (!waiting_.empty()) {
-      const State state = waiting_.front();
+      const ModelState state = waiting_.front();
       waiting_.pop_front();
       if (std::string found = fault(state); !found.empty()) return found;
       for (std::uint8_t who = 0; who < 2; ++who) advance(state, who);
@@ -104,65 +104,65 @@ class Model {
   std::size_t states() const { return seen_.size(); }
 
  private:
-  void visit(const State& state) {
+  void visit(const ModelState& state) {
     if (seen_.insert(key(state)).second) waiting_.push_back(state);
   }
 
-  static void add_edit(State& state, std::uint8_t text) {
+  static void add_edit(ModelState& state, std::uint8_t text) {
     ++state.edits;
     state.parent[state.edits] = state.current;
     state.text[state.edits] = text;
     state.current = state.edits;
   }
 
-  void advance(const State& before, std::uint8_t who) {
-    const Writer& writer = before.writers[who];
+  void advance(const ModelState& before, std::uint8_t who) {
+    const ModelWriter& writer = before.writers[who];
     const auto next = [&](const auto& act) {
-      State state = before;
+      ModelState state = before;
       act(state, state.writers[who]);
       visit(state);
     };
     if (writer.step != Closed && before.kills < limits_.kills)
-      next([&](State& state, Writer& killed) {
+      next([&](ModelState& state, ModelWriter& killed) {
         // The database undoes what was not committed.
         if (killed.step > Idle) state.is_settled = false;
         const std::uint8_t changes = killed.changes;
-        killed = Writer{};
+        killed = ModelWriter{};
         killed.changes = changes;
         if (state.lock == who) state.lock = 2;
         ++state.kills;
       });
     switch (writer.step) {
       case Closed:
-        next([](State&, Writer& opened) { opened.step = Settle, opened.opening = true; });
+        next([](ModelState&, ModelWriter& opened) { opened.step = Settling, opened.opening = true; });
         break;
       case Idle:
         if (before.lock == 2 && writer.changes < limits_.changes && before.edits + 4 < most_edits) {
-          next([&](State& state, Writer& changing) { change(state, changing, true); });
+          next([&](ModelState& state, ModelWriter& changing) { change(state, changing, true); });
           if (before.parent[writer.current] != 0)
-            next([&](State& state, Writer& changing) { change(state, changing, false); });
+            next([&](ModelState& state, ModelWriter& changing) { change(state, changing, false); });
         }
         break;
-      case Settle:
+      case Settling:
         if (before.lock == 2)
-          next([&](State& state, Writer& settling) {
+          next([&](ModelState& state, ModelWriter& settling) {
             state.lock = who;
             settling.read = state.file;
             settling.step = Reading;
           });
         break;
       case Reading:
-        next([&](State& state, Writer& settling) { write(state, settling); });
+        next([&](ModelState& state, ModelWriter& settling) { write(state, settling); });
         break;
       case Writing:
       case Committing:
-        next([&](State& state, Writer& settling) { commit(state, settling); });
+        next([&](ModelState& state, ModelWriter& settling) { commit(state, settling); });
         break;
     }
   }
 
-  /// Step 1, one transaction: a new text, or the state before.
-  static void change(State& state, Writer& writer, bool records) {
+  /// WriterStep 1, one transaction: a new text, or the state before.
+  static void change(ModelState& state, ModelWriter& writer, bool records) {
     ++writer.changes;
     const bool is_refused = state.current != writer.current ||
                             (state.file != state.written && state.file != state.text[state.current]);
@@ -177,12 +177,12 @@ class Model {
       state.current = state.parent[state.current];
     }
     writer.current = state.current;
-    writer.step = Settle;
+    writer.step = Settling;
     writer.opening = false;
   }
 
-  /// Step 2: the file. No other program writes between reading and writing it, which are next to each other.
-  void write(State& state, Writer& writer) const {
+  /// WriterStep 2: the file. No other program writes between reading and writing it, which are next to each other.
+  void write(ModelState& state, ModelWriter& writer) const {
     const std::uint8_t target = target_of(state, writer);
     const bool is_due = !is_outside(state, writer) && writer.read != state.text[target];
     if (is_due) state.file = state.text[target];
@@ -190,8 +190,8 @@ class Model {
     writer.step = is_due ? Writing : Committing;
   }
 
-  /// Step 3, the end of the transaction.
-  void commit(State& state, Writer& writer) const {
+  /// WriterStep 3, the end of the transaction.
+  void commit(ModelState& state, ModelWriter& writer) const {
     const bool adds = is_outside(state, writer);
     if (adds) add_edit(state, writer.read);
     state.written = state.text[adds ? state.current : target_of(state, writer)];
@@ -201,28 +201,28 @@ class Model {
     state.lock = 2;
   }
 
-  std::uint8_t target_of(const State& state, const Writer& writer) const {
+  std::uint8_t target_of(const ModelState& state, const ModelWriter& writer) const {
     return settles_ == Settles::CurrentState || writer.opening ? state.current : writer.current;
   }
-  bool is_outside(const State& state, const Writer& writer) const {
+  bool is_outside(const ModelState& state, const ModelWriter& writer) const {
     if (settles_ == Settles::OwnState && !writer.opening) return false;
     return writer.read != state.written && writer.read != state.text[state.current];
   }
 
   /// A program that knows nothing of the history saves a new text, or an old one again.
-  void act_outside(const State& before) {
+  void act_outside(const ModelState& before) {
     const bool is_reading = std::any_of(before.writers, before.writers + 2,
-                                        [](const Writer& writer) { return writer.step == Reading; });
+                                        [](const ModelWriter& writer) { return writer.step == Reading; });
     if (is_reading) return;
     if (before.saved < limits_.saves) {
-      State state = before;
+      ModelState state = before;
       state.file = state.outside = state.texts++;
       ++state.saved;
       state.is_settled = false;
       visit(state);
     }
     if (before.reverted < limits_.reverts && before.file != before.text[1]) {
-      State state = before;
+      ModelState state = before;
       state.file = state.text[1];
       // The program replaces a text that it saved itself, so that text need not survive.
       state.outside = 0;
@@ -233,24 +233,24 @@ class Model {
   }
 
   Settles settles_;
-  Limits limits_;
+  ModelLimits limits_;
   std::unordered_set<std::string> seen_;
-  std::deque<State> waiting_;
+  std::deque<ModelState> waiting_;
 };
 
 TEST(HistoryModel, NoOrderOfTwoWritersAnOutsideProgramAndKillsLosesAPlan) {
-  Model model(Settles::CurrentState, {.changes = 2, .saves = 2, .reverts = 1, .kills = 1});
+  ProtocolModel model(Settles::CurrentState, {.changes = 2, .saves = 2, .reverts = 1, .kills = 1});
   EXPECT_EQ(model.check(), "");
   EXPECT_GT(model.states(), 1'000'000U);
 }
 
 TEST(HistoryModel, FindsAWriterThatWritesItsOwnStateOverANewerOne) {
-  Model model(Settles::OwnState, {.changes = 1, .saves = 0, .reverts = 0, .kills = 0});
+  ProtocolModel model(Settles::OwnState, {.changes = 1, .saves = 0, .reverts = 0, .kills = 0});
   EXPECT_EQ(model.check(), "the plan's file is not the current state's");
 }
 
 TEST(HistoryModel, FindsAWriterThatWritesItsOwnStateOverAnOutsideText) {
-  Model model(Settles::OwnState, {.changes = 1, .saves = 1, .reverts = 0, .kills = 0});
+  ProtocolModel model(Settles::OwnState, {.changes = 1, .saves = 1, .reverts = 0, .kills = 0});
   EXPECT_EQ(model.check(), "a text that another program saved is lost");
 }
 

@@ -10,7 +10,7 @@
 namespace octotomy::planner {
 namespace {
 
-const std::string head = "#Insight Transform File V1.0\n#Transform 0\n";
+const std::string transform_head = "#Insight Transform File V1.0\n#Transform 0\n";
 
 class ItkTransform : public testing::Test {
  protected:
@@ -51,58 +51,64 @@ TEST_F(ItkTransform, AMotionComesBackFromItsText) {
 
 TEST_F(ItkTransform, EachKindMapsAsItkDoes) {
   // x -> turn (x - centre) + centre + shift: a quarter turn about z takes x to y.
-  const std::string affine = head +
+  const std::string affine = transform_head +
                              "Transform: AffineTransform_double_3_3\nParameters: 0 -1 0 1 0 0 0 0 1 1 2 3\n"
                              "FixedParameters: 10 20 30\n";
   expect_brings(read(affine), {15, 20, 30}, {11, 27, 33});
   const std::string quarter = "1.5707963267948966";
-  expect_brings(read(head + "Transform: Euler3DTransform_double_3_3\nParameters: 0 0 " + quarter +
+  expect_brings(read(transform_head + "Transform: Euler3DTransform_double_3_3\nParameters: 0 0 " + quarter +
                      " 1 2 3\nFixedParameters: 10 20 30 0\n"),
                 {15, 20, 30}, {11, 27, 33});
   // The turns about x and y in either order: RotZ RotX RotY, and with a fourth fixed number RotZ RotY RotX.
-  const std::string both =
-      head + "Transform: Euler3DTransform_double_3_3\nParameters: " + quarter + " " + quarter + " 0 0 0 0\n";
+  const std::string both = transform_head + "Transform: Euler3DTransform_double_3_3\nParameters: " + quarter +
+                           " " + quarter + " 0 0 0 0\n";
   expect_brings(read(both + "FixedParameters: 0 0 0 0\n"), {1, 0, 0}, {0, 1, 0});
   expect_brings(read(both + "FixedParameters: 0 0 0 1\n"), {1, 0, 0}, {0, 0, -1});
   expect_brings(
-      read(head + "Transform: VersorRigid3DTransform_double_3_3\nParameters: 0 0 0.7071067811865476 1 2 3\n"
-                  "FixedParameters: 10 20 30\n"),
+      read(transform_head +
+           "Transform: VersorRigid3DTransform_double_3_3\nParameters: 0 0 0.7071067811865476 1 2 3\n"
+           "FixedParameters: 10 20 30\n"),
       {15, 20, 30}, {11, 27, 33});
   expect_brings(
-      read(head + "Transform: TranslationTransform_double_3_3\r\nParameters: 1 2 3\r\nFixedParameters:\r\n"),
+      read(transform_head +
+           "Transform: TranslationTransform_double_3_3\r\nParameters: 1 2 3\r\nFixedParameters:\r\n"),
       {0, 0, 0}, {1, 2, 3});
-  EXPECT_EQ(read(head + "Transform: IdentityTransform_double_3_3\nParameters:\nFixedParameters:\n"),
+  EXPECT_EQ(read(transform_head + "Transform: IdentityTransform_double_3_3\nParameters:\nFixedParameters:\n"),
             glm::dmat4(1.0));
 }
 
 TEST_F(ItkTransform, TheLastOfACompositeIsAppliedFirst) {
-  expect_brings(
-      read(head + "Transform: CompositeTransform_double_3_3\n#Transform 1\nTransform: "
-                  "TranslationTransform_double_3_3\nParameters: 10 0 0\nFixedParameters:\n#Transform 2\n"
-                  "Transform: MatrixOffsetTransformBase_float_3_3\nParameters: 0 -1 0 1 0 0 0 0 1 0 0 5\n"
-                  "FixedParameters: 0 0 0\n"),
-      {1, 0, 0}, {10, 1, 5});
+  expect_brings(read(transform_head +
+                     "Transform: CompositeTransform_double_3_3\n#Transform 1\nTransform: "
+                     "TranslationTransform_double_3_3\nParameters: 10 0 0\nFixedParameters:\n#Transform 2\n"
+                     "Transform: MatrixOffsetTransformBase_float_3_3\nParameters: 0 -1 0 1 0 0 0 0 1 0 0 5\n"
+                     "FixedParameters: 0 0 0\n"),
+                {1, 0, 0}, {10, 1, 5});
 }
 
 TEST_F(ItkTransform, RefusalsNameTheLineAndTheCause) {
   EXPECT_NE(refusal("1 0 0 0").find("a.tfm: is no transform of ITK"), std::string::npos);
   EXPECT_NE(refusal("").find("holds no transform"), std::string::npos);
-  EXPECT_NE(refusal(head + "Parameters: 1\n").find("line 3: 'Parameters' is none of"), std::string::npos);
-  EXPECT_NE(refusal(head + "Transform: BSplineTransform_double_3_3\nParameters: 1\n")
+  EXPECT_NE(refusal(transform_head + "Parameters: 1\n").find("line 3: 'Parameters' is none of"),
+            std::string::npos);
+  EXPECT_NE(refusal(transform_head + "Transform: BSplineTransform_double_3_3\nParameters: 1\n")
                 .find("line 3: 'BSplineTransform' is not read"),
             std::string::npos);
-  EXPECT_NE(refusal(head + "Transform: AffineTransform_double_2_2\n").find("names end in _double_3_3"),
-            std::string::npos);
-  EXPECT_NE(refusal(head + "Transform: AffineTransform_double_3_3\nParameters: 1 0 x\n")
+  EXPECT_NE(
+      refusal(transform_head + "Transform: AffineTransform_double_2_2\n").find("names end in _double_3_3"),
+      std::string::npos);
+  EXPECT_NE(refusal(transform_head + "Transform: AffineTransform_double_3_3\nParameters: 1 0 x\n")
                 .find("line 4: 'x' is no finite"),
             std::string::npos);
-  EXPECT_NE(refusal(head + "Transform: AffineTransform_double_3_3\nParameters: 1 0\n")
+  EXPECT_NE(refusal(transform_head + "Transform: AffineTransform_double_3_3\nParameters: 1 0\n")
                 .find("has 2 parameters: it takes 12"),
             std::string::npos);
-  EXPECT_NE(refusal(head + "Transform: VersorRigid3DTransform_double_3_3\nParameters: 1 1 0 0 0 0\n")
-                .find("longer than 1"),
-            std::string::npos);
-  EXPECT_NE(refusal(head + "Transform: CompositeTransform_double_3_3\n").find("composite of no transforms"),
+  EXPECT_NE(
+      refusal(transform_head + "Transform: VersorRigid3DTransform_double_3_3\nParameters: 1 1 0 0 0 0\n")
+          .find("longer than 1"),
+      std::string::npos);
+  EXPECT_NE(refusal(transform_head + "Transform: CompositeTransform_double_3_3\n")
+                .find("composite of no transforms"),
             std::string::npos);
   EXPECT_THROW(read_itk_transform(folder_ / "none.tfm"), std::runtime_error);
   EXPECT_THROW(read_itk_transform(folder_.path()), std::runtime_error);
