@@ -243,7 +243,7 @@ class Search {
       find(Verdict::Warn, "only one of " + std::to_string(fit.refined) + " searches ended at this motion");
     if (!(fit.least_drop > 0.0))
       find(Verdict::Warn, "a motion of " + rounded(fit.probe_mm) +
-                              "  mm away is no worse: the scans do not determine the motion");
+                              " mm away is no worse: the scans do not determine the motion");
   }
 
   const Scene& moving_;

@@ -135,7 +135,7 @@ class Attacher {
       if (freed[h] > 0)
         findings.push_back("tissue is not held by '" + holders_[h].id + "' at " + std::to_string(freed[h]) +
                            " of " + std::to_string(held[h]) +
-                           "  nodes, because these are nearer to a moved piece than twice its motion");
+                           " nodes, because these are nearer to a moved piece than twice its motion");
     return findings;
   }
 

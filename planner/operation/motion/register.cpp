@@ -380,7 +380,7 @@ bool are_scans(const Register& asked) {
                              ": is a scan, and the other file is not: give two scans, or make a surface of "
                              "this one by octotomy mesh");
   if (!a && is_by_samples(asked))
-    throw std::runtime_error("--by: " + asked.by + "  applies only to two scans: leave it out");
+    throw std::runtime_error("--by: " + asked.by + " applies only to two scans: leave it out");
   if (a && asked.by == "surfaces")
     throw std::runtime_error("--by: two scans have no surfaces: make them by octotomy mesh");
   return a;

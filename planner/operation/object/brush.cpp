@@ -271,7 +271,7 @@ Operation brush_operation() {
       .verb_takes(&Brush::drawn, stroke_fields())
       .example(
           R"({"id": "clean", "do": "brush", "object": "skull", "strokes": [
-        {"points_mm": [[-15, -84, 45], [15, -84, 45]], "radius_mm": 4}]})")
+        {"points_mm": [[-15, -84, 45], [15, -84, 45]], "radius_mm": 4, "shape": "ball"}]})")
       .on_files("octotomy brush skull.stl --points -15,-84,45 15,-84,45 --radius 4 -o clean.stl")
       .check(check)
       .object(definition, voxels, triangles, bound);

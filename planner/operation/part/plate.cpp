@@ -507,7 +507,7 @@ Operation plate_operation() {
                 "The least distance to these; nearer ones are findings. The default is a project's choice.")
               .from(0.0)
               .to(20.0))
-      .example(R"({"id": "left_plate", "do": "plate", "object": "result", "side": "anterior",
+      .example(R"({"id": "left_plate", "do": "plate", "object": "advanced", "side": "anterior",
         "points": [[18, -82, -36], [18, -82, -20]], "screws": ["left_1"]})")
       .on_files("octotomy plate bone.stl --side anterior --points 18,-82,-36 18,-82,-20 -o plate.stl")
       .of_head()

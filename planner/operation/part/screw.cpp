@@ -208,7 +208,7 @@ std::string too_near(const std::string& screw, const ScrewClear& clear, double l
   if (clear.mesh_mm >= least_mm) return {};
   return screw + " comes within " + three_figures(clear.mesh_mm) + " mm of " + in_words(clear) +
          ", less than the " + three_figures(least_mm) +
-         "  mm of 'least_mm': move its point or turn its direction";
+         " mm of 'least_mm': move its point or turn its direction";
 }
 
 brep::Solid rod(const glm::dvec3& from_mm, const glm::dvec3& to_mm, double radius_mm) {

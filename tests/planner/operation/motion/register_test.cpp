@@ -193,7 +193,7 @@ TEST(RegisterStep, AnObjectFollowsItsScanOntoAnother) {
     return ball_refusal(folder,
                         R"({"id": "l", "do": "register", "object": "ball", "onto": "ball")" + rest + "}");
   };
-  EXPECT_NE(refusal(R"(, "by": "correlation", "overlap": 0.5)").find("of surfaces"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "by": "correlation", "overlap": 0.5)").find("only to surfaces"), std::string::npos);
   EXPECT_NE(refusal(R"(, "finest_mm": 4)").find("two scans"), std::string::npos);
   EXPECT_NE(refusal(R"(, "by": "guess")").find("mutual_information"), std::string::npos);
 }
