@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "convert/tet/element_faces.h"
 
@@ -59,18 +61,51 @@ void for_each_near(const std::map<Cell, std::vector<Entry>>& cells, const Cell& 
   }
 }
 
-/// The sharp edges of a surface, sorted into cells of space, and the points where at least three end.
+/// The area of the flat part of the surface that each triangle belongs to: triangles are of one part where they
+/// share an edge and their normals agree to a degree.
+std::vector<double> flat_areas_mm2(const brep::Triangles& surface, const std::vector<glm::dvec3>& normals) {
+  constexpr double flat_cosine = 0.99985;
+  std::vector<std::uint32_t> part(surface.faces.size());
+  std::iota(part.begin(), part.end(), 0U);
+  const auto part_of = [&part](std::uint32_t f) {
+    while (part[f] != f) f = part[f] = part[part[f]];
+    return f;
+  };
+  std::map<Ends, std::uint32_t> first;
+  for (std::uint32_t f = 0; f < surface.faces.size(); ++f)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [at, is_new] =
+          first.emplace(ends(surface.faces[f].at(i), surface.faces[f].at((i + 1) % 3)), f);
+      if (!is_new && glm::dot(normals[at->second], normals[f]) >= flat_cosine)
+        part[part_of(f)] = part_of(at->second);
+    }
+  std::vector<double> areas(surface.faces.size(), 0.0);
+  for (std::uint32_t f = 0; f < surface.faces.size(); ++f) {
+    const auto& [a, b, c] = surface.faces[f];
+    const auto& p = surface.points_mm;
+    areas[part_of(f)] += 0.5 * glm::length(glm::cross(p[b] - p[a], p[c] - p[a]));
+  }
+  for (std::uint32_t f = 0; f < surface.faces.size(); ++f) areas[f] = areas[part_of(f)];
+  return areas;
+}
+
+/// The sharp edges of a surface between two flat parts that are several elements large, sorted into cells of space, and the points where at least three end.
 class SharpEdges {
  public:
   SharpEdges(const brep::Triangles& surface, const std::vector<glm::dvec3>& normals, double cell_mm)
       : surface_(surface), cell_mm_(cell_mm) {
+    // The surfaces of bone have edges everywhere; nodes that are held on these leave no good elements.
+    const double least_mm2 = 8.0 * cell_mm * cell_mm;
+    const std::vector<double> areas_mm2 = flat_areas_mm2(surface, normals);
     std::map<Ends, std::uint32_t> first;
     std::map<std::uint32_t, int> edges_at;
     for (std::uint32_t f = 0; f < surface.faces.size(); ++f)
       for (std::size_t i = 0; i < 3; ++i) {
         const Ends edge = ends(surface.faces[f].at(i), surface.faces[f].at((i + 1) % 3));
         const auto [at, is_new] = first.emplace(edge, f);
-        if (is_new || glm::dot(normals[at->second], normals[f]) >= sharp_cosine()) continue;
+        if (is_new || glm::dot(normals[at->second], normals[f]) >= sharp_cosine() ||
+            std::min(areas_mm2[at->second], areas_mm2[f]) < least_mm2)
+          continue;
         add(edge);
         ++edges_at[edge.first];
         ++edges_at[edge.second];
