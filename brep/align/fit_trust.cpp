@@ -31,7 +31,7 @@ constexpr double least_small_ratio() {
 constexpr double least_lead() {
   return 0.12;
 }
-/// A fit that matches less is doubtful, whatever others match: bumps of a rounded body match a fifth of it by
+/// A fit that matches less shows nothing, whatever others match: bumps of a rounded body match a fifth of it by
 /// chance.
 constexpr double least_share() {
   return 0.2;
@@ -190,13 +190,10 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
   trust.rival_share = rival[near_rungs - 1];
   const auto leads = [&](std::size_t rung) {
     const double ratio = own[rung] < small_share() ? least_small_ratio() : least_ratio();
-    return own[rung] >= ratio * rival[rung] && own[rung] >= rival[rung] + least_lead();
+    return own[rung] >= std::max({ratio * rival[rung], rival[rung] + least_lead(), least_share()});
   };
-  bool is_small = false;
   for (std::size_t rung = 0; rung < near_rungs; ++rung)
-    if (leads(rung) && own[rung] < least_share()) {
-      is_small = true;
-    } else if (leads(rung)) {
+    if (leads(rung)) {
       trust.matched_share = own[rung];
       trust.rival_share = rival[rung];
       trust.tolerance_mm = ladder_mm[rung];
@@ -207,7 +204,7 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
       trust.rival_share < chance_ratio() * own[near_rungs - 1] && own[near_rungs - 1] < chance_share();
   if (!trust.equals.empty() && !is_chance) return trust;
   trust.equals.clear();
-  const bool is_near = is_small || leads(ladder_mm.size() - 1) || own[near_rungs - 1] >= equal_share();
+  const bool is_near = leads(ladder_mm.size() - 1) || own[near_rungs - 1] >= equal_share();
   trust.verdict = is_near ? FitVerdict::Doubtful : FitVerdict::Failed;
   trust.reason = per_cent(trust.matched_share) + " of the surface lies within " +
                  short_text(trust.tolerance_mm) + " mm of the other one, and " + per_cent(trust.rival_share) +
