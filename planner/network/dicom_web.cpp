@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <curl/curl.h>
 #include <exception>
 #include <fstream>
 #include <functional>
 #include <memory>
 #include <string_view>
 
+#include "planner/network/curl_library.h"
 #include "planner/network/multipart.h"
+#include "voxel/space/error.h"
 #include "voxel/space/progress.h"
 
 namespace octotomy::planner {
@@ -26,8 +27,7 @@ class Request {
  public:
   Request(const WebArchive& archive, const std::string& path, const std::stop_token& stop)
       : archive_(archive), url_(archive.url + (archive.url.ends_with('/') ? "" : "/") + path), stop_(stop) {
-    static const CURLcode started = curl_global_init(CURL_GLOBAL_DEFAULT);
-    if (started != CURLE_OK || !curl_) throw std::runtime_error("libcurl cannot be started");
+    if (!handle_) throw voxel::Error(voxel::ErrorCode::Resource, "libcurl has no memory for a request");
     set(CURLOPT_URL, url_.c_str());
     set(CURLOPT_PROTOCOLS_STR, "http,https");
     set(CURLOPT_FOLLOWLOCATION, 0L);
@@ -52,7 +52,7 @@ class Request {
   }
 
   void add_header(const std::string& line) {
-    headers_.reset(curl_slist_append(headers_.release(), line.c_str()));
+    headers_.reset(curl_.slist_append(headers_.release(), line.c_str()));
     set(CURLOPT_HTTPHEADER, headers_.get());
   }
   /// The body of a POST, of a known length.
@@ -69,17 +69,17 @@ class Request {
   /// returns the text of other answers.
   long run(const std::function<void(const std::string& type, std::string_view bytes)>& answer) {
     answer_ = &answer;
-    const CURLcode code = curl_easy_perform(curl_.get());
+    const CURLcode code = curl_.easy_perform(handle_.get());
     if (thrown_) std::rethrow_exception(thrown_);
-    if (stop_.stop_requested()) throw voxel::Stopped("stopped while " + archive_.url + " was asked");
+    if (stop_.stop_requested()) throw voxel::Stopped("stopped during a request to " + archive_.url);
     if (code != CURLE_OK)
       throw PeerError(archive_.url + ": " +
-                      (error_.front() != '\0' ? error_.data() : curl_easy_strerror(code)));
+                      (error_.front() != '\0' ? error_.data() : curl_.easy_strerror(code)));
     return status();
   }
   long status() const {
     long number = 0;
-    curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &number);
+    curl_.easy_getinfo(handle_.get(), CURLINFO_RESPONSE_CODE, &number);
     return number;
   }
   /// The beginning of the text that the other side sends with a refusal, as one printable line.
@@ -93,7 +93,11 @@ class Request {
  private:
   template <typename Value>
   void set(CURLoption option, Value value) {
-    curl_easy_setopt(curl_.get(), option, value);
+    // An option that an older library ignores may be one that keeps requests safe.
+    if (const CURLcode code = curl_.easy_setopt(handle_.get(), option, value); code != CURLE_OK)
+      throw voxel::Error(voxel::ErrorCode::Resource, "libcurl refuses option " + std::to_string(option) +
+                                                         ": " + curl_.easy_strerror(code) +
+                                                         "; install version 7.85 or later");
   }
 
   static std::size_t take(char* bytes, std::size_t, std::size_t count, void* self) {
@@ -105,7 +109,7 @@ class Request {
         return request.reason_.size() < most_reason ? count : 0;
       }
       const char* type = nullptr;
-      curl_easy_getinfo(request.curl_.get(), CURLINFO_CONTENT_TYPE, &type);
+      request.curl_.easy_getinfo(request.handle_.get(), CURLINFO_CONTENT_TYPE, &type);
       (*request.answer_)(type == nullptr ? "" : type, {bytes, count});
       return count;
     } catch (...) {
@@ -129,8 +133,9 @@ class Request {
   const WebArchive& archive_;
   std::string url_;
   std::stop_token stop_;
-  std::unique_ptr<CURL, decltype(&curl_easy_cleanup)> curl_{curl_easy_init(), &curl_easy_cleanup};
-  std::unique_ptr<curl_slist, decltype(&curl_slist_free_all)> headers_{nullptr, &curl_slist_free_all};
+  const CurlLibrary& curl_ = curl_library();
+  std::unique_ptr<CURL, decltype(&curl_easy_cleanup)> handle_{curl_.easy_init(), curl_.easy_cleanup};
+  std::unique_ptr<curl_slist, decltype(&curl_slist_free_all)> headers_{nullptr, curl_.slist_free_all};
   std::array<char, CURL_ERROR_SIZE> error_{};
   std::function<std::size_t(char*, std::size_t)> body_;
   const std::function<void(const std::string&, std::string_view)>* answer_ = nullptr;

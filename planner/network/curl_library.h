@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+// The header's macros check arguments by types, which calls by address cannot have.
+#define CURL_DISABLE_TYPECHECK
+#include <curl/curl.h>
+
+namespace octotomy::planner {
+
+/// The functions of libcurl that DICOMweb needs.
+struct CurlLibrary {
+  decltype(&curl_global_init) global_init;
+  decltype(&curl_easy_init) easy_init;
+  decltype(&curl_easy_setopt) easy_setopt;
+  decltype(&curl_easy_perform) easy_perform;
+  decltype(&curl_easy_getinfo) easy_getinfo;
+  decltype(&curl_easy_strerror) easy_strerror;
+  decltype(&curl_easy_cleanup) easy_cleanup;
+  decltype(&curl_slist_append) slist_append;
+  decltype(&curl_slist_free_all) slist_free_all;
+};
+
+/// Loads and starts libcurl at the first call. It is not linked, because it brings some thirty libraries whose
+/// loading would take a third of the time in which the program starts. Throws voxel::Error, Resource, if it is
+/// not installed or cannot start. May be called from several threads.
+const CurlLibrary& curl_library();
+
+}  // namespace octotomy::planner
