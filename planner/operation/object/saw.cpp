@@ -18,17 +18,18 @@ namespace octotomy::planner {
 namespace {
 
 brep::SawCut cut_of(const Saw& saw) {
-  return {saw.line_mm, saw.direction, saw.depth_mm, saw.kerf_mm};
+  return {saw.line_mm, *saw.direction, saw.depth_mm, saw.kerf_mm};
 }
 
 voxel::SawLine line_of(const Saw& saw) {
-  return {saw.line_mm, saw.direction, saw.depth_mm, saw.kerf_mm};
+  return {saw.line_mm, *saw.direction, saw.depth_mm, saw.kerf_mm};
 }
 
 void check(const Saw& saw, const FieldLocation& place) {
   if (saw.line_mm.empty() == saw.plane.empty())
     place.at("line_mm").refuse(saw.plane.empty() ? "is missing: add it, or 'plane'"
                                                  : "says the cut twice, with 'plane': keep one of them");
+  if (saw.plane.empty() && !saw.direction) place.at("direction").refuse("is missing: add it");
   if (saw.plane.empty()) {
     try {
       brep::saw_blade(cut_of(saw));
@@ -91,7 +92,7 @@ void bound(const Saw& typed, const BoundBench& bench, Object& made) {
   inherit(object, made);
   made.shown = object.shown;
   made.witness = verify::without(
-      object.witness, verify::witness_of_blade({saw.line_mm, saw.direction, saw.depth_mm, saw.kerf_mm}));
+      object.witness, verify::witness_of_blade({saw.line_mm, *saw.direction, saw.depth_mm, saw.kerf_mm}));
   made.ends_with_universe = true;
   const std::vector<CutPlane> sides = planes_of(voxel::saw_blade_sides(line_of(saw)));
   made.bound.planes.insert(made.bound.planes.end(), sides.begin(), sides.end());
@@ -126,8 +127,7 @@ Operation saw_operation() {
                        Makes::Object)
       .takes(field("object", &Saw::object, "The object that is cut.").required().positional("solid"))
       .takes(field("line_mm", &Saw::line_mm, "Two or more points of the line, LPS.").from(2))
-      .takes(field("direction", &Saw::direction,
-                   "The direction in which the blade goes in, LPS. Default: backwards, [0, 1, 0].")
+      .takes(field("direction", &Saw::direction, "The direction in which the blade goes in, LPS.")
                  .direction()
                  .read_if<Saw>([](const Saw& saw) { return saw.plane.empty(); }, of_plane))
       .takes(field("depth_mm", &Saw::depth_mm,

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,11 @@ namespace octotomy::planner {
 struct Saw {
   ObjectName object;
   std::vector<glm::dvec3> line_mm;  ///< LPS; two points or more
-  glm::dvec3 direction{0, 1, 0};    ///< in which the blade goes in, LPS; of any length
-  double depth_mm = 100.0;          ///< from the line's point that the blade meets first
-  double kerf_mm = 1.0;             ///< width of what is sawn away, half on either side of the line
-  std::filesystem::path plane;      ///< a plane of 3D Slicer in the place of line, direction and depth
+  std::optional<glm::dvec3>
+      direction;                ///< in which the blade goes in, LPS, of any length; none: of the plane
+  double depth_mm = 100.0;      ///< from the line's point that the blade meets first
+  double kerf_mm = 1.0;         ///< width of what is sawn away, half on either side of the line
+  std::filesystem::path plane;  ///< a plane of 3D Slicer in the place of line, direction and depth
 };
 
 /// The saw with the line, direction and depth of its plane, if it has one: the blade enters at the side of the

@@ -382,7 +382,7 @@ std::vector<SawSlot> slots_of_mask(const Mask& mask, const glm::dmat3& lps_from_
 
 std::vector<SawSlot> slots_of_saw(const std::string& cut, const Saw& saw, const SlotsAsked& asked,
                                   double& longest_mm) {
-  const glm::dvec3 direction = glm::normalize(saw.direction);
+  const glm::dvec3 direction = glm::normalize(*saw.direction);
   const double off_deg = angle_deg(direction, asked.along);
   if (off_deg > most_oblique_deg)
     throw std::runtime_error("the saw of '" + cut + "' goes in at " + three_figures(off_deg) +

@@ -63,9 +63,9 @@ ScrewClear clear_of_cut(const Object& object, const Action& maker, const brep::S
   if (const Saw* typed = maker.get_if<Saw>()) {
     const Saw sawn = with_plane_read(*typed, folder);
     const Saw* const saw = &sawn;
-    const brep::Solid blade = brep::saw_blade({saw->line_mm, saw->direction, saw->depth_mm, saw->kerf_mm});
+    const brep::Solid blade = brep::saw_blade({saw->line_mm, *saw->direction, saw->depth_mm, saw->kerf_mm});
     const voxel::Octree taken = voxel::combine(
-        universe, voxel::saw_blade({saw->line_mm, saw->direction, saw->depth_mm, saw->kerf_mm}));
+        universe, voxel::saw_blade({saw->line_mm, *saw->direction, saw->depth_mm, saw->kerf_mm}));
     return {object.id, true,
             blade.tree().is_inside(rod.triangles().points_mm.front())
                 ? 0.0

@@ -77,7 +77,7 @@ SceneMarkup markup_of_plane(const std::string& name, const MarkupPlane& plane) {
 }
 
 void add_saw(const std::string& id, const Saw& saw, std::vector<SceneMarkup>& made) {
-  const glm::dvec3 along = glm::normalize(saw.direction);
+  const glm::dvec3 along = glm::normalize(*saw.direction);
   double entry_mm = glm::dot(saw.line_mm.front(), along);
   for (const glm::dvec3& p_mm : saw.line_mm) entry_mm = std::min(entry_mm, glm::dot(p_mm, along));
   const std::size_t pieces = saw.line_mm.size() - 1;

@@ -49,6 +49,10 @@ TEST(SawStep, ALineOfOnePointOrWithoutDirectionIsRefused) {
                 .find("no direction"),
             std::string::npos);
   EXPECT_NE(ball_refusal(folder, R"({"id": "s", "do": "saw", "object": "ball",
+      "line_mm": [[0, 0, 0], [1, 0, 0]]})")
+                .find("direction: is missing"),
+            std::string::npos);
+  EXPECT_NE(ball_refusal(folder, R"({"id": "s", "do": "saw", "object": "ball",
       "line_mm": [[0, 0, 0], [0, 9, 0]], "direction": [0, 1, 0]})")
                 .find("distinct"),
             std::string::npos);
