@@ -54,37 +54,22 @@ SlabFrame frame_of(const Stroke& stroke) {
   return {normal, glm::normalize(across - normal * normal[least])};
 }
 
-std::vector<voxel::BrushStroke> voxel_strokes(const Brush& brush) {
-  std::vector<voxel::BrushStroke> made;
+/// The strokes in a kernel's or the witness's words; `slab` is the member that has a slab's frame and thickness.
+template <typename Made, typename Slab>
+std::vector<Made> strokes_of(const Brush& brush, std::optional<Slab> Made::*slab) {
+  std::vector<Made> made;
   for (const Stroke& stroke : brush.all()) {
     made.push_back({stroke.points_mm, stroke.radius_mm});
     if (!stroke.is_slab()) continue;
     const SlabFrame frame = frame_of(stroke);
-    made.back().slab = {frame.normal, frame.across, *stroke.thickness_mm};
+    made.back().*slab = Slab{frame.normal, frame.across, *stroke.thickness_mm};
   }
   return made;
 }
 
-std::vector<brep::BrushTrace> mesh_traces(const Brush& brush) {
-  std::vector<brep::BrushTrace> made;
-  for (const Stroke& stroke : brush.all()) {
-    made.push_back({stroke.points_mm, stroke.radius_mm});
-    if (!stroke.is_slab()) continue;
-    const SlabFrame frame = frame_of(stroke);
-    made.back().disc = {frame.normal, frame.across, *stroke.thickness_mm};
-  }
-  return made;
-}
-
-std::vector<verify::DrawnBrush> drawn_ways(const Brush& brush) {
-  std::vector<verify::DrawnBrush> made;
-  for (const Stroke& stroke : brush.all()) {
-    made.push_back({stroke.points_mm, stroke.radius_mm});
-    if (!stroke.is_slab()) continue;
-    const SlabFrame frame = frame_of(stroke);
-    made.back().disc = {frame.normal, frame.across, *stroke.thickness_mm};
-  }
-  return made;
+std::string changes_no(const std::string& part, const Brush& brush) {
+  return "the brush changes no " + part + " of '" + brush.object.name +
+         "': look where its strokes lie, and draw them again";
 }
 
 /// Points that are nearer to each other, and not equal, make a hull whose faces are thinner than rounding.
@@ -131,7 +116,7 @@ std::string definition(const Brush& brush, const Objects&) {
 constexpr const char* not_measured = "; no scan measured what is painted";
 
 void voxels(const Brush& brush, const VoxelBench& bench, VoxelSide& made) {
-  const voxel::Expression touched = voxel::brush(voxel_strokes(brush));
+  const voxel::Expression touched = voxel::brush(strokes_of(brush, &voxel::BrushStroke::slab));
   const VoxelSide& object = bench.object(brush.object.name);
   const voxel::Expression octree(object.octree);
   made.octree = bench.combined(brush.paints() ? octree | touched : octree - touched);
@@ -144,7 +129,8 @@ void voxels(const Brush& brush, const VoxelBench& bench, VoxelSide& made) {
 void triangles(const Brush& brush, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "boolean_mesh");
   const brep::Solid& solid = bench.object(brush.object.name);
-  const brep::BooleanResult touched = brep::brush_solid(mesh_traces(brush), bench.progress.stop);
+  const brep::BooleanResult touched =
+      brep::brush_solid(strokes_of(brush, &brep::BrushTrace::disc), bench.progress.stop);
   brep::BooleanResult result =
       brep::boolean(solid, brush.paints() ? brep::Operation::Union : brep::Operation::Difference,
                     touched.solid, bench.progress.stop);
@@ -155,8 +141,9 @@ void triangles(const Brush& brush, const MeshBench& bench, MeshSide& made) {
       result.residual ? std::max(*result.residual, touched.residual.value_or(0.0)) : touched.residual;
   made.details["residuals"] = {{"volume_relative", residual ? nlohmann::ordered_json(*residual) : nullptr}};
   made.details["brush_mm3"] = brep::volume_mm3(touched.solid);
-  made.details[brush.paints() ? "painted_mm3" : "erased_mm3"] =
-      std::abs(brep::volume_mm3(result.solid) - brep::volume_mm3(solid));
+  const double changed_mm3 = std::abs(brep::volume_mm3(result.solid) - brep::volume_mm3(solid));
+  made.details[brush.paints() ? "painted_mm3" : "erased_mm3"] = changed_mm3;
+  if (changed_mm3 == 0.0) made.findings.push_back(changes_no("part of the surface", brush));
   made.whole = result.solid;
   made.lineage =
       std::string("corefinement with the hulls of the brush") + (brush.paints() ? not_measured : "");
@@ -210,7 +197,7 @@ void bound(const Brush& brush, const BoundBench& bench, Object& made) {
   const Object& object = bench.objects.at(brush.object.name);
   inherit(object, made);
   made.shown = object.shown;
-  const verify::Witness touched = verify::witness_of_brush(drawn_ways(brush));
+  const verify::Witness touched = verify::witness_of_brush(strokes_of(brush, &verify::DrawnBrush::disc));
   if (!brush.paints())
     made.witness = verify::without(object.witness, touched);
   else if (object.witness)
@@ -222,10 +209,12 @@ void bound(const Brush& brush, const BoundBench& bench, Object& made) {
   made.bound.planes.insert(made.bound.planes.end(), walls.begin(), walls.end());
   const double before = static_cast<double>(object.voxel.octree.voxel_count());
   const double changed = std::abs(static_cast<double>(made.voxel.octree.voxel_count()) - before);
-  if (changed == 0.0)
-    made.findings.push_back("the brush changes no voxel of '" + brush.object.name +
-                            "': look where its strokes lie, and draw them again");
-  else if (brush.paints())
+  if (changed == 0.0) {
+    // One finding is enough where the mesh kernel found the same.
+    std::erase(made.findings, changes_no("part of the surface", brush));
+    made.findings.push_back(changes_no("voxel", brush));
+  }
+  if (changed > 0.0 && brush.paints())
     made.findings.push_back("painted: " + three_figures(changed * bench.universe.lattice().voxel_mm3()) +
                             " mm\u00b3 are drawn by hand and not measured by a scan");
 }

@@ -89,6 +89,9 @@ TEST(BrushStep, ABrushThatMeetsNothingIsAFinding) {
       evaluate(ball_plan(folder, brush("b", R"("points_mm": [[29, 29, 29]], "radius_mm": 1)")));
   ASSERT_EQ(evaluation.object("b").findings.size(), 1u);
   EXPECT_NE(evaluation.object("b").findings.front().find("changes no voxel of 'ball'"), std::string::npos);
+  ASSERT_EQ(evaluation.object("b").mesh.findings.size(), 1u);
+  EXPECT_NE(evaluation.object("b").mesh.findings.front().find("no part of the surface of 'ball'"),
+            std::string::npos);
 }
 
 TEST(BrushStep, RefusesWhatCannotBeDrawn) {
