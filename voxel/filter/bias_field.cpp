@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <itkCommand.h>
 #include <itkImage.h>
@@ -244,6 +245,7 @@ BiasCorrection correct_bias_field(const Scene& scene, const BiasFieldOptions& op
   std::visit(
       [&](const auto& samples) {
         FloatSamples corrected(samples.size());
+        std::atomic<bool> is_too_large = false;
         for_each_slice(dims.z, part_of(options.progress, 0.8, 1.0), [&](int z) {
           std::size_t i = sample_index(dims, {0, 0, z});
           for (int y = 0; y < dims.y; ++y)
@@ -255,8 +257,13 @@ BiasCorrection correct_bias_field(const Scene& scene, const BiasFieldOptions& op
               }
               const glm::dvec3 position = glm::dvec3(glm::ivec3(x, y, z) - first) / glm::dvec3(every);
               corrected[i] = static_cast<float>(sample / std::exp(spline(position) - mean));
+              if (!std::isfinite(corrected[i])) is_too_large = true;
             }
         });
+        if (is_too_large)
+          throw Error(
+              ErrorCode::Geometry,
+              "some samples are too large to be corrected: scale the scan down, or crop it to the patient");
         made.scene.samples = std::move(corrected);
       },
       scene.samples);

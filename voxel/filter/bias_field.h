@@ -30,9 +30,10 @@ struct BiasCorrection {
 /// N4 (Tustison et al., IEEE Trans. Medical Imaging 29, 2010) by ITK, on every few samples, four between
 /// the finest knots; the field, a cubic B-spline, is evaluated at every sample of the scan. Departure: the
 /// field is scaled
-/// to a geometric mean of 1, so that samples keep their level. Throws std::invalid_argument for label maps,
+/// to a geometric mean of 1, so that samples keep their level. Throws InvalidInput for label maps,
 /// for Hounsfield units, which no magnetic field changes, and for options out of range; Error, Geometry, if
-/// fewer than 100 of these samples are above the threshold; Stopped. Same bits on any thread count: the fit
+/// fewer than 100 of these samples are above the threshold or a corrected sample would be too large for single
+/// precision; Stopped. Same bits on any thread count: the fit
 /// runs in one thread, because ITK sums it by threads. Memory: the result.
 BiasCorrection correct_bias_field(const Scene& scene, const BiasFieldOptions& options);
 

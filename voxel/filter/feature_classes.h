@@ -30,14 +30,14 @@ struct FeatureClasses {
 
 /// The length of the gradient by central differences between neighbours, in sample units per millimetre;
 /// beyond the scene and in its padding the border samples repeat. Exact for linear fields on any lattice.
-/// Throws std::invalid_argument for label maps; Stopped. Parallel, same bits on any thread count.
+/// Throws InvalidInput for label maps; Stopped. Parallel, same bits on any thread count.
 Scene gradient_length(const Scene& scene, const Progress& progress = {});
 
 /// K-means clusters of the samples' densities and gradients, on a histogram of 256 by 256 bins between the
 /// features' 0.1st and 99.9th percentiles, which also limit the weight of outliers. Starts with one cluster,
 /// and splits the one of greatest variance at its middle, across the feature in which it varies most, until
 /// there are enough; after each split the means are iterated until no bin changes its cluster. Edges are
-/// classes of their own, one or two by their height: three tissues need five. Throws std::invalid_argument
+/// classes of their own, one or two by their height: three tissues need five. Throws InvalidInput
 /// unless there are 2 to 8 classes, and as gradient_length(); Error, Geometry, if all samples or all
 /// gradients are equal, or fewer clusters exist; Stopped. Same bits on any thread count.
 FeatureClasses feature_classes(const Scene& scene, int classes, const Progress& progress = {});

@@ -112,6 +112,13 @@ TEST(BiasField, RefusesWhatNoMagneticFieldMade) {
   EXPECT_THROW(correct_bias_field(scene, {.levels = 0}), std::invalid_argument);
   EXPECT_THROW(correct_bias_field(scene, {.iterations = 0}), std::invalid_argument);
   EXPECT_THROW(correct_bias_field(scene, {.threshold = 5000.0}), Error);
+  Scene bright = head(true);
+  FloatSamples samples;
+  for (const std::int16_t sample : std::get<Int16Samples>(bright.samples))
+    samples.push_back(std::min(3.4e38F, 3e36F * static_cast<float>(sample)));
+  bright.samples = std::move(samples);
+  EXPECT_THROW(correct_bias_field(bright, {}), Error)
+      << "a sample that the field raises leaves single precision";
   std::stop_source stop;
   stop.request_stop();
   BiasFieldOptions stopped;
