@@ -59,6 +59,18 @@ inline std::string ball_refusal(const ScratchFolder& folder, const std::string& 
   return "";
 }
 
+/// The refusal of a plan with these steps when it is read or its objects are made; empty where they are made.
+inline std::string made_refusal(const ScratchFolder& folder, const std::string& steps) {
+  try {
+    planner::EvaluateOptions options;
+    options.certify = false;
+    planner::evaluate(ball_plan(folder, steps), options);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
 /// Steps for the caps "upper", above 5 mm, and "lower", below -5 mm; then further ones.
 inline std::string ball_caps(const std::string& more) {
   return R"({"id": "high", "do": "mask", "regions": [{"view": "anterior",

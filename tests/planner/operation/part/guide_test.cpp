@@ -24,17 +24,6 @@ std::string guide_step(const std::string& fields) {
 }
 const std::string at_front = R"("side": "anterior", "points": [[0, -20, 0]])";
 
-std::string guide_refusal(const ScratchFolder& folder, const std::string& steps) {
-  try {
-    EvaluateOptions options;
-    options.certify = false;
-    evaluate(ball_plan(folder, steps), options);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
-}
-
 void expect_says(const std::string& refusal, const std::string& words) {
   EXPECT_NE(refusal.find(words), std::string::npos) << refusal;
 }
@@ -136,7 +125,7 @@ TEST(GuideStep, AMaskGetsASlotWhereItsWallCutsBoneInTheRegionWhicheverViewDrewIt
 
 TEST(GuideStep, RefusesWhatMakesNoGuideInASentenceThatSaysWhy) {
   const ScratchFolder folder;
-  const auto refusal = [&](const std::string& steps) { return guide_refusal(folder, steps); };
+  const auto refusal = [&](const std::string& steps) { return made_refusal(folder, steps); };
   expect_says(refusal(guide_step(at_front + R"(, "thickness_mm": 0.1)")), "thickness_mm: must be from 1");
   expect_says(refusal(guide_step(at_front + R"(, "direction": [1, 0, 0])")), "degrees off the view");
   expect_says(refusal(guide_step(R"("side": "anterior", "points": [[-19.3, -5, 0]], "radius_mm": 3,

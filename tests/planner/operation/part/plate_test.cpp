@@ -19,17 +19,6 @@ std::string plate_step(const std::string& fields, const std::string& object = "b
 }
 const std::string across = R"("points": [[-8, -18.33, 0], [0, -20, 0], [8, -18.33, 0]])";
 
-std::string plate_refusal(const ScratchFolder& folder, const std::string& steps) {
-  try {
-    EvaluateOptions options;
-    options.certify = false;
-    evaluate(ball_plan(folder, steps), options);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(PlateStep, OnABallHasItsCrossSectionAndFollowsTheBoneInBothKernels) {
   const ScratchFolder folder;
   const Evaluation made = evaluate(ball_plan(folder, plate_step(across)), {});
@@ -121,7 +110,7 @@ TEST(PlateStep, BridgesTheGapAndHasItsHolesWhereTheMotionBringsTheScrews) {
 TEST(PlateStep, RefusesWhatMakesNoPlateInASentenceThatSaysWhy) {
   const ScratchFolder folder;
   const auto expect_refused = [&](const std::string& steps, const std::string& words) {
-    const std::string refusal = plate_refusal(folder, steps);
+    const std::string refusal = made_refusal(folder, steps);
     EXPECT_NE(refusal.find(words), std::string::npos) << words << "\n" << refusal;
   };
   expect_refused(plate_step(across + R"(, "thickness_mm": 0.1)"), "thickness_mm: must be from 0.8");

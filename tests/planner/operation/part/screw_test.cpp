@@ -15,17 +15,6 @@ std::string screw_step(const std::string& fields) {
   return R"({"id": "screw", "do": "screw", "object": "ball", "direction": [0, 1, 0], )" + fields + "}";
 }
 
-std::string screw_refusal(const ScratchFolder& folder, const std::string& steps) {
-  try {
-    EvaluateOptions options;
-    options.certify = false;
-    evaluate(ball_plan(folder, steps), options);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(ScrewStep, StatesHowFarItStaysFromACutAndFromAnotherObjectByBothKernels) {
   const ScratchFolder folder;
   EvaluateOptions options;
@@ -72,13 +61,13 @@ TEST(ScrewStep, AScrewThatGoesIntoARootIsNamed) {
 TEST(ScrewStep, RefusesAPointOffTheBoneAndADirectionOutOfIt) {
   const ScratchFolder folder;
   EXPECT_NE(
-      screw_refusal(folder, screw_step(R"("at": [0, -30, 0])")).find("10.0 mm off the surface of 'ball'"),
+      made_refusal(folder, screw_step(R"("at": [0, -30, 0])")).find("10.0 mm off the surface of 'ball'"),
       std::string::npos);
-  EXPECT_NE(screw_refusal(folder, R"({"id": "screw", "do": "screw", "object": "ball", "at": [0, -20, 0],
+  EXPECT_NE(made_refusal(folder, R"({"id": "screw", "do": "screw", "object": "ball", "at": [0, -20, 0],
                                       "direction": [0, -1, 0]})")
                 .find("does not enter 'ball'"),
             std::string::npos);
-  EXPECT_NE(screw_refusal(folder, screw_step(R"("at": [0, -20, 0], "cuts": ["ball"])"))
+  EXPECT_NE(made_refusal(folder, screw_step(R"("at": [0, -20, 0], "cuts": ["ball"])"))
                 .find("'ball' was made by 'window'"),
             std::string::npos);
 }
