@@ -14,15 +14,13 @@
 
 #include "brep/contour/run_tree.h"
 #include "brep/mesh/error.h"
+#include "brep/mesh/segment.h"
 
 namespace octotomy::brep {
 namespace {
 
 double distance_to_piece(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
-  const glm::dvec2 along = b - a;
-  const double length2 = glm::dot(along, along);
-  const double t = length2 > 0.0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0.0;
-  return glm::distance(p, a + t * along);
+  return glm::distance(p, a + share_along(p, a, b) * (b - a));
 }
 
 /// Bound on the rounding error of a distance between points with coordinates up to the largest: about 80

@@ -22,6 +22,7 @@
 #include "brep/mesh/halving.h"
 #include "brep/mesh/morton_tree.h"
 #include "brep/mesh/ray_passing.h"
+#include "brep/mesh/segment.h"
 
 namespace octotomy::brep {
 namespace {
@@ -268,13 +269,6 @@ struct FourBoxes {
            (high[2] >= from[2]);
   }
 };
-
-/// The position of the nearest point on the segment from a to b, as a share of its length.
-double share_along(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec3 along = b - a;
-  const double length2 = glm::dot(along, along);
-  return length2 > 0.0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0.0;
-}
 
 /// Barycentric coordinates of the triangle's nearest point, by the cases of squared_distances().
 glm::dvec3 nearest_weights(const glm::dvec3& p, const Corners& t) {

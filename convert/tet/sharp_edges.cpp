@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "brep/mesh/segment.h"
 #include "convert/tet/element_faces.h"
 
 // Some meshers make a surface of their own with nodes on the given one; its triangles then cut sharp edges
@@ -39,9 +40,7 @@ glm::dvec3 unit_normal_of(const brep::Triangles& surface, const std::array<std::
 }
 
 glm::dvec3 nearest_on(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec3 way = b - a;
-  const double squared = glm::dot(way, way);
-  return squared > 0.0 ? a + std::clamp(glm::dot(p - a, way) / squared, 0.0, 1.0) * way : a;
+  return a + brep::share_along(p, a, b) * (b - a);
 }
 
 using Cell = std::array<int, 3>;

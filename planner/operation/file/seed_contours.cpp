@@ -9,6 +9,7 @@
 #include <string>
 
 #include "brep/contour/contour.h"
+#include "brep/mesh/segment.h"
 #include "convert/surface/trace_contours.h"
 #include "planner/operation/table/number_format.h"
 #include "voxel/filter/crop.h"
@@ -18,18 +19,12 @@
 namespace octotomy::planner {
 namespace {
 
-double distance_to_line(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
-  const glm::dvec2 along = b - a;
-  const double square = glm::dot(along, along);
-  const double part = square > 0.0 ? std::clamp(glm::dot(p - a, along) / square, 0.0, 1.0) : 0.0;
-  return glm::distance(p, a + part * along);
-}
-
 double distance_to(const brep::Contour& contour, const glm::dvec2& p_mm) {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < contour.points_mm.size(); ++i)
-    least = std::min(least, distance_to_line(p_mm, contour.points_mm[i],
-                                             contour.points_mm[(i + 1) % contour.points_mm.size()]));
+  for (std::size_t i = 0; i < contour.points_mm.size(); ++i) {
+    const glm::dvec2 &a = contour.points_mm[i], &b = contour.points_mm[(i + 1) % contour.points_mm.size()];
+    least = std::min(least, glm::distance(p_mm, a + brep::share_along(p_mm, a, b) * (b - a)));
+  }
   return least;
 }
 

@@ -23,6 +23,7 @@
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/distance.h"
 #include "brep/mesh/error.h"
+#include "brep/mesh/segment.h"
 #include "brep/shape/offset.h"
 #include "brep/shape/shadow.h"
 #include "planner/operation/measure/result_json.h"
@@ -99,9 +100,7 @@ double within_mm(const std::vector<glm::dvec2>& outline_mm, const glm::dvec2& p_
   double least_mm = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < outline_mm.size(); ++i) {
     const glm::dvec2 &a = outline_mm[i], &b = outline_mm[(i + 1) % outline_mm.size()];
-    const double length2 = glm::dot(b - a, b - a);
-    const double share = length2 > 0.0 ? std::clamp(glm::dot(p_mm - a, b - a) / length2, 0.0, 1.0) : 0.0;
-    least_mm = std::min(least_mm, glm::distance(p_mm, glm::mix(a, b, share)));
+    least_mm = std::min(least_mm, glm::distance(p_mm, glm::mix(a, b, brep::share_along(p_mm, a, b))));
   }
   return voxel::contains({outline_mm}, p_mm) ? least_mm : -least_mm;
 }
