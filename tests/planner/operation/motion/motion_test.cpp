@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <fstream>
 #include <gtest/gtest.h>
 #include <set>
 
@@ -19,13 +20,22 @@ constexpr const char* motion_steps = R"(
     {"id": "closed", "do": "autorotate", "object": "apart", "against": "upper",
      "condyles": [[-20, 40, 0], [20, 40, 0]]},
     {"id": "laid", "do": "register", "object": "apart", "onto": "lower", "overlap": 1},
+    {"id": "carried", "do": "transform", "object": "lower", "file": "down.tfm"},
     {"id": "image", "do": "mirror", "object": "lower", "point_mm": [0, 0, 0], "normal": [1, 0, 0]},
     {"id": "larger", "do": "offset", "object": "lower", "by_mm": 1},
     {"id": "both", "do": "combine", "expression": "upper | met"})";
 
+/// The plan of these steps, beside the transform file that one of them names: 2 mm down, from after to before.
+Plan moving_plan(const ScratchFolder& folder) {
+  std::ofstream(folder / "down.tfm") << "#Insight Transform File V1.0\n#Transform 0\n"
+                                        "Transform: AffineTransform_double_3_3\n"
+                                        "Parameters: 1 0 0 0 1 0 0 0 1 0 0 2\nFixedParameters: 0 0 0\n";
+  return ball_plan(folder, ball_caps(motion_steps));
+}
+
 TEST(Motion, TheTableSaysOfEachOperationWhetherItsObjectCarriesAMotion) {
   const ScratchFolder folder;
-  const Plan plan = ball_plan(folder, ball_caps(motion_steps));
+  const Plan plan = moving_plan(folder);
   const Evaluation evaluation = evaluate(plan);
   std::set<std::string> seen;
   for (const Step& step : plan.steps) {
@@ -42,7 +52,8 @@ TEST(Motion, TheTableSaysOfEachOperationWhetherItsObjectCarriesAMotion) {
 
 TEST(Motion, ADeckAndAnotherPieceFollowEveryKindOfMotion) {
   const ScratchFolder folder;
-  for (const char* id : {"apart", "met", "seated", "closed", "laid"}) {
+  moving_plan(folder);
+  for (const char* id : {"apart", "met", "seated", "closed", "laid", "carried"}) {
     const std::string more = std::string(motion_steps) +
                              R"(, {"id": "follows", "do": "move", "object": "upper", "with": ")" + id +
                              R"("}, {"id": "deck", "do": "export", "object": "ball", "path": "ball.inp",
