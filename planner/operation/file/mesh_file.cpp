@@ -12,6 +12,7 @@
 #include "brep/mesh/health.h"
 #include "brep/mesh/split_fans.h"
 #include "brep/shape/repair.h"
+#include "brep/shape/repair_effect.h"
 #include "planner/operation/file/mesh_in.h"
 #include "planner/operation/table/number_format.h"
 #include "voxel/space/disk_need.h"

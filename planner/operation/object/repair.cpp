@@ -2,6 +2,7 @@
 // A mesh of any program, repaired in the requested ways, as an object. Its voxels are digitised from it, so
 // that it has no certificate of its own.
 #include "brep/shape/repair.h"
+#include "brep/shape/repair_effect.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/shape/repair.h"
+#include "brep/shape/repair_effect.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "brep/mesh/triangles.h"
+
+// Which triangles form a shell, and which of them have to be reversed so that it winds one way.
+namespace octotomy::brep {
+
+/// For each side of each triangle, the other triangle that shares it.
+struct Neighbours {
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> face;  ///< of side k of triangle f, at 3 f + k; none unless there is exactly one
+  std::vector<std::uint8_t> same_way;  ///< the neighbour runs along the side in the same direction
+
+  /// Whether a side is not shared by exactly one other triangle.
+  bool is_open() const;
+};
+/// Cost: n log n.
+Neighbours neighbours_of(const Triangles& surface);
+
+/// Triangles that are connected across sides of two.
+struct Shells {
+  std::vector<std::uint32_t> of;     ///< of each triangle, the first triangle of its shell
+  std::vector<std::uint8_t> turned;  ///< triangles to reverse, so that each shell winds one way
+  std::size_t twisted_sides = 0;     ///< sides about which that fails, twice each: a Moebius strip has some
+};
+Shells wind_alike(const Neighbours& neighbours);
+
+struct Shell {
+  std::vector<std::uint32_t> faces;
+  std::size_t turns = 0;  ///< of its triangles, reversed ones
+  double volume_mm3 = 0.0, area_mm2 = 0.0;
+  bool is_closed = true;
+  /// Its furthest points in both directions along each axis, without points that other shells share.
+  std::array<std::optional<std::uint32_t>, 6> probes;
+};
+/// The shells of a surface whose triangles wind alike, by their first triangle.
+std::map<std::uint32_t, Shell> shells_of(const Triangles& wound, const Neighbours& neighbours,
+                                         const Shells& shells);
+
+/// How closed shells within others are oriented. Alternating: inward within an odd number of them, otherwise
+/// outward. AsGiven: a shell with consistent winding in the input keeps it. An outward shell is a body to unite;
+/// an inward shell is a cavity, if the shells around it form a body there.
+enum class Nested { Alternating, AsGiven };
+
+/// Orients closed shells outward or inward by `nested`, and open shells so that fewer of their triangles are
+/// reversed: changes `shells.turned`. Cost: n log n, for a tree of the surface and six rays a closed shell.
+void place_shells(const Triangles& surface, const Neighbours& neighbours, Nested nested, Shells& shells);
+
+}  // namespace octotomy::brep
