@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "planner/cli/suite/suites.h"
+#include "verify/suite/alteration.h"
 #include "verify/suite/fault.h"
 #include "voxel/filter/histogram.h"
 #include "voxel/filter/otsu.h"

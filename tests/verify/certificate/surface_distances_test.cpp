@@ -7,23 +7,13 @@
 
 #include "brep/mesh/solid.h"
 #include "convert/voxel/voxelise.h"
+#include "tests/verify/add_box.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::verify {
 namespace {
 
-void add_box(brep::Triangles& mesh, const glm::dvec3& low, const glm::dvec3& high) {
-  const auto first = static_cast<std::uint32_t>(mesh.points_mm.size());
-  for (int corner = 0; corner < 8; ++corner)
-    mesh.points_mm.emplace_back(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y,
-                                corner & 4 ? high.z : low.z);
-  constexpr std::array<std::array<std::uint32_t, 4>, 6> sides{
-      {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
-  for (const auto& [a, b, c, d] : sides) {
-    mesh.faces.push_back({first + a, first + b, first + c});
-    mesh.faces.push_back({first + a, first + c, first + d});
-  }
-}
+using tests::add_box;
 
 voxel::Octree digitised(const brep::Triangles& mesh) {
   voxel::Universe universe;

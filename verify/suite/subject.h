@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string>
+
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/triangles.h"
+#include "verify/certificate/certificate.h"
+#include "verify/witness/witness.h"
+#include "voxel/solid/expression.h"
+#include "voxel/space/scene.h"
+#include "voxel/tree/octree.h"
+
+// A question for both kernels, (window of a scan - box) under a rigid motion, their answers to it, and their
+// certificate. Faults and alterations spoil such answers.
+namespace octotomy::verify {
+
+/// The parameters with which one kernel answers the question.
+struct Making {
+  double low = 0.0;           ///< of the window
+  double slices_apart = 1.0;  ///< slice distance, as a multiple of the true distance
+  bool swapped = false;       ///< box - window instead of window - box
+  glm::dvec3 box_shift_mm{0.0};
+  bool pivot_forgotten = false;  ///< turned about the origin instead of the pivot
+  bool not_moved = false;        ///< the motion is left out
+};
+
+struct Subject {
+  std::string name;
+  voxel::Scene scan;
+  voxel::Universe universe;
+  voxel::Box box;
+  voxel::Motion motion;
+  double low = 0.0;       ///< half way between outside and inside
+  double contrast = 1.0;  ///< inside minus outside
+};
+
+/// Edge of the universe's voxels.
+double edge_mm(const Subject& subject);
+
+voxel::Octree voxel_answer(const Subject& subject, const Making& making);
+brep::Triangles mesh_answer(const Subject& subject, const Making& making);
+Witness witness_of(const Subject& subject, const Making& making);
+/// The certificate of two answers. `fault` is the name of the fault in them, or empty.
+Certificate certified(const Subject& subject, const std::string& fault, const voxel::Octree& octree,
+                      const brep::Triangles& triangles, const Witness& witness);
+
+/// An answer with a box added or removed.
+voxel::Octree changed(const voxel::Octree& octree, const voxel::Box& box, brep::Operation operation);
+brep::Triangles changed(const brep::Triangles& triangles, const voxel::Box& box, brep::Operation operation);
+brep::Triangles shifted(brep::Triangles triangles, const glm::dvec3& by_mm);
+/// The triangles together with those of another surface.
+brep::Triangles with_shell_again(brep::Triangles triangles, const brep::Triangles& again);
+
+/// Subjects without symmetry: off centre, oblique and cut. A symmetry would hide a mirrored axis or swapped
+/// operands. The name is that of the ellipsoid or the ring.
+Subject shape_subject(const std::string& name, int voxels);
+/// Bone of the head phantom, in a universe of `voxels` voxels a side.
+Subject head_subject(int voxels);
+
+}  // namespace octotomy::verify
