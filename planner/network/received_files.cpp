@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "planner/network/connection.h"
-#include "voxel/scan/dicom_file.h"
+#include "voxel/dicom/dicom_file.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner {

@@ -13,7 +13,7 @@
 #include <sstream>
 #include <thread>
 
-#include "voxel/scan/dicom_attributes.h"
+#include "voxel/dicom/dicom_attributes.h"
 #include "voxel/space/progress.h"
 
 namespace octotomy::planner {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "voxel/scan/dicom_file.h"
+#include "voxel/dicom/dicom_file.h"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "voxel/scan/dicom_attributes.h"
+#include "voxel/dicom/dicom_attributes.h"
 #include "voxel/scan/dicom_derived.h"
 
 namespace octotomy::voxel {

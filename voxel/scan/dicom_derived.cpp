@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/scan/dicom_derived.h"
 
-#include "voxel/scan/character_set.h"
+#include "voxel/dicom/character_set.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::voxel {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "voxel/scan/dicom_attributes.h"
+#include "voxel/dicom/dicom_attributes.h"
 #include "voxel/scan/dicom_source.h"
 #include "voxel/scan/write_scene.h"
 

@@ -15,13 +15,13 @@
 #include <map>
 #include <tbb/parallel_for.h>
 
-#include "voxel/scan/audit.h"
-#include "voxel/scan/dicom_folder.h"
-#include "voxel/scan/dicom_pixels.h"
-#include "voxel/scan/dicom_stacks.h"
-#include "voxel/scan/identity.h"
+#include "voxel/dicom/dicom_folder.h"
+#include "voxel/dicom/dicom_pixels.h"
+#include "voxel/dicom/dicom_stacks.h"
+#include "voxel/dicom/identity.h"
 #include "voxel/scan/stack_audit.h"
 #include "voxel/space/file_text.h"
+#include "voxel/space/printed.h"
 #include "voxel/volume/volume_header.h"
 
 namespace octotomy::voxel {

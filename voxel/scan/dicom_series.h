@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "voxel/scan/dicom_slice.h"
+#include "voxel/dicom/dicom_slice.h"
 #include "voxel/scan/read_scene.h"
 
 namespace octotomy::voxel {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "voxel/scan/dicom_file.h"
+#include "voxel/dicom/dicom_file.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/space/lattice.h"
 

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "voxel/scan/dicom_file.h"
+#include "voxel/dicom/dicom_file.h"
 #include "voxel/scan/read_dicom_seg.h"
 #include "voxel/space/file_text.h"
 

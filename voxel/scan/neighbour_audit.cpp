@@ -15,7 +15,7 @@
 #include <tbb/parallel_for.h>
 #include <type_traits>
 
-#include "voxel/scan/audit.h"
+#include "voxel/space/printed.h"
 #include "voxel/space/vector_clones.h"
 
 namespace octotomy::voxel {

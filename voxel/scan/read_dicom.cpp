@@ -18,15 +18,15 @@
 #include <tuple>
 #include <type_traits>
 
+#include "voxel/dicom/dicom_pixels.h"
 #include "voxel/scan/air_level.h"
-#include "voxel/scan/audit.h"
-#include "voxel/scan/dicom_pixels.h"
 #include "voxel/scan/dicom_series.h"
 #include "voxel/scan/neighbour_audit.h"
 #include "voxel/scan/slice_plan.h"
 #include "voxel/scan/tilt_correction.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
+#include "voxel/space/printed.h"
 
 namespace octotomy::voxel {
 

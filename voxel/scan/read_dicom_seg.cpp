@@ -12,13 +12,13 @@
 #include <limits>
 #include <map>
 
-#include "voxel/scan/audit.h"
-#include "voxel/scan/dicom_codec.h"
-#include "voxel/scan/dicom_file.h"
-#include "voxel/scan/identity.h"
+#include "voxel/dicom/dicom_codec.h"
+#include "voxel/dicom/dicom_file.h"
+#include "voxel/dicom/identity.h"
 #include "voxel/scan/label_overlaps.h"
 #include "voxel/scan/slice_plan.h"
 #include "voxel/space/file_text.h"
+#include "voxel/space/printed.h"
 
 namespace octotomy::voxel {
 

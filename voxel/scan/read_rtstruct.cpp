@@ -5,8 +5,8 @@
 #include <fstream>
 #include <optional>
 
-#include "voxel/scan/dicom_file.h"
-#include "voxel/scan/identity.h"
+#include "voxel/dicom/dicom_file.h"
+#include "voxel/dicom/identity.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {

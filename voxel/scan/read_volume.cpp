@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "voxel/scan/air_level.h"
-#include "voxel/scan/audit.h"
 #include "voxel/scan/label_names.h"
 #include "voxel/scan/label_overlaps.h"
 #include "voxel/scan/neighbour_audit.h"

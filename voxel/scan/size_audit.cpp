@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "voxel/scan/audit.h"
+#include "voxel/space/printed.h"
 
 namespace octotomy::voxel {
 

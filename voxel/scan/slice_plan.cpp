@@ -13,8 +13,8 @@
 #include <limits>
 #include <numbers>
 
-#include "voxel/scan/audit.h"
 #include "voxel/space/file_text.h"
+#include "voxel/space/printed.h"
 
 namespace octotomy::voxel {
 

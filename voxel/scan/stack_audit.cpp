@@ -9,7 +9,7 @@
 #include <map>
 #include <optional>
 
-#include "voxel/scan/audit.h"
+#include "voxel/space/printed.h"
 
 namespace octotomy::voxel {
 

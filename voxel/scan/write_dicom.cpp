@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "voxel/scan/character_set.h"
+#include "voxel/dicom/character_set.h"
 #include "voxel/scan/dicom_derived.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/space/disk_need.h"

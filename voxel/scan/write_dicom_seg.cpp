@@ -11,7 +11,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "voxel/scan/character_set.h"
+#include "voxel/dicom/character_set.h"
 #include "voxel/scan/dicom_derived.h"
 #include "voxel/space/error.h"
 #include "voxel/space/staged_files.h"

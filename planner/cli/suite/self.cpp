@@ -10,7 +10,7 @@
 #include "planner/cli/suite/suites.h"
 #include "planner/operation/table/fault.h"
 #include "planner/result/pack/library_versions.h"
-#include "voxel/scan/dicom_codec.h"
+#include "voxel/dicom/dicom_codec.h"
 #include "voxel/scan/image_file.h"
 #include "voxel/space/helper_file.h"
 

@@ -19,8 +19,8 @@
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/nearest_name.h"
 #include "planner/operation/table/same_patient.h"
+#include "voxel/dicom/identity.h"
 #include "voxel/filter/tissue.h"
-#include "voxel/scan/identity.h"
 
 namespace octotomy::planner::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "voxel/scan/identity.h"
+#include "voxel/dicom/identity.h"
 
 namespace octotomy::planner {
 namespace {

@@ -6,7 +6,7 @@
 #include "tests/file_bytes.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/codes/run_length.h"
-#include "voxel/scan/dicom_file.h"
+#include "voxel/dicom/dicom_file.h"
 #include "voxel/scan/read_rtstruct.h"
 
 namespace octotomy::voxel {

@@ -16,7 +16,7 @@
 #include "tests/voxel/scan/dicom_frames.h"
 #include "tests/voxel/scan/spoiled_series.h"
 #include "tests/voxel/scratch_folder.h"
-#include "voxel/scan/dicom_file.h"
+#include "voxel/dicom/dicom_file.h"
 #include "voxel/scan/write_scene.h"
 
 namespace octotomy::voxel {

@@ -7,7 +7,7 @@
 
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/codes/run_length.h"
-#include "voxel/scan/dicom_file.h"
+#include "voxel/dicom/dicom_file.h"
 #include "voxel/scan/read_scene.h"
 
 namespace octotomy::voxel {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "voxel/scan/dicom_slice.h"
+#include "voxel/dicom/dicom_slice.h"
 
 namespace octotomy::voxel {
 

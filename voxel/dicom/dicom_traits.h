@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "voxel/scan/dicom_file.h"
+#include "voxel/dicom/dicom_file.h"
 
 namespace octotomy::voxel {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Turns a header into slices, attribute by attribute. Longer than most sources, because each attribute that a
-// volume needs can be absent, wrong or elsewhere in its own way.
-#include "voxel/scan/dicom_slice.h"
+// Turns a header into slices, attribute by attribute. Each attribute that a volume needs can be absent, wrong or
+// elsewhere in its own way.
+#include "voxel/dicom/dicom_slice.h"
 
 #include <algorithm>
 #include <array>
@@ -13,11 +13,13 @@
 #include <fstream>
 #include <limits>
 
-#include "voxel/scan/audit.h"
-#include "voxel/scan/character_set.h"
-#include "voxel/scan/identity.h"
-#include "voxel/scan/inflate.h"
+#include "voxel/dicom/character_set.h"
+#include "voxel/dicom/dicom_frames.h"
+#include "voxel/dicom/dicom_pixel_parts.h"
+#include "voxel/dicom/identity.h"
+#include "voxel/dicom/inflate.h"
 #include "voxel/space/file_text.h"
+#include "voxel/space/printed.h"
 
 namespace octotomy::voxel {
 
@@ -94,53 +96,6 @@ class Attributes {
   const DicomFile* file_;
   std::vector<DicomFile> groups_;
 };
-
-bool is_raw_syntax(const std::string& syntax) {
-  return syntax.empty() || syntax == "1.2.840.10008.1.2" || syntax.starts_with("1.2.840.10008.1.2.1") ||
-         syntax == "1.2.840.10008.1.2.2";
-}
-
-/// The lossy compression of an image's pixels, from its transfer syntax and LossyImageCompression.
-std::string lossy_of(const DicomFile& file) {
-  const std::string& syntax = file.transfer_syntax();
-  std::string how;
-  if (syntax == "1.2.840.10008.1.2.4.50" || syntax == "1.2.840.10008.1.2.4.51") how = "JPEG";
-  if (syntax == "1.2.840.10008.1.2.4.81") how = "near-lossless JPEG-LS";
-  const std::string flag = file.text(0x00282110);
-  if (flag == "01" && how.empty())
-    how = syntax == "1.2.840.10008.1.2.4.91" ? "JPEG 2000" : "compression before this file was made";
-  if (how.empty()) return how;
-  if (const std::string ratio = file.readable_text(0x00282112); !ratio.empty()) how += ", ratio " + ratio;
-  return how;
-}
-
-DicomPixels pixels_of(const DicomFile& file) {
-  DicomPixels pixels;
-  pixels.transfer_syntax = file.transfer_syntax();
-  pixels.allocated = file.unsigned_short(0x00280100).value_or(16);
-  const auto stored = file.unsigned_short(0x00280101), high = file.unsigned_short(0x00280102);
-  // If one of the two is absent, the other determines it, because values end at the lowest bit.
-  pixels.stored = stored ? *stored : high ? *high + 1u : pixels.allocated;
-  pixels.high = high ? *high : pixels.stored - 1;
-  const auto representation = file.unsigned_short(0x00280103);
-  pixels.is_signed = representation == 1;
-  pixels.states_sign = representation.has_value();
-  for (DicomTag group = 0x60000000; group < 0x60200000; group += 0x00020000)
-    pixels.holds_overlay = pixels.holds_overlay || (file.unsigned_short(group + 0x0102).value_or(0) != 0 &&
-                                                    !file.length(group + 0x3000));
-  // In an uncompressed transfer syntax, fragments are pieces of raw pixels.
-  pixels.is_compressed = file.fragments().has_value() && !is_raw_syntax(pixels.transfer_syntax);
-  pixels.is_big_endian = file.big_endian() && !pixels.is_compressed;
-  pixels.are_bytes_swapped = pixels.is_big_endian && pixels.allocated == 8 && file.has_words_of_pixels();
-  return pixels;
-}
-
-bool is_sound(const DicomPixels& pixels) {
-  const bool is_whole = pixels.allocated == 8 || pixels.allocated == 16 || pixels.allocated == 32;
-  const bool is_packed = pixels.allocated == 12 && !pixels.is_compressed;
-  return (is_whole || is_packed) && pixels.stored >= 1 && pixels.stored <= pixels.allocated &&
-         pixels.high < pixels.allocated && pixels.high + 1 >= pixels.stored;
-}
 
 /// Whether every value that the pixels can hold stays finite in single precision when it is rescaled.
 bool is_rescale_finite(const DicomSlice& slice) {
@@ -249,115 +204,6 @@ std::optional<NoSlice> take_geometry(const Attributes& attributes, std::size_t f
   slice.thickness_mm = attributes.decimal(0x00180050);
   slice.spacing_tag_mm = attributes.decimal(0x00180088);
   slice.tilt_deg = attributes.decimal(0x00181120);
-  return std::nullopt;
-}
-
-/// The number of images that begin among the fragments, by the offset table and by their markers. An RLE
-/// frame is one fragment.
-std::size_t images_begun(const DicomFile& file) {
-  const std::vector<DicomExtent>& fragments = *file.fragments();
-  if (file.transfer_syntax() == "1.2.840.10008.1.2.5") return fragments.size();
-  const auto begun = std::count_if(fragments.begin(), fragments.end(), [&](const DicomExtent& fragment) {
-    return DicomFile::begins_image(file.at(fragment));
-  });
-  return std::max(file.frame_offsets().size(), static_cast<std::size_t>(begun));
-}
-
-/// The extents of `length` bytes of raw pixels, starting at byte `from` of the joined pieces.
-std::vector<DicomExtent> cut_out(const std::vector<DicomExtent>& pieces, std::size_t from,
-                                 std::size_t length) {
-  std::vector<DicomExtent> cut;
-  for (const DicomExtent& piece : pieces) {
-    if (from < piece.length && length > 0) {
-      cut.push_back({piece.at + from, std::min(piece.length - from, length)});
-      length -= cut.back().length;
-      from = 0;
-    } else {
-      from -= std::min(from, piece.length);
-    }
-  }
-  return cut;
-}
-
-/// The reason if this program cannot decode the pixels' transfer syntax.
-std::optional<NoSlice> unknown_syntax(const DicomFile& file, const DicomPixels& pixels) {
-  const std::string& syntax = pixels.transfer_syntax;
-  constexpr std::array<std::string_view, 9> codecs = {
-      "1.2.840.10008.1.2.4.50", "1.2.840.10008.1.2.4.51", "1.2.840.10008.1.2.4.57",
-      "1.2.840.10008.1.2.4.70", "1.2.840.10008.1.2.4.80", "1.2.840.10008.1.2.4.81",
-      "1.2.840.10008.1.2.4.90", "1.2.840.10008.1.2.4.91", "1.2.840.10008.1.2.5"};
-  if (is_raw_syntax(syntax) || std::find(codecs.begin(), codecs.end(), syntax) != codecs.end())
-    return std::nullopt;
-  // If raw pixels have the transfer syntax of a compression, a tool decompressed them without changing the
-  // syntax.
-  if (!pixels.is_compressed && file.raw_pixels() && syntax.starts_with("1.2.840.10008.1.2"))
-    return std::nullopt;
-  return NoSlice{"pixels in transfer syntax " + syntax +
-                     ", which octotomy cannot decode: convert the file, for example by gdcmconv --raw",
-                 NoSlice::Kind::Unusable};
-}
-
-/// Records that there are pixel data for more images than the header states. One surplus byte is allowed: an
-/// odd number of bytes is padded.
-void note_excess(std::size_t held, std::size_t needed, std::vector<DicomSlice>& slices) {
-  const std::size_t excess = held - needed * slices.size();
-  if (excess <= 1) return;
-  const std::size_t more = excess / needed;
-  slices.front().excess_pixels =
-      more > 0
-          ? print("pixels of %zu images, of which the header counts %zu", more + slices.size(), slices.size())
-          : print("%zu bytes of pixels more than Rows, Columns and BitsAllocated take", excess);
-}
-
-/// Fills the pixels of `slices`, the frames of a file. Returns the reason if they cannot be grey frames.
-std::optional<NoSlice> take_pixels(const DicomFile& file, std::vector<DicomSlice>& slices) {
-  const std::size_t needed = frame_bytes(slices.front());
-  const std::size_t frames = slices.size();
-  if (!file.raw_pixels() && !file.fragments())
-    return NoSlice{"DICOM without pixels", NoSlice::Kind::Unusable};
-  if (auto flaw = unknown_syntax(file, slices.front().pixels)) return flaw;
-  if (!slices.front().pixels.is_compressed) {
-    const std::vector<DicomExtent> pieces =
-        file.raw_pixels() ? std::vector{*file.raw_pixels()} : *file.fragments();
-    std::size_t held = 0;
-    for (const DicomExtent& piece : pieces) held += piece.length;
-    if (held / frames < needed)
-      return NoSlice{"cut short: " + std::to_string(held) + " bytes of pixels of " +
-                         std::to_string(needed * frames) +
-                         (is_raw_syntax(slices.front().pixels.transfer_syntax)
-                              ? std::string()
-                              : "; or compressed, as transfer syntax " +
-                                    slices.front().pixels.transfer_syntax + " says, but not in fragments"),
-                     NoSlice::Kind::Damaged};
-    note_excess(held, needed, slices);
-    const bool is_odd = slices.front().size_px.x * slices.front().size_px.y % 2 != 0;
-    const bool swaps = slices.front().pixels.are_bytes_swapped;
-    if (frames > 1 && is_odd && (slices.front().pixels.allocated == 12 || swaps))
-      return NoSlice{"packed frames that begin within a byte or a word", NoSlice::Kind::Unusable};
-    // In a swapped file with an odd number of bytes, the last word holds a byte of padding before the last
-    // pixel.
-    const std::size_t taken = std::min(held, needed + (swaps && is_odd ? 1 : 0));
-    for (std::size_t i = 0; i < frames; ++i) slices[i].pixels.parts = cut_out(pieces, i * needed, taken);
-    return std::nullopt;
-  }
-  const std::size_t images = std::max(images_begun(file), frames);
-  auto parts = file.frame_fragments(images);
-  if (parts && images > frames)
-    slices.front().excess_pixels =
-        print("pixels of %zu images, of which the header counts %zu", images, frames);
-  if (!parts)
-    return NoSlice{"a multi-frame image without the offsets of its frames; decompress it first",
-                   NoSlice::Kind::Unusable};
-  for (std::size_t i = 0; i < frames; ++i) {
-    // Blank pixels compress to almost nothing, so a file of any size may hold 4096 x 4096 pixels of two
-    // bytes.
-    std::size_t held = 0;
-    for (const DicomExtent& fragment : (*parts)[i]) held += fragment.length;
-    if (needed > std::max(std::size_t{4096} * 4096 * 2, 1100 * held))
-      return NoSlice{"claims " + std::to_string(needed) + " bytes of pixels, more than its file can hold",
-                     NoSlice::Kind::Damaged};
-    slices[i].pixels.parts = std::move((*parts)[i]);
-  }
   return std::nullopt;
 }
 
@@ -555,162 +401,6 @@ std::optional<NoSlice> take_frame(const DicomFile& file, const Attributes& attri
     for (const DicomTag tag : dicom_traits[i].tags)
       if (tag != 0 && slice.traits[i].empty()) slice.traits[i] = attributes.trait(tag);
   slice.is_localizer = file.text(0x00080008).find("LOCALIZER") != std::string::npos;
-  return std::nullopt;
-}
-
-/// The largest number of frames that the pixels can hold: one per fragment, or as many as their bytes suffice
-/// for.
-std::size_t most_frames(const DicomFile& file, const DicomSlice& slice) {
-  if (file.fragments() && slice.pixels.is_compressed) return file.fragments()->size();
-  std::size_t held = file.raw_pixels() ? file.raw_pixels()->length : 0;
-  if (file.fragments())
-    for (const DicomExtent& piece : *file.fragments()) held += piece.length;
-  return held / std::max<std::size_t>(frame_bytes(slice), 1);
-}
-
-constexpr DicomTag detector_vector_tag = 0x00540020;
-constexpr DicomTag slice_vector_tag = 0x00540080;
-
-bool is_nuclear(const std::string& class_uid) {
-  return class_uid == "1.2.840.10008.5.1.4.1.1.20";
-}
-
-/// For a nuclear medicine image, the number of each frame in a frame vector, counted from 1 (DICOM PS3.3,
-/// C.8.4.8). None unless the file has exactly one for each frame.
-std::optional<std::vector<std::uint16_t>> numbers_of_frames(const DicomFile& file, DicomTag vector,
-                                                            std::size_t frames) {
-  std::vector<std::uint16_t> numbers = file.unsigned_shorts(vector);
-  if (numbers.size() != frames || std::find(numbers.begin(), numbers.end(), 0) != numbers.end())
-    return std::nullopt;
-  return numbers;
-}
-
-/// For each frame of a nuclear medicine image, the item of its detector, which holds its position; empty if
-/// there is none.
-std::vector<DicomFile> detectors_of_frames(const DicomFile& file, std::size_t frames) {
-  const std::vector<DicomFile> detectors = file.items(0x00540022);
-  std::vector<DicomFile> found;
-  if (detectors.empty()) return found;
-  const auto numbers = numbers_of_frames(file, detector_vector_tag, frames);
-  for (std::size_t i = 0; i < frames; ++i) {
-    const std::size_t number = numbers ? (*numbers)[i] : 1;
-    found.push_back(detectors[std::min(number, detectors.size()) - 1]);
-  }
-  return found;
-}
-
-/// The reason if a nuclear medicine image holds no reconstructed slices.
-std::optional<NoSlice> not_reconstructed(const DicomFile& file, std::size_t frames) {
-  const std::string types = file.text(0x00080008);
-  std::string kind = types;
-  for (int bar = 0; bar < 2; ++bar)
-    kind = kind.find('\\') == std::string::npos ? std::string() : kind.substr(kind.find('\\') + 1);
-  kind = kind.substr(0, kind.find('\\'));
-  if (kind.starts_with("RECON")) return std::nullopt;
-  for (const char* projection : {"STATIC", "DYNAMIC", "GATED", "WHOLE BODY", "TOMO", "GATED TOMO"})
-    if (kind == projection)
-      return NoSlice{
-          "a nuclear medicine image of the kind " + kind +
-              ", whose frames are projections and no slices: export the reconstruction (RECON TOMO)",
-          NoSlice::Kind::Unusable};
-  if (numbers_of_frames(file, slice_vector_tag, frames)) return std::nullopt;
-  return NoSlice{
-      "a nuclear medicine image whose ImageType does not state RECON TOMO and that has no "
-      "SliceVector: its frames may be projections; export the reconstruction",
-      NoSlice::Kind::Unusable};
-}
-
-/// Stores time slots, energy windows and similar numbers of a nuclear medicine image's frames as traits, by
-/// which frames at one position are separated into stacks.
-void take_frame_vectors(const DicomFile& file, std::vector<DicomSlice>& slices) {
-  struct Vector {
-    DicomTag tag;
-    const char* check;
-    const char* words;
-  };
-  for (const Vector& vector :
-       {Vector{0x00540010, "acquisition", "energy window"},
-        Vector{detector_vector_tag, "acquisition", "detector"}, Vector{0x00540050, "acquisition", "rotation"},
-        Vector{0x00540060, "phase", "R-R interval"}, Vector{0x00540070, "phase", "time slot"},
-        Vector{0x00540030, "phase", "dynamic phase"}, Vector{0x00540100, "phase", "time slice"}}) {
-    const auto numbers = numbers_of_frames(file, vector.tag, slices.size());
-    if (!numbers || std::all_of(numbers->begin(), numbers->end(),
-                                [&](std::uint16_t number) { return number == numbers->front(); }))
-      continue;
-    for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait)
-      if (dicom_traits[trait].check == std::string_view(vector.check))
-        for (std::size_t i = 0; i < slices.size(); ++i) {
-          std::string& value = slices[i].traits[trait];
-          value +=
-              (value.empty() ? "" : ", ") + std::string(vector.words) + " " + std::to_string((*numbers)[i]);
-        }
-  }
-}
-
-/// The attribute by which FrameIncrementPointer states that frames follow each other in time; empty if it
-/// does not.
-std::string time_between_frames(const DicomFile& file) {
-  const std::vector<std::uint16_t> pointers = file.unsigned_shorts(0x00280009);
-  for (std::size_t i = 0; i + 1 < pointers.size(); i += 2) {
-    const DicomTag tag = DicomTag{pointers[i]} << 16 | pointers[i + 1];
-    if (tag == 0x00181063) return "FrameTime";
-    if (tag == 0x00181065) return "FrameTimeVector";
-  }
-  return {};
-}
-
-/// Computes positions for frames that have none: along the normal, starting at the first frame. Returns the
-/// reason if the header states no distances.
-std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlice>& slices) {
-  const std::size_t frames = slices.size();
-  if (const auto all = file.decimals(0x00200032); all && all->size() == 3 * frames) {
-    for (DicomSlice& slice : slices)
-      slice.assumed_place = "the positions that its one ImagePositionPatient lists";
-    return std::nullopt;
-  }
-  const DicomSlice& first = slices.front();
-  const double scale = glm::length(glm::cross(first.along_row, first.along_column));
-  if (!(scale > 0.0)) return NoSlice{"a multi-frame image without directions", NoSlice::Kind::Unusable};
-  const glm::dvec3 normal = glm::cross(first.along_row, first.along_column) / scale;
-  std::vector<double> offsets_mm;
-  std::string how;
-  const std::string time = time_between_frames(file);
-  const auto slice_numbers = numbers_of_frames(file, slice_vector_tag, frames);
-  const auto place = [&](std::size_t i) {
-    return slice_numbers ? static_cast<double>((*slice_numbers)[i]) : static_cast<double>(i);
-  };
-  for (const NamedTag& named : {NamedTag{0x3004000c, "GridFrameOffsetVector", true},
-                                NamedTag{0x00182005, "SliceLocationVector", true}})
-    if (const auto vector = file.decimals(named.tag); vector && vector->size() == frames && how.empty()) {
-      offsets_mm = *vector;
-      how = std::string("the distances that ") + named.name + " lists";
-    }
-  for (const NamedTag& named :
-       {NamedTag{0x00180088, "SpacingBetweenSlices", true}, NamedTag{0x00180050, "SliceThickness", true}}) {
-    const double step_mm =
-        named.tag == 0x00180088 ? first.spacing_tag_mm.value_or(0.0) : first.thickness_mm.value_or(0.0);
-    if (!how.empty() || step_mm == 0.0 || !(std::abs(step_mm) < 1e6)) continue;
-    // A time series of one slice has a slice thickness, but no distance between slices.
-    if (!time.empty() && named.tag == 0x00180050)
-      return NoSlice{
-          "a multi-frame image whose frames follow each other in time (FrameIncrementPointer names " + time +
-              ") and have no distance: a film is not a volume. If its frames are slices, state "
-              "SpacingBetweenSlices",
-          NoSlice::Kind::Unusable};
-    for (std::size_t i = 0; i < frames; ++i) offsets_mm.push_back(step_mm * place(i));
-    how = (slice_numbers ? "SliceVector and " : "") + print("%s, %.6g mm", named.name, step_mm);
-    if (!time.empty())
-      how += ", although FrameIncrementPointer names " + time + ", as of a film, which is no volume";
-  }
-  if (how.empty())
-    return NoSlice{
-        "a multi-frame image without the positions of its frames or their distance; export it as "
-        "single frames",
-        NoSlice::Kind::Unusable};
-  for (std::size_t i = 0; i < frames; ++i) {
-    slices[i].first_mm += (offsets_mm[i] - offsets_mm[0]) * normal;
-    slices[i].assumed_place = how + ", along the normal from ImagePositionPatient on";
-  }
   return std::nullopt;
 }
 

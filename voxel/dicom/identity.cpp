@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/identity.h"
+#include "voxel/dicom/identity.h"
 
 #include <algorithm>
 
-#include "voxel/scan/dicom_file.h"
+#include "voxel/dicom/dicom_file.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {

@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
-#include "voxel/scan/dicom_file.h"
-#include "voxel/scan/dicom_traits.h"
+#include "voxel/dicom/dicom_file.h"
+#include "voxel/dicom/dicom_traits.h"
 #include "voxel/space/scene.h"
 
 namespace octotomy::voxel {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/dicom_stacks.h"
+#include "voxel/dicom/dicom_stacks.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "voxel/scan/audit.h"
+#include "voxel/space/printed.h"
 
 namespace octotomy::voxel {
 

@@ -14,7 +14,7 @@
 #include <unistd.h>
 #include <vector>
 
-#include "voxel/scan/dicom_codec_wire.h"
+#include "voxel/dicom/dicom_codec_wire.h"
 #include "voxel/space/confine.h"
 
 namespace {

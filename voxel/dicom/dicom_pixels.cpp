@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/dicom_pixels.h"
+#include "voxel/dicom/dicom_pixels.h"
 
 #include <algorithm>
 #include <bit>
@@ -11,8 +11,8 @@
 #include <type_traits>
 #include <unistd.h>
 
-#include "voxel/scan/dicom_codec.h"
-#include "voxel/scan/inflate.h"
+#include "voxel/dicom/dicom_codec.h"
+#include "voxel/dicom/inflate.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/dicom_codec.h"
+#include "voxel/dicom/dicom_codec.h"
 
 #include <csignal>
 #include <cstring>
@@ -9,7 +9,7 @@
 #include <system_error>
 #include <unistd.h>
 
-#include "voxel/scan/dicom_codec_wire.h"
+#include "voxel/dicom/dicom_codec_wire.h"
 #include "voxel/space/error.h"
 #include "voxel/space/helper_file.h"
 #include "voxel/space/spawn.h"

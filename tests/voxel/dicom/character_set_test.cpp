@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/character_set.h"
+#include "voxel/dicom/character_set.h"
 
 #include <gtest/gtest.h>
 

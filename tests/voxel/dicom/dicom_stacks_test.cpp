@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/dicom_stacks.h"
+#include "voxel/dicom/dicom_stacks.h"
 
 #include <array>
 #include <bit>

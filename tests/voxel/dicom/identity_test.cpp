@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/identity.h"
+#include "voxel/dicom/identity.h"
 
 #include <gtest/gtest.h>
 

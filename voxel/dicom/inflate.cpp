@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/inflate.h"
+#include "voxel/dicom/inflate.h"
 
 #include <algorithm>
 #include <zlib.h>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "voxel/scan/dicom_slice.h"
+#include "voxel/dicom/dicom_slice.h"
 
 namespace octotomy::voxel {
 

@@ -3,7 +3,7 @@
 // This reader parses headers itself and uses GDCM only to decompress pixels: on some damaged headers GDCM
 // aborts the program (its Debian build has assertions enabled), and it allocates as many bytes as an
 // attribute claims.
-#include "voxel/scan/dicom_file.h"
+#include "voxel/dicom/dicom_file.h"
 
 #include <array>
 #include <bit>
@@ -12,8 +12,8 @@
 #include <cstdio>
 #include <sstream>
 
-#include "voxel/scan/character_set.h"
-#include "voxel/scan/inflate.h"
+#include "voxel/dicom/character_set.h"
+#include "voxel/dicom/inflate.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::voxel {

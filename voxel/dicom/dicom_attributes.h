@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "voxel/scan/dicom_file.h"
+#include "voxel/dicom/dicom_file.h"
 
 // Values, identifiers, attributes and file headers for the writers of DICOM files.
 
