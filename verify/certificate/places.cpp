@@ -10,30 +10,25 @@
 //   So the witness is read at every eighth voxel wherever the object may be: at the voxels with x + 2y + 4z a
 //   multiple of 8, one in each block of two voxels a side.
 // 4 Groups. Voxels that fail, joined by faces, edges and corners; the largest is the worst place.
-// 5 Detection limit. Errors are injected at random places of this object and judged as above: groups of
-//   voxels next to the boundary are removed and added, pieces of the mesh are removed, the whole is shifted
-//   along both directions of three axes. The limit is the smallest size from which every such error is
-//   detected. One source, because step 5 judges its errors by the functions of the steps before it.
+// 5 Detection limit, by place_limit.h.
 #include "verify/certificate/places.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
-#include <random>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <utility>
 #include <vector>
 
-#include "brep/mesh/components.h"
-#include "brep/mesh/distance.h"
 #include "brep/mesh/triangles.h"
 #include "convert/voxel/voxelise.h"
 #include "verify/certificate/necks.h"
+#include "verify/certificate/place_fault.h"
+#include "verify/certificate/place_limit.h"
 #include "voxel/measure/distance_map.h"
 #include "voxel/solid/combine.h"
 #include "voxel/tree/octree_node.h"
@@ -42,11 +37,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// The error of a kernel at a voxel. Apart: the kernels differ and the witness does not decide.
-/// Lost: no error, but resampling lost or filled a part that the mesh rightly has or lacks.
-enum class Fault : std::uint8_t { None, VoxelsLack, VoxelsHave, MeshLacks, MeshHas, Apart, Lost };
-
-/// Clauses of a WorstPlace, by Fault.
+/// Clauses of a WorstPlace, by PlaceFault.
 constexpr std::array<const char*, 7> clauses{
     "",
     "the scan has a part there that the voxels lack",
@@ -56,37 +47,18 @@ constexpr std::array<const char*, 7> clauses{
     "only one kernel has a part there",
     "walls or gaps thinner than a voxel were lost there by resampling"};
 
-Fault fault_of(const Reading& reading, bool in_voxels, bool in_mesh) {
-  if (!reading.voxel.allows(in_voxels)) return in_voxels ? Fault::VoxelsHave : Fault::VoxelsLack;
-  if (!reading.mesh.allows(in_mesh)) return in_mesh ? Fault::MeshHas : Fault::MeshLacks;
-  const bool near = reading.voxel.near || reading.mesh.near;
-  // Where the witness decides for one kernel and that kernel agrees, the difference is no error: the kernels'
-  // interpolations differ there.
-  const bool told = reading.voxel != either_side || reading.mesh != either_side;
-  return in_voxels == in_mesh || near || told ? Fault::None : Fault::Apart;
-}
-
 bool is_lost(const Reading& reading, bool in_voxels, bool in_mesh) {
   return in_voxels != in_mesh && reading.voxel == either_side && reading.mesh != either_side &&
          reading.mesh.allows(in_mesh);
 }
+
 /// Smaller groups of lost voxels are left to chance.
 constexpr std::size_t lost_voxels = 8;
 
-/// Where a part is connected by less than a voxel, as thin bone is, chance decides whether a kernel keeps it.
-/// So a group of Apart voxels is no fault if it has fewer voxels than a block of three a side and shares no
-/// face with voxels of the kernel that lacks it.
-constexpr std::size_t chance_voxels = 27;
-
 struct FailedVoxel {
   glm::ivec3 at{0};
-  Fault fault = Fault::None;
+  PlaceFault fault = PlaceFault::None;
 };
-
-bool is_within(const glm::ivec3& voxel, const voxel::Octree& octree) {
-  return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) &&
-         glm::all(glm::lessThan(voxel, glm::ivec3(octree.universe().side())));
-}
 
 /// The voxels of a set, in the order of its blocks.
 void collect(const voxel::BlockRef& block, int height, const glm::ivec3& low,
@@ -160,7 +132,7 @@ std::vector<FailedVoxel> failed_voxels(const voxel::Octree& octree, const voxel:
                                        const std::vector<glm::ivec3>& voxels, const Witness& witness,
                                        const voxel::Progress& progress) {
   const glm::dmat4& lps_from_voxel = octree.universe().lps_from_voxel;
-  std::vector<Fault> faults(voxels.size());
+  std::vector<PlaceFault> faults(voxels.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, voxels.size(), 1024), [&](const auto& range) {
     if (progress.stop.stop_requested()) return;
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
@@ -168,30 +140,14 @@ std::vector<FailedVoxel> failed_voxels(const voxel::Octree& octree, const voxel:
       const Reading reading = witness.allowed_sides(p_mm);
       const bool in_voxels = octree.contains(voxels[i]), in_mesh = digitised.contains(voxels[i]);
       faults[i] = fault_of(reading, in_voxels, in_mesh);
-      if (faults[i] == Fault::None && is_lost(reading, in_voxels, in_mesh)) faults[i] = Fault::Lost;
+      if (faults[i] == PlaceFault::None && is_lost(reading, in_voxels, in_mesh)) faults[i] = PlaceFault::Lost;
     }
   });
   progress.at(0.5);
   std::vector<FailedVoxel> failed;
   for (std::size_t i = 0; i < voxels.size(); ++i)
-    if (faults[i] != Fault::None) failed.push_back({voxels[i], faults[i]});
+    if (faults[i] != PlaceFault::None) failed.push_back({voxels[i], faults[i]});
   return failed;
-}
-
-/// Voxels of step 3.
-constexpr int sampled_one_in = 8;
-constexpr bool is_sampled(int x, int y, int z) {
-  return ((x + 2 * y + 4 * z) & (sampled_one_in - 1)) == 0;
-}
-bool is_sampled(const glm::ivec3& voxel) {
-  return is_sampled(voxel.x, voxel.y, voxel.z);
-}
-/// The sampled voxel of the block of two voxels a side whose lowest voxel is `first`.
-glm::ivec3 sampled_in_block(const glm::ivec3& first) {
-  glm::ivec3 at = first;
-  for (int i = 0; i < 8 && !is_sampled(at); ++i)
-    at = first + glm::ivec3((i + 1) & 1, ((i + 1) >> 1) & 1, (i + 1) >> 2);
-  return at;
 }
 
 /// The voxels of a leaf as bits, and a mask of the voxels that step 3 samples.
@@ -273,7 +229,7 @@ std::vector<FailedVoxel> failed_inside(const voxel::Octree& octree, const voxel:
         if (!is_within(at, octree) || witness.mesh_sides(lattice.lps_mm(glm::dvec3(at))).allows(inside) ||
             std::binary_search(compared.begin(), compared.end(), at, before))
           continue;
-        found[i].push_back({at, inside ? Fault::MeshHas : Fault::MeshLacks});
+        found[i].push_back({at, inside ? PlaceFault::MeshHas : PlaceFault::MeshLacks});
       }
     }
   });
@@ -292,7 +248,7 @@ void add_inside(const std::vector<FailedVoxel>& failed, const voxel::Octree& oct
   places.largest_count = count;
   const double volume_mm3 = static_cast<double>(count) * lattice.voxel_mm3();
   const FailedVoxel& middle = failed[failed.size() / 2];
-  const bool lacks = middle.fault == Fault::VoxelsLack || middle.fault == Fault::MeshLacks;
+  const bool lacks = middle.fault == PlaceFault::VoxelsLack || middle.fault == PlaceFault::MeshLacks;
   places.worst = WorstPlace{lattice.lps_mm(glm::dvec3(middle.at)), std::cbrt(volume_mm3),
                             lacks ? "the scan has a part there that both kernels lack"
                                   : "both kernels have a part there that the scan lacks",
@@ -339,7 +295,7 @@ WorstPlace place_of(const std::vector<FailedVoxel>& group, const voxel::Lattice&
 /// Moves the lost voxels from `failed`, which are sorted, to `places.lost`.
 void take_lost(std::vector<FailedVoxel>& failed, const voxel::Octree& octree, Places& places) {
   std::vector<FailedVoxel> lost, rest;
-  for (const FailedVoxel& voxel : failed) (voxel.fault == Fault::Lost ? lost : rest).push_back(voxel);
+  for (const FailedVoxel& voxel : failed) (voxel.fault == PlaceFault::Lost ? lost : rest).push_back(voxel);
   failed = std::move(rest);
   std::vector<glm::ivec3> voxels;
   for (const FailedVoxel& voxel : lost) voxels.push_back(voxel.at);
@@ -370,7 +326,7 @@ void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& oct
     std::vector<FailedVoxel> group;
     for (const std::size_t i : members) group.push_back(failed[i]);
     if (std::all_of(group.begin(), group.end(),
-                    [](const FailedVoxel& voxel) { return voxel.fault == Fault::Apart; })) {
+                    [](const FailedVoxel& voxel) { return voxel.fault == PlaceFault::Apart; })) {
       if (group.size() < chance_voxels &&
           std::all_of(group.begin(), group.end(), [&](const FailedVoxel& voxel) {
             return hangs_on_no_face(voxel.at, octree, digitised, witness);
@@ -380,7 +336,7 @@ void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& oct
       for (const FailedVoxel& voxel : group) rest.push_back(voxel.at);
       for (OpenPart& part : bridges.take_from(rest)) places.open.push_back(std::move(part));
       group.clear();
-      for (const glm::ivec3& at : rest) group.push_back({at, Fault::Apart});
+      for (const glm::ivec3& at : rest) group.push_back({at, PlaceFault::Apart});
       if (group.empty()) continue;
     }
     places.voxel_count += group.size();
@@ -391,17 +347,6 @@ void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& oct
   std::stable_sort(places.open.begin(), places.open.end(), [](const OpenPart& a, const OpenPart& b) {
     return a.bridge.volume_mm3 > b.bridge.volume_mm3;
   });
-}
-
-/// A triangle's centroid and area.
-struct Facet {
-  glm::dvec3 centroid_mm{0.0};
-  double area_mm2 = 0.0;
-};
-Facet facet_of(const brep::Triangles& mesh, std::size_t face) {
-  const auto& [a, b, c] = mesh.faces[face];
-  const glm::dvec3 &p = mesh.points_mm[a], &q = mesh.points_mm[b], &r = mesh.points_mm[c];
-  return {(p + q + r) / 3.0, 0.5 * glm::length(glm::cross(q - p, r - p))};
 }
 
 void add_stray_triangles(const brep::Triangles& mesh, const Witness& witness, const voxel::Progress& progress,
@@ -422,174 +367,19 @@ void add_stray_triangles(const brep::Triangles& mesh, const Witness& witness, co
     const auto& face = mesh.faces[i];
     return std::none_of(face.begin(), face.end(),
                         [&](std::uint32_t vertex) { return stray_vertex[vertex] != 0; }) &&
-           witness.mesh_sides(facet_of(mesh, i).centroid_mm).near;
+           witness.mesh_sides(centred_face(mesh, i).centroid_mm).near;
   });
   progress.at(0.8);
   double largest_mm2 = 0.0;
   for (std::size_t i = 0; i < stray.size(); ++i) {
     if (!stray[i]) continue;
-    const Facet facet = facet_of(mesh, i);
+    const CentredFace facet = centred_face(mesh, i);
     places.stray_mm2 += facet.area_mm2;
     if (places.voxel_count > 0 || facet.area_mm2 <= largest_mm2) continue;
     largest_mm2 = facet.area_mm2;
     places.worst = WorstPlace{facet.centroid_mm, std::sqrt(facet.area_mm2),
                               "the mesh has a surface there that the scan lacks", 0.0};
   }
-}
-
-/// Steps from a voxel to its neighbours within six voxels, the nearest first.
-std::vector<glm::ivec3> steps_outward() {
-  std::vector<glm::ivec3> steps;
-  for (int z = -6; z <= 6; ++z)
-    for (int y = -6; y <= 6; ++y)
-      for (int x = -6; x <= 6; ++x)
-        if (x * x + y * y + z * z <= 36) steps.emplace_back(x, y, z);
-  std::stable_sort(steps.begin(), steps.end(), [](const glm::ivec3& a, const glm::ivec3& b) {
-    return a.x * a.x + a.y * a.y + a.z * a.z < b.x * b.x + b.y * b.y + b.z * b.z;
-  });
-  return steps;
-}
-
-/// Size of the largest error around a voxel that could pass. Counts voxels of the same state outward, up to
-/// the first one that would fail if the octree changed it. Smaller errors of that shape pass.
-std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digitised, const glm::ivec3& from,
-                          const std::vector<glm::ivec3>& steps, const Witness& witness) {
-  const bool inside = octree.contains(from);
-  std::size_t count = 0;
-  for (const glm::ivec3& step : steps) {
-    const glm::ivec3 at = from + step;
-    if (!is_within(at, octree) || octree.contains(at) != inside) continue;
-    ++count;
-    if (digitised.contains(at) != inside) continue;
-    const Reading reading = witness.allowed_sides(octree.universe().lattice().lps_mm(glm::dvec3(at)));
-    if (fault_of(reading, !inside, inside) != Fault::None) return count;
-  }
-  return count;
-}
-
-/// Whether step 1 compares a voxel outside the mesh: it is in the octree or beside the octree's boundary.
-bool is_compared(const voxel::Octree& octree, const glm::ivec3& voxel) {
-  const auto has = [&](const glm::ivec3& at) { return is_within(at, octree) && octree.contains(at); };
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int by : {-1, 1}) {
-      glm::ivec3 neighbour = voxel;
-      neighbour[axis] += by;
-      if (has(neighbour)) return true;
-    }
-  return has(voxel);
-}
-
-/// Whether the loss of a piece is detected, both in the mesh alone and in both kernels. The piece must hold a
-/// compared voxel's centre at which the mesh fails without the piece, and a sampled voxel's centre at which
-/// both kernels fail. Tries points beneath the piece's triangles, up to two voxels deep.
-bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const voxel::Octree& octree,
-             const Witness& witness) {
-  constexpr std::size_t most_faces = 4096, most_tried = 64;
-  if (piece.faces.size() > most_faces) return true;
-  brep::Triangles own;
-  for (const std::uint32_t face : piece.faces) {
-    const auto first = static_cast<std::uint32_t>(own.points_mm.size());
-    for (const std::uint32_t corner : mesh.faces[face]) own.points_mm.push_back(mesh.points_mm[corner]);
-    own.faces.push_back({first, first + 1, first + 2});
-  }
-  const voxel::Lattice lattice = octree.universe().lattice();
-  const glm::dvec3 voxel_mm = lattice.spacing_mm();
-  const bool is_small = std::abs(piece.volume_mm3) < chance_voxels * lattice.voxel_mm3();
-  const std::size_t stride = 1 + own.faces.size() / most_tried;
-  bool seen_alone = false, seen_in_both = !witness.lines();
-  const auto is_lost = [&](const glm::ivec3& at, bool in_voxels) {
-    const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(at));
-    const Fault fault = fault_of(witness.allowed_sides(centre), in_voxels, false);
-    return fault != Fault::None && !(fault == Fault::Apart && is_small) && brep::is_inside(centre, own);
-  };
-  const auto is_lost_in_both = [&](const glm::ivec3& at) {
-    const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(at));
-    return !witness.mesh_sides(centre).allows(false) && brep::is_inside(centre, own);
-  };
-  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-  for (const glm::dvec3& p : own.points_mm) {
-    low = glm::min(low, lattice.voxel(p));
-    high = glm::max(high, lattice.voxel(p));
-  }
-  for (std::size_t i = 0; i < own.faces.size(); i += stride)
-    for (const double voxels : {0.5, 1.0, 2.0}) {
-      const auto& [a, b, c] = own.faces[i];
-      const glm::dvec3 &p = own.points_mm[a], &q = own.points_mm[b], &r = own.points_mm[c];
-      const glm::dvec3 across = glm::cross(q - p, r - p);
-      const double length = glm::length(across);
-      if (!(length > 0.0)) continue;
-      const glm::dvec3 beneath = (p + q + r) / 3.0 - voxels / length * across * voxel_mm;
-      const glm::ivec3 voxel(glm::round(lattice.voxel(beneath)));
-      if (!seen_alone && is_compared(octree, voxel)) seen_alone = is_lost(voxel, octree.contains(voxel));
-      if (!seen_in_both) seen_in_both = is_lost_in_both(sampled_in_block(voxel));
-      if (seen_alone && seen_in_both) return true;
-    }
-  // A small piece holds few sampled voxels, so all of them are tried.
-  const glm::dvec3 box = glm::ceil(high) - glm::floor(low) + 1.0;
-  constexpr double most_voxels = 16384.0;
-  if (!seen_alone || box.x * box.y * box.z > most_voxels) return false;
-  for (int z = static_cast<int>(std::floor(low.z)); z <= high.z; ++z)
-    for (int y = static_cast<int>(std::floor(low.y)); y <= high.y; ++y)
-      for (int x = static_cast<int>(std::floor(low.x)); x <= high.x; ++x)
-        if (is_sampled({x, y, z}) && is_lost_in_both({x, y, z})) return true;
-  return false;
-}
-
-/// Volume of the largest whole piece of the mesh whose loss is not detected. Any other lost or added part
-/// leaves vertices where the witness has none, which step 2 detects.
-double piece_limit_mm3(const brep::Solid& solid, const brep::Triangles& mesh, const voxel::Octree& octree,
-                       const Witness& witness) {
-  const std::vector<brep::Component>& pieces = solid.components();
-  std::vector<double> lost_mm3(pieces.size(), 0.0);
-  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
-    if (!is_seen(mesh, pieces[i], octree, witness)) lost_mm3[i] = std::abs(pieces[i].volume_mm3);
-  });
-  return pieces.empty() ? 0.0 : *std::max_element(lost_mm3.begin(), lost_mm3.end());
-}
-
-/// Number of places of an object at which errors are injected.
-constexpr std::size_t tried_places = 1024;
-/// Number of triangles that are tested for each shift.
-constexpr std::size_t tried_triangles = 4096;
-
-double place_limit_mm3(const voxel::Octree& octree, const voxel::Octree& digitised,
-                       const std::vector<voxel::VoxelFace>& boundary, const Witness& witness) {
-  const std::vector<glm::ivec3> steps = steps_outward();
-  std::mt19937_64 random(1);
-  std::vector<glm::ivec3> from;
-  for (std::size_t i = 0; i < tried_places; ++i) {
-    const voxel::VoxelFace& face = boundary[random() % boundary.size()];
-    from.push_back(face.voxel);
-    // Every other error adds voxels.
-    if (i % 2 == 1) from.back()[face.axis] += face.side;
-  }
-  std::vector<std::size_t> counts(from.size(), 0);
-  tbb::parallel_for(std::size_t{0}, from.size(), [&](std::size_t i) {
-    counts[i] = unseen_voxels(octree, digitised, from[i], steps, witness);
-  });
-  const std::size_t most = std::max<std::size_t>(*std::max_element(counts.begin(), counts.end()), 1);
-  return static_cast<double>(std::bit_ceil(most)) * octree.universe().lattice().voxel_mm3();
-}
-
-/// The smallest tried shift that moves at least one sampled triangle off the surface, in each of six
-/// directions. None: the largest tried shift does not.
-std::optional<double> shift_limit_mm(const brep::Triangles& mesh, double voxel_mm, const Witness& witness) {
-  std::mt19937_64 random(2);
-  std::vector<glm::dvec3> points_mm;
-  for (std::size_t i = 0; i < tried_triangles; ++i)
-    points_mm.push_back(facet_of(mesh, random() % mesh.faces.size()).centroid_mm);
-  for (const double voxels : {0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0}) {
-    bool seen_everywhere = true;
-    for (int direction = 0; direction < 6 && seen_everywhere; ++direction) {
-      glm::dvec3 by_mm(0.0);
-      by_mm[direction / 2] = (direction % 2 == 0 ? 1.0 : -1.0) * voxels * voxel_mm;
-      seen_everywhere = std::any_of(points_mm.begin(), points_mm.end(), [&](const glm::dvec3& p_mm) {
-        return !witness.mesh_sides(p_mm + by_mm).near;
-      });
-    }
-    if (seen_everywhere) return voxels * voxel_mm;
-  }
-  return std::nullopt;
 }
 
 /// Steps 1 to 4, without the limit.
@@ -628,16 +418,9 @@ std::vector<OpenPart> open_parts(const voxel::Octree& octree, const brep::Solid&
 
 Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,
                     const Witness& witness, const voxel::Progress& progress) {
-  const brep::Triangles& mesh = solid.triangles();
   const std::vector<voxel::VoxelFace> boundary = voxel::voxel_boundary(octree);
   Places places = contradictions(octree, digitised, solid, boundary, witness, progress);
-  const glm::dvec3 voxel_mm = octree.universe().lattice().spacing_mm();
-  places.limit.volume_mm3 = piece_limit_mm3(solid, mesh, octree, witness);
-  if (!boundary.empty())
-    places.limit.volume_mm3 =
-        std::max(places.limit.volume_mm3, place_limit_mm3(octree, digitised, boundary, witness));
-  if (!mesh.faces.empty())
-    places.limit.shift_mm = shift_limit_mm(mesh, std::max({voxel_mm.x, voxel_mm.y, voxel_mm.z}), witness);
+  places.limit = place_limit(octree, digitised, solid, boundary, witness);
   progress.at(1.0);
   return places;
 }

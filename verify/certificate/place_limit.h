@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "brep/mesh/solid.h"
+#include "verify/certificate/certificate.h"
+#include "verify/witness/reading.h"
+#include "voxel/tree/octree.h"
+#include "voxel/tree/voxel_boundary.h"
+
+namespace octotomy::verify {
+
+/// The smallest size from which the comparison of places detects an error in this object. Errors are injected at
+/// random places and judged as judge_places() judges: groups of voxels next to the boundary are removed and added,
+/// pieces of the mesh are removed, the whole is shifted along both directions of three axes. `digitised` are the
+/// voxels whose centre lies inside the solid, `boundary` is the octree's. Same answer on any thread count. Cost:
+/// some ten thousand readings of the witness, and a sort of the solid's pieces.
+DetectionLimit place_limit(const voxel::Octree& octree, const voxel::Octree& digitised,
+                           const brep::Solid& solid, const std::vector<voxel::VoxelFace>& boundary,
+                           const Witness& witness);
+
+}  // namespace octotomy::verify
