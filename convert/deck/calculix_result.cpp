@@ -170,7 +170,8 @@ SolvedDeck read_solved_deck(const std::filesystem::path& frd, const voxel::Progr
     if (line.begins("    2C")) read_nodes(in, line, deck.tetrahedra);
     if (line.begins("    3C")) read_elements(in, line, deck.tetrahedra);
   }
-  if (deck.tetrahedra.tets.empty()) refuse(frd, "holds no elements");
+  if (deck.tetrahedra.tets.empty())
+    refuse(frd, "holds no elements: give the .frd file that CalculiX wrote of the deck");
   deck.tetrahedra.boundary_nodes = boundary_nodes(deck.tetrahedra.tets);
   deck.tetrahedra.method = "CalculiX";
   const auto displacements = displacements_from(in, line, deck.tetrahedra.nodes_mm.size());

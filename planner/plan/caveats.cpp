@@ -115,6 +115,18 @@ std::uint64_t enclosed_samples(const voxel::Scene& scene, const Shown& window) {
   return count;
 }
 
+/// Whether a scan is one that 'scan_of' made, or was made of such a scan. Its padding includes the holes that a
+/// motion left, where no tissue is missing: the plan states nothing there.
+bool is_operated(const std::vector<ScanRecord>& records, std::string name) {
+  for (;;) {
+    const auto record = std::find_if(records.begin(), records.end(),
+                                     [&](const ScanRecord& scan) { return scan.name == name; });
+    if (record == records.end() || record->made_by.empty()) return false;
+    if (record->details.contains("hole_samples")) return true;
+    name = record->made_by.substr(record->made_by.rfind(' ') + 1);
+  }
+}
+
 /// Of an object's volume. More padding within it makes its numbers wrong. Less may be dark samples of an MR that
 /// happen to have the padding's value, 0.
 constexpr double most_missing_share = 0.005;
@@ -136,18 +148,22 @@ void add_unmeasured(const MadeOf& from, Object& made) {
       if (window.scan == name) enclosed = std::max(enclosed, enclosed_samples(scene, window));
     // Padding that a scanner states surrounds the measured region, so it is no caveat unless enclosed.
     if (!are_nonfinite && enclosed == 0) continue;
+    const bool left_by_motion = !are_nonfinite && is_operated(from.records, name);
     std::string reason = (count == 0 ? "Some" : std::to_string(count)) + " samples of '" + name + "' are " +
-                         (are_nonfinite ? "no finite numbers" : "padding") +
+                         (are_nonfinite    ? "no finite numbers"
+                          : left_by_motion ? "holes that no object fills"
+                                           : "padding") +
                          ", and both kernels leave out what lies there";
     if (enclosed > 0)
       reason += ": " + std::to_string(enclosed) + " of them lie between samples of this object, where " +
                 three_figures(static_cast<double>(enclosed) * scene.lattice.voxel_mm3()) +
-                " mm3 of it are missing";
-    reason += "; measure them again, or leave their slices out";
+                (left_by_motion ? " mm3 are empty" : " mm3 of it are missing");
+    reason += left_by_motion ? "; a 'hole_value' of the step 'scan_of' fills them"
+                             : "; measure them again, or leave their slices out";
     made.findings.push_back(reason);
     const double missing_mm3 = static_cast<double>(enclosed) * scene.lattice.voxel_mm3();
-    const bool is_hole =
-        enclosed > 0 && (are_nonfinite || missing_mm3 > most_missing_share * made.voxel.measures.volume_mm3);
+    const bool is_hole = enclosed > 0 && !left_by_motion &&
+                         (are_nonfinite || missing_mm3 > most_missing_share * made.voxel.measures.volume_mm3);
     made.caveats.push_back({is_hole ? voxel::Verdict::Fail : voxel::Verdict::Warn, std::move(reason), false});
   }
 }

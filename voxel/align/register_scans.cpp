@@ -178,7 +178,8 @@ class Search {
     for (const CoarseScan* scan : {&pair.moving(), &pair.fixed()})
       if (!(scan->high > scan->low))
         throw InvalidInput(std::string("the scan that ") + (scan == &pair.moving() ? "moves" : "stays") +
-                           " has nothing to compare: all but a few samples have one value");
+                           " has nothing to compare: all but a few samples have one value; give a scan with "
+                           "contrast");
     const Lattice& lattice = moving_.lattice;
     const std::array<glm::dvec3, 3> shifts{
         glm::dvec3(0.0), lattice.lps_mm(0.5 * glm::dvec3(lattice.dims - 1)) - middle_mm_,

@@ -25,6 +25,7 @@
 #include "voxel/filter/otsu.h"
 #include "voxel/filter/slice_work.h"
 #include "voxel/space/error.h"
+#include "voxel/space/rounded.h"
 #include "voxel/space/shared_progress.h"
 
 namespace octotomy::voxel {
@@ -156,7 +157,8 @@ Thinned thinned(const Scene& scene, const glm::ivec3& every, const glm::ivec3& f
   if (thin.count < 100)
     throw Error(ErrorCode::Geometry, "only " + std::to_string(thin.count) +
                                          " of the samples that are fitted are above the threshold of " +
-                                         std::to_string(threshold) + ": choose a lower one");
+                                         rounded(threshold) +
+                                         ": choose a lower one, or a scan with more samples above 0");
   return thin;
 }
 

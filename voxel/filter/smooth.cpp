@@ -21,6 +21,7 @@
 #include "voxel/filter/measured.h"
 #include "voxel/filter/slice_work.h"
 #include "voxel/space/error.h"
+#include "voxel/space/rounded.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -127,8 +128,8 @@ Scene gaussian(const Scene& scene, double sigma_mm, const Progress& progress) {
   const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
   const double finest_mm = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   if (!(sigma_mm > 0.0) || !(sigma_mm <= 32.0 * finest_mm))
-    refuse("a Gaussian's sigma must be above 0 and at most 32 samples, " + std::to_string(32.0 * finest_mm) +
-           " mm here, not " + std::to_string(sigma_mm) + " mm");
+    refuse("a Gaussian's sigma must be above 0 and at most 32 samples, " + rounded(32.0 * finest_mm) +
+           " mm here, not " + rounded(sigma_mm) + " mm");
   if (scene.padding)
     return on_measured(scene, [&](const Scene& whole) { return gaussian(whole, sigma_mm, progress); });
   // ITK cuts the weights off before four standard deviations and two samples.

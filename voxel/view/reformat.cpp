@@ -75,9 +75,9 @@ Rectangle cut_rectangle(const Lattice& lattice, const View& view, double positio
     }
   }
   if (!(lowest <= 0.0 && highest >= 0.0))
-    throw InvalidInput("the plane at " + std::to_string(position_mm) +
-                       " mm misses the scan, which reaches from " + std::to_string(lowest + position_mm) +
-                       " to " + std::to_string(highest + position_mm) + " mm along its normal");
+    throw InvalidInput("the plane at " + rounded(position_mm) + " mm misses the scan, which reaches from " +
+                       rounded(lowest + position_mm) + " to " + rounded(highest + position_mm) +
+                       " mm along its normal: give a place in between");
   return rectangle;
 }
 

@@ -28,11 +28,11 @@ struct PrepareText {
   ScanIn scan;
 };
 
-/// The operations that make scans.
+/// The operations that make a scan of another one alone; others take objects, too, and are steps of plans only.
 std::vector<const Operation*> known_steps() {
   std::vector<const Operation*> known;
   for (const Operation& operation : operations())
-    if (operation.makes == Makes::Scan) known.push_back(&operation);
+    if (operation.makes == Makes::Scan && !operation.verb_example.empty()) known.push_back(&operation);
   return known;
 }
 
@@ -41,7 +41,7 @@ Action step_of(const std::string& text, const PrepareText& given) {
   const auto equals = text.find('=');
   const std::string name = text.substr(0, equals);
   const Operation* operation = find_operation(name);
-  if (operation == nullptr || operation->makes != Makes::Scan) {
+  if (operation == nullptr || operation->makes != Makes::Scan || operation->verb_example.empty()) {
     std::vector<std::string> names;
     for (const Operation* known : known_steps()) names.push_back(known->name);
     throw CLI::ValidationError("--step", "there is no step '" + name + "'" + suggestion(name, names));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/operation/anatomy/movement.h"
 
+#include <algorithm>
+
 #include "planner/operation/anatomy/head_directions.h"
 #include "planner/operation/anatomy/measured_movement.h"
 #include "voxel/measure/measure.h"
@@ -17,18 +19,29 @@ MeasuredDisplacement measured(const glm::dvec3& by_mm, const glm::dmat3& lps_fro
   return {along.forward_mm, along.left_mm, along.up_mm, in_words(along)};
 }
 
-/// The bone of scans' windows without moved objects and the objects that they were made from; none where
-/// nothing moves or nothing remains.
+/// The bone from which the moved objects were cut, without the objects that were moved; none where nothing moves
+/// or nothing remains. Other windows, such as of skin or of the operated scan, hold no bone that stays.
 std::optional<voxel::Expression> staying_bone(const Objects& objects) {
   std::optional<voxel::Expression> staying, pieces;
   const auto add = [](std::optional<voxel::Expression>& all, const voxel::Octree& octree) {
     all = all ? *all | voxel::Expression(octree) : voxel::Expression(octree);
   };
-  for (const Object& object : objects) {
-    if (object.moved && !objects.at(object.moved->object).moved)
-      add(pieces, objects.at(object.moved->object).voxel.octree);
-    if (!object.is_tool && !object.moved && object.shown) add(staying, object.voxel.octree);
-  }
+  std::vector<Shown> cut;  // windows
+  for (const Object& object : objects)
+    if (object.moved && !objects.at(object.moved->object).moved) {
+      const Object& piece = objects.at(object.moved->object);
+      add(pieces, piece.voxel.octree);
+      cut.insert(cut.end(), piece.bound.windows.begin(), piece.bound.windows.end());
+    }
+  const auto is_cut = [&](const Shown& window) {
+    return cut.empty() || std::any_of(cut.begin(), cut.end(), [&](const Shown& each) {
+             return each.scan == window.scan && each.threshold == window.threshold &&
+                    each.high == window.high;
+           });
+  };
+  for (const Object& object : objects)
+    if (!object.is_tool && !object.moved && object.shown && is_cut(*object.shown))
+      add(staying, object.voxel.octree);
   if (!staying || !pieces) return std::nullopt;
   return voxel::Expression(voxel::combine(objects.front().voxel.octree.universe(), *staying - *pieces));
 }

@@ -46,7 +46,7 @@ double fade_of(const Warp& warp, double largest_mm) {
   if (*warp.fade_mm < least_mm)
     throw std::runtime_error("'fade_mm' is " + three_figures(*warp.fade_mm) + " mm, but a displacement of " +
                              three_figures(largest_mm) +
-                             " mm that fades so fast folds the tissue: at least " +
+                             " mm that fades so fast folds the tissue: give at least " +
                              grouped(std::ceil(10.0 * least_mm) / 10.0, 1) + " mm");
   return *warp.fade_mm;
 }

@@ -243,7 +243,8 @@ void check(const Segment& segment, const FieldLocation& place) {
                    (segment.tolerance ? 1 : 0) + (segment.label ? 1 : 0) + (segment.named ? 1 : 0);
   if (ways != 1 && place.scope != nullptr)
     place.refuse(
-        "needs one of 'window', 'otsu', 'clusters', 'tolerance' with 'seeds_mm', 'label' and 'named'");
+        "needs exactly one of 'window', 'otsu', 'clusters', 'tolerance' with 'seeds_mm', 'label' and "
+        "'named'");
   if (!segment.names.empty() && !segment.named)
     place.at("names").refuse("is the table of a label that is 'named'");
   if (segment.regions.empty() && !segment.structure.empty())
@@ -254,7 +255,10 @@ void check(const Segment& segment, const FieldLocation& place) {
     place.at("tolerance").refuse("grows from seeds: add 'seeds_mm'");
   const std::optional<int>& classes = segment.otsu ? segment.otsu : segment.clusters;
   if (segment.otsu_class && (!classes || *segment.otsu_class > *classes))
-    place.at("class").refuse("is one of the classes of 'otsu' or 'clusters', from 1, the darkest");
+    place.at("class").refuse(classes
+                                 ? "must be from 1, the darkest, to " + std::to_string(*classes) +
+                                       ", one of the classes of 'otsu' or 'clusters'"
+                                 : "chooses one of the classes of 'otsu' or 'clusters': add one of these");
   if (bridges_of(segment).any() && !chooses_parts(segment))
     place.refuse(
         "has 'keep_bridges_mm' or 'cut_bridges_mm', which decide among connected parts: add "

@@ -439,8 +439,7 @@ void check(const Draw& asked, const FieldLocation& place) {
   const auto refuse = [&](const std::string& field, const std::string& why) { place.at(field).refuse(why); };
   const bool has_places = !asked.axial.empty() || !asked.coronal.empty() || !asked.sagittal.empty();
   if (asked.objects.empty() && asked.contours.empty() && asked.scan.name.empty())
-    refuse("objects",
-           "there is nothing to draw: give surfaces, 'contours' or a 'scan' with positions of slices");
+    place.refuse("there is nothing to draw: give surfaces, 'contours' or a 'scan' with positions of slices");
   if (!asked.scan.name.empty() && !has_places)
     refuse("scan", "is drawn as slices: give their positions by 'axial', 'coronal' or 'sagittal'");
   if (asked.colours.size() > asked.objects.size() + asked.contours.size())

@@ -210,6 +210,29 @@ TEST_F(Caveats, ASliceOfPaddingThroughAnObjectIsAHoleInItAndPaddingBesideItIsNon
   }
 }
 
+/// A motion leaves a hole of 5 mm through the ball: no tissue is missing there, also in scans made of the
+/// operated one.
+TEST_F(Caveats, HolesThatAMotionLeftAreNoMissingTissue) {
+  add({{"id", "cap"}, {"do", "combine"}, {"expression", "ball & top"}});
+  add({{"id", "raised"}, {"do", "move"}, {"object", "cap"}, {"translate_mm", {0, 0, 5}}});
+  add({{"id", "operated"}, {"do", "scan_of"}, {"scan", "ct"}, {"expression", "raised | (ball - top)"}});
+  add({{"id", "part"},
+       {"do", "crop"},
+       {"scan", "operated"},
+       {"low_mm", {-30, -30, -30}},
+       {"high_mm", {30, 30, 30}}});
+  add({{"id", "seen"}, {"do", "window"}, {"scan", "operated"}, {"low", 0}});
+  add({{"id", "seen_in_part"}, {"do", "window"}, {"scan", "part"}, {"low", 0}});
+  const Evaluation evaluation = evaluated();
+  for (const char* name : {"seen", "seen_in_part"}) {
+    const Object& seen = evaluation.object(name);
+    EXPECT_EQ(seen.certificate->verdict, Verdict::Warn) << reasons(seen);
+    EXPECT_NE(reasons(seen).find("are holes that no object fills"), std::string::npos) << reasons(seen);
+    EXPECT_NE(reasons(seen).find("a 'hole_value' of the step 'scan_of' fills them"), std::string::npos);
+    EXPECT_EQ(reasons(seen).find("missing"), std::string::npos) << reasons(seen);
+  }
+}
+
 /// Copies of samples, too, have what no scanner measured.
 TEST_F(Caveats, SamplesThatAreNoNumbersAreKnownInScansThatStepsMake) {
   write_without_numbers({{2, 2, 2}});

@@ -23,8 +23,9 @@ TEST(MovedLandmarks, GoWithThePieceWhoseBoneIsNearestAlsoWhereTeethNearlyTouch) 
   verify::HeadOptions coarse;
   coarse.voxel_mm = 2.0;
   voxel::write_scene(verify::head_phantom(coarse), folder / "head.nrrd");
+  // Neither skin nor bone of the operated scan is bone that stays.
   // The upper teeth end at -58 mm and the lower ones begin at -60 mm: landmarks of both are within reach.
-  const Plan plan = parse_plan(R"({"octotomy_plan": 1, "name": "two moves",
+  const Plan plan = parse_plan(R"json({"octotomy_plan": 1, "name": "two moves",
     "scans": {"ct": {"path": "head.nrrd"}}, "universe": {"voxel_mm": 1.0},
     "steps": [
       {"id": "marks", "do": "landmarks", "points": [
@@ -39,7 +40,10 @@ TEST(MovedLandmarks, GoWithThePieceWhoseBoneIsNearestAlsoWhereTeethNearlyTouch) 
       {"id": "rest", "do": "combine", "expression": "skull - cut"},
       {"id": "forward", "do": "move", "object": "maxilla", "translate_mm": [0, -6, 0]},
       {"id": "down", "do": "move", "object": "forward", "translate_mm": [0, 0, -2]},
-      {"id": "planned", "do": "combine", "expression": "rest | down"}]})",
+      {"id": "planned", "do": "combine", "expression": "rest | down"},
+      {"id": "skin", "do": "window", "scan": "ct", "low": -300},
+      {"id": "operated", "do": "scan_of", "scan": "ct", "expression": "planned | (skin - skull)"},
+      {"id": "bone_again", "do": "window", "scan": "operated", "low": 300}]})json",
                                folder.path());
   EvaluateOptions quick;
   quick.meshes = quick.certify = false;

@@ -33,6 +33,59 @@ TEST(RenderStep, AMovedObjectIsDrawnInItsColourAndColouredByDistance) {
   EXPECT_EQ(files[2].details["shading"], "radiograph");
 }
 
+/// A cap that moved into the rest of the ball, cut through the middle. Each pixel of the cut face that lies a
+/// voxel inside of its piece shows the sample of the piece that is named first, moved with it.
+TEST(RenderStep, CutFacesOfMovedObjectsShowTheirOwnSamplesInEitherOrder) {
+  const auto sample = [](const glm::dvec3& p_mm) { return 700.0 + 30.0 * p_mm.x - 12.0 * p_mm.z; };
+  for (const bool is_moved_first : {true, false}) {
+    const ScratchFolder folder;
+    const std::string both = is_moved_first ? "moved | rest" : "rest | moved";
+    const Plan plan = ball_plan(folder, R"(
+        {"id": "cut", "do": "mask", "regions": [{"view": "anterior",
+            "polygons_mm": [[[-22, 5], [22, 5], [22, 22], [-22, 22]]]}]},
+        {"id": "piece", "do": "combine", "expression": "ball & cut"},
+        {"id": "rest", "do": "combine", "expression": "ball - cut"},
+        {"id": "moved", "do": "move", "object": "piece", "translate_mm": [4, 0, -3]},
+        {"id": "both", "do": "combine", "expression": ")" +
+                                            both + R"("},
+        {"id": "face", "do": "render", "objects": ["both"], "path": "face.png", "size": "96x96",
+         "width_mm": 48, "centre_mm": [0, 0, 0], "cut_planes": ["0,-1,0,-0.5"], "cut_face": "grey",
+         "tones": "0:1400", "colours": ["#ffffff"]})");
+    voxel::Scene scene = ball_scene(ball_radius_mm);
+    auto& samples = std::get<voxel::Int16Samples>(scene.samples);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const glm::dvec3 p_mm = glm::dvec3(i % 64, i / 64 % 64, i / 4096) - 31.5;
+      if (samples[i] > 0) samples[i] = static_cast<std::int16_t>(sample(p_mm));
+    }
+    voxel::write_scene(scene, folder / "ball.nrrd");
+    EvaluateOptions quick;
+    quick.certify = quick.meshes = false;
+    const Evaluation evaluation = evaluate(plan, quick);
+    Timings timings;
+    ASSERT_TRUE(write_files(plan, evaluation, folder.path(), timings).at(0).written);
+    const voxel::StoredImage face = voxel::read_images(folder / "face.png").at(0);
+    int of_moved = 0, of_rest = 0;
+    for (int row = 0; row < 96; ++row)
+      for (int column = 0; column < 96; ++column) {
+        const glm::dvec3 p_mm(0.5 * (column - 47.5), 0.5, 0.5 * (47.5 - row)),
+            from_mm = p_mm - glm::dvec3(4, 0, -3);
+        const auto depth_mm = [](const glm::dvec3& p) { return ball_radius_mm - glm::length(p); };
+        const double moved_mm = std::min(depth_mm(from_mm), from_mm.z - 5.0),
+                     rest_mm = std::min(depth_mm(p_mm), 5.0 - p_mm.z);
+        constexpr double clear_mm = 2.0;
+        if (std::abs(moved_mm) < clear_mm || std::abs(rest_mm) < clear_mm) continue;
+        const bool shows_moved = moved_mm > 0.0 && (is_moved_first || rest_mm < 0.0);
+        if (!shows_moved && rest_mm < 0.0) continue;
+        (shows_moved ? of_moved : of_rest)++;
+        const auto tone = static_cast<unsigned char>(face.bytes[static_cast<std::size_t>(row * 96 + column)]);
+        ASSERT_NEAR(tone, 255.0 * sample(shows_moved ? from_mm : p_mm) / 1400.0, 1.0)
+            << both << " at " << column << ", " << row;
+      }
+    EXPECT_GT(of_moved, 300);
+    EXPECT_GT(of_rest, 1000);
+  }
+}
+
 TEST(RenderStep, AnExpressionIsDrawnWithoutBeingMadeAsTheObjectThatACombineStepMakesOfIt) {
   const ScratchFolder folder;
   const Plan plan = ball_plan(folder, R"(
