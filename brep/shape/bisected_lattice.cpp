@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 level by level, drop tetrahedra that lie farther from the surface than their corners from their middle,
-// keep those in which distances are linear, and bisect the others; 2 bisect what is kept and has the middle
+// 1 level by level, drop tetrahedra that lie farther from the surface than their corners from their middle, by the
+// distances at their corners where those prove it; keep those in which distances are linear, and bisect the
+// others; 2 bisect what is kept and has the middle
 // of an edge where a neighbour was bisected, until there is none. A tetrahedron that is dropped has no corner
 // on the other side, and no neighbour has one within its faces: it needs no bisection for the surface to
 // close.
