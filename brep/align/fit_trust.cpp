@@ -37,6 +37,14 @@ constexpr double least_share() {
   return 0.2;
 }
 
+/// The distances of samples that coincide but for noise have about the noise as their standard deviation. So at least
+/// 68 % of them lie within a rung as wide as the noise, and four times that distance holds at most 1.46 times as many.
+/// Samples that are scattered evenly about a surface, as where caps of two bodies happen to be alike, are then
+/// several times as many. A small match that grows by more than this is chance.
+constexpr double most_growth() {
+  return 1.5;
+}
+
 /// Motions that match at least this share of what the best one matches are equal answers.
 constexpr double equal_ratio() {
   return 0.75;
@@ -188,9 +196,18 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
       trust.equals.push_back(other);
   }
   trust.rival_share = rival[near_rungs - 1];
+  // At least twice and four times the noise, unless that is above 4 % of the spread.
+  const std::vector<double> wide =
+      matched_shares(from.cloud, from.fixed, motion, {8.0 * ladder_mm[0], 16.0 * ladder_mm[0]});
+  const auto is_scattered = [&](std::size_t rung, double below_share) {
+    const double within_four_times =
+        rung == 0 ? own[near_rungs - 1] : wide[std::min(rung, near_rungs - 1) - 1];
+    return rung < near_rungs && own[rung] < below_share && within_four_times > most_growth() * own[rung];
+  };
   const auto leads = [&](std::size_t rung) {
     const double ratio = own[rung] < small_share() ? least_small_ratio() : least_ratio();
-    return own[rung] >= std::max({ratio * rival[rung], rival[rung] + least_lead(), least_share()});
+    return !is_scattered(rung, small_share()) &&
+           own[rung] >= std::max({ratio * rival[rung], rival[rung] + least_lead(), least_share()});
   };
   for (std::size_t rung = 0; rung < near_rungs; ++rung)
     if (leads(rung)) {
@@ -200,11 +217,16 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
       trust.equals.clear();
       return trust;
     }
-  const bool is_chance =
-      trust.rival_share < chance_ratio() * own[near_rungs - 1] && own[near_rungs - 1] < chance_share();
+  const double less = std::min(trust.rival_share, own[near_rungs - 1]),
+               more = std::max(trust.rival_share, own[near_rungs - 1]);
+  const bool is_chance = (less < chance_ratio() * more && own[near_rungs - 1] < chance_share()) ||
+                         is_scattered(near_rungs - 1, chance_share());
   if (!trust.equals.empty() && !is_chance) return trust;
   trust.equals.clear();
-  const bool is_near = leads(ladder_mm.size() - 1) || own[near_rungs - 1] >= equal_share();
+  // What is left where as many samples as even scatter has are taken off.
+  const double coincident_share = 2.0 * wide[0] - wide[1];
+  const bool is_near = leads(ladder_mm.size() - 1) || own[near_rungs - 1] >= equal_share() ||
+                       coincident_share >= least_share();
   trust.verdict = is_near ? FitVerdict::Doubtful : FitVerdict::Failed;
   trust.reason = per_cent(trust.matched_share) + " of the surface lies within " +
                  short_text(trust.tolerance_mm) + " mm of the other one, and " + per_cent(trust.rival_share) +

@@ -48,7 +48,8 @@ struct TrustedFrom {
 /// Judges a motion. A right one brings much more of the surface to within the noise than any other motion
 /// that the search found; at a wrong one, the search's other ends match about as much. Motions that match
 /// equally much, each to within the noise, are equal answers of a symmetric shape; those that match little, and
-/// not the same, are doubtful. Without a search the share
+/// not the same, are doubtful. So is a small match whose distances are scattered evenly instead of ending within the
+/// noise, whatever other motions match. Without a search the share
 /// alone decides, and a small one is doubtful. A residual far above the noise is doubtful, too.
 FitTrust trust_of(const glm::dmat4& motion, const TrustedFrom& from);
 

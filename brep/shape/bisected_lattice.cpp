@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 level by level, drop tetrahedra that lie farther from the surface than their corners from their middle,
-// keep those in which distances are linear, and bisect the others; 2 bisect what is kept and has the middle
+// 1 level by level, drop tetrahedra that lie farther from the surface than their corners from their middle, by the
+// distances at their corners where those prove it; keep those in which distances are linear, and bisect the
+// others; 2 bisect what is kept and has the middle
 // of an edge where a neighbour was bisected, until there is none. A tetrahedron that is dropped has no corner
 // on the other side, and no neighbour has one within its faces: it needs no bisection for the surface to
 // close.
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <tbb/blocked_range.h>
@@ -79,7 +81,7 @@ class Bisection {
       : options_(options), distances_at_(distances_at) {}
 
   BisectedLattice run(const std::function<void()>& report) {
-    std::vector<Simplex> level = whole_cube(options_.side);
+    std::vector<Open> level = whole_level();
     while (!level.empty()) {
       report();
       level = refined(level);
@@ -98,6 +100,13 @@ class Bisection {
  private:
   struct Nothing {};
   using Middles = KeyTable<Nothing>;
+
+  /// A tetrahedron that may be bisected, with the distances at its corners: halves inherit them, so that
+  /// few are looked up.
+  struct Open {
+    Simplex simplex;
+    std::array<double, 4> at_corners_mm{};
+  };
 
   /// Whether each of these satisfies a condition, in parallel.
   template <typename Condition>
@@ -141,22 +150,46 @@ class Bisection {
       longest = std::max(longest, glm::distance(at(simplex.corners[i]), at(simplex.corners[j])));
     return longest * options_.step_mm;
   }
-  bool may_be_passed(const Simplex& simplex, double at_centre_mm) const {
+  /// The distance from the middle of a tetrahedron to its farthest corner.
+  static double reach_of(const Simplex& simplex) {
     const glm::dvec3 centre = centre_of(simplex);
     double reach = 0.0;
     for (const std::uint64_t corner : simplex.corners)
       reach = std::max(reach, glm::distance(centre, at(corner)));
-    return std::abs(at_centre_mm) <= options_.step_mm * reach * (1.0 + 1e-9);
+    return reach;
   }
-  bool is_linear(const Simplex& simplex, double at_centre_mm) const {
-    double sum = 0.0;
-    for (const std::uint64_t corner : simplex.corners) sum += known(corner);
-    if (std::abs(0.25 * sum - at_centre_mm) > options_.tolerance_mm) return false;
+  bool may_be_passed(const Simplex& simplex, double at_centre_mm) const {
+    return std::abs(at_centre_mm) <= options_.step_mm * reach_of(simplex) * (1.0 + 1e-9);
+  }
+  static bool is_passed(const std::array<double, 4>& at_corners_mm) {
+    const auto inside = std::count_if(at_corners_mm.begin(), at_corners_mm.end(),
+                                      [](double distance_mm) { return distance_mm < 0.0; });
+    return inside != 0 && inside != 4;
+  }
+  /// Whether a corner alone shows that the middle is too far from the surface for may_be_passed(). The margin
+  /// is above the rounding of both.
+  bool is_surely_beside(const Open& open) const {
+    const glm::dvec3 centre = centre_of(open.simplex);
+    const double reach = reach_of(open.simplex) * (1.0 + 1e-8);
+    for (std::size_t i = 0; i < 4; ++i)
+      if (std::abs(open.at_corners_mm[i]) >
+          options_.step_mm * (reach + glm::distance(centre, at(open.simplex.corners[i]))))
+        return true;
+    return false;
+  }
+  bool is_linear_between(std::uint64_t a, std::uint64_t b) const {
+    return std::abs(0.5 * (known(a) + known(b)) - known(middle_of(a, b))) <= options_.tolerance_mm;
+  }
+  bool is_linear_on_edges(const Simplex& simplex) const {
     return std::all_of(sides.begin(), sides.end(), [&](const auto& side) {
       const std::uint64_t a = simplex.corners[side[0]], b = simplex.corners[side[1]];
-      return !has_middle(a, b) ||
-             std::abs(0.5 * (known(a) + known(b)) - known(middle_of(a, b))) <= options_.tolerance_mm;
+      return !has_middle(a, b) || is_linear_between(a, b);
     });
+  }
+  bool is_linear_at_centre(const Open& open, double at_centre_mm) const {
+    double sum = 0.0;
+    for (const double distance_mm : open.at_corners_mm) sum += distance_mm;
+    return std::abs(0.25 * sum - at_centre_mm) <= options_.tolerance_mm;
   }
 
   /// Points of the piece of plane in a tetrahedron where its corners' distances are 0, if these are linear:
@@ -185,12 +218,12 @@ class Bisection {
   }
 
   /// Of tetrahedra in which distances seem linear, those whose piece of plane the surface does not follow.
-  void drop_bumpy(const std::vector<Simplex>& level, std::vector<std::uint8_t>& is_kept) const {
+  void drop_bumpy(const std::vector<Open>& level, std::vector<std::uint8_t>& is_kept) const {
     std::vector<glm::dvec3> places;
     std::vector<std::size_t> owners;
     for (std::size_t i = 0; i < level.size(); ++i) {
       if (is_kept[i] == 0) continue;
-      add_piece(level[i], places);
+      add_piece(level[i].simplex, places);
       owners.resize(places.size(), i);
     }
     const std::vector<double> distances = distances_at_(places);
@@ -198,48 +231,113 @@ class Bisection {
       if (std::abs(distances[k]) > 2.0 * options_.tolerance_mm) is_kept[owners[k]] = 0;
   }
 
-  /// Keeps the tetrahedra of a level that are fine enough, and returns the halves of the others.
-  std::vector<Simplex> refined(std::vector<Simplex>& level) {
-    check_count(level.size());
-    std::vector<glm::dvec3> centres;
-    centres.reserve(level.size());
-    for (const Simplex& simplex : level) centres.push_back(centre_of(simplex));
-    const std::vector<double> at_centres = distances_at_(centres);
-    std::vector<std::size_t> passed, short_enough;
+  std::vector<Open> whole_level() {
+    std::vector<Open> level;
     std::vector<std::uint64_t> keys;
-    for (std::size_t i = 0; i < level.size(); ++i) {
-      const Simplex& simplex = level[i];
-      if (!may_be_passed(simplex, at_centres[i])) continue;
-      passed.push_back(i);
-      if (!can_be_bisected(simplex)) {
-        keys.insert(keys.end(), simplex.corners.begin(), simplex.corners.end());
-      } else if (longest_mm(simplex) <= most_narrow * options_.narrowest_mm) {
-        short_enough.push_back(i);
-        keys.insert(keys.end(), simplex.corners.begin(), simplex.corners.end());
-        for (const auto& [a, b] : sides)
-          if (has_middle(simplex.corners[a], simplex.corners[b]))
-            keys.push_back(middle_of(simplex.corners[a], simplex.corners[b]));
-      }
+    for (const Simplex& simplex : whole_cube(options_.side)) {
+      level.push_back({simplex, {}});
+      keys.insert(keys.end(), simplex.corners.begin(), simplex.corners.end());
     }
     learn(keys);
-    std::vector<std::uint8_t> is_kept(level.size(), 0);
-    tbb::parallel_for(std::size_t{0}, short_enough.size(), [&](std::size_t k) {
-      const std::size_t i = short_enough[k];
-      is_kept[i] = is_linear(level[i], at_centres[i]) ? 1 : 0;
+    for (Open& open : level)
+      for (std::size_t i = 0; i < 4; ++i) open.at_corners_mm[i] = known(open.simplex.corners[i]);
+    return level;
+  }
+
+  /// Distances at the centres of these tetrahedra of a level, at their numbers.
+  void learn_centres(const std::vector<Open>& level, const std::vector<std::size_t>& numbers,
+                     std::vector<double>& at_centres_mm) const {
+    std::vector<glm::dvec3> centres(numbers.size());
+    tbb::parallel_for(std::size_t{0}, numbers.size(),
+                      [&](std::size_t k) { centres[k] = centre_of(level[numbers[k]].simplex); });
+    const std::vector<double> distances = distances_at_(centres);
+    for (std::size_t k = 0; k < numbers.size(); ++k) at_centres_mm[numbers[k]] = distances[k];
+  }
+
+  /// Of these tetrahedra, those that satisfy a condition, in their order.
+  template <typename Condition>
+  static std::vector<std::size_t> those(const std::vector<std::size_t>& numbers, const Condition& condition) {
+    const std::vector<std::uint8_t> is =
+        where(numbers.size(), [&](std::size_t k) { return condition(numbers[k]); });
+    std::vector<std::size_t> kept;
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      if (is[k] != 0) kept.push_back(numbers[k]);
+    return kept;
+  }
+
+  /// The tetrahedra of a level that the surface may pass. Corners on both sides prove it; only the others
+  /// need a distance at their centre.
+  std::vector<std::size_t> passed(const std::vector<Open>& level, std::vector<double>& at_centres_mm) const {
+    std::vector<std::size_t> all(level.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    learn_centres(level, those(all, [&](std::size_t i) { return !is_passed(level[i].at_corners_mm); }),
+                  at_centres_mm);
+    return those(all, [&](std::size_t i) {
+      return is_passed(level[i].at_corners_mm) || may_be_passed(level[i].simplex, at_centres_mm[i]);
     });
+  }
+
+  /// Of these tetrahedra, those in which distances seem linear. Most are not linear on the edge at which they
+  /// would be bisected: the other distances are computed only for the rest.
+  std::vector<std::size_t> linear(const std::vector<Open>& level, const std::vector<std::size_t>& numbers,
+                                  std::vector<double>& at_centres_mm) {
+    const std::vector<std::size_t> short_enough = those(numbers, [&](std::size_t i) {
+      const Simplex& simplex = level[i].simplex;
+      return longest_mm(simplex) <= most_narrow * options_.narrowest_mm &&
+             is_linear_between(simplex.corners[0], simplex.corners[simplex.tag]);
+    });
+    std::vector<std::uint64_t> keys;
+    for (const std::size_t i : short_enough)
+      for (const auto& [a, b] : sides)
+        if (has_middle(level[i].simplex.corners[a], level[i].simplex.corners[b]))
+          keys.push_back(middle_of(level[i].simplex.corners[a], level[i].simplex.corners[b]));
+    learn(keys);
+    const std::vector<std::size_t> on_edges =
+        those(short_enough, [&](std::size_t i) { return is_linear_on_edges(level[i].simplex); });
+    learn_centres(level, those(on_edges, [&](std::size_t i) { return is_passed(level[i].at_corners_mm); }),
+                  at_centres_mm);
+    return those(on_edges, [&](std::size_t i) { return is_linear_at_centre(level[i], at_centres_mm[i]); });
+  }
+
+  /// Both halves of a tetrahedron, but those that a corner shows to be beside the surface; of the finest, only
+  /// those that the surface passes.
+  void add_halves(const Open& open, std::vector<Open>& made) const {
+    const double at_middle_mm = known(middle_of(open.simplex));
+    const std::array<Simplex, 2> simplices = halves(open.simplex);
+    const std::size_t tag = open.simplex.tag;
+    std::array<double, 4> first = open.at_corners_mm, second = open.at_corners_mm;
+    first[tag] = at_middle_mm;
+    std::rotate(second.begin(), second.begin() + 1, second.begin() + static_cast<std::ptrdiff_t>(tag) + 1);
+    second[tag] = at_middle_mm;
+    for (const Open& half : {Open{simplices[0], first}, Open{simplices[1], second}})
+      if (is_passed(half.at_corners_mm) || (can_be_bisected(half.simplex) && !is_surely_beside(half)))
+        made.push_back(half);
+  }
+
+  /// Keeps the tetrahedra of a level that are fine enough, and returns the halves of the others.
+  std::vector<Open> refined(const std::vector<Open>& level) {
+    check_count(level.size());
+    std::vector<double> at_centres_mm(level.size());
+    const std::vector<std::size_t> on_surface = passed(level, at_centres_mm);
+    const std::vector<std::size_t> divisible =
+        those(on_surface, [&](std::size_t i) { return can_be_bisected(level[i].simplex); });
+    std::vector<std::uint64_t> keys(divisible.size());
+    for (std::size_t k = 0; k < divisible.size(); ++k) keys[k] = middle_of(level[divisible[k]].simplex);
+    learn(keys);
+    std::vector<std::uint8_t> is_kept(level.size(), 0);
+    for (const std::size_t i : linear(level, divisible, at_centres_mm)) is_kept[i] = 1;
     drop_bumpy(level, is_kept);
-    std::vector<Simplex> next;
-    for (const std::size_t i : passed) {
-      if (is_kept[i] != 0 || !can_be_bisected(level[i])) {
-        found_.simplices.push_back(level[i]);
+    std::vector<Open> to_halve;
+    for (const std::size_t i : on_surface) {
+      if (is_kept[i] != 0 || !can_be_bisected(level[i].simplex)) {
+        found_.simplices.push_back(level[i].simplex);
         continue;
       }
-      middles_.insert(middle_of(level[i]), {});
-      const auto [one, other] = halves(level[i]);
-      next.push_back(one);
-      next.push_back(other);
+      middles_.insert(middle_of(level[i].simplex), {});
+      to_halve.push_back(level[i]);
     }
-    return next;
+    return appended<Open>(to_halve,
+                          [&](const Open& open, std::vector<Open>& made) { add_halves(open, made); });
   }
 
   /// The tetrahedra of the finest level first, those of one level in their order.
@@ -294,15 +392,13 @@ class Bisection {
 
   void keep_passed() {
     std::vector<Simplex>& simplices = found_.simplices;
-    const std::vector<std::uint8_t> is_passed = where(simplices.size(), [&](std::size_t i) {
+    const std::vector<std::uint8_t> is_wanted = where(simplices.size(), [&](std::size_t i) {
       const auto& corners = simplices[i].corners;
-      const auto inside = std::count_if(corners.begin(), corners.end(),
-                                        [&](std::uint64_t corner) { return known(corner) < 0.0; });
-      return inside != 0 && inside != 4;
+      return is_passed({known(corners[0]), known(corners[1]), known(corners[2]), known(corners[3])});
     });
     std::size_t kept = 0;
     for (std::size_t i = 0; i < simplices.size(); ++i)
-      if (is_passed[i] != 0) simplices[kept++] = simplices[i];
+      if (is_wanted[i] != 0) simplices[kept++] = simplices[i];
     simplices.resize(kept);
   }
 

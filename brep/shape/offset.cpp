@@ -105,16 +105,33 @@ struct Root {
   }
 };
 
-/// Where the surface passes each edge, within a thousandth of a cell.
-std::vector<glm::dvec3> points_on(const std::vector<CutEdge>& edges, const BisectedLattice& bisected,
-                                  const Field& field, const Lattice& lattice) {
+/// Edges in the order in which triangles use them. Neighbours in this order are near in space, so that each
+/// search starts near its end.
+std::vector<std::uint32_t> by_first_use(const std::vector<std::array<std::uint32_t, 3>>& faces,
+                                        std::size_t edge_count) {
+  std::vector<std::uint8_t> is_used(edge_count, 0);
+  std::vector<std::uint32_t> order;
+  order.reserve(edge_count);
+  for (const auto& face : faces)
+    for (const std::uint32_t edge : face)
+      if (is_used[edge] == 0) {
+        is_used[edge] = 1;
+        order.push_back(edge);
+      }
+  return order;
+}
+
+/// Where the surface passes each edge, within a thousandth of a cell. `open` has the number of each edge once:
+/// the searches follow its order.
+std::vector<glm::dvec3> points_on(const std::vector<CutEdge>& edges, std::vector<std::uint32_t> open,
+                                  const BisectedLattice& bisected, const Field& field,
+                                  const Lattice& lattice) {
+  assert(open.size() == edges.size());
   std::vector<Root> roots(edges.size());
-  std::vector<std::size_t> open(edges.size());
   tbb::parallel_for(std::size_t{0}, edges.size(), [&](std::size_t i) {
     roots[i].at_low = bisected.distances_mm.at(edges[i].from);
     roots[i].at_high = bisected.distances_mm.at(edges[i].to);
     roots[i].guess();
-    open[i] = i;
   });
   std::vector<std::uint32_t> nearest(edges.size(), SurfaceTree::unknown_triangle);
   const auto place = [&](std::size_t i) {
@@ -185,7 +202,7 @@ Solid surface_of(const Field& field, const Size& size, const OffsetOptions& opti
   const std::vector<CutEdge> edges = edges_of(triangles);
   Triangles surface;
   surface.faces = numbered(triangles, edges);
-  surface.points_mm = points_on(edges, bisected, field, lattice);
+  surface.points_mm = points_on(edges, by_first_use(surface.faces, edges.size()), bisected, field, lattice);
   options.progress.at(1.0);
   return trusted_solid(std::move(surface), Proof::Construction);
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/mesh/mesh.h"
+// After mesh.h, which leaves OpenMesh's assertions out.
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <cstdint>
 #include <filesystem>
 
 #include "brep/io/read_mesh.h"
-#include "brep/mesh/mesh.h"
 #include "tests/bench/benchmarks.h"
 #ifdef OCTOTOMY_HAS_ITK
 #include "tests/bench/itk_peer.h"

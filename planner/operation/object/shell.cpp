@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The outer layer of an object: its points within a distance of its outside. Each kernel subtracts its own
 // inward offset from its own representation of the object.
+#include <cmath>
+#include <optional>
+
 #include "brep/boolean/boolean.h"
+#include "brep/mesh/error.h"
 #include "brep/shape/convex_inset.h"
 #include "brep/shape/offset.h"
 #include "planner/operation/object/provenance.h"
@@ -23,8 +27,37 @@ std::string definition(const Shell& shell, const Objects&) {
   return "outer " + plain(shell.thickness_mm) + " mm of " + shell.object.name;
 }
 
-double cell_of(const Shell& shell) {
+double cell_for(const Shell& shell) {
   return 0.25 * shell.thickness_mm;
+}
+
+/// The cell that the mesh was made with: larger than cell_for() where the object is too large for that.
+double cell_of(const Shell& shell, const MeshSide& made) {
+  const auto cell = made.details.find("cell_mm");
+  return cell != made.details.end() && cell->is_number() ? cell->get<double>() : cell_for(shell);
+}
+
+/// What is deeper than the thickness, by a lattice of cells that are doubled until it is not too large.
+brep::Solid core_of(const brep::Solid& solid, const Shell& shell, const brep::Progress& progress,
+                    MeshSide& made) {
+  constexpr int most_rounds = 4;
+  for (int round = 0;; ++round) {
+    const double cell_mm = std::ldexp(cell_for(shell), round);
+    try {
+      brep::Solid core =
+          brep::offset(solid, {.by_mm = -shell.thickness_mm, .cell_mm = cell_mm, .progress = progress});
+      if (round > 0) {
+        made.details = {{"cell_mm", cell_mm}};
+        made.findings.push_back("the object is too large for cells of " + plain(cell_for(shell)) +
+                                " mm: its inner surface was made with cells of " + plain(cell_mm) +
+                                " mm, and walls of its inside thinner than that may be missing from what is "
+                                "taken out; cut off the part that matters for smaller cells");
+      }
+      return core;
+    } catch (const brep::TooLarge&) {
+      if (round + 1 == most_rounds) throw;
+    }
+  }
 }
 
 void voxels(const Shell& shell, const VoxelBench& bench, VoxelSide& made) {
@@ -44,13 +77,10 @@ void triangles(const Shell& shell, const MeshBench& bench, MeshSide& made) {
   const brep::Solid& solid = bench.object(shell.object.name);
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
   const std::optional<brep::Solid> inset = brep::convex_inset(solid, shell.thickness_mm, progress);
-  const brep::Solid core =
-      inset ? *inset
-            : brep::offset(solid,
-                           {.by_mm = -shell.thickness_mm, .cell_mm = cell_of(shell), .progress = progress});
+  const brep::Solid core = inset ? *inset : core_of(solid, shell, progress, made);
   brep::BooleanResult rest = brep::boolean(solid, brep::Operation::Difference, core, bench.progress.stop);
   made.shift_mm = rest.shift_mm;
-  made.findings = rest.findings;
+  made.findings.insert(made.findings.end(), rest.findings.begin(), rest.findings.end());
   made.whole = rest.solid;
   made.lineage = "the mesh less a level set of the distance to it";
 }
@@ -61,7 +91,7 @@ void bound(const Shell& shell, const BoundBench& bench, Object& made) {
   if (made.mesh.whole && object.mesh.whole) {
     const verify::OffsetOperand operand{object.witness, object.voxel.octree, *object.mesh.whole,
                                         is_whole_voxels(object.voxel)};
-    const verify::WitnessedOffset asked{-shell.thickness_mm, cell_of(shell)};
+    const verify::WitnessedOffset asked{-shell.thickness_mm, cell_of(shell, made.mesh)};
     made.witness = verify::without(object.witness, verify::witness_of_offset(operand, asked));
     // The outer surface is the operand's; only the inner surface was computed from distances.
     const double area_mm2 = made.mesh.whole->measures().area_mm2,

@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 #include <iostream>
+#include <numeric>
 #include <random>
 
 #include "brep/align/cloud_fit.h"
@@ -114,9 +115,15 @@ int asked(const char* name, int otherwise) {
 TEST(RegistrationTrials, WrongMotionsAreToldAndRightOnesNotCalledFailed) {
   OCTOTOMY_NEEDS_DATA("meshes/fran_cut.vtk");
   const std::vector<Body> all = bodies();
-  const int first = asked("OCTOTOMY_REGISTRATION", 0), count = asked("OCTOTOMY_REGISTRATIONS", 3);
+  // Besides the first three: caps of a bumpy ball that fit elsewhere and have no rival (106) or a poor one (286); a
+  // hyoid of which 48 % are left, right but matched by few (202).
+  std::vector<int> seeds = {0, 1, 2, 106, 202, 286};
+  if (const int count = asked("OCTOTOMY_REGISTRATIONS", 0); count > 0) {
+    seeds.resize(static_cast<std::size_t>(count));
+    std::iota(seeds.begin(), seeds.end(), asked("OCTOTOMY_REGISTRATION", 0));
+  }
   int right = 0, right_trusted = 0, right_failed = 0, wrong_told = 0, wrong_untold = 0;
-  for (int i = first; i < first + count; ++i) {
+  for (const int i : seeds) {
     std::mt19937_64 random(static_cast<unsigned>(i));
     std::uniform_real_distribution<double> share(0.0, 1.0);
     std::normal_distribution<double> normal;
@@ -180,10 +187,10 @@ TEST(RegistrationTrials, WrongMotionsAreToldAndRightOnesNotCalledFailed) {
     EXPECT_TRUE(is_right || verdict != FitVerdict::Right) << replay;
     EXPECT_FALSE(is_right && verdict == FitVerdict::Failed) << replay << ": " << fit.trust->reason;
   }
-  std::cout << count << " registrations: " << right << " right, " << right_trusted << " of them trusted and "
-            << right_failed << " called failed; " << wrong_told << " wrong and told, " << wrong_untold
-            << " wrong and trusted\n";
-  EXPECT_GT(right, 0);
+  std::cout << seeds.size() << " registrations: " << right << " right, " << right_trusted
+            << " of them trusted and " << right_failed << " called failed; " << wrong_told
+            << " wrong and told, " << wrong_untold << " wrong and trusted\n";
+  EXPECT_TRUE(right > 0 || seeds.size() < 3);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "verify/witness/line_count.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <map>
@@ -55,6 +56,55 @@ TEST(LineCount, OfAShellCountsBothOfItsSurfaces) {
   EXPECT_NEAR(count.volume_mm3, ball_mm3(20.0) - ball_mm3(15.0), 0.02 * ball_mm3(20.0));
   EXPECT_NEAR(count.area_mm2, 4.0 * std::numbers::pi * (400.0 + 225.0),
               0.04 * 4.0 * std::numbers::pi * 625.0);
+}
+
+/// The share of a scan's volume, up to half a sample beyond the outermost, in which its trilinear interpolant is
+/// at least `low`; by a random point in each of `fine` parts of a sample along each axis.
+double share_above(const voxel::Scene& scan, double low, int fine) {
+  const auto& samples = std::get<voxel::FloatSamples>(scan.samples);
+  const glm::ivec3 dims = scan.lattice.dims;
+  Chance chance(3);
+  const auto at = [&](int number, int axis) {
+    return std::clamp((number + chance.between(0.0, 1.0)) / fine - 0.5, 0.0, dims[axis] - 1.0);
+  };
+  std::size_t above = 0, all = 0;
+  for (int z = 0; z < fine * dims.z; ++z)
+    for (int y = 0; y < fine * dims.y; ++y)
+      for (int x = 0; x < fine * dims.x; ++x, ++all) {
+        const glm::dvec3 u(at(x, 0), at(y, 1), at(z, 2));
+        const glm::ivec3 first = glm::min(glm::ivec3(u), dims - 2);
+        const glm::dvec3 part = u - glm::dvec3(first);
+        double value = 0.0;
+        for (int corner = 0; corner < 8; ++corner) {
+          const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+          const glm::ivec3 p = first + step;
+          const glm::dvec3 weight = glm::mix(1.0 - part, part, glm::dvec3(step));
+          value +=
+              weight.x * weight.y * weight.z *
+              static_cast<double>(samples[static_cast<std::size_t>(p.x + dims.x * (p.y + dims.y * p.z))]);
+        }
+        above += value >= low ? 1 : 0;
+      }
+  return static_cast<double>(above) / static_cast<double>(all);
+}
+
+TEST(LineCount, ThePeaksOfNoiseKeepTheirVolume) {
+  const glm::ivec3 dims(24);
+  voxel::Scene scene;
+  scene.lattice = voxel::axis_aligned_lattice(dims, glm::dvec3(4.0), glm::dvec3(0.0));
+  voxel::FloatSamples samples(scene.lattice.sample_count());
+  Chance chance(7);
+  for (float& sample : samples) sample = static_cast<float>(chance.between(0.0, 100.0));
+  scene.samples = std::move(samples);
+  const auto scan = std::make_shared<const voxel::Scene>(std::move(scene));
+  const double whole_mm3 = std::pow(24.0 * 4.0, 3.0);
+  // The peaks above 70 are a tenth of the volume, and narrower than a sample.
+  for (const auto& [low, bent] : {std::pair(50.0, 0.002), std::pair(70.0, 0.012)}) {
+    const double truth_mm3 = whole_mm3 * share_above(*scan, low, 6);
+    const LineCount count = count_along_lines(lines_in_window(scan, low, endless), {.lines = 200000});
+    EXPECT_LT(count.deviation_mm3, 0.004 * truth_mm3) << low;
+    EXPECT_NEAR(count.volume_mm3, truth_mm3, 3.0 * count.deviation_mm3 + bent * truth_mm3) << low;
+  }
 }
 
 TEST(LineCount, IsTheSameOnAnyNumberOfThreads) {
