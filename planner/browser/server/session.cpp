@@ -355,6 +355,20 @@ voxel::GreyOctree Session::alone(const Snapshot& snapshot, const std::string& sc
   return alone_->second;
 }
 
+const Object* Session::Preview::object() const {
+  if (!evaluation) return nullptr;
+  for (const Object& each : evaluation->objects)
+    if (each.id == moved) return &each;
+  return nullptr;
+}
+
+void Session::describe(const Preview& preview, Json& header) {
+  const Object* object = preview.object();
+  if (object == nullptr) return;
+  header["preview"] = {{"mm3", object->voxel.measures.volume_mm3},
+                       {"voxels", object->voxel.octree.voxel_count()}};
+}
+
 Session::Preview Session::preview(const Json& asked, const std::vector<std::string>& with,
                                   const std::stop_token& stop) {
   Json steps = asked.value("steps", Json::array());
