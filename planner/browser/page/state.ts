@@ -24,6 +24,12 @@ export interface ObjectLook {
 /// What is drawn in an object's place: the object `of` moved, or what the last of steps makes that are not in the
 /// plan.
 export type Preview = PaneRequest["preview"]&{};
+/// What the server made of a preview of steps, or why it made nothing.
+export interface Tried {
+  mm3: number;
+  voxels: number;
+  refusal: string;
+}
 /// What cleans an object, to look at and to do; none of it is done by itself.
 export interface Cleaning {
   object: string;
@@ -77,6 +83,7 @@ export interface State {
   draft_step: Step|null;  // a step that is being filled in and is not in the plan yet
   preview: Preview|null;
   overlap_mm3: number|null;
+  tried: Tried|null;
   cleaning: Cleaning|null;
   compare: Compare|null;
   cut_plane: CutPlane|null;
@@ -121,6 +128,7 @@ const without_plan = () => ({
   draft_step: null,
   preview: null,
   overlap_mm3: null,
+  tried: null,
   cleaning: null,
   compare: null,
   cut_plane: null,
@@ -205,6 +213,7 @@ export function leave_scan(): void {
     draft_step: null,
     preview: null,
     overlap_mm3: null,
+    tried: null,
     cleaning: null,
     marked: null,
     guesses: []

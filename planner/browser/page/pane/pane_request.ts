@@ -34,6 +34,8 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
     if (state.preview.move) request.overlap = true;
     request.objects = shown.filter((object) => !object.id || !is_interference(object.id));
   }
+  // What is tried may lie within the objects that stand.
+  if (!pane.is_slice && request.preview?.by && request.preview.by !== "step") request.objects = request.objects.map(seen_through);
   if (pane.is_slice) request.objects = request.objects.map(hatched_where_interfering);
   if (!pane.is_slice && !is_elsewhere() && !state.compare && has_interference(request))
     request.objects = request.objects.map(seen_through);
