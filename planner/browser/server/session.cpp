@@ -366,7 +366,8 @@ void Session::describe(const Preview& preview, Json& header) {
   const Object* object = preview.object();
   if (object == nullptr) return;
   header["preview"] = {{"mm3", object->voxel.measures.volume_mm3},
-                       {"voxels", object->voxel.octree.voxel_count()}};
+                       {"voxels", object->voxel.octree.voxel_count()},
+                       {"findings", object->findings}};
 }
 
 Session::Preview Session::preview(const Json& asked, const std::vector<std::string>& with,

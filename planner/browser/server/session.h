@@ -90,7 +90,7 @@ class Session {
     /// The changed object; null without an evaluation.
     const Object* object() const;
   };
-  /// Sets "preview" of a picture's header: the changed object's volume and voxels.
+  /// Sets "preview" of a picture's header: the changed object's volume, voxels and findings.
   static void describe(const Preview& preview, Json& header);
   /// `asked` is {"object", "of", "move"}: `of`, or else `object`, moved as by a step "move"; or {"steps"}: the
   /// last of steps that follow the plan's.
