@@ -60,7 +60,7 @@ export function take_plan(plan: PlanState|null): void {
       jobs: plan.jobs ?? state.jobs
     });
   leave_plan();
-  const kept = kept_view(plan.path);
+  const kept = kept_view(plan);
   const before: Partial<State> = kept ? {...kept, panes: with_usual(kept.panes)} : fitted(plan);
   const needs_audit = kept ? kept.page === "audit" : plan.plan.steps.length <= 1 && plan.history.length <= 1;
   set({

@@ -63,6 +63,7 @@ export interface ObjectState {
   evaluated?: boolean;
   bounds_mm?: [Vec3, Vec3]|null;
   error?: string|null;
+  findings?: string[];
   mirror?: MirrorPlane;
   certificate?: Certificate|null;
   volume?: Measured|null;
@@ -221,7 +222,7 @@ export interface FrameHeader {
   command?: string;
   legend?: {low_mm: number; high_mm: number; colours: string[]; definition: string};
   overlap_mm3?: number|null;
-  preview?: {mm3: number; voxels: number};  // of the object that is tried
+  preview?: {mm3: number; voxels: number; findings?: string[]};  // of the object that is tried
   parts: {kind: "jpeg"|"png"|"depth"|"object"|"value"; bytes: number}[];
 }
 export interface Notice {

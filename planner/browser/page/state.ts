@@ -28,6 +28,7 @@ export type Preview = PaneRequest["preview"]&{};
 export interface Tried {
   mm3: number;
   voxels: number;
+  findings?: string[];  // what is left out of the volume, for example
   refusal: string;
 }
 /// What cleans an object, to look at and to do; none of it is done by itself.
@@ -215,6 +216,8 @@ export function leave_scan(): void {
     overlap_mm3: null,
     tried: null,
     cleaning: null,
+    cut_plane: null,
+    arch_mm: [],
     marked: null,
     guesses: []
   });
@@ -240,15 +243,21 @@ function keep(): void {
   if (!state.plan || state.page === "start") return;
   const view: Partial<Record<Key, unknown>> = {};
   for (const key of kept) view[key] = state[key];
-  localStorage.setItem(`octotomy:${state.plan.path}`, JSON.stringify(view));
+  localStorage.setItem(`octotomy:${state.plan.path}`, JSON.stringify({...view, scans_then: mark_of_scans(state.plan)}));
 }
 
-/// How this browser last looked at the plan, if it did.
-export function kept_view(path: string): Partial<State>|null {
-  const text = localStorage.getItem(`octotomy:${path}`);
+// Which scans a plan has and where they lie; empty before they are read.
+const mark_of_scans = (plan: PlanState): string =>
+    plan.scans.map(({name, path, dims, bounds_mm}) => JSON.stringify([name, path, dims, bounds_mm])).join();
+
+/// How this browser last looked at the plan, if it did and the plan's path has not come to another scan since.
+export function kept_view(plan: PlanState): Partial<State>|null {
+  const text = localStorage.getItem(`octotomy:${plan.path}`);
   if (!text) return null;
   try {
-    return JSON.parse(text) as Partial<State>;
+    const {scans_then, ...view} = JSON.parse(text) as Partial<State>&{scans_then?: string};
+    const scans_now = mark_of_scans(plan);
+    return scans_then && scans_now && scans_then !== scans_now ? null : view;
   } catch {
     return null;
   }

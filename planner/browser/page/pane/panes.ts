@@ -152,13 +152,13 @@ export class Pane {
     const {preview} = state;
     ask_picture(fields, (id) => {
       this.sent.set(id, started);
-      if (preview?.steps) this.previews.set(id, preview);
+      if (preview) this.previews.set(id, preview);
     }).catch((error: unknown) => {
       this.in_flight = Math.max(0, this.in_flight - 1);
       this.last_asked = "";
       if (error instanceof Refusal && error.code !== "cancelled" && error.code !== "lost") {
         // What is tried is refused on its panel, and the panes keep what they show.
-        if (is_of_steps(state.preview, preview))
+        if (preview?.steps && is_same(state.preview, preview))
           set({tried: {mm3: 0, voxels: 0, refusal: refusal_text(error.message)}});
         else
           this.problem = error.message;
@@ -201,7 +201,7 @@ export class Pane {
     this.canvas.dispatchEvent(
         new CustomEvent("picture", {bubbles: true, detail: {latency_ms, quality: header.quality}}));
     if (header.overlap_mm3 !== undefined && state.preview) set({overlap_mm3: header.overlap_mm3});
-    if (header.preview && is_of_steps(state.preview, preview)) set({tried: {...header.preview, refusal: ""}});
+    if (header.preview && is_same(state.preview, preview)) set({tried: {...header.preview, refusal: ""}});
     if (header.quality !== "rest") return;
     picture.planes = await planes_of(header, parts);
     this.redraw();
@@ -325,9 +325,9 @@ export class Pane {
   }
 }
 
-/// Whether a picture was asked for with the preview of steps that the page still shows.
-const is_of_steps = (now: State["preview"], then: State["preview"]|undefined): boolean =>
-    now?.steps !== undefined && then?.steps !== undefined && JSON.stringify(now) === JSON.stringify(then);
+/// Whether a picture was asked for with the preview that the page still shows.
+const is_same = (now: State["preview"], then: State["preview"]|undefined): boolean =>
+    now !== null && JSON.stringify(now) === JSON.stringify(then);
 /// A refusal without the name under which a step is tried.
 export const refusal_text = (message: string): string => message.replace(/^step 'dragged_piece'(\.\w+)?: /, "");
 

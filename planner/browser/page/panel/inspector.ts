@@ -43,7 +43,7 @@ export function make_inspector(host: HTMLElement): void {
   };
   watch(
       [
-        "plan", "selected", "right_tab", "tool", "draft_window", "draft_step", "preview", "overlap_mm3",
+        "plan", "selected", "right_tab", "tool", "draft_window", "draft_step", "preview", "overlap_mm3", "tried",
         "cleaning", "compare", "cut_plane", "arch_mm"
       ],
       again);
@@ -109,6 +109,7 @@ function step_card(step: Step, has_motion: boolean): Child {
                                         null,
       found && found.value !== null ? el("p", {class: "reading"}, el("b", {}, measured_text(found)), ` ${found.says ?? ""}`) : null,
       found && found.value === null && found.sentence ? el("p", {class: "says"}, found.sentence) : null,
+      object?.findings?.map((finding) => el("p", {class: "sentence warn"}, finding)),
       mirror_rows(step), cleaning_rows(step), live_rows(step), result_rows(step),
       certificate ? el("p", {class: `sentence ${certificate.verdict.toLowerCase()}`}, certificate.sentence) :
                     null,

@@ -31,7 +31,8 @@ function write_tried(): void {
   tried_line.className = tried?.refusal ? "error" : "says";
   tried_line.textContent = !tried ? waiting :
       tried.refusal               ? tried.refusal :
-                                    `${grouped(tried.mm3 / 1000, tried.mm3 < 1e5 ? 2 : 0)} cm³, ${grouped(tried.voxels)} voxels. Not in the plan yet.`;
+                                    `${grouped(tried.mm3 / 1000, tried.mm3 < 1e5 ? 2 : 0)} cm³, ${grouped(tried.voxels)} voxels. Not in the plan yet.${
+                                        (tried.findings ?? []).map((finding) => ` ${finding}.`).join("")}`;
 }
 watch(["tried"], write_tried);
 /// What the server made of the preview, or why it made nothing; `until_then` before its first answer.

@@ -123,6 +123,7 @@ export const grow_tool: Tool = {
       notify(`A region has at most ${most_seeds} seeds here: make it an object first.`, "warning");
       return true;
     }
+    if (state.preview?.by !== "grow") set({tried: null});
     seeds = adds ? [...seeds, seed] : [seed];
     held = {at, from: tolerance(), ratio: pane.ratio};
     show();
