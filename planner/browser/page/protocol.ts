@@ -202,7 +202,7 @@ export interface PaneRequest {
   threshold?: [number, number];
   objects: DrawnObject[];
   preview?: {object: string; of: string; move: Motion; against: string[]; steps?: undefined; by?: undefined}|
-      {object: string; steps: Step[]; move?: undefined; colour?: string; by?: "grow"|"draft"|"step"};
+      {object: string; steps: Step[]; move?: undefined; coarse?: boolean; colour?: string; by?: "grow"|"draft"|"step"};
   overlap?: boolean;
   colour_by?: {object: string; reference: string; range_mm: number; mutual?: boolean};
   cut_planes?: [number, number, number, number][];

@@ -29,6 +29,7 @@ export interface Tried {
   mm3: number;
   voxels: number;
   findings?: string[];  // what is left out of the volume, for example
+  is_coarse?: boolean;  // the picture followed a hand
   refusal: string;
 }
 /// What cleans an object, to look at and to do; none of it is done by itself.

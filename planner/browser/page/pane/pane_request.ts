@@ -30,7 +30,8 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
   else
     add_view(request, setting);
   if (state.preview && !is_elsewhere()) {
-    request.preview = state.preview;
+    // What is tried follows a hand in coarse voxels, where the plan's are many.
+    request.preview = dragging && state.preview.steps ? {...state.preview, coarse: true} : state.preview;
     if (state.preview.move) request.overlap = true;
     request.objects = shown.filter((object) => !object.id || !is_interference(object.id));
   }

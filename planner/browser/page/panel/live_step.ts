@@ -31,6 +31,7 @@ function write_tried(): void {
   tried_line.className = tried?.refusal ? "error" : "says";
   tried_line.textContent = !tried ? waiting :
       tried.refusal               ? tried.refusal :
+      tried.is_coarse             ? `About ${grouped(tried.mm3 / 1000, tried.mm3 < 1e5 ? 1 : 0)} cm³.` :
                                     `${grouped(tried.mm3 / 1000, tried.mm3 < 1e5 ? 2 : 0)} cm³, ${grouped(tried.voxels)} voxels. Not in the plan yet.${
                                         (tried.findings ?? []).map((finding) => ` ${finding}.`).join("")}`;
 }

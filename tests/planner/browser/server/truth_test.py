@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """What the server of the planner shows of a plan: whole objects, their findings, what is tried, and in which order it answers."""
+import json
 import pathlib
 import unittest
 
@@ -69,6 +70,23 @@ class Truth(server_test.Served):
             self.rest(kind="view", view="anterior", objects=[],
                       preview={"object": "", "steps": [{**grown, "seeds_mm": [[999, 0, 0]]}]})
         self.assertNotIn("region", [each["id"] for each in self.window.ask("hello")["plan_state"]["plan"]["steps"]])
+
+    def test_what_follows_a_hand_is_made_in_coarse_voxels_where_the_plans_are_many(self):
+        (self.folder / "fine.plan.json").write_text(json.dumps({
+            "octotomy_plan": 1, "name": "fine", "scans": {"ct": {"path": "head.nrrd"}}, "universe": {"voxel_mm": 0.5},
+            "steps": [{"id": "bone", "do": "window", "scan": "ct", "low": 300}]}), encoding="utf-8")
+        self.window.ask("open", path="fine.plan.json")
+        try:
+            self.assertEqual(self.window.ask("hello")["plan_state"]["universe"]["voxels"], 512)
+            grown = {"id": "region", "do": "segment", "scan": "ct", "seeds_mm": [[0, 20, 40]], "tolerance": 60}
+            said = {"kind": "view", "view": "anterior", "size": [200, 150], "pane": 0, "objects": []}
+            coarse, _ = self.window.ask("pane", dragging=True, preview={"object": "", "steps": [grown], "coarse": True}, **said)
+            fine, _ = self.window.ask("pane", dragging=False, preview={"object": "", "steps": [grown]}, **said)
+            self.assertLess(4 * coarse["preview"]["voxels"], fine["preview"]["voxels"])
+            self.assertAlmostEqual(coarse["preview"]["mm3"], fine["preview"]["mm3"], delta=0.15 * fine["preview"]["mm3"])
+            self.assertIn("", coarse["objects"])
+        finally:
+            self.window.ask("open", path="head.nrrd")
 
     def test_an_undo_waits_for_no_work_before_it(self):
         self.plan_of(MOVED)
