@@ -37,6 +37,7 @@
 #include "verify/certificate/places.h"
 #include "verify/witness/reshaped_witness.h"
 #include "verify/witness/witness.h"
+#include "voxel/measure/distance_map.h"
 #include "voxel/scan/read_image_stack.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/space/regular_file.h"
@@ -314,7 +315,7 @@ class Evaluator {
     if (step.action.operation().makes == Makes::Object) {
       const auto known = options_.cache->object(key_of(step));
       if (known == nullptr) return false;
-      if (options_.meshes) need_room(result_.objects, *known, least_universe_, room_);
+      if (grows()) need_room(result_.objects, *known, least_universe_, room_);
       result_.objects.add(*known);
       return true;
     }
@@ -436,7 +437,8 @@ class Evaluator {
     object.voxel.measures = voxel::measure(object.voxel.octree);
     const MadeOf made_of{step.action, result_.objects, scan_, result_.scans};
     add_caveats(made_of, object);
-    if (options_.meshes) need_room(result_.objects, object, least_universe_, room_);
+    if (grows()) need_room(result_.objects, object, least_universe_, room_);
+    add_border_finding(step, object);
     add_makers(made_of, !told.empty(), object);
     if (options_.prepares_files) prepare_files_of(object);
     if (has_certificate(object) && options_.certify && options_.meshes && !object.is_tool &&
@@ -456,6 +458,29 @@ class Evaluator {
     }
     if (options_.cache != nullptr && !options_.only_look_up) options_.cache->keep(key_of(step), object);
     result_.objects.add(std::move(object));
+  }
+
+  /// A piece that is being dragged is made again at every picture: its universe stays, and a finding states what
+  /// it loses.
+  bool grows() const { return options_.meshes || !options_.only_look_up; }
+
+  /// A solid that was reshaped without a mesh ends silently at the universe's border, which no surface beyond it
+  /// shows. None if an object that it was made of is there already, as where the scan ends.
+  void add_border_finding(const Step& step, Object& object) const {
+    if (options_.meshes || object.is_tool || !object.ends_with_universe || object.kind == "combine") return;
+    const auto touches = [](const Object& each) {
+      if (each.voxel.octree.is_empty()) return false;
+      const voxel::VoxelRange range = voxel::range_of(each.voxel.octree);
+      return glm::any(glm::equal(range.low, glm::ivec3(0))) ||
+             glm::any(glm::equal(range.high, glm::ivec3(each.voxel.octree.universe().side() - 1)));
+    };
+    if (!touches(object)) return;
+    for (const std::string& used : objects_used(step.action))
+      if (touches(result_.objects.at(used))) return;
+    object.findings.push_back(
+        "it reaches the border of the universe (" + plain(box_) +
+        ") and is cut off there in this answer by voxels alone: a certificate enlarges the "
+        "universe where there is room");
   }
 
   /// Preparing files takes longest, so it starts as soon as possible, and certificates run in parallel with

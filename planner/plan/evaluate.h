@@ -64,8 +64,9 @@ struct EvaluateOptions {
 /// Evaluates every step that makes an object or a scan, objects in the voxel kernel and in the mesh kernel,
 /// as its operation says (planner/operation), and certifies their agreement object by object. Neither kernel
 /// has access to the other's answer before both are computed. A moved object stores its motion symbolically,
-/// so that after further motions the original object is sampled only once. With meshes, the universe grows by
-/// whole voxels, to at most four times its side, until it contains every object (room.h).
+/// so that after further motions the original object is sampled only once. The universe grows by
+/// whole voxels, to at most four times its side, until it contains every object (room.h), except with `only_look_up`
+/// and without meshes.
 ///
 /// Throws std::runtime_error with step and reason if a scan cannot be read or does not have the stated
 /// SHA-256, or if an operation refuses; Stopped. If the mesh kernel cannot do an operation, the object has

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What a person does to the plan: each is a request to the server, whose answer is the plan's new state.
 import {objects_of_plan} from "./drawn_objects";
+import {makes_measurement} from "./operations";
 import {Hello, Measured, Measurement, PlanState, Step} from "./protocol";
 import {first_scan, kept_view, leave_plan, leave_scan, notify, PaneSetting, set, State, state, steps, usual_panes} from "./state";
 import {add, scaled, Vec3} from "./base/vector";
@@ -59,7 +60,7 @@ export function take_plan(plan: PlanState|null): void {
       jobs: plan.jobs ?? state.jobs
     });
   leave_plan();
-  const kept = kept_view(plan.path);
+  const kept = kept_view(plan);
   const before: Partial<State> = kept ? {...kept, panes: with_usual(kept.panes)} : fitted(plan);
   const needs_audit = kept ? kept.page === "audit" : plan.plan.steps.length <= 1 && plan.history.length <= 1;
   set({
@@ -175,7 +176,7 @@ export async function change_history(
 export async function evaluate(certify = false): Promise<void> {
   if (!steps().length) return;
   const objects = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));
-  const measures = steps().filter((step) => step.do === "measure").map((step) => step.id);
+  const measures = steps().filter(makes_measurement).map((step) => step.id);
   await try_to("evaluate", certify ? {certify: true} : {objects: [...objects, ...measures]});
 }
 

@@ -28,6 +28,9 @@ export const makes_shape = (step: Step): boolean =>
 export const makes_body = (step: Step|undefined): boolean =>
     step !== undefined && schema_of(step)?.["x-makes"] === "object";
 
+/// Whether a step measures.
+export const makes_measurement = (step: Step): boolean => schema_of(step)?.["x-makes"] === "measurement";
+
 /// Whether a step's object is another one's, moved rigidly.
 export const moves_object = (step: Step): boolean => schema_of(step)?.["x-moves"] !== undefined;
 

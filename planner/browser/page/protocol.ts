@@ -63,6 +63,7 @@ export interface ObjectState {
   evaluated?: boolean;
   bounds_mm?: [Vec3, Vec3]|null;
   error?: string|null;
+  findings?: string[];
   mirror?: MirrorPlane;
   certificate?: Certificate|null;
   volume?: Measured|null;
@@ -72,6 +73,7 @@ export interface Measurement extends Measured {
   id: string;
   says?: string;
   sentence?: string;
+  details?: {[key: string]: Json};  // as in a result's `measurements`
 }
 export interface HistoryEdit {
   id: number;
@@ -105,6 +107,7 @@ export interface PlanState {
   plan: PlanDocument;
   scans: ScanState[];
   objects: ObjectState[];
+  universe?: {voxel_mm: number}|null;
   landmarks: {name: string; point: Vec3}[];
   measurements?: Measurement[];
   jobs?: Job[];
@@ -198,8 +201,8 @@ export interface PaneRequest {
   window?: [number, number];
   threshold?: [number, number];
   objects: DrawnObject[];
-  preview?: {object: string; of: string; move: Motion; against: string[]; steps?: undefined}|
-      {object: string; steps: Step[]; move?: undefined};
+  preview?: {object: string; of: string; move: Motion; against: string[]; steps?: undefined; by?: undefined}|
+      {object: string; steps: Step[]; move?: undefined; coarse?: boolean; colour?: string; by?: "grow"|"draft"|"step"};
   overlap?: boolean;
   colour_by?: {object: string; reference: string; range_mm: number; mutual?: boolean};
   cut_planes?: [number, number, number, number][];
@@ -219,6 +222,7 @@ export interface FrameHeader {
   command?: string;
   legend?: {low_mm: number; high_mm: number; colours: string[]; definition: string};
   overlap_mm3?: number|null;
+  preview?: {mm3: number; voxels: number; findings?: string[]};  // of the object that is tried
   parts: {kind: "jpeg"|"png"|"depth"|"object"|"value"; bytes: number}[];
 }
 export interface Notice {

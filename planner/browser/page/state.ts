@@ -24,6 +24,14 @@ export interface ObjectLook {
 /// What is drawn in an object's place: the object `of` moved, or what the last of steps makes that are not in the
 /// plan.
 export type Preview = PaneRequest["preview"]&{};
+/// What the server made of a preview of steps, or why it made nothing.
+export interface Tried {
+  mm3: number;
+  voxels: number;
+  findings?: string[];  // what is left out of the volume, for example
+  is_coarse?: boolean;  // the picture followed a hand
+  refusal: string;
+}
 /// What cleans an object, to look at and to do; none of it is done by itself.
 export interface Cleaning {
   object: string;
@@ -77,6 +85,7 @@ export interface State {
   draft_step: Step|null;  // a step that is being filled in and is not in the plan yet
   preview: Preview|null;
   overlap_mm3: number|null;
+  tried: Tried|null;
   cleaning: Cleaning|null;
   compare: Compare|null;
   cut_plane: CutPlane|null;
@@ -121,6 +130,7 @@ const without_plan = () => ({
   draft_step: null,
   preview: null,
   overlap_mm3: null,
+  tried: null,
   cleaning: null,
   compare: null,
   cut_plane: null,
@@ -205,7 +215,10 @@ export function leave_scan(): void {
     draft_step: null,
     preview: null,
     overlap_mm3: null,
+    tried: null,
     cleaning: null,
+    cut_plane: null,
+    arch_mm: [],
     marked: null,
     guesses: []
   });
@@ -231,15 +244,21 @@ function keep(): void {
   if (!state.plan || state.page === "start") return;
   const view: Partial<Record<Key, unknown>> = {};
   for (const key of kept) view[key] = state[key];
-  localStorage.setItem(`octotomy:${state.plan.path}`, JSON.stringify(view));
+  localStorage.setItem(`octotomy:${state.plan.path}`, JSON.stringify({...view, scans_then: mark_of_scans(state.plan)}));
 }
 
-/// How this browser last looked at the plan, if it did.
-export function kept_view(path: string): Partial<State>|null {
-  const text = localStorage.getItem(`octotomy:${path}`);
+// Which scans a plan has and where they lie; empty before they are read.
+const mark_of_scans = (plan: PlanState): string =>
+    plan.scans.map(({name, path, dims, bounds_mm}) => JSON.stringify([name, path, dims, bounds_mm])).join();
+
+/// How this browser last looked at the plan, if it did and the plan's path has not come to another scan since.
+export function kept_view(plan: PlanState): Partial<State>|null {
+  const text = localStorage.getItem(`octotomy:${plan.path}`);
   if (!text) return null;
   try {
-    return JSON.parse(text) as Partial<State>;
+    const {scans_then, ...view} = JSON.parse(text) as Partial<State>&{scans_then?: string};
+    const scans_now = mark_of_scans(plan);
+    return scans_then && scans_now && scans_then !== scans_now ? null : view;
   } catch {
     return null;
   }

@@ -7,6 +7,7 @@
 #include "planner/operation/table/control_character.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/operation/table/nearest_name.h"
+#include "planner/operation/table/operation.h"
 #include "planner/plan/dependence.h"
 #include "planner/plan/difference.h"
 
@@ -55,15 +56,39 @@ void change_steps(Json& steps, const Json& said) {
   if (said.contains("landmarks")) set_landmarks(steps, said["landmarks"]);
 }
 
-/// A landmarks step reads its file while it is parsed, so a later check could already quote the file in an
-/// error.
-void need_landmarks_within(const Json& plan, const std::filesystem::path& folder, const Folders& folders) {
+void need_files_of_record(const Json& record, const std::vector<Field>& fields,
+                          const std::filesystem::path& folder, const Folders& folders) {
+  for (const Field& field : fields) {
+    const auto given = record.find(field.name);
+    if (given == record.end()) continue;
+    const auto each = [&](const auto& work) {
+      work(*given);
+      if (given->is_structured())
+        for (const Json& part : *given) work(part);
+    };
+    if (field.is_input)
+      each([&](const Json& file) {
+        if (file.is_string()) folders.need_readable(folder / file.get<std::string>());
+      });
+    if (!field.fields.empty())
+      each([&](const Json& part) {
+        if (part.is_object()) need_files_of_record(part, field.fields, folder, folders);
+      });
+  }
+}
+
+/// Refuses files of a plan's text that the page may not read. Steps such as landmarks, transforms, saws and masks
+/// read their files while they are parsed, so a later check could already quote a file in an error.
+void need_files_within(const Json& plan, const std::filesystem::path& folder, const Folders& folders) {
   const auto steps = plan.find("steps");
   if (steps == plan.end() || !steps->is_array()) return;
-  for (const Json& step : *steps)
-    if (step.is_object() && step.value("do", Json()) == "landmarks" && step.contains("file") &&
-        step["file"].is_string())
-      folders.need_readable(folder / step["file"].get<std::string>());
+  for (const Json& step : *steps) {
+    if (!step.is_object()) continue;
+    const Json word = step.value("do", Json());
+    if (!word.is_string()) continue;
+    for (const Operation& operation : operations())
+      if (operation.name == word) need_files_of_record(step, operation.fields, folder, folders);
+  }
 }
 
 /// Refuses a plan that reads files which the page may not read: a path in a plan grants no permission.
@@ -93,7 +118,7 @@ void need_short_names(const std::vector<NamedPoint>& landmarks, const std::vecto
 Document::Document(const std::filesystem::path& path, const Folders& folders)
     : path_(path), folders_(folders) {
   // Refuses an invalid plan, or one that reads forbidden files, before a history is begun.
-  need_landmarks_within(Json(read_json(path_)), path_.parent_path(), folders_);
+  need_files_within(Json(read_json(path_)), path_.parent_path(), folders_);
   need_readable_files(read_plan(path_), folders_);
   history_ = std::make_unique<PlanHistory>(path_);
   read_again();
@@ -108,7 +133,7 @@ void Document::read_again() {
 Plan Document::readable(const std::string& text) const {
   // parse_plan() refuses a text that is not JSON, before it reads any file.
   const Json json = Json::parse(text, nullptr, false);
-  if (json.is_object()) need_landmarks_within(json, path_.parent_path(), folders_);
+  if (json.is_object()) need_files_within(json, path_.parent_path(), folders_);
   Plan plan = parse_plan(text, path_.parent_path());
   need_readable_files(plan, folders_);
   return plan;

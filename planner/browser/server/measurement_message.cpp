@@ -60,6 +60,79 @@ constexpr auto members_of(const ToldNumbers&) {
                     member("gap_half_width_mm", &T::gap_half_width_mm), member("volume", &T::volume));
 }
 
+/// The number of a result that has a table, which is shown before its table. `value` is null where the result has
+/// no number: `findings` state why.
+struct TableNumber {
+  const char* key;  ///< that only this kind of measurement has
+  nlohmann::json::json_pointer value;
+  const char* unit;
+  std::optional<nlohmann::json::json_pointer> half_width;
+  std::string says;
+};
+
+std::string spoken(const Json& json, const char* key) {
+  const auto name = json.find(key);
+  return name != json.end() && name->is_string() ? name->get<std::string>() : "";
+}
+
+std::optional<TableNumber> table_number(const Json& json) {
+  using Pointer = nlohmann::json::json_pointer;
+  if (json.contains("airway"))
+    return TableNumber{"airway", Pointer("/airway/narrowest/area_mm2"), "mm2",
+                       Pointer("/airway/narrowest/half_width_mm2"),
+                       "Narrowest section of " + spoken(json, "object")};
+  if (json.contains("contacts"))
+    return TableNumber{"contacts", Pointer("/nearest_mm"), "mm", std::nullopt,
+                       std::to_string(json["contacts"].size()) +
+                           (json["contacts"].size() == 1 ? " contact of " : " contacts of ") +
+                           spoken(json, "object") + " with " + spoken(json, "against") + ", the nearest"};
+  if (json.contains("mean_mm") && json.contains("a"))
+    return TableNumber{"a", Pointer("/mean_mm"), "mm", std::nullopt,
+                       "Mean distance of " + spoken(json, "a") + " and " + spoken(json, "b")};
+  if (json.contains("donor_used_mm"))
+    return TableNumber{"flap_segments", Pointer("/donor_used_mm"), "mm", std::nullopt,
+                       "Length of the donor's bone"};
+  if (json.contains("doubts")) {
+    std::string says = "How wrong it can be";
+    if (!json["doubts"].empty())
+      says += ": " + spoken(json["doubts"][0], "what") + " of " + spoken(json["doubts"][0], "of");
+    return TableNumber{"doubts", Pointer("/doubts/0/value"), "", Pointer("/doubts/0/half_width"), says};
+  }
+  return std::nullopt;
+}
+
+/// The words of a step whose result is a table without one number.
+std::string table_words(const Json& json) {
+  if (json.contains("landmarks") && json.contains("missing"))
+    return "First guess of " + std::to_string(json["landmarks"].size()) + " landmarks";
+  return json.contains("verdict") ? "Proof of " + spoken(json, "object") : "";
+}
+
+/// Null for a measurement without a table.
+Json table_message(const Json& json) {
+  const std::optional<TableNumber> number = table_number(json);
+  const std::string says = number ? number->says : table_words(json);
+  if (says.empty()) return nullptr;
+  Json made{{"says", says}, {"value", nullptr}, {"unit", ""}, {"half_width", nullptr}};
+  if (number) {
+    const bool is_trials = std::string(number->key) == "doubts";
+    made["unit"] = is_trials && !json["doubts"].empty() ? spoken(json["doubts"][0], "unit") : number->unit;
+    if (json.contains(number->value) && json.at(number->value).is_number()) {
+      const Json half_width = number->half_width && json.contains(*number->half_width)
+                                  ? json.at(*number->half_width)
+                                  : Json(nullptr);
+      made.update(number_message(json.at(number->value), made["unit"], half_width, says));
+    }
+  }
+  const auto findings = json.find("findings");
+  if (number && made["value"].is_null())
+    made["sentence"] = says + ": no answer yet" +
+                       (findings != json.end() && findings->is_array() && !findings->empty()
+                            ? ", " + findings->front().get<std::string>()
+                            : std::string());
+  return made;
+}
+
 }  // namespace
 
 Json number_message(const Json& value, const std::string& unit, const Json& half_width,
@@ -96,6 +169,8 @@ Json measurement_message(const Json& json) {
   } else if (measured.volume) {
     says = "Volume of " + measured.object;
     number = number_message(measured.volume->value, "mm3", print_value(measured.volume->half_width), says);
+  } else if (number = table_message(json); number.is_object()) {
+    says = number["says"];
   } else {
     return nullptr;
   }

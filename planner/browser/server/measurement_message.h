@@ -8,7 +8,9 @@
 namespace octotomy::planner::serve {
 
 /// {"id", "says", "value", "unit", "half_width", "sentence", "details"} of one of measurements_json(): a
-/// distance, an angle, a gap, or a size. Null if it has no number, such as the gap to an empty object.
+/// distance, an angle, a gap, a size, or a result with a table, whose first number is shown (an airway, contacts, a
+/// comparison, trials, a flap) or null (guesses of landmarks, proofs of printed parts). Null if a measurement without
+/// a table has no number, such as the gap to an empty object.
 Json measurement_message(const Json& measured);
 
 /// A number of a result as a page shows it; `what` begins its sentence.

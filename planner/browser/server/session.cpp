@@ -6,6 +6,7 @@
 
 #include "planner/browser/server/measurement_message.h"
 #include "planner/browser/server/new_plan.h"
+#include "planner/browser/server/pane_fields.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/picture/colour.h"
 #include "planner/operation/table/fault.h"
@@ -355,6 +356,35 @@ voxel::GreyOctree Session::alone(const Snapshot& snapshot, const std::string& sc
   return alone_->second;
 }
 
+namespace {
+
+/// The voxel size for previews that follow a hand: that of the plan, or if its universe has more voxels a side than
+/// fit the time of a picture, a multiple of it.
+std::optional<double> coarse_voxel_mm(const Snapshot& snapshot, const Plan& plan) {
+  constexpr int most_side = 256;
+  if (!snapshot.evaluation) return plan.voxel_mm;
+  const voxel::Universe& universe = snapshot.evaluation->universe;
+  if (universe.side() <= most_side) return plan.voxel_mm;
+  return universe.lattice().spacing_mm().x * universe.side() / most_side;
+}
+
+}  // namespace
+
+const Object* Session::Preview::object() const {
+  if (!evaluation) return nullptr;
+  for (const Object& each : evaluation->objects)
+    if (each.id == moved) return &each;
+  return nullptr;
+}
+
+void Session::describe(const Preview& preview, Json& header) {
+  const Object* object = preview.object();
+  if (object == nullptr) return;
+  header["preview"] = {{"mm3", object->voxel.measures.volume_mm3},
+                       {"voxels", object->voxel.octree.voxel_count()},
+                       {"findings", object->findings}};
+}
+
 Session::Preview Session::preview(const Json& asked, const std::vector<std::string>& with,
                                   const std::stop_token& stop) {
   Json steps = asked.value("steps", Json::array());
@@ -374,14 +404,16 @@ Session::Preview Session::preview(const Json& asked, const std::vector<std::stri
                      {"do", "combine"},
                      {"expression", std::string(Preview::moved) + " & (" + others + ")"}});
   const std::lock_guard lock(preview_mutex_);
-  const Plan plan = with_document([&](const Document& document) { return document.with_steps(steps); });
+  Plan plan = with_document([&](const Document& document) { return document.with_steps(steps); });
+  if (asked.value("coarse", false)) plan.voxel_mm = coarse_voxel_mm(snapshot(), plan);
+  const std::string key = plan.text + (plan.voxel_mm ? exact(*plan.voxel_mm) : "");
   for (const auto& [text, made] : previews_)
-    if (text == plan.text) return made;
+    if (text == key) return made;
   std::vector<std::string> wanted{Preview::moved};
   if (!others.empty()) wanted.emplace_back(Preview::overlap);
   Preview made{std::make_shared<const Evaluation>(evaluate(plan, wanted, false, {stop, {}}, true))};
   constexpr std::size_t most_previews = 4;
-  previews_.emplace_back(plan.text, made);
+  previews_.emplace_back(key, made);
   if (previews_.size() > most_previews) previews_.pop_front();
   return made;
 }

@@ -86,9 +86,14 @@ class Session {
     std::shared_ptr<const Evaluation> evaluation;
     static constexpr const char* moved = "dragged_piece";
     static constexpr const char* overlap = "dragged_overlap";
+
+    /// The changed object; null without an evaluation.
+    const Object* object() const;
   };
+  /// Sets "preview" of a picture's header: the changed object's volume, voxels and findings.
+  static void describe(const Preview& preview, Json& header);
   /// `asked` is {"object", "of", "move"}: `of`, or else `object`, moved as by a step "move"; or {"steps"}: the
-  /// last of steps that follow the plan's.
+  /// last of steps that follow the plan's. With "coarse", a universe of many voxels is replaced by a coarser one.
   Preview preview(const Json& asked, const std::vector<std::string>& with, const std::stop_token& stop);
 
   /// The plan's state for a page; null if none is open.

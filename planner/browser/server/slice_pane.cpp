@@ -137,6 +137,14 @@ Message draw_slice(Session& session, const Request& request, const std::stop_tok
       outlined.push_back({id, object.voxel.octree});
     }
   }
+  // A step that is tried makes an object of its own, which replaces none.
+  if (const Object* made = preview.object(); made != nullptr && !made->voxel.octree.is_empty() &&
+                                             std::find(drawn.begin(), drawn.end(), replaced) == drawn.end()) {
+    drawn.push_back(replaced);
+    hatch_colours.push_back(said["preview"].value("colour", text_of_colour(colour_of(outlined.size() + 1))));
+    slice.hatched.push_back({made->id});
+    hatched.push_back({made->id, made->voxel.octree, true});
+  }
   if (preview.evaluation)
     for (const Object& object : preview.evaluation->objects)
       if (object.id == Session::Preview::overlap && !object.voxel.octree.is_empty()) {
@@ -157,6 +165,7 @@ Message draw_slice(Session& session, const Request& request, const std::stop_tok
               {"objects", drawn},
               {"letters", picture.said.at("letters")},
               {"view_frame", sheet_frame(picture.sheet)}};
+  Session::describe(preview, header);
   const Json threshold = said.value("threshold", Json());
   draw_threshold(threshold, picture);
   if (is_moving) return packed(header, {{"jpeg", jpeg_of(size_px, picture.rgb)}});

@@ -266,9 +266,12 @@ void ViewPane::add_objects(Session& session, const Json& said, Drawing& drawing,
     }
   }
   if (!preview.evaluation) return;
+  Session::describe(preview, drawing.header);
   if (moved != nullptr) {
     drawing.of_plan.push_back(moved);
-    drawing.add(planner::drawn(*moved, glm::vec3(1.0f)), dragged, Json::object());
+    Json entry = Json::object();
+    if (const Json& asked = said.at("preview"); asked.contains("colour")) entry["colour"] = asked["colour"];
+    drawing.add(planner::drawn(*moved, glm::vec3(1.0f)), dragged, entry);
   }
   if (const Object* both = find(*preview.evaluation, Session::Preview::overlap)) {
     drawing.header["overlap_mm3"] = both->voxel.measures.volume_mm3;

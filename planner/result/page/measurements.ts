@@ -5,7 +5,7 @@ import {Child, el} from "../../browser/page/base/html";
 import {grouped, three_figures, unit_text} from "../../browser/page/base/numbers";
 import {Vec3} from "../../browser/page/base/vector";
 import {doubtful, list, pill, plural, recommended, Row, section, soft, svg, table, wide_row} from "./elements";
-import {Airway, Measurement} from "./result";
+import {Airway, Measurement, OneWay} from "./result";
 
 const with_unit = (value: number|null, digits: number, unit: string): string =>
     value === null ? "–" : `${grouped(value, digits)}${unit}`;
@@ -99,6 +99,61 @@ function contacts(one: Measurement): Child {
   ];
 }
 
+/// The share of the surface at each distance, as bars over a line of millimetres.
+function distance_plot({low_mm, width_mm, shares}: NonNullable<Measurement["histogram"]>): SVGElement {
+  const width = 640, height = 150, below = 34, above = 12;
+  const most = Math.max(1e-9, ...shares), high_mm = low_mm + width_mm * shares.length;
+  const x = (mm: number): number => width * (mm - low_mm) / (high_mm - low_mm || 1);
+  const words = (at_x: number, anchor: string, text: string): SVGElement => svg(
+      "text", {"font-size": 12, "font-family": "sans-serif", fill: "var(--quiet)", x: at_x.toFixed(2), y: height - below + 16, "text-anchor": anchor},
+      text);
+  return svg(
+      "svg", {role: "img", "aria-label": "Distances, as shares of both surfaces", viewBox: `0 0 ${width} ${height}`, class: "plot"},
+      shares.map((share, i) => {
+        const tall = (height - above - below) * share / most;
+        return svg("rect", {
+          x: x(low_mm + i * width_mm).toFixed(2), y: (height - below - tall).toFixed(2), width: (width / shares.length).toFixed(2),
+          height: tall.toFixed(2), fill: "var(--accent)"
+        });
+      }),
+      svg("path", {stroke: "var(--quiet)", d: `M0 ${height - below}H${width}`, fill: "none"}),
+      low_mm < 0 && high_mm > 0 ?
+          [svg("path", {stroke: "var(--quiet)", d: `M${x(0).toFixed(2)} ${above}V${height - below}`, "stroke-dasharray": "3 3"}),
+           words(x(0), "middle", "0")] :
+          null,
+      words(0, "start", `${grouped(low_mm, 2)} mm`), words(width, "end", `${grouped(high_mm, 2)} mm`),
+      svg("text", {"font-size": 12, "font-family": "sans-serif", fill: "var(--quiet)", x: width / 2, y: height - 4, "text-anchor": "middle"},
+          "signed distance; height: share of the surfaces"));
+}
+
+function differences(one: Measurement): Child {
+  const title = el("h3", {}, `Comparison ${one.id}`);
+  const way = (words: string, of: OneWay|undefined): Row[] => of ? [[
+    words, grouped(of.mean_mm, 3), grouped(of.signed_mean_mm, 3), grouped(of.p95_mm, 3), grouped(of.max_mm, 3)
+  ]] :
+                                                                   [];
+  const within = (one.a_to_b?.bands ?? []).map((band, i): Row => [
+    `within ${grouped(band.tolerance_mm, 2)} mm`, `${grouped(100 * band.share_within, 1)} %`,
+    `${grouped(100 * (one.b_to_a?.bands[i]?.share_within ?? 0), 1)} %`
+  ]);
+  if (typeof one.mean_mm !== "number")
+    return [title, el("p", {}, `${one.a} and ${one.b} are compared by their meshes, which are not there yet.`), list(one.findings)];
+  return [
+    title,
+    table(["", "#mean", "#Hausdorff 95", "#Hausdorff", "#Dice"], [[
+      `${one.a} and ${one.b}, mm`, grouped(one.mean_mm, 3), grouped(one.hausdorff95_mm, 3), grouped(one.hausdorff_mm, 3),
+      doubtful(one.dice, one.dice_half_width, 4)
+    ]]),
+    table(["", "#mean", "#signed mean", "#95th percentile", "#largest"],
+          [...way(`${one.a} to ${one.b}, mm`, one.a_to_b), ...way(`${one.b} to ${one.a}, mm`, one.b_to_a)]),
+    within.length ? table(["", `#${one.a}`, `#${one.b}`], within) : null,
+    one.histogram ? distance_plot(one.histogram) : null,
+    soft("Mean: area-weighted, of absolute distances from points to triangles, over both surfaces. Hausdorff 95: the larger of " +
+         "both directed, area-weighted 95th percentiles. Signed distances are positive outside of the other surface."),
+    list(one.findings)
+  ];
+}
+
 /// A plot of the area along the line, with both kernels' answers and the narrowest section.
 function airway_plot(of: Airway): SVGElement {
   const width = 640, height = 180, left = 52, below = 34, above = 12;
@@ -174,6 +229,7 @@ function trials(one: Measurement): Child {
           doubtful(of.value, of.half_width, of.unit === "mm3" ? 0 : 1) + ` ${unit_text(of.unit)}`.replace(" °", "°"),
           ...sources.map((name) => three_figures(of.sources.find((source) => source.name === name)?.half_width))
         ])),
+    doubt_plot(one.doubts!),
     soft(`After each ±, the half-width that holds in 99 of 100 of ${one.trials} trials with errors of these standard ` +
          `deviations: landmarks ${errors.landmark_mm} mm and a piece's seating ${errors.seating_mm} mm along each axis, its ` +
          `turn ${errors.seating_deg}° about each, the saw's width ${errors.kerf_mm} mm, where bone ends ${
@@ -199,10 +255,41 @@ export function tiles(all: Measurement[]): Child {
   return each.length ? el("div", {class: "tiles"}, each) : null;
 }
 
+/// The half-width of each number by source, as bars whose lengths are comparable within a unit.
+function doubt_plot(all: NonNullable<Measurement["doubts"]>): Child {
+  const shown = all.filter((of) => of.half_width > 0);
+  if (!shown.length) return null;
+  const row = 18, left = 200, width = 640, height = row * shown.length + 4;
+  const most = (unit: string): number => Math.max(...shown.filter((of) => of.unit === unit).map((of) => of.half_width));
+  return svg(
+      "svg", {role: "img", "aria-label": "Half-widths of the numbers", viewBox: `0 0 ${width} ${height}`, class: "plot"},
+      shown.map((of, i) => [
+        svg("text", {"font-size": 12, "font-family": "sans-serif", fill: "var(--quiet)", x: left - 6, y: i * row + 14, "text-anchor": "end"},
+            `${of.what}, ${of.of}`.slice(0, 34)),
+        svg("rect", {x: left, y: i * row + 4, height: row - 6, width: (0.75 * (width - left) * of.half_width / most(of.unit)).toFixed(2), fill: "var(--accent)"}),
+        svg("text", {
+          "font-size": 12, "font-family": "sans-serif", fill: "var(--quiet)", y: i * row + 14,
+          x: (left + 6 + 0.75 * (width - left) * of.half_width / most(of.unit)).toFixed(2)
+        }, `± ${three_figures(of.half_width)} ${unit_text(of.unit)}`)
+      ]));
+}
+
+/// The tables and plots of one measurement; null for a kind without them.
+export function measurement(one: Measurement): Child {
+  if (one.contacts !== undefined) return contacts(one);
+  if (one.airway !== undefined) return airway(one);
+  if (one.mean_mm !== undefined) return differences(one);
+  if (one.doubts !== undefined) return trials(one);
+  if (one.flap_segments !== undefined) return flap(one);
+  if (one.missing !== undefined) return landmarks(one);
+  if (one.volume_mm3 !== undefined) return sizes([one]);
+  return one.verdict !== undefined ? verdicts([one]) : lengths([one]);
+}
+
 export function measurements(all: Measurement[]): Child {
   const each = (key: keyof Measurement, draw: (one: Measurement) => Child): Child =>
       all.filter((one) => one[key] !== undefined).map(draw);
   return section(
       "Measurements", verdicts(all), sizes(all), lengths(all), each("flap_segments", flap), each("contacts", contacts),
-      each("airway", airway), each("missing", landmarks), each("doubts", trials));
+      each("airway", airway), each("mean_mm", differences), each("missing", landmarks), each("doubts", trials));
 }

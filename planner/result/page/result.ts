@@ -67,6 +67,11 @@ export interface Osteotomy {
 export interface DoubtfulNumber {
   what: string; of: string; value: number; unit: string; half_width: number; sources: {name: string; half_width: number}[];
 }
+/// The distances of one surface's points to another surface.
+export interface OneWay {
+  mean_mm: number; p95_mm: number; max_mm: number; signed_mean_mm: number;
+  bands: {tolerance_mm: number; share_within: number}[];
+}
 /// A measurement has the members of its kind; the first of each kind here tells it.
 export interface Measurement {
   id: string; object: string; to: string; finding?: string; findings?: string[];
@@ -80,6 +85,9 @@ export interface Measurement {
   flap_segments?: FlapSegment[]; osteotomies: Osteotomy[]; donor_used_mm: number; contact_estimator: string;
   missing?: {name: string; why: string}[];
   landmarks: {name: string; says: string; point_mm: Vec3; uncertainty_mm: number}[];
+  mean_mm?: Maybe<number>; a: string; b: string;
+  hausdorff_mm?: number; hausdorff95_mm?: number; rms_mm?: number; dice?: Maybe<number>; dice_half_width?: Maybe<number>;
+  a_to_b?: OneWay; b_to_a?: OneWay; histogram?: {low_mm: number; width_mm: number; shares: number[]};
   doubts?: DoubtfulNumber[]; trials: number; errors: {[error: string]: number};
 }
 

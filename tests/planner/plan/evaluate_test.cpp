@@ -138,10 +138,21 @@ TEST_F(Evaluate, AMotionOfTenMetresIsRefused) {
   EXPECT_NE(said.find("out of the universe"), std::string::npos) << said;
 }
 
-TEST_F(Evaluate, VoxelsAloneKeepTheScansUniverseAndReportWhatLeftIt) {
+TEST_F(Evaluate, VoxelsAloneEnlargeTheUniverse) {
   add({{"id", "gone"}, {"do", "move"}, {"object", "ball"}, {"translate_mm", {25, 0, 0}}});
   EvaluateOptions options;
   options.meshes = options.certify = false;
+  const Evaluation evaluation = evaluated(options);
+  const Object& gone = evaluation.object("gone");
+  EXPECT_TRUE(gone.findings.empty()) << gone.findings.back();
+  EXPECT_GT(gone.voxel.measures.volume_mm3, 0.9 * ball_mm3(scanned_radius_mm));
+}
+
+TEST_F(Evaluate, APieceThatIsDraggedKeepsTheScansUniverseAndReportsWhatLeftIt) {
+  add({{"id", "gone"}, {"do", "move"}, {"object", "ball"}, {"translate_mm", {25, 0, 0}}});
+  EvaluateOptions options;
+  options.meshes = options.certify = false;
+  options.only_look_up = true;
   const Evaluation evaluation = evaluated(options);
   const Object& gone = evaluation.object("gone");
   ASSERT_FALSE(gone.findings.empty());

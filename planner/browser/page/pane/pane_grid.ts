@@ -55,7 +55,9 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
     });
     legend.hidden = true;
   }
-  watch(["plan", "looks", "draft_window", "compare", "cut_plane", "theme"], () => want_all(false));
+  watch(["plan", "compare", "theme"], () => want_all(false));
+  // Sliders: coarse pictures follow them, and one at rest comes soon after the last.
+  watch(["looks", "draft_window", "cut_plane"], () => want_all(true));
   watch(["preview"], follow_preview);
   watch(
       ["panes", "selected", "marked", "tool", "cross_mm", "arch_mm"],

@@ -30,10 +30,13 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
   else
     add_view(request, setting);
   if (state.preview && !is_elsewhere()) {
-    request.preview = state.preview;
+    // What is tried follows a hand in coarse voxels, where the plan's are many.
+    request.preview = dragging && state.preview.steps ? {...state.preview, coarse: true} : state.preview;
     if (state.preview.move) request.overlap = true;
     request.objects = shown.filter((object) => !object.id || !is_interference(object.id));
   }
+  // What is tried may lie within the objects that stand.
+  if (!pane.is_slice && request.preview?.by && request.preview.by !== "step") request.objects = request.objects.map(seen_through);
   if (pane.is_slice) request.objects = request.objects.map(hatched_where_interfering);
   if (!pane.is_slice && !is_elsewhere() && !state.compare && has_interference(request))
     request.objects = request.objects.map(seen_through);

@@ -8,7 +8,7 @@ import {draw_overlay} from "./overlay";
 import {is_pending, request_of, shapes} from "./pane_request";
 import {Planes, planes_of} from "./picture_planes";
 import {FrameHeader, PaneRequest} from "../protocol";
-import {PaneSetting, set, state} from "../state";
+import {PaneSetting, set, State, state} from "../state";
 import {dark_ground, is_dark} from "../base/theme";
 import {add, dot, scaled, sub, Vec2, Vec3} from "../base/vector";
 import {directions_of, pixel_of, point_of, uv_of, view_of_plane, ViewFrame} from "../base/view_frame";
@@ -38,6 +38,7 @@ export class Pane {
   private last_asked = "";
   private is_dirty = false;
   private readonly sent = new Map<number, number>();
+  private readonly previews = new Map<number, State["preview"]>();  // of requests under way
 
   constructor(readonly index: number, private readonly acknowledge: (pane: number, frame: number) => void) {
     new ResizeObserver(() => this.resized()).observe(this.canvas);
@@ -148,11 +149,19 @@ export class Pane {
       this.waiting_since = started;
       window.setTimeout(() => this.redraw(), slow_after_ms + 20);
     }
-    ask_picture(fields, (id) => this.sent.set(id, started)).catch((error: unknown) => {
+    const {preview} = state;
+    ask_picture(fields, (id) => {
+      this.sent.set(id, started);
+      if (preview) this.previews.set(id, preview);
+    }).catch((error: unknown) => {
       this.in_flight = Math.max(0, this.in_flight - 1);
       this.last_asked = "";
       if (error instanceof Refusal && error.code !== "cancelled" && error.code !== "lost") {
-        this.problem = error.message;
+        // What is tried is refused on its panel, and the panes keep what they show.
+        if (preview?.steps && is_same(state.preview, preview))
+          set({tried: {mm3: 0, voxels: 0, refusal: refusal_text(error.message)}});
+        else
+          this.problem = error.message;
       }
       this.pump();
       this.redraw();
@@ -164,6 +173,7 @@ export class Pane {
     this.in_flight = 0;
     this.last_asked = "";
     this.sent.clear();
+    this.previews.clear();
     this.newest_decoded = 0;
     this.want(false);
   }
@@ -172,6 +182,8 @@ export class Pane {
     this.in_flight = Math.max(0, this.in_flight - 1);
     const started = this.sent.get(header.id);
     this.sent.delete(header.id);
+    const preview = this.previews.get(header.id);
+    this.previews.delete(header.id);
     this.pump();
     this.redraw();
     const image = header.parts.findIndex((part) => part.kind === "jpeg" || part.kind === "png");
@@ -189,6 +201,7 @@ export class Pane {
     this.canvas.dispatchEvent(
         new CustomEvent("picture", {bubbles: true, detail: {latency_ms, quality: header.quality}}));
     if (header.overlap_mm3 !== undefined && state.preview) set({overlap_mm3: header.overlap_mm3});
+    if (header.preview && is_same(state.preview, preview)) set({tried: {...header.preview, is_coarse: header.quality !== "rest", refusal: ""}});
     if (header.quality !== "rest") return;
     picture.planes = await planes_of(header, parts);
     this.redraw();
@@ -311,6 +324,12 @@ export class Pane {
     this.want(true);
   }
 }
+
+/// Whether a picture was asked for with the preview that the page still shows.
+const is_same = (now: State["preview"], then: State["preview"]|undefined): boolean =>
+    now !== null && JSON.stringify(now) === JSON.stringify(then);
+/// A refusal without the name under which a step is tried.
+export const refusal_text = (message: string): string => message.replace(/^step 'dragged_piece'(\.\w+)?: /, "");
 
 export function change_pane(index: number, change: Partial<PaneSetting>): void {
   set({panes: state.panes.map((pane, number) => (number === index ? {...pane, ...change} : pane))});

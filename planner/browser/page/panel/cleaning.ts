@@ -210,7 +210,7 @@ function proposal_card(step: Step, proposal: Proposal): Child {
 // changes.
 watch(["plan", "selected", "right_tab", "tool", "draft_window", "draft_step"], () => {
   const {preview, cleaning} = state;
-  if (!preview?.steps) return;
+  if (!preview?.steps || preview.by) return;  // another panel tries steps
   const step = step_of(preview.object);
   const is_on_panel = step && state.selected === step.id && state.right_tab === "inspector" &&
       state.tool === "navigate" && !state.draft_window && !state.draft_step;

@@ -2,6 +2,7 @@
 // The right column: the tool in hand and the selected step, the plan's numbers with their certificates, and
 // how far each piece and landmark moves.
 import {add_step, replace_step} from "../actions";
+import {live_rows, live_rows_of_draft} from "./live_step";
 import {mesh_audit} from "./audit";
 import {badge, judged, measured_text} from "./certificate_badge";
 import {cleaning_rows} from "./cleaning";
@@ -14,6 +15,7 @@ import {movement_fields} from "./move_fields";
 import {fetch_movement, movement} from "./movement_panel";
 import {numbers} from "./numbers_panel";
 import {Step} from "../protocol";
+import {result_rows} from "./result_rows";
 import {step_form} from "./schema_form";
 import {selected_step, set, state, watch} from "../state";
 import {active_tool, take_tool} from "../tool/tool";
@@ -41,7 +43,7 @@ export function make_inspector(host: HTMLElement): void {
   };
   watch(
       [
-        "plan", "selected", "right_tab", "tool", "draft_window", "draft_step", "preview", "overlap_mm3",
+        "plan", "selected", "right_tab", "tool", "draft_window", "draft_step", "preview", "overlap_mm3", "tried",
         "cleaning", "compare", "cut_plane", "arch_mm"
       ],
       again);
@@ -59,7 +61,7 @@ function inspector(): Child {
              onchange: (event: Event) =>
                  set({draft_step: {...draft, id: (event.target as HTMLInputElement).value}})
            })),
-        step_form(draft, (step) => set({draft_step: step})), mesh_audit(draft),
+        live_rows_of_draft(draft), step_form(draft, (step) => set({draft_step: step})), mesh_audit(draft),
         el("div", {class: "row"},
            button(
                "Add step", "Adds the step to the plan",
@@ -95,8 +97,7 @@ function tool_card(): Child {
 function step_card(step: Step, has_motion: boolean): Child {
   const object = state.plan?.objects.find((one) => one.id === step.id);
   const certificate = judged(object?.certificate, object?.volume);
-  const is_number = step.do === "measure";
-  const found = is_number ? state.plan?.measurements?.find((one) => one.id === step.id) : undefined;
+  const found = state.plan?.measurements?.find((one) => one.id === step.id);
   return el(
       "section", {class: "card"},
       el("h3", {}, step.id.replace(/_/g, " "), el("small", {}, step.do.replace(/_/g, " ")),
@@ -106,8 +107,10 @@ function step_card(step: Step, has_motion: boolean): Child {
       object?.volume ? el("p", {class: "reading"}, el("b", {}, measured_text(object.volume)),
                           object.area ? `  ·  ${measured_text(object.area)}` : "") :
                                         null,
-      found ? el("p", {class: "reading"}, el("b", {}, measured_text(found))) : null,
-      mirror_rows(step), cleaning_rows(step),
+      found && found.value !== null ? el("p", {class: "reading"}, el("b", {}, measured_text(found)), ` ${found.says ?? ""}`) : null,
+      found && found.value === null && found.sentence ? el("p", {class: "says"}, found.sentence) : null,
+      object?.findings?.map((finding) => el("p", {class: "sentence warn"}, finding)),
+      mirror_rows(step), cleaning_rows(step), live_rows(step), result_rows(step),
       certificate ? el("p", {class: `sentence ${certificate.verdict.toLowerCase()}`}, certificate.sentence) :
                     null,
       step_form(

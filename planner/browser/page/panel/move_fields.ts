@@ -79,5 +79,6 @@ export function movement_fields(): Child {
          state.preview && state.overlap_mm3 !== null ?
              el("b", {style: `color:${state.overlap_mm3 > 0.5 ? overlap_colour : "var(--good)"}`},
                 ` overlap ${state.overlap_mm3.toFixed(0)} mm³`) :
-             null));
+             null),
+      state.preview?.move ? state.tried?.findings?.map((finding) => el("p", {class: "sentence warn"}, finding)) : null);
 }

@@ -53,7 +53,8 @@ export function numbers(): Child {
                         },
                         {class: "small", "data-key": `show-${object.id}`}) :
                     null,
-                object.error ? el("p", {class: "error"}, object.error) : null),
+                object.error ? el("p", {class: "error"}, object.error) : null,
+                object.findings?.map((finding) => el("p", {class: "sentence warn"}, finding))),
              el("td", {}, el("div", {}, measured_text(object.volume)),
                 object.area ? el("small", {}, measured_text(object.area)) : null),
              el("td", {class: "badge-cell"}, badge(object.id, object.certificate, object.volume)));

@@ -200,6 +200,7 @@ function step_menu(step: Step): Child {
 
 let diff_rows: {from: number; rows: string[]}|null = null;
 on_leaving_plan(() => {
+  step_of_menu = "";
   diff_rows = null;
 });
 

@@ -16,8 +16,9 @@ type Mode = "erase"|"paint";
 type Shape = "ball"|"slab";
 let mode: Mode = "erase";
 let shape: Shape = "ball";
-let radius_mm = 5;
-let thickness_mm = 4;
+const usual_radius_mm = 5, usual_thickness_mm = 4;
+let radius_mm = usual_radius_mm;
+let thickness_mm = usual_thickness_mm;
 const least_mm = 0.5, most_mm = 50;
 
 /// What is drawn and not in the plan yet. A stroke in a view is in parts, where the surface falls away under it.
@@ -277,4 +278,5 @@ function panel(): Child {
 
 on_leaving_plan(() => {
   draft = pointed = null;
+  [mode, shape, radius_mm, thickness_mm] = ["erase", "ball", usual_radius_mm, usual_thickness_mm];
 });

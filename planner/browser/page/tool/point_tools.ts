@@ -9,7 +9,7 @@ import {is_drawn} from "../pane/overlay";
 import {show_in, show_scan} from "../pane/pane_grid";
 import type {Pane} from "../pane/panes";
 import {Json, LandmarkGuess} from "../protocol";
-import {first_scan, is_elsewhere, notify, selected_step, set, state} from "../state";
+import {first_scan, is_elsewhere, notify, on_leaving_plan, selected_step, set, state} from "../state";
 import {take_tool, Tool} from "./tool";
 import {angle_deg, distance, hundredths, Vec2, Vec3} from "../base/vector";
 
@@ -276,6 +276,10 @@ export const landmark_tool: Tool = {
     landmark_name = "";
   },
 };
+
+on_leaving_plan(() => {
+  is_snapping = true;
+});
 
 export const segment_tool: Tool = {
   name: "segment",

@@ -85,6 +85,57 @@ test('no value of a tool or a procedure goes into another plan', async () => {
   await one.press('Escape');
 });
 
+test('settings of tools end with their plan', async () => {
+  await one.command('Tool: Brush');
+  await one.type('brush-radius', 12);
+  await one.click(one.page.locator('[data-key="brush-Paint"]'));
+  await one.press('Escape');
+  await one.press('l');
+  const snap = one.page.locator('.check', { hasText: 'Snap to the surface' }).locator('input');
+  await snap.uncheck();
+  await one.click(one.page.getByRole('button', { name: 'More for bone' }).first());
+  assert.equal(await one.page.getByRole('menuitem').count() > 0, true);
+  await open('other');
+  assert.equal(await one.page.locator('.menu:not([hidden])').count(), 0, 'no menu of the plan before');
+  await one.press('l');
+  await one.until(() => snap.isVisible(), 'the landmark tool');
+  assert.ok(await snap.isChecked(), 'landmarks snap again');
+  await one.press('Escape');
+  await one.command('Tool: Brush');
+  await one.until(async () => (await one.page.locator('[data-key="brush-radius"]').inputValue()) === '5', 'the usual radius');
+  assert.equal(await one.page.locator('[data-key="brush-Erase"]').getAttribute('aria-pressed'), 'true');
+  await one.press('Escape');
+  await open('one');
+});
+
+test('a threshold is followed by coarse pictures, and one at rest comes after the last', async () => {
+  await one.press('w');
+  const slider = one.page.locator('[data-key="low-range"]');
+  await slider.waitFor();
+  await one.at_rest();
+  const before = await one.page.evaluate(() => window.pictures.length);
+  for (const low of [320, 340, 360, 380]) await slider.fill(String(low));
+  await one.at_rest();
+  const came = await one.page.evaluate((from) => window.pictures.slice(from).map(({ quality }) => quality), before);
+  assert.ok(came.includes('moving'), `${came}`);
+  assert.equal(came.pop(), 'rest');
+  await one.press('Escape');
+  await one.at_rest();
+});
+
+test('what an object loses is said beside its number', async () => {
+  const changed = written();
+  changed.steps.push({ id: 'painted', do: 'brush', object: 'bone', mode: 'paint', strokes: [{ points_mm: [[0, -120, 0], [0, -140, 0]], radius_mm: 20 }] });
+  fs.writeFileSync(other_path, JSON.stringify({ ...changed, name: 'other' }));
+  await open('other');
+  await one.select('painted');
+  await one.tab('Inspector');
+  await one.page.locator('.inspector .sentence.warn', { hasText: 'reaches the border of the universe' }).waitFor();
+  await one.tab('Numbers');
+  await one.page.locator('.inspector .sentence.warn', { hasText: 'reaches the border of the universe' }).waitFor();
+  await open('one');
+});
+
 test('a procedure that is undone leaves what was shown before', async () => {
   await one.until(() => newest(0)?.objects?.includes('bone'), 'bone shown');
   await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));

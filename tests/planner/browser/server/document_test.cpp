@@ -67,6 +67,36 @@ TEST_F(DocumentTest, APlanThatReadsOutsideOfTheOpenFoldersIsNotOpenedUnlessItMay
   EXPECT_NO_THROW(Document(plan("/etc/passwd", bone), folders_));
 }
 
+TEST_F(DocumentTest, AFileThatAStepReadsWhileItIsParsedIsRefusedBeforeItIsRead) {
+  const Json steps = Json::parse(R"([
+    {"id": "x", "do": "landmarks", "file": "/etc/passwd"},
+    {"id": "x", "do": "transform", "object": "bone", "file": "/etc/passwd"},
+    {"id": "x", "do": "transform", "object": "bone", "file": "../../../../../../../../etc/passwd"},
+    {"id": "x", "do": "saw", "object": "bone", "plane": "/etc/passwd"},
+    {"id": "x", "do": "mask", "regions": [{"view": "anterior", "curves": ["/etc/passwd"]}]},
+    {"id": "x", "do": "mask", "slices": "/etc/passwd"},
+    {"id": "x", "do": "segment", "scan": "ct", "window": "bone", "regions": "/etc/passwd"},
+    {"id": "x", "do": "warp", "object": "bone", "result": "/etc/passwd"}])");
+  for (const Json& step : steps) {
+    const auto message = [&](const auto& work) -> std::string {
+      try {
+        work();
+      } catch (const voxel::Error& error) {
+        return error.what();
+      } catch (const std::exception& error) {
+        return std::string("read: ") + error.what();
+      }
+      return "accepted";
+    };
+    for (const std::string& told : {message([&] {
+                                      document_->edit({{"add", {{"step", step}}}});
+                                    }),
+                                    message([&] { document_->with_steps(Json::array({step})); })})
+      EXPECT_NE(told.find("no folder that is open"), std::string::npos) << step << "\n" << told;
+  }
+  EXPECT_EQ(ids(), "bone ");
+}
+
 TEST_F(DocumentTest, AHistoryThatCameWithAPlanOpensNothingEither) {
   const std::filesystem::path path = folder_ / "a.plan.json";
   const Json own = document_->json();
