@@ -15,8 +15,8 @@ namespace {
 
 using Corners = std::array<glm::dvec3, 4>;
 
-/// The cosine of the smallest dihedral angle: 1 of a flat element, 1/3 of the regular one; 2 of one that has
-/// no volume or is turned inside out.
+/// The cosine of the smallest dihedral angle: 1 for a flat element, 1/3 for the regular one; 2 for an element
+/// without volume or turned inside out.
 double flatness(const Corners& p) {
   const glm::dvec3 a = p[1] - p[0];
   const glm::dvec3 b = p[2] - p[0];
@@ -122,8 +122,8 @@ class FaceNormals {
     }
   }
 
-  /// About a node on a flat face all have one normal, on a straight edge two, in a corner three. More tell of
-  /// a curved surface, where the node is free.
+  /// About a node on a flat face all have one normal, on a straight edge two, in a corner three. More
+  /// normals show a curved surface, where the node is free.
   Freedom freedom(std::size_t v) const {
     const std::vector<glm::dvec3>& n = of_node_[v];
     if (n.size() == 1) return {Freedom::Kind::Plane, n[0]};
@@ -216,7 +216,7 @@ class Improving {
     return moved;
   }
 
-  /// The largest flatness about a node if it stood at `p_mm`, or the first found that is `enough` or more.
+  /// The largest flatness about a node if it stood at `p_mm`, or the first value of at least `enough`.
   /// Begins with the element `worst`, because the element that is flattest at one position is mostly the
   /// flattest nearby. Sets `worst` to the flattest element.
   double flattest(std::uint32_t v, const glm::dvec3& p_mm, double enough, std::uint32_t& worst) const {

@@ -338,7 +338,7 @@ Try try_once(const MesherInput& surface, const Given& given, const TetOptions& o
 Mesh3Filling fill_by_mesh3(const MesherInput& given, const SizeLimits& limits, double surface_mm3,
                            const TetOptions& options) {
   constexpr int tries = 4;
-  // Facets may not have longer sides than the refinements ask for.
+  // Facets may not have longer sides than the refinements require.
   SizeLimits by_facets = limits;
   for (double& most_mm : by_facets.most_mm) most_mm /= std::sqrt(3.0) * facet_radius_by_side();
   SurfaceSizes sizes(given, Mesh3Sizes{}.grading, by_facets);

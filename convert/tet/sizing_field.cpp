@@ -31,8 +31,9 @@ constexpr double longest_share() {
                                                      " triangles: ask for larger elements");
 }
 
-/// How many triangles a surface is divided into, at least: none is larger than an equilateral one of the
-/// longest side, and none of those divided from one has a larger size than its middle's and the way to there.
+/// The least number of triangles into which a surface is divided. No triangle is larger than an equilateral
+/// one of the longest side, and none of the parts of a triangle has a larger size than the size at its
+/// middle plus the growth over the distance to it.
 double least_count(const brep::Triangles& surface, const SizingField& sizes) {
   const auto& p = surface.points_mm;
   std::vector<glm::dvec3> middles_mm;
@@ -97,7 +98,7 @@ class Round {
       if (length_mm(sides[i]) > longest_share() * sizes_mm[i]) middle_.emplace(sides[i], 0);
   }
 
-  /// The side across from which a triangle is halved: its longest, of equal ones the one that both of its
+  /// The side across which a triangle is halved: its longest; among equal ones the side that both of its
   /// triangles choose.
   std::size_t longest(const Face& face) const {
     std::size_t best = 0;

@@ -212,8 +212,8 @@ glm::dvec3 hole_point(const MesherInput& surface, const std::vector<Part>& parts
   return from + 0.5 * nearest * direction;
 }
 
-/// The volume that meshers are asked for, relative to the largest that is allowed: nodes that move to mend
-/// flat elements enlarge some of their neighbours, by up to a tenth in balls and boxes.
+/// The volume requested from meshers, relative to the largest that is allowed: nodes that move to mend flat
+/// elements enlarge some of their neighbours, by up to a tenth in balls and boxes.
 constexpr double asked_volume_share() {
   return 0.85;
 }
@@ -246,7 +246,7 @@ std::optional<std::size_t> divide_for_volume(MesherInput& surface, double max_vo
   return surface.triangles.size() == before ? std::nullopt : std::optional(before);
 }
 
-/// Reports elements that are larger than asked for.
+/// Reports elements that are larger than requested.
 std::optional<std::string> too_large(const Tetrahedra& made, double max_volume_mm3) {
   std::size_t count = 0, largest = 0;
   double most_mm3 = max_volume_mm3;
