@@ -98,7 +98,7 @@ class OperationRun {
   }
 
  private:
-  /// What the operation finds out once for both kernels.
+  /// Computes the operation's values that both kernels share.
   void settle(Object& made) {
     if (!operation_.settle) return;
     settled_ = operation_.settle(
@@ -164,7 +164,7 @@ class OperationRun {
     return std::max({extent.x, extent.y, extent.z});
   }
 
-  /// Voxels of --voxel, or a 128th of `shown_mm`.
+  /// Voxels of the size --voxel, or a 128th of `shown_mm`.
   voxel::Universe universe_around(const voxel::Box& box, double shown_mm) const {
     return voxel::universe_around(box, text_.voxel_mm.value_or(shown_mm / 128.0));
   }
