@@ -107,7 +107,7 @@ convert::TetOptions options_of(const Tet& asked, const FileBench& bench) {
   return options;
 }
 
-/// What a deck is made of, and how it came about.
+/// The contents of a deck, and how they were made.
 struct TetResult {
   convert::Tetrahedra tetrahedra;
   std::size_t regions = 1;
@@ -134,8 +134,8 @@ voxel::Octree voxels_of(const Tet& asked, const brep::Triangles& triangles, bool
                : convert::voxelise_by_winding_number(universe, brep::joined_surface(triangles).surface);
 }
 
-/// Elements as they are made, or why the fallback is to be taken. Without --fallback throws where none are
-/// made, and keeps unfit ones with a finding.
+/// Makes the elements. If there are none or their shapes are unfit: with --fallback records the reason for
+/// the fallback; without it throws, or keeps the unfit elements with a finding.
 void fill(const Tet& asked, bool is_of_voxels, TetResult& filled,
           const std::function<convert::Tetrahedra()>& make) {
   try {
@@ -160,7 +160,7 @@ void fill(const Tet& asked, bool is_of_voxels, TetResult& filled,
   }
 }
 
-/// In place of smooth elements those of an octree.
+/// Replaces smooth elements by those of an octree.
 void fall_back(TetResult& filled, convert::Tetrahedra tetrahedra, const voxel::Universe& universe) {
   filled.tetrahedra = std::move(tetrahedra);
   filled.findings = {"fallback: " + *filled.fallback +
@@ -174,7 +174,7 @@ struct CheckedMesh {
   brep::Health health;
 };
 
-/// Appends to the findings what mending did.
+/// Appends findings on the mending.
 CheckedMesh checked_mesh(const FileBench& bench, const Tet& asked, std::vector<std::string>& findings) {
   CheckedMesh surface;
   if (asked.mend) {
@@ -231,7 +231,7 @@ voxel::Octree octree_in(const std::string& name, const FileBench& bench) {
   return std::move(*octree);
 }
 
-/// The octree and the regions beside it: smooth elements where a size is asked for, or else the voxels' own.
+/// The octree and the regions beside it: smooth elements if a size is requested, else the voxels' own.
 TetResult of_octrees(const FileBench& bench, const Tet& asked) {
   std::vector<voxel::Octree> octrees;
   for (const std::string& name : asked.inputs()) octrees.push_back(octree_in(name, bench));
@@ -326,7 +326,7 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
     deck.progress = bench.progress("writing");
     convert::write_deck(tetrahedra, asked.out, deck);
   }
-  // Of the deck as written: sides of order 2 have nodes that the linear elements lack.
+  // Counts are those of the written deck: elements of order 2 have nodes that the linear elements lack.
   std::size_t nodes = tetrahedra.nodes_mm.size();
   std::vector<convert::NodeSet> written_sets = deck.node_sets;
   if (asked.order == 2) {
