@@ -73,7 +73,7 @@ PictureFrame frame_of_drawing(const SvgPicture& picture, const fs::path& drawing
   return read_frame(path);
 }
 
-/// From user units to places in the picture, which count from its top left corner.
+/// Maps user units to positions in the picture, counted from its top left corner.
 glm::dmat3 pixel_from_user(const SvgPicture& picture, const glm::ivec2& size_px) {
   glm::dvec2 units_per_pixel = picture.shown_units / glm::dvec2(size_px), first(0.0);
   if (picture.keeps_aspect) {
@@ -106,7 +106,7 @@ DrawnRegion of_svg(const std::optional<voxel::View>& view, const fs::path& path)
         if (view) return glm::dmat3({mm_per_unit, 0, 0}, {0, -mm_per_unit, 0}, {0, 0, 1});
         const PictureFrame frame = frame_of_drawing(*picture, path);
         seen = frame.view();
-        // Whole numbers are pixels' centres there, and their corners here.
+        // In the frame, whole numbers are the centres of pixels; in the drawing, their corners.
         const glm::dmat3 centres({1, 0, 0}, {0, 1, 0}, {-0.5, -0.5, 1});
         return frame.view_mm_from_pixel() * centres * pixel_from_user(*picture, frame.size_px);
       },

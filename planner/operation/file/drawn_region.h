@@ -6,8 +6,8 @@
 
 #include "voxel/solid/region_mask.h"
 
-// Regions as people say them on the command line: a view and a file, a drawing over a picture, or the pixels
-// of a picture.
+// Regions as users write them on the command line: a view and a file, a drawing over a picture, or the
+// pixels of a picture.
 namespace octotomy::planner {
 
 /// A region, as plans hold it: points in the view's millimetres, rounded to a ten-thousandth of one.

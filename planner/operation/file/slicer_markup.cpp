@@ -52,7 +52,7 @@ void set_bounds(const SortedJson& list, const std::string& where, double mm, Mar
       refuse(where + ".planeBounds", "must be a list of 4 numbers");
     std::array<double, 4> numbers{};
     for (std::size_t i = 0; i < 4; ++i) numbers[i] = mm * number_of(bounds[i], where + ".planeBounds");
-    // Slicer writes a size of its own choice's bounds as empty.
+    // Slicer writes empty bounds if it chose the size itself.
     if (numbers[0] < numbers[1] && numbers[2] < numbers[3]) {
       plane.low_mm = {numbers[0], numbers[2]};
       plane.high_mm = {numbers[1], numbers[3]};

@@ -41,7 +41,7 @@ std::map<int, std::string> spelled(const std::map<int, std::string>& names) {
   return made;
 }
 
-/// Whether a file is byte for byte what label_table_text() makes of its names.
+/// Whether a file is byte for byte the text that label_table_text() makes of its names.
 bool is_written_here(const fs::path& table) {
   const std::map<int, std::string> names = names_in(table);
   if (names.empty() || !fs::is_regular_file(fs::symlink_status(table))) return false;
