@@ -26,7 +26,8 @@ constexpr double least_orbit = 18.0, most_orbit = 42.0;  ///< from the mid-plane
 constexpr double orbit_height = 32.0;
 constexpr double two_rims = 8.0;  ///< largest distance between two rules' results for a rim
 constexpr double crest = 6.0;     ///< below a rim's crest nothing stands before it for so long
-/// Within which places are as far out as the outermost, by noise, and as far down and back, by pitch.
+/// Places within these distances of the outermost count as equally far out, because of noise, and as
+/// equally far down and back, because of pitch.
 constexpr double as_far_out = 0.25, as_far_down = 1.0;
 constexpr double arch_begin = 15.0, arch_end = 78.0;  ///< behind the nasal spine
 constexpr double arch_beyond = 16.0;                  ///< the arch of a large head may extend by this much
@@ -65,7 +66,8 @@ class Face {
   const HeadMap& from_side() const { return side_.second > 0.0 ? maps_.left : maps_.right; }
   double step() const { return maps_.front.step_mm(); }
 
-  /// From the mid-line outwards: the first bone as far in front as the rim; and where its surface ends.
+  /// Searches from the mid-line outwards for the first bone as far in front as the rim, and for the end of
+  /// its surface.
   void piriform_and_buttress() {
     const glm::dvec3* ans = found_.find("ans");
     if (ans == nullptr) {

@@ -38,11 +38,12 @@ constexpr double coarse_mm = 1.0;  ///< step of the maps of other trials
 /// Pitches in degrees at which a face is sought, nearest first; how often its pitch is corrected.
 constexpr std::array<double, 5> first_pitches{0.0, 12.0, -12.0, 24.0, -24.0};
 constexpr int corrections = 2;
-/// In a head held by its Frankfurt plane: the direction from spine to nasion leans back from upright; the way
-/// from the orbit's rim back to the arch's outermost point falls, by some 4 mm on 45; and more than that is
-/// no face's.
+/// Angles in a head that is level by its Frankfurt plane: by `nose_lean_deg` the line from spine to nasion
+/// leans back from upright; by `arch_fall_deg` the line from the orbit's rim back to the arch's outermost
+/// point falls, about 4 mm over 45. No face leans by more than `most_lean_deg`.
 constexpr double nose_lean_deg = 1.0, arch_fall_deg = 5.0, most_lean_deg = 35.0;
-/// For the doubt: the head's pitch in degrees, the profile's half width and the rules' heights in mm.
+/// Changes of the other trials: of the head's pitch in degrees, of the profile's half width and of the
+/// rules' heights in mm.
 constexpr std::array<std::array<double, 3>, 4> other_ways{
     {{6.0, 1.0, 1.5}, {3.0, 3.0, -1.0}, {-3.0, 1.0, 1.0}, {-6.0, 3.0, -1.5}}};
 constexpr double threshold_share = 1.25;  ///< a higher threshold over the usual one, from -150 on
@@ -316,7 +317,8 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   for (const auto& [name, place] : first.places) {
     const glm::dvec3 p_mm = frame.lps_mm(place);
     const double moved = scatter(name, p_mm, others, plane.normal);
-    // A middle beside the mid-plane is a separate finding: the face is crooked, or bone is on one side only.
+    // A middle beside the mid-plane is a separate finding: the face is crooked, or there is bone on one
+    // side only.
     const bool is_of_middle =
         name.find("_left") == std::string::npos && name.find("_right") == std::string::npos;
     const double aside = is_of_middle ? 0.5 * std::abs(place.x) : 0.0;
@@ -331,7 +333,7 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
     else
       guess.found.push_back({name, p_mm, within_mm});
   }
-  // As in keep_plausible(): of the two buttresses neither is known without the other.
+  // As in keep_plausible(): a buttress is removed if the other side's buttress is missing.
   for (const auto& [one, other] :
        {std::pair("buttress_left", "buttress_right"), {"buttress_right", "buttress_left"}})
     if (missing.contains(other) &&

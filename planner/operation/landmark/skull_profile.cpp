@@ -178,8 +178,8 @@ class Reader {
   int incisor_below(int tip, int last) const {
     const int over = rows_of(tooth_step_over);
     const int first = tip + rows_of(least_alveolar), lowest = std::min(last, tip + rows_of(most_alveolar));
-    // In an open mouth the profile falls back as far as the cervical spine; a deeper fall does not make it
-    // more of an edge.
+    // In an open mouth the profile falls back as far as the cervical spine; so a deeper fall is no stronger
+    // sign of an edge.
     const auto fall = [&](int k) { return std::min(back(k + over) - back(k), edge); };
     double most = 0.0;
     for (int k = first; k <= lowest; ++k) most = std::max(most, fall(k));
