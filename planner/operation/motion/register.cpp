@@ -423,7 +423,7 @@ FileAnswer on_files(const Register& asked, const FileBench& bench) {
   return answer;
 }
 
-// Conditions of fields. A folder of DICOM cannot be told from a plan's object by its name.
+// Conditions of fields. A name does not show whether it is a folder of DICOM or an object of a plan.
 bool is_of_samples(const Register& asked) {
   return is_by_samples(asked) || (asked.by.empty() && voxel::volume_format(asked.object.name));
 }
