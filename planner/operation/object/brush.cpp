@@ -165,8 +165,8 @@ double reach_mm(const Stroke& stroke, int axis) {
          0.5 * *stroke.thickness_mm * std::abs(frame.normal[axis]);
 }
 
-/// The planes of walls normal to an axis: a piece of a stroke that is itself normal to the axis leaves one on
-/// either side, and a slab that is normal to it at each of its points.
+/// The planes of walls that are normal to an axis. A piece of a stroke that is normal to the axis leaves a
+/// wall on either side; a slab that is normal to the axis leaves one at each of its points.
 std::vector<CutPlane> walls_of(const std::vector<Stroke>& strokes) {
   constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
   std::array<std::set<double>, 3> offsets_mm;

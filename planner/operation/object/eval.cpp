@@ -79,7 +79,7 @@ glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
   return voxel::moved_from_still(motion);
 }
 
-/// Of a step: the expression names objects of the plan and motions of its own.
+/// Checks a step, whose expression names objects of the plan and motions of its own.
 void check(const Eval& asked, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".octree"}, place.at("path"));

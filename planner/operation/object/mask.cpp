@@ -66,7 +66,7 @@ std::vector<std::string> files_of(const Mask& mask) {
   return files;
 }
 
-/// The name of a view that looks along a plane: level, or from in front where the plane is.
+/// The name of a horizontal view that sees the plane edge-on; "anterior" if the plane is horizontal.
 std::string view_along(const glm::dvec3& normal) {
   const double level = std::hypot(normal.x, normal.y);
   if (level < 1e-12) return "anterior";

@@ -161,7 +161,8 @@ FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& he
 /// Beyond this number of shells their union by Booleans would take minutes.
 constexpr std::size_t most_united = 1000;
 
-/// A closed surface whose shells may share points and edges, overlap, or lie in each other, as one without.
+/// A closed surface and the method of its volume. In the given surface, shells may share points and edges,
+/// overlap, or lie in each other.
 struct OneSurface {
   brep::Triangles triangles;
   std::string how;  ///< of the volume
@@ -304,7 +305,7 @@ void add_thickness(const voxel::Octree& octree, const Measure& asked, const File
   json["thickness"] = thickness_json(octree, bench.progress("thickness"));
 }
 
-/// What voxels that are too coarse for an object want.
+/// Advice for an object whose voxels are too coarse.
 constexpr const char* remake = "make the octree with smaller ones, --voxel";
 
 FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure& asked,

@@ -146,7 +146,7 @@ Finished finished(Made made, const Meshed& asked, Timings& timings) {
   }
   if (fewer) {
     const Stopwatch watch(timings, "decimate");
-    // The number is what was asked for: no bound on the error may end it before.
+    // The user requested a number of triangles, so no bound on the error may end the decimation earlier.
     constexpr double no_bound_mm = std::numeric_limits<double>::infinity();
     surface = brep::decimate(surface,
                              {.max_error_mm = no_bound_mm, .faces = static_cast<std::size_t>(*asked.faces)});

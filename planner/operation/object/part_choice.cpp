@@ -342,7 +342,8 @@ std::vector<Differing> differing(const WholeObject& whole, const brep::Solid& so
     if (components[i].volume_mm3 > most_mm3) continue;
     const voxel::Octree digitised = digitised_part(solid, components[i], by_mesh.universe());
     const voxel::Octree own = common_of(digitised, by_mesh);
-    // A part of which the voxels keep some hangs together by a thin neck: it is not passed over.
+    // If the voxels keep a piece of a part, the part is held together by a thin neck and is not listed
+    // here.
     if (!own.is_empty() && common_of(digitised, chosen).is_empty()) all.push_back({none, over(own), {}, {i}});
   }
   return all;

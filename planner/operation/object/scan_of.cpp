@@ -102,8 +102,8 @@ bool is_one_grey(const voxel::GreyOctree& a, const voxel::GreyOctree& b) {
   return &a.universe() == &b.universe();
 }
 
-/// Refuses samples that mean something else than the frame's, such as a label map's beside Hounsfield units, or
-/// count in other steps.
+/// Refuses samples that differ from the frame's in meaning, such as a label map's beside Hounsfield units,
+/// or in their step.
 void need_one_meaning(const ScanOf& step, const ScanBench& bench, const voxel::Expression& expression) {
   const LoadedScan& loaded = (*bench.scans)(step.scan.name);
   const voxel::Scene& frame = loaded.scene();
@@ -163,7 +163,7 @@ class SecondReading {
       return {word.in, word.in != word.out && !word.near, object.is_tool ? nullptr : &object};
     }
     Owned made = read(tree.parts.front(), p_mm);
-    // Which sample a complement has is the voxel kernel's rule, and is not read again.
+    // The voxel kernel defines the sample of a complement. It is not checked here.
     if (tree.symbol == '~') return {!made.is_inside, made.is_known && made.is_inside, nullptr};
     for (std::size_t i = 1; i < tree.parts.size(); ++i)
       made = joined(tree.symbol, made, read(tree.parts[i], p_mm));
