@@ -38,7 +38,7 @@ void check(const Seating& seating, const FieldLocation& place) {
                                  "' itself: name the bone or the teeth on which it sits");
 }
 
-/// What both kernels find of one object.
+/// Both kernels' results for one object.
 struct Found {
   std::string object;
   std::optional<brep::Binding> mesh;
