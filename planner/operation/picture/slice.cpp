@@ -25,7 +25,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// Columns of a curved picture without a stated pixel size: a dental arch fills a screen's width.
+/// The least width in pixels of a curved picture without a stated pixel size. A dental arch then fills a
+/// screen's width.
 constexpr int least_curve_px = 800;
 
 namespace fs = std::filesystem;
@@ -249,7 +250,7 @@ voxel::Range shown_range(const Slice& slice, const Subject& subject, const voxel
 
 glm::vec3 outline_colour(const Slice& slice, const std::vector<Outlined>& objects, std::size_t i) {
   if (i < slice.colours.size()) return need_colour(slice.colours[i]);
-  // Bone's own colour is that of the picture's greys: outlines begin with the next.
+  // Outlines begin with the second default colour, because bone's own colour resembles the picture's greys.
   return objects[i].is_hatched ? interference_colour() : colour_of(i + 1);
 }
 
