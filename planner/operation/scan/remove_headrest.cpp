@@ -18,11 +18,11 @@ struct RemoveHeadrest {
   std::vector<glm::dvec3> keep_mm;
 };
 
-/// Less that stays is a strap's buckle, a wire or noise.
+/// A smaller kept part is a strap's buckle, a wire or noise.
 constexpr double least_kept_mm3 = 1000.0;
 
-/// What was removed, and what was kept that may be a support. Recommends no value: a part that could not be
-/// parted surely must not be cut off by another number.
+/// Reports the removed parts, and kept parts that may be a support. Recommends no value, because another
+/// number must not cut off a part that could not be separated reliably.
 std::vector<std::string> findings_of(const voxel::HeadrestRemoval& removal) {
   const auto cm3 = [](double mm3) { return plain(std::round(mm3 / 100.0) / 10.0) + " cm\u00b3"; };
   std::vector<std::string> findings;
