@@ -457,8 +457,8 @@ void need_fields_read(const std::vector<Field>& fields, const SortedJson& object
   }
 }
 
-/// Whether the operation reads a field of this value: need_fields_read() refuses one that is printed all the
-/// same.
+/// Whether the operation reads a field for this value. need_fields_read() refuses a field that is given but
+/// not read.
 static bool is_read(const Field& field, const void* owner) {
   const auto* conditional = field.slot.target<ConditionalSlot>();
   return conditional == nullptr ||
