@@ -10,7 +10,7 @@
 #include "planner/plan/plan.h"
 #include "planner/procedure/template/procedure.h"
 
-// Procedures one after the other: each acts on what the one before has planned.
+// Procedures in succession: each acts on the planned outcome of the one before.
 namespace octotomy::planner {
 
 /// The object that the plan's last procedure ends with: the last step that is called "planned" or "rebuilt",
@@ -18,7 +18,7 @@ namespace octotomy::planner {
 /// has. None: the plan has no such step.
 std::optional<std::string> outcome_of(const Plan& plan);
 
-/// Whether chained() has given a step this name for the procedure.
+/// Whether chained() named this step for the procedure.
 bool is_chained_step_of(const Procedure& procedure, const std::string& id);
 
 struct Chained {
