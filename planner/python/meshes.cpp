@@ -28,7 +28,7 @@ using brep::Solid;
 using brep::Triangles;
 using SharedTriangles = std::shared_ptr<Triangles>;
 
-/// Doubles still part points by a ten-millionth of a millimetre at this distance.
+/// At this distance doubles still distinguish points a ten-millionth of a millimetre apart.
 constexpr double farthest_mm = 1e9;
 
 SharedTriangles triangles_of_arrays(const Numbers& vertices_mm, const Numbers& faces) {

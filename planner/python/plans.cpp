@@ -17,7 +17,7 @@
 namespace octotomy::planner::python {
 namespace {
 
-/// A plan's result, and the last of its parts that Python holds keeps it.
+/// A plan's result. Its parts that Python holds keep it alive.
 using SharedResult = std::shared_ptr<Result>;
 
 const Object& object_of(const Result& result, const std::string& id) {
