@@ -11,7 +11,7 @@ namespace octotomy::planner {
 namespace {
 
 constexpr int contact_picture_px = 480;
-/// How much bone around the contacts is shown, and how far it may rise above them.
+/// The width of bone shown around the contacts, and the height to which it may rise above them.
 constexpr double about_mm = 20.0, above_mm = 3.0;
 
 /// The axis-aligned view whose direction is most opposite to `normal`.
