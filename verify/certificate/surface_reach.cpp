@@ -87,7 +87,7 @@ void raise(std::atomic<double>& number, double to) {
   }
 }
 
-/// The sample that is farthest from a surface, of those that `counts`.
+/// The sample that is farthest from a surface, among those for which `counts` is true.
 FarSample farthest(const brep::Triangles& mesh, const TriangleGrid& from, double spacing_mm, double search_mm,
                    const std::function<bool(const glm::dvec3&)>& counts, const voxel::Progress& progress) {
   constexpr std::size_t some = 1024;
