@@ -18,7 +18,7 @@ using std::numbers::pi;
 
 constexpr int chequers = 8;  // cells a side: the nodes of level 3 (thesis 3.3.3)
 
-/// Size and position of the solid that a kind's builder makes.
+/// Size and position of the solid for a kind's builder.
 struct SolidFrame {
   double radius_mm;
   glm::dvec3 centre_mm;
