@@ -17,7 +17,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// As of other shapes from a plan: rounding of a vertex, relative to its coordinates.
+/// Rounding of a vertex, relative to its coordinates; the same as for other shapes of a plan.
 constexpr double on_hull = 1e-8;
 
 /// Faces of a brush about the origin: normal . p <= reach_mm.
@@ -63,7 +63,7 @@ std::vector<Face> faces_of_disc(const DrawnBrush::Disc& disc, double radius_mm) 
   return faces;
 }
 
-/// A straight piece of a way, over which the brush slides.
+/// A straight piece of a path, along which the brush slides.
 class Piece {
  public:
   Piece(std::shared_ptr<const std::vector<Face>> faces, const glm::dvec3& from_mm, const glm::dvec3& to_mm)
@@ -121,7 +121,7 @@ class Piece {
         ahead = ahead || glm::dot(face.normal, by_mm_) > 0.0;
         behind = behind || glm::dot(face.normal, by_mm_) < 0.0;
       }
-    // Beside the piece, a face of the hull stands for two of the brush.
+    // Beside the piece, one face of the hull represents two faces of the brush.
     return std::max(1, is_within && ahead && behind ? count - 1 : count);
   }
 
