@@ -111,7 +111,7 @@ class Parser {
   }
 
   [[noreturn]] void fail(const std::string& reason) const {
-    // Of a long text only the part around the error is quoted.
+    // Only the part of a long text around the error is quoted.
     constexpr std::size_t most_quoted = 200;
     const bool whole = text_.size() <= most_quoted;
     const std::size_t from = whole ? 0 : std::max(at_, most_quoted / 2) - most_quoted / 2;

@@ -187,7 +187,8 @@ std::vector<Window> positive_windows(const Expression& expression) {
   bool positive = true;
   for_each_term(expression, [&](const MetTerm& met) {
     if (met.term.kind != Kind::Leaf) {
-      // Met before its operands and after them, so that the sign turns back.
+      // A walk meets a complement before its operands and again after them, so the second meeting restores
+      // the sign.
       if (met.subtracted != (met.term.kind == Kind::Not)) positive = !positive;
     } else if (const auto* window = std::get_if<Window>(&*met.term.leaf)) {
       if (positive != met.subtracted) found.push_back(*window);
