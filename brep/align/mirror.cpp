@@ -230,7 +230,7 @@ constexpr double far_worse() {
 void tell_rival(const std::vector<Tried>& planes, MirrorFit& found) {
   if (!planes.empty() && !planes[0].is_fit())
     found.findings.emplace_back(
-        "WARN mid-plane: about no plane that was tried does half of the overlap have a counterpart: the "
+        "WARN mid-plane: at none of the tried planes does half of the overlap have a counterpart: the "
         "plane "
         "is a guess; give one near the right one, --plane, or a smaller --overlap");
   if (planes.size() < 2 || !planes[1].is_fit() || planes[1].rms_mm > rival_share() * planes[0].rms_mm) return;
@@ -292,7 +292,8 @@ MirrorFit fit_mirror_plane(const Mesh& mesh, const MirrorFitOptions& options) {
     fit.findings.push_back("WARN mid-plane: of " + short_text(100.0 * options.overlap) +
                            " % of the surface the residual is " + short_text(wide_mm) + " mm, so that only " +
                            short_text(100.0 * fit_options.overlap) + " % were fitted, to " +
-                           short_text(fit.rms_mm) + " mm: say by --overlap what has a counterpart");
+                           short_text(fit.rms_mm) +
+                           " mm: give by --overlap the share that has a counterpart");
   }
   if (options.progress) options.progress(1.0);
   MirrorFit found = plane_of(fit, plane, spread.centre_mm);

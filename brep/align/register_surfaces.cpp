@@ -504,7 +504,7 @@ SurfaceFit fit_cloud(const Cloud& cloud, const OrientedSurface& fixed, const glm
         "undetermined: add landmarks");
   if (answer.kept_share < 0.9 * options.overlap)
     answer.findings.push_back("only " + short_text(100.0 * answer.kept_share) +
-                              " % of the surface found a counterpart, less than the overlap asked for");
+                              " % of the surface found a counterpart, less than the requested overlap");
   return answer;
 }
 
