@@ -120,7 +120,7 @@ std::string ways_that_work(const Triangles& surface, const Triangles& given, dou
     break;
   }
   if (const std::optional<double> hull_mm3 = enclosed_mm3(surface, cell_mm, true, options.progress))
-    add("--hull takes the outermost shells as full, " + short_text(*hull_mm3) + " mm3");
+    add("--hull fills the outermost shells, " + short_text(*hull_mm3) + " mm3");
   if (const std::string wall = wall_way(given, Mender(given).extent_mm(), options); !wall.empty()) add(wall);
   const double share = std::abs(now_mm3 - before_mm3) / before_mm3;
   add("what winds round by half or more has a share of " + short_text(share) +
