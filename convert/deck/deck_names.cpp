@@ -120,7 +120,7 @@ std::vector<std::string> make_names_unique(const Tetrahedra& tetrahedra, DeckOpt
     const std::string free = free_name(name, taken);
     if (free != name)
       changed.push_back(what + " '" + name + "' is written as '" + free +
-                        "': solvers do not tell names apart by case, and that one is taken");
+                        "': solvers ignore case, and that name is in use");
     name = free;
     taken.take(what, name);
   });
