@@ -295,7 +295,7 @@ int improve(Tetrahedra& tetrahedra, const ImproveOptions& options) {
       options.rounds < 1)
     throw std::invalid_argument("improve: the surface's play must not be negative, rounds at least 1");
   if (options.all_or_nothing && !options.surface_play_mm.empty())
-    throw std::invalid_argument("improve: where the surface has play, rounds cannot be gone on with");
+    throw std::invalid_argument("improve: a call with play of the surface cannot continue earlier rounds");
   return Improving(tetrahedra, options).run();
 }
 

@@ -322,7 +322,7 @@ Try try_once(const MesherInput& surface, const Given& given, const TetOptions& o
   Try t;
   t.outcome = run_mesh3(surface, sizes, {options.time_limit, options.memory_limit_bytes, options.progress});
   if (!t.outcome.failure && t.outcome.tetrahedra.empty())
-    t.outcome.failure = "CGAL's Mesh_3 gave no tetrahedra";
+    t.outcome.failure = "CGAL's Mesh_3 made no tetrahedra";
   if (t.outcome.failure) return t;
   t.made.nodes_mm = std::move(t.outcome.points_mm);
   t.made.tets = std::move(t.outcome.tetrahedra);

@@ -28,7 +28,7 @@ constexpr double longest_share() {
 [[noreturn]] void refuse_number() {
   throw voxel::Error(voxel::ErrorCode::Resource, "refinement would take a surface of over " +
                                                      std::to_string(most_triangles) +
-                                                     " triangles: ask for larger elements");
+                                                     " triangles: request larger elements");
 }
 
 /// The least number of triangles into which a surface is divided. No triangle is larger than an equilateral
@@ -255,7 +255,7 @@ std::optional<std::string> coarse_place(const Tetrahedra& tetrahedra, const std:
     }
   if (count == 0) return std::nullopt;
   return "elements at " + voxel::rounded(at_mm) + " mm have sides of " + voxel::rounded(side_mm) +
-         " mm where " + voxel::rounded(asked_mm) + " mm were asked for" +
+         " mm where " + voxel::rounded(asked_mm) + " mm were requested" +
          (count > 1 ? ", the worst of " + std::to_string(count) + " such places" : "") +
          ": fine elements grow inward from the surface only: choose a place on the surface, or bound the "
          "volume of all elements";
