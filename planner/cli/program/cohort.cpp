@@ -323,7 +323,7 @@ void add_cohort(Program& program) {
                   "Processes at a time with --engine parallel; with --dry-run, those on the partition")
       ->check(CLI::Range(1, 100000));
   verb.add_option("--slurm", text->slurm, "Options for sbatch, such as --slurm=--mem=8G");
-  verb.add_flag("--again", text->again, "Evaluates what is done, too");
+  verb.add_flag("--again", text->again, "Evaluates subjects that are done, too");
   verb.add_flag("--reports", text->reports, "Writes each subject's report and files as well");
   verb.add_flag("--dry-run", text->dry_run,
                 "Only estimates time and memory, from the subjects that are done");
