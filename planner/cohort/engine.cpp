@@ -71,7 +71,7 @@ std::string submit(const EngineRequest& request, const Words& options, const Wor
   if (!WIFEXITED(child.status) || WEXITSTATUS(child.status) != 0 || job.empty() ||
       job.find_first_not_of("0123456789") != std::string::npos)
     throw voxel::Error(voxel::ErrorCode::Resource, "sbatch refused " + script[0] +
-                                                       ": see what it says above; its options come from "
+                                                       ": see its message above; its options come from "
                                                        "--slurm");
   return job;
 }
