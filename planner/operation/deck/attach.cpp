@@ -204,8 +204,8 @@ class Attacher {
       }
       if (set.nodes.empty())
         throw std::runtime_error("'" + holder.id +
-                                 "' touches nothing of the object: attach what it lies on, or take the bone "
-                                 "out of the tissue, as in skin - skull");
+                                 "' does not touch the object: attach what it lies on, or subtract the bone "
+                                 "from the tissue, as in skin - skull");
       options_.node_sets.push_back(std::move(set));
       options_.prescribed.push_back(std::move(prescribed));
     }

@@ -41,7 +41,8 @@ void check_held(const Deck& deck, const FieldLocation& place) {
                                  "', which moves nothing: name the result of a step that moves an object, or "
                                  "list it as fixed");
   if ((deck.element_mm || deck.material) && !deck.is_held())
-    place.refuse("'element_mm' and 'material' are of an object that others hold: add 'moved' or 'fixed'");
+    place.refuse(
+        "'element_mm' and 'material' apply only to an object that others hold: add 'moved' or 'fixed'");
 }
 
 void check_regions(const Deck& deck, const FieldLocation& place) {
@@ -83,7 +84,7 @@ void check(const Deck& deck, const FieldLocation& place) {
   check_output_path(deck.path, {".inp", ".vtu", ".feb", ".msh", ".node"}, place.at("path"));
   check_held(deck, place);
   if (deck.fallback && deck.is_held() && !deck.smooth_mm)
-    place.at("fallback").refuse("what others hold is made of its voxels anyhow: leave it out");
+    place.at("fallback").refuse("an object that others hold is always made of its voxels: leave it out");
   if (deck.order == 2 && deck.path.extension() == ".node")
     place.at("order").refuse("applies only to tetrahedra in .inp, .feb, .vtu or .msh: leave it out");
   check_regions(deck, place);
@@ -111,7 +112,7 @@ void add_midline(const convert::Tetrahedra& tetrahedra, const Deck& deck, conver
   convert::NodeSet set{"MIDLINE",
                        convert::midline_nodes(tetrahedra, deck.midline->point_mm, deck.midline->normal)};
   if (set.nodes.empty())
-    made.findings.push_back("the plane of 'midline' passes the deck nowhere: there is no set MIDLINE");
+    made.findings.push_back("the plane of 'midline' does not meet the deck: there is no set MIDLINE");
   else
     options.node_sets.push_back(std::move(set));
 }
@@ -277,7 +278,7 @@ Operation deck_operation() {
       .takes(
           field("path", &Deck::path, "The file within the result's folder: .inp, .feb, .vtu, .msh or .node.")
               .required())
-      .takes(field("moved", &Deck::moved, "Moved objects; the elements on them take their motion."))
+      .takes(field("moved", &Deck::moved, "Moved objects; the elements on them move with them."))
       .takes(field("fixed", &Deck::fixed, "Objects that hold the elements on them."))
       .takes(field("element_mm", &Deck::element_mm,
                    "Edge of the smallest elements of an object that others hold. Default: the voxels'.")
