@@ -385,7 +385,7 @@ int LabelTable::label(const std::string& name) const {
   if (known.empty())
     throw std::runtime_error("there is no label '" + name +
                              "': the label map has no names, and no table beside it that could be read has "
-                             "them; say its number, or see what info says of the table");
+                             "them; give its number, or see what info reports about the table");
   throw std::runtime_error(file.string() + ": has no label '" + name + "'" + suggestion(name, known));
 }
 
@@ -424,7 +424,7 @@ std::vector<std::string> findings_of_labels(const std::vector<voxel::Label>& lab
   }
   if (count == 0) return {};
   return {"labels are stored up to " + three_figures(off) +
-          " off whole numbers, and taken as the nearest: " + numbers + (count > 8 ? " and more" : "")};
+          " off whole numbers, and read as the nearest: " + numbers + (count > 8 ? " and more" : "")};
 }
 
 }  // namespace octotomy::planner

@@ -74,10 +74,10 @@ PictureFrame read_frame(std::string_view png, const std::string& where) {
     refuse(where, error.what());
   }
   if (!found.text)
-    refuse(
-        where,
-        "does not say what its pixels show: only a .png of octotomy render or slice does, in true scale and "
-        "as it was written");
+    refuse(where,
+           "does not state what its pixels show: only a .png of octotomy render or slice does, in true scale "
+           "and "
+           "as it was written");
   const SortedJson json = SortedJson::parse(*found.text, nullptr, false);
   PictureFrame frame;
   try {
@@ -92,7 +92,7 @@ PictureFrame read_frame(std::string_view png, const std::string& where) {
   const double right_mm = glm::length(frame.lps_from_pixel[0]),
                down_mm = glm::length(frame.lps_from_pixel[1]);
   if (!(right_mm > 0.0) || !(down_mm > 0.0) || !voxel::is_frame(frame.view()))
-    refuse(where, "holds a frame that is none: draw the picture again");
+    refuse(where, "holds an invalid frame: draw the picture again");
   if (frame.size_px != found.size_px)
     refuse(where, "was " + std::to_string(frame.size_px.x) + " x " + std::to_string(frame.size_px.y) +
                       " pixels when it was drawn and is " + std::to_string(found.size_px.x) + " x " +

@@ -410,7 +410,7 @@ std::string list_of(const std::vector<voxel::Structure>& structures) {
 const voxel::Structure& chosen(const std::vector<voxel::Structure>& structures, const std::string& name,
                                const std::string& source) {
   if (name.empty() && structures.size() > 1)
-    refuse(source, "holds several structures: say which by 'structure', one of " + list_of(structures));
+    refuse(source, "holds several structures: choose by 'structure' one of " + list_of(structures));
   if (name.empty()) return structures.front();
   std::vector<const voxel::Structure*> named, numbered;
   for (const voxel::Structure& structure : structures) {
@@ -421,7 +421,7 @@ const voxel::Structure& chosen(const std::vector<voxel::Structure>& structures, 
   if (numbered.size() == 1) return *numbered.front();
   if (named.empty() && !numbered.empty())
     refuse(source, "has " + std::to_string(numbered.size()) + " structures of the ROI number " + name +
-                       ": say which by its name, one of " + list_of(structures));
+                       ": choose by its name one of " + list_of(structures));
   if (named.empty()) {
     std::vector<std::string> names;
     for (const voxel::Structure& structure : structures) names.push_back(structure.name);
@@ -492,8 +492,8 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
                              plain(found.slab_mm) + " mm");
   else if (!std::isfinite(distances.nearest_mm))
     refuse(where,
-           "lies in one plane, as the whole set does, and states no ContourSlabThickness: how thick it is "
-           "cannot be told; draw it on the next plane, too");
+           "lies in one plane, as the whole set does, and states no ContourSlabThickness: its thickness is "
+           "unknown; draw it on the next plane, too");
   if (!is_slab && !std::isfinite(distances.least_mm))
     refuse(where, "lies in planes, as the whole set does, that are " + too_near(distances.nearest_mm));
   drawn.mask.slices = std::move(planes);
@@ -531,9 +531,9 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 DrawnSlices read_slices(const std::filesystem::path& path, const SlicesOptions& options) {
   const bool is_set = voxel::is_rtstruct(path);
   if (!is_set && !options.structure.empty())
-    refuse(path.string(), "is no DICOM structure set, which 'structure' chooses of");
+    refuse(path.string(), "is no DICOM structure set, so 'structure' has nothing to choose from");
   if (!is_set && options.bridge_mm)
-    refuse(path.string(), "is no DICOM structure set, whose gaps 'bridge_mm' fills");
+    refuse(path.string(), "is no DICOM structure set, so 'bridge_mm' has no gaps to fill");
   try {
     if (is_set) return slices_of(voxel::read_rtstruct(path), options, path.string());
     DrawnSlices drawn{slices_of(read_json(path), path.string())};

@@ -90,7 +90,7 @@ MarkupPlane plane_of(const SortedJson& list, const glm::dvec3& lps_mm, SlicerMar
     const std::vector<glm::dvec3>& p = markup.points_mm;
     const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
     if (!(glm::length(across) > 1e-3 * glm::length(p[1] - p[0]) * glm::length(p[2] - p[0])))
-      refuse(markup.where, "has its three points on one line, through which no plane is fixed");
+      refuse(markup.where, "has its three points on one line, which does not determine a plane");
     plane.origin_mm = p[0];
     plane.right = glm::normalize(p[1] - p[0]);
     plane.normal = glm::normalize(across);

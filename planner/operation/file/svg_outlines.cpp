@@ -174,8 +174,8 @@ class Drawing {
     const double across = width_mm ? *width_mm / size.x : *height_mm / size.y;
     const double down = height_mm ? *height_mm / size.y : across;
     if (!(across > 0.0) || std::abs(down / across - 1.0) > 1e-3)
-      elements.refuse_at(root.line,
-                         "width and height do not have the shape of viewBox: a unit's length cannot be told");
+      elements.refuse_at(
+          root.line, "width and height do not have the shape of viewBox: the length of a unit is unknown");
     mm_per_unit_ = across;
   }
 

@@ -93,7 +93,7 @@ std::vector<std::string> write_label_table(const fs::path& label_map,
                        "breaks became blanks");
   if (label_table_of(label_map).names != spelled(names))
     findings.push_back(table.string() +
-                       ": names are read back otherwise than they were: compare them with the source, and "
+                       ": names change when they are read back: compare them with the source, and "
                        "name the labels by a table of your own (--names)");
   return findings;
 }
