@@ -97,7 +97,7 @@ Json measure(const Flap& flap, const AnswerBench& bench) {
 }  // namespace
 
 Operation flap_operation() {
-  Describe<Flap> entry("flap", "Tells a free flap's segments, their order, cuts and contacts.",
+  Describe<Flap> entry("flap", "Reports a free flap's segments, their order, cuts and contacts.",
                        Makes::Measurement);
   for (Field& each : flap_fields<Flap>()) std::move(entry).takes(std::move(each));
   return std::move(entry)
