@@ -88,8 +88,8 @@ class Face {
     const int row = maps_.front.row(ans->z + above_spine + higher_mm_);
     const double rim = rim_at(row);
     if (rim < 0.0) {
-      miss("piriform", "no rim stands out before the inside of the nose");
-      return miss("buttress", "no rim stands out before the inside of the nose");
+      miss("piriform", "no rim projects in front of the inside of the nose");
+      return miss("buttress", "no rim projects in front of the inside of the nose");
     }
     // A second rule: the largest backward step of the surface within 1.5 mm.
     double step_back = rim, most = 0.0;
@@ -100,7 +100,7 @@ class Face {
       if (std::isfinite(next) && rise > most) most = rise, step_back = out + 1.5;
     }
     if (std::abs(step_back - rim) > two_rims)
-      miss("piriform", "two rules for the rim of the nose's opening answer more than 8 mm apart");
+      miss("piriform", "two rules for the rim of the nose's opening have results more than 8 mm apart");
     else {
       place("piriform", {side_.second * rim, front(rim, row), maps_.front.y_mm(row)});
       doubt("piriform", 0.7 * std::abs(step_back - rim));

@@ -329,7 +329,7 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
     else if (first.doubt_mm[name] > most_within_mm)
       missing[name] = "the bone is so flat there that its extremal point is not known to 15 mm";
     else if (!(within_mm <= most_within_mm))
-      missing[name] = "it is found elsewhere or not at all where the head is held a little otherwise";
+      missing[name] = "a slightly different position of the head moves it far or loses it";
     else
       guess.found.push_back({name, p_mm, within_mm});
   }
@@ -346,7 +346,7 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   if (head.removed_count > 0)
     guess.findings.push_back(
         std::to_string(head.removed_count) +
-        " other dense parts lie beside the skull and were left out, as of a couch or a marker");
+        " other dense parts lie beside the skull and were left out, such as a couch or a marker");
   return guess;
 }
 

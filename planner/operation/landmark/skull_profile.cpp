@@ -153,7 +153,7 @@ class Reader {
       if (before(k) > before(second)) second = k;
     const bool is_prominent = before(second) >= 1.0;
     if (first < 0 && !is_prominent)
-      return miss("ans", "no spine stands before the bone below the nose's opening");
+      return miss("ans", "no spine projects in front of the bone below the nose's opening");
     // The tip of a spine that continues into the bone below it is its upper end.
     const int lies = first < 0 ? foremost_row : first;
     int tip = lies;
@@ -208,8 +208,8 @@ class Reader {
     if (is_notched_)
       for (const char* name : {"menton", "pogonion"})
         miss(name,
-             "the chin's lower border rises in the middle: bone is missing, or was not told from what is "
-             "beside");
+             "the chin's lower border rises in the middle: bone is missing, or was not separated from its "
+             "surroundings");
     else
       place_end("menton", last);
     int first = above + 1;
