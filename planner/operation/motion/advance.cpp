@@ -89,7 +89,7 @@ Operation advance_operation() {
           field("direction", &Advance::direction, "The direction instead, LPS; its length does not count."))
       .takes(field("gap_mm", &Advance::gap_mm, "How far before contact it stops.").from(0.0).to(100.0))
       .takes(field("most_mm", &Advance::most_mm,
-                   "The largest distance that is tried; it goes back where they overlap at first.")
+                   "The largest distance to try. If the objects overlap at first, the object moves back.")
                  .greater_than(0.0)
                  .to(500.0))
       .example(R"({"id": "met", "do": "advance", "object": "maxilla", "against": "rest",

@@ -101,7 +101,8 @@ Operation autorotate_operation() {
                  .from(2)
                  .to(2))
       .takes(field("most_deg", &Autorotate::most_deg,
-                   "The largest turn that is tried; it closes, or opens where they overlap at first.")
+                   "The largest rotation to try. It closes the mandible, or opens it if the objects overlap "
+                   "at first.")
                  .greater_than(0.0)
                  .to(60.0))
       .example(R"({"id": "closed", "do": "autorotate", "object": "rest", "against": "advanced",

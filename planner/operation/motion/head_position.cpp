@@ -31,7 +31,7 @@ glm::dmat3 of_frankfort(const std::vector<Mark>& marks, const FieldLocation& pla
   const glm::dvec3 to_left = direction(left - right, place, "each other");
   const glm::dvec3 to_front = front - 0.5 * (left + right);
   const glm::dvec3 forward = direction(to_front - glm::dot(to_front, to_left) * to_left, place,
-                                       "one line, so that the plane is open");
+                                       "one line, so that the plane is undetermined");
   if (to_left.x <= 0.0)
     place.refuse(
         "the second point lies to the patient's right of the first: give the right porion, the left "
@@ -51,7 +51,7 @@ glm::dmat3 along_midline(const glm::dmat3& frame, const std::vector<Mark>& marks
       between -= glm::dot(between, up) * up;
       back += glm::dot(between, frame[1]) < 0.0 ? -between : between;
     }
-  back = direction(back, place, "one line upwards, so that the mid-plane is open");
+  back = direction(back, place, "one line upwards, so that the mid-plane is undetermined");
   return {glm::cross(back, up), back, up};
 }
 
@@ -60,7 +60,7 @@ void check(const HeadPosition& position, const FieldLocation& place) {
     for (const Mark& mark : *marks)
       if (!mark.object.empty())
         place.refuse("'" + mark.landmark + "@" + mark.object +
-                     "' goes with an object: the head is held by landmarks of the scan");
+                     "' moves with an object: the head is held by landmarks of the scan");
   glm::dmat3 frame(1.0);
   if (!position.frankfort.empty()) frame = of_frankfort(position.frankfort, place.at("frankfort"));
   if (!position.midline.empty()) frame = along_midline(frame, position.midline, place.at("midline"));
@@ -74,9 +74,9 @@ void check(const HeadPosition& position, const FieldLocation& place) {
 }  // namespace
 
 Operation head_position_operation() {
-  return Describe<HeadPosition>("head_position",
-                                "Holds the head: later views, and words as forward, are as it is held.",
-                                Makes::Names)
+  return Describe<HeadPosition>(
+             "head_position",
+             "Sets the head's position, to which later views and words such as forward refer.", Makes::Names)
       .takes(field("frankfort", &HeadPosition::frankfort,
                    "The Frankfort plane, held level: right porion, left porion, one or both orbitales. "
                    "Default: as the scan holds the head.")

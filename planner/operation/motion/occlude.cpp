@@ -184,7 +184,7 @@ Operation occlude_operation() {
                  .to(16))
       .takes(field("towards", &Occlude::towards, "The direction, in words of the head as it is held.")
                  .one_of({"up", "down"}))
-      .takes(field("about_mm", &Occlude::about_mm, "How far about a place its contact may lie.")
+      .takes(field("about_mm", &Occlude::about_mm, "The largest distance of a contact from its place.")
                  .greater_than(0.0)
                  .to(50.0))
       .takes(field("gap_mm", &Occlude::gap_mm, "How far before contact it stops.").from(0.0).to(20.0))

@@ -173,7 +173,7 @@ FileAnswer on_files(const Warp& warp, const FileBench& bench) {
 Operation warp_operation() {
   return Describe<Warp>("warp", "Moves an object as a solved deck moved: the face after the operation.",
                         Makes::Object)
-      .takes(field("object", &Warp::object, "An object; of the verb a mesh or a scan.")
+      .takes(field("object", &Warp::object, "An object; on the command line a mesh or a scan.")
                  .required()
                  .positional("file"))
       .takes(field("result", &Warp::result, "CalculiX's .frd file of a deck of linear tetrahedra.")
