@@ -153,8 +153,9 @@ void bound(const Boolean& asked, const BoundBench& bench, Object& made) {
 
 Operation boolean_operation() {
   return Describe<Boolean>("boolean", "Makes the Boolean of two or more objects.", Makes::Object)
-      .takes(
-          field("a", &Boolean::a, "An object; of the verb a mesh or an octree.").required().positional("a"))
+      .takes(field("a", &Boolean::a, "An object; on the command line a mesh or an octree.")
+                 .required()
+                 .positional("a"))
       .takes(field("op", &Boolean::operation, "union, intersection or difference.")
                  .required()
                  .one_of({"union", "intersection", "difference"})

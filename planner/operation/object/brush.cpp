@@ -82,9 +82,10 @@ void check_stroke(const Stroke& stroke, const FieldLocation& place) {
     if (!stroke.normal) place.at("normal").refuse("is missing: a slab has one");
     if (!stroke.thickness_mm) place.at("thickness_mm").refuse("is missing: a slab has one");
   } else {
-    if (stroke.normal) place.at("normal").refuse("is of a slab: set 'shape' to \"slab\", or leave it out");
+    if (stroke.normal)
+      place.at("normal").refuse("applies only to a slab: set 'shape' to \"slab\", or leave it out");
     if (stroke.thickness_mm)
-      place.at("thickness_mm").refuse("is of a slab: set 'shape' to \"slab\", or leave it out");
+      place.at("thickness_mm").refuse("applies only to a slab: set 'shape' to \"slab\", or leave it out");
   }
   for (std::size_t i = 0; i < stroke.points_mm.size(); ++i)
     if (!(glm::length(stroke.points_mm[i]) <= most_mm))

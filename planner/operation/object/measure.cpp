@@ -26,7 +26,7 @@ void check(const Measure& measure, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   const FieldLocation points = place.at("points_mm");
   if (measure.asks_surface() && (measure.to || !measure.points_mm.empty()))
-    place.refuse("asks a surface and a gap or points: measure them in a step each");
+    place.refuse("requests measures of a surface and a gap or points: use a step for each");
   if (measure.points_mm.empty()) {
     if (!measure.object) place.refuse("'object' is missing: add it");
     if (measure.to && measure.to->name == measure.object->name)
@@ -379,13 +379,12 @@ Json measure(const Measure& asked, const AnswerBench& bench) {
 Operation measure_operation() {
   return Describe<Measure>("measure", "Measures an object, the gap between two, or a distance or angle.",
                            Makes::Measurement)
-      .takes(
-          field(
-              "object", &Measure::object,
-              "The object whose volume, area and extents are wanted; of the verb a scan or grey octree (with "
-              "a window), an octree or a mesh.")
-              .positional("file"))
-      .takes(field("to", &Measure::to, "A second object: the gap between the two is wanted instead."))
+      .takes(field("object", &Measure::object,
+                   "The object whose volume, area and extents are measured; on the command line a scan or "
+                   "grey octree (with "
+                   "a window), an octree or a mesh.")
+                 .positional("file"))
+      .takes(field("to", &Measure::to, "A second object: measures the gap between the two instead."))
       .takes(field("points_mm", &Measure::points_mm,
                    "Two points [x, y, z] or landmarks, for their distance, or three, for the angle at the "
                    "second.")

@@ -158,7 +158,7 @@ void check(const Meshed& asked, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".stl", ".ply", ".obj", ".off", ".vtp", ".glb"}, place.at("path"));
   if (asked.surface == "contours")
-    place.at("surface").refuse("contours are followed on a scan's slices, which an object has none of");
+    place.at("surface").refuse("contours are followed on a scan's slices, and an object has no slices");
 }
 
 FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
@@ -199,7 +199,7 @@ FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
 
 Operation mesh_operation() {
   return Describe<Meshed>("mesh", "Makes the surface of a scan's window or of an octree.", Makes::File)
-      .takes(field("object", &Meshed::file, "The object; of the verb a scan, or an .octree file.")
+      .takes(field("object", &Meshed::file, "The object; on the command line a scan, or an .octree file.")
                  .required()
                  .positional("file"))
       .verb_takes(field("window", &Meshed::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
@@ -208,17 +208,20 @@ Operation mesh_operation() {
                    "contours: followed on a scan's slices and tiled.")
                  .one_of({"isosurface", "cuberille", "contours"}))
       .verb_takes(field("tiling", &Meshed::tiling,
-                        "Of contours, what strips between them are chosen by: shortest-span, least-area, "
+                        "For contours, the criterion by which strips between them are chosen: shortest-span, "
+                        "least-area, "
                         "greatest-volume, least-angle; overlay: no strips.")
                       .one_of({"shortest-span", "least-area", "greatest-volume", "least-angle", "overlay"})
                       .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "contours"; },
                                        "applies only to contours: add 'surface' contours"))
-      .takes(field("touching", &Meshed::touching,
-                   "Of a cuberille, voxels that meet at an edge or corner only: apart or together.")
-                 .one_of({"apart", "together"})
-                 .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "cuberille"; },
-                                  "applies only to a cuberille: add 'surface' cuberille"))
-      .takes(field("smooth", &Meshed::smooth, "Takes noise off the surface and keeps its volume."))
+      .takes(
+          field(
+              "touching", &Meshed::touching,
+              "For a cuberille, how to treat voxels that meet only at an edge or corner: apart or together.")
+              .one_of({"apart", "together"})
+              .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "cuberille"; },
+                               "applies only to a cuberille: add 'surface' cuberille"))
+      .takes(field("smooth", &Meshed::smooth, "Removes noise from the surface and keeps its volume."))
       .takes(field("faces", &Meshed::faces, "Number of triangles to decimate to.").from(4).to(100000000))
       .takes(field("path", &Meshed::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.")
                  .required()

@@ -65,7 +65,7 @@ std::string content_of(const fs::path& path) {
 voxel::OctreeFile from_representation(const Build& asked, Timings& timings) {
   if (!asked.depth)
     throw std::runtime_error(
-        "--depth: a representation does not tell its universe: say --depth N, for 2^N voxels a side");
+        "--depth: a representation does not state its universe: give --depth N, for 2^N voxels a side");
   voxel::Universe universe;
   universe.depth = *asked.depth;
   const double edge_mm = asked.voxel_mm.value_or(1.0);
@@ -239,10 +239,11 @@ Operation octree_operation() {
              "octree",
              "Builds an octree of a scan's window or of all its samples, or puts one into another form.",
              Makes::File)
-      .takes(field("object", &Build::file,
-                   "The object; of the verb a scan, an .octree file, or with --from a representation.")
-                 .required()
-                 .positional("file"))
+      .takes(
+          field("object", &Build::file,
+                "The object; on the command line a scan, an .octree file, or with --from a representation.")
+              .required()
+              .positional("file"))
       .takes(
           field("path", &Build::out, "An .octree file, or with --as the representation's, for example .txt.")
               .required()

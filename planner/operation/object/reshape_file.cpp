@@ -82,7 +82,7 @@ FileAnswer reshaped_file(const ReshapeFile& asked, const FileBench& bench, const
   if (!to_octree) need_mesh_extension(asked.out);
   need_folder_of(asked.out);
   if (!to_octree && asked.voxel_mm)
-    throw std::runtime_error("--voxel is of an .octree: a mesh has none: leave it out");
+    throw std::runtime_error("--voxel applies only to an .octree: a mesh has none: leave it out");
   std::vector<std::string> findings;
   const Read given = read(asked, bench, findings);
   if (to_octree && given.is_open)

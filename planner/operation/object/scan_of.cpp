@@ -122,10 +122,10 @@ void need_one_meaning(const ScanOf& step, const ScanBench& bench, const voxel::E
           !other.modality.empty() && !frame.modality.empty() && other.modality != frame.modality;
       std::string why;
       if (other.meaning != frame.meaning || is_other_device)
-        why = "mean something else than those of '" + step.scan.name + "' (" + kind_of(other) + " beside " +
+        why = "have another meaning than those of '" + step.scan.name + "' (" + kind_of(other) + " beside " +
               kind_of(frame) + ")";
       else if (window.grey.step() != loaded.grey.step())
-        why = "count in steps of " + plain(window.grey.step()) + ", those of '" + step.scan.name + "' in " +
+        why = "have steps of " + plain(window.grey.step()) + ", those of '" + step.scan.name + "' steps of " +
               plain(loaded.grey.step());
       if (!why.empty())
         throw voxel::Error(voxel::ErrorCode::Input, "the samples of '" + name + "' come from '" +

@@ -25,7 +25,8 @@ struct Separate {
 
 void check(const Separate& separate, const FieldLocation& place) {
   if (place.scope != nullptr && !separate.piece)
-    place.at("piece").refuse("is missing: say which, 1 the largest; a step for each piece");
+    place.at("piece").refuse(
+        "is missing: give the number of the piece, 1 the largest; each piece needs a step of its own");
 }
 
 std::string definition(const Separate& separate, const Objects&) {

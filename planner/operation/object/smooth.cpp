@@ -75,10 +75,12 @@ FileAnswer on_files(const Smooth& asked, const FileBench& bench) {
 }  // namespace
 
 Operation smooth_operation() {
-  return Describe<Smooth>("smooth", "Takes noise off an object's surface and keeps its volume.",
+  return Describe<Smooth>("smooth", "Removes noise from an object's surface and keeps its volume.",
                           Makes::Object)
       .takes(field("object", &Smooth::object, "The object.").required().positional("mesh"))
-      .takes(field("rounds", &Smooth::rounds, "Steps in and out again.").from(1).to(1000))
+      .takes(field("rounds", &Smooth::rounds, "Number of rounds, each a step inward and a step outward.")
+                 .from(1)
+                 .to(1000))
       .takes(field("pass_band", &Smooth::pass_band,
                    "Waves below this frequency stay: 0.1 keeps those longer than about 10 edges.")
                  .from(0.001)

@@ -244,14 +244,16 @@ FileAnswer on_files(const Voxelise& asked, const FileBench& bench) {
 
 Operation voxelise_operation() {
   return Describe<Voxelise>("voxelise", "Makes an octree of a mesh, or a label map of several.", Makes::File)
-      .takes(field("meshes", &Voxelise::meshes,
-                   "Objects; of the verb mesh files (.stl, .ply, .obj, .vtp, .glb, ...); where one is no "
-                   "solid, its "
-                   "holes and "
-                   "crossings are bridged by the winding number.")
-                 .required()
-                 .from(1)
-                 .positional("mesh"))
+      .takes(
+          field(
+              "meshes", &Voxelise::meshes,
+              "Objects; on the command line mesh files (.stl, .ply, .obj, .vtp, .glb, ...); where one is no "
+              "solid, its "
+              "holes and "
+              "crossings are bridged by the winding number.")
+              .required()
+              .from(1)
+              .positional("mesh"))
       .takes(field("path", &Voxelise::out, "An .octree file, or a label map: .nrrd, .nii.gz, .mha.")
                  .required()
                  .called("out"))
