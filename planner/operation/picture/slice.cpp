@@ -101,7 +101,7 @@ voxel::View view_along(const glm::dvec3& direction, const std::optional<glm::dve
   // face is up, as in axial slices.
   if (!wanted_up && glm::length(up) < std::sin(glm::radians(1.0))) up = across(glm::dvec3(0, -1, 0));
   if (!(glm::length(up) > 0.0))
-    throw std::runtime_error("up: points along the direction that is looked in: choose another");
+    throw std::runtime_error("up: points along the viewing direction: choose another");
   view.up = glm::normalize(up);
   view.right = glm::cross(view.look, view.up);
   return view;
@@ -422,7 +422,7 @@ bool cuts_samples(const Slice& slice) {
 
 void check(const Slice& slice, const FieldLocation& place) {
   if (slice.window && !slice.level.empty())
-    place.at("level").refuse("says the same as 'window': leave one out");
+    place.at("level").refuse("states the same as 'window': leave one out");
   if (slice.grid_mm && !slice.curve_mm.empty())
     place.at("grid_mm").refuse("applies only to planes; a curved picture has none");
   if (slice.colours.size() > slice.objects.size() + slice.hatched.size())
@@ -508,20 +508,18 @@ Operation slice_operation() {
   return Describe<Slice>("slice",
                          "Draws a plane or a curved sheet of a scan in true scale, with octrees' outlines.",
                          Makes::File)
-      .takes(field("scan", &Slice::scan, "The scan; of the verb also an .octree file or a mesh.")
+      .takes(field("scan", &Slice::scan, "The scan; on the command line also an .octree file or a mesh.")
                  .required()
                  .positional("file"))
       .takes(field("path", &Slice::path, "The .png, .jpg or .webp file within the result's folder.")
                  .in_plans_only())
-      .takes(field(
-          "axial", &Slice::axial,
-          "z in mm, or middle, which is drawn where no plane is said; from below, the patient's left is "
-          "on the right."))
+      .takes(
+          field("axial", &Slice::axial,
+                "z in mm, or middle, which is drawn if no plane is given; from below, the patient's left is "
+                "on the right."))
       .takes(field("coronal", &Slice::coronal, "y in mm, or middle; from the front."))
       .takes(field("sagittal", &Slice::sagittal, "x in mm, or middle; from the patient's left."))
-      .takes(field("oblique", &Slice::oblique, "A point, LPS mm, and the direction that is looked in.")
-                 .from(2)
-                 .to(2))
+      .takes(field("oblique", &Slice::oblique, "A point, LPS mm, and the viewing direction.").from(2).to(2))
       .takes(field("curve_mm", &Slice::curve_mm, "Two or more points of a curved sheet, left to right.")
                  .from(2)
                  .in_plans_only())
@@ -543,11 +541,11 @@ Operation slice_operation() {
                  .comma_separated()
                  .for_example("CENTRE,WIDTH as 500,2000"))
       .takes(field("objects", &Slice::objects,
-                   "Objects whose outlines are drawn; of the verb binary octrees and meshes.")
+                   "Objects whose outlines are drawn; on the command line binary octrees and meshes.")
                  .repeated()
                  .called("octree"))
       .takes(field("hatched", &Slice::hatched,
-                   "Objects that are drawn with their inside hatched, in red where no colour is said: "
+                   "Objects that are drawn with their inside hatched, in red where no colour is given: "
                    "interference of pieces, for example.")
                  .repeated())
       .takes(field("colours", &Slice::colours,
@@ -574,7 +572,7 @@ Operation slice_operation() {
       .takes(field("plain", &Slice::plain, "No letters and no scale bar."))
       .takes(field("grid_mm", &Slice::grid_mm,
                    "Draws lines at multiples of this distance, mm; a margin that is added at the right and "
-                   "below tells their places in the view that looks at the plane.")
+                   "below shows their places in the view of the plane.")
                  .from(0.1)
                  .to(1000.0)
                  .called("grid"))
