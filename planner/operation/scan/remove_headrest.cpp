@@ -42,8 +42,8 @@ std::vector<std::string> findings_of(const voxel::HeadrestRemoval& removal) {
         "scan's frame may be turned");
   if (removal.behind_mm3 >= least_kept_mm3)
     findings.push_back(cm3(removal.behind_mm3) +
-                       " behind the patient's coronal middle may be a support, but cannot be parted surely, "
-                       "and were kept: remove them by a crop step or a mask");
+                       " behind the patient's coronal middle may be a support, but cannot be separated "
+                       "reliably, and were kept: remove them by a crop step or a mask");
   return findings;
 }
 
