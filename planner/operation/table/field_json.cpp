@@ -166,7 +166,7 @@ class Reader {
  private:
   static std::string text(const SortedJson& json, const FieldLocation& place) {
     if (!json.is_string()) place.refuse("must be a text in quotes, not " + type_of(json));
-    if (json.get_ref<const std::string&>().empty()) place.refuse("is empty: say what is meant");
+    if (json.get_ref<const std::string&>().empty()) place.refuse("is empty: give a value");
     return json.get<std::string>();
   }
   double number(const SortedJson& json, const FieldLocation& place) const {
