@@ -32,7 +32,7 @@ struct Chained {
 /// "genioplasty_2". The procedure's bone, its window of the scan, is the outcome before.
 ///
 /// Landmarks of the input are where the scan shows them, LPS; those that the plan has need not be given again.
-/// A landmark goes along with the pieces that it lies on: of the voxels within 8 mm of it, of the object that a
+/// A landmark moves with the pieces on which it lies: of the voxels within 8 mm of it, of the object that a
 /// piece was cut from, the nearest decides. `evaluated` is the plan's evaluation, with the objects that move.
 /// The input's scan, voxels and folder are not read: they are the plan's.
 ///
