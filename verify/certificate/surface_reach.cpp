@@ -171,10 +171,10 @@ void judge_reach(Certificate& certificate, const brep::Triangles& answer, const 
   if (answer.faces.empty() || surface.faces.empty()) {
     if (answer.faces.empty() && has_surface)
       lower(certificate, Verdict::Fail,
-            "The answer is empty, and its step makes a surface of " + voxel::rounded(area_of(surface)) +
+            "The answer is empty, but its step must make a surface of " + voxel::rounded(area_of(surface)) +
                 " mm2.");
     if (!answer.faces.empty())
-      lower(certificate, Verdict::Fail, "The answer has a surface, and its step makes none.");
+      lower(certificate, Verdict::Fail, "The answer has a surface, but its step must make none.");
     return;
   }
   const TriangleGrid grid(answer);
