@@ -284,7 +284,7 @@ SolidPhantom solid_phantom(std::string_view kind, const SolidPhantomOptions& opt
   if (!(radius_voxels > 0.0) || !std::isfinite(radius_voxels))
     throw voxel::InvalidInput("a radius is a positive number of voxels");
   if (found->on_lattice && (options.centre_mm != glm::dvec3(0.0) || options.lps_from_axes != glm::dmat3(1.0)))
-    throw voxel::InvalidInput(std::string(kind) + " is bound to the lattice: it is not turned nor moved");
+    throw voxel::InvalidInput(std::string(kind) + " is fixed to the lattice: it cannot be turned or moved");
   if (found->reach == 0.0 && options.radius_voxels)
     throw voxel::InvalidInput(std::string(kind) + " fills its universe and has no radius");
   const double voxel_mm = std::min({options.spacing_mm.x, options.spacing_mm.y, options.spacing_mm.z});
