@@ -164,14 +164,14 @@ class Piece {
 std::vector<Piece> pieces_of(const std::vector<DrawnBrush>& ways) {
   std::vector<Piece> pieces;
   for (const DrawnBrush& way : ways) {
-    if (way.way_mm.empty()) throw voxel::InvalidInput("a way of the brush has no point");
+    if (way.way_mm.empty()) throw voxel::InvalidInput("a path of the brush has no point");
     const auto faces = std::make_shared<const std::vector<Face>>(
         way.disc ? faces_of_disc(*way.disc, way.radius_mm) : faces_of_ball(way.radius_mm));
     if (way.way_mm.size() == 1) pieces.emplace_back(faces, way.way_mm.front(), way.way_mm.front());
     for (std::size_t i = 0; i + 1 < way.way_mm.size(); ++i)
       pieces.emplace_back(faces, way.way_mm[i], way.way_mm[i + 1]);
   }
-  if (pieces.empty()) throw voxel::InvalidInput("the brush has no way");
+  if (pieces.empty()) throw voxel::InvalidInput("the brush has no path");
   return pieces;
 }
 
