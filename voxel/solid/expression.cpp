@@ -219,7 +219,7 @@ Expression parse_expression(std::string_view text, const Names& names) {
   return parse<Expression>(
       text, [&](std::string_view name) { return names.object(name); },
       [&](const Expression& still, std::string_view name) {
-        if (!names.motion) throw InvalidInput("there are no motions to move by here: leave 'move(...)' out");
+        if (!names.motion) throw InvalidInput("no motions are defined here: leave 'move(...)' out");
         return moved(still, names.motion(name));
       },
       [](char symbol, const Expression& a, const Expression& b) {
