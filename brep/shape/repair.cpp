@@ -123,9 +123,9 @@ std::string ways_that_work(const Triangles& surface, const Triangles& given, dou
     add("--hull fills the outermost shells, " + short_text(*hull_mm3) + " mm3");
   if (const std::string wall = wall_way(given, Mender(given).extent_mm(), options); !wall.empty()) add(wall);
   const double share = std::abs(now_mm3 - before_mm3) / before_mm3;
-  add("what winds round by half or more has a share of " + short_text(share) +
+  add("the region with a winding number of a half or more differs by a share of " + short_text(share) +
       ", accepted by --max-volume-share " + short_text(1.01 * share) +
-      ": look at it, as thin sheets may be lost or closed gaps filled");
+      ": check the result, because thin sheets may be lost and gaps filled");
   return ways;
 }
 
