@@ -72,8 +72,7 @@ const std::array<glm::dvec3, 14>& directions() {
   return all;
 }
 
-/// Directions in which a surface node may move: its face or edge stays where it is where it is flat or
-/// straight.
+/// Directions in which a node of the surface may move without moving its flat face or straight edge.
 struct Freedom {
   enum class Kind { Free, Plane, Line, None } kind = Kind::Free;
   glm::dvec3 axis{0.0};  ///< the plane's unit normal, or the line's unit direction
@@ -93,8 +92,8 @@ struct Freedom {
   }
 };
 
-/// The cosine between normals of one flat face: a degree, which a face of elements of 3 mm has for bumps of
-/// some 0.03 mm.
+/// Normals with at least this cosine belong to one flat face: one degree, the effect of bumps of about 0.03
+/// mm on elements of 3 mm.
 constexpr double flat_cosine() {
   return 0.99985;
 }
@@ -135,7 +134,7 @@ class FaceNormals {
   }
 
  private:
-  /// Six times the volume that three normals span: a half of a cube's corner.
+  /// Least value of six times the volume that three normals span: half that of a cube's corner.
   static constexpr double least_corner() { return 0.5; }
 
   const Tetrahedra& t_;

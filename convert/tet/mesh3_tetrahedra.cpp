@@ -27,8 +27,8 @@ namespace {
 
 using voxel::rounded;
 
-/// The radius of a ball whose largest tetrahedron has a volume: 8 R^3 / (9 sqrt 3), of which passes 2 and 3
-/// may enlarge one by the rest.
+/// The radius R of a ball whose largest inscribed tetrahedron, 8 R^3 / (9 sqrt 3), has 0.9 of a volume. Passes
+/// 2 and 3 may enlarge an element by the rest.
 double radius_of_volume(double mm3) {
   constexpr double before_moves = 0.9;
   return std::cbrt(before_moves * mm3 * 9.0 * std::sqrt(3.0) / 8.0);

@@ -152,7 +152,7 @@ class Filling {
   Filling(const voxel::Universe& universe, const OctreeCells& cells)
       : lattice_(universe.lattice()), cells_(cells), numbers_(universe.side()), cell_count_(cells.count()) {}
 
-  /// Regions share no voxel. Without `tells_regions` all elements are one.
+  /// Regions share no voxel. Without `tells_regions` all elements belong to one region.
   Tetrahedra run(const std::vector<voxel::Octree>& regions, bool tells_regions,
                  const voxel::Progress& progress) {
     mark_nodes(voxel::part_of(progress, 0.0, 0.5));
