@@ -287,7 +287,7 @@ Operation deck_operation() {
       .takes(record("material", &Deck::material,
                     "Material of an object that others hold. Default: soft tissue.", material_fields()))
       .takes(field("fallback", &Deck::fallback,
-                   "Take the voxels' own elements, marked, where no mesher succeeds."))
+                   "If no mesher succeeds, use the voxels' own elements, marked as such."))
       .takes(records(
                  "finer", &Deck::finer, "Smaller elements at points or along objects.",
                  {field("at", &Deck::Finer::at, "A point [x, y, z], LPS mm, or an object's name.").required(),

@@ -412,10 +412,9 @@ Operation tet_operation() {
                  .to(86400.0))
       .verb_takes(
           field("mend", &Tet::mend, "A mesh that is no solid is mended first, as repair --solid does."))
-      .takes(
-          field("fallback", &Tet::fallback,
-                "Where the meshers fail or leave flat elements, or the mesh is no solid, takes an octree's "
-                "elements, marked as such."))
+      .takes(field("fallback", &Tet::fallback,
+                   "If the meshers fail or leave flat elements, or the mesh is no solid, uses an octree's "
+                   "elements, marked as such."))
       .takes(field("voxel_mm", &Tet::voxel_mm,
                    "Edge of the octree's voxels for --fallback. Default: that of about 200 000 voxels.")
                  .greater_than(0.0))
