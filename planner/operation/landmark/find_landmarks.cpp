@@ -140,11 +140,12 @@ FileAnswer on_files(const FindLandmarks& asked, const FileBench& bench) {
 }  // namespace
 
 Operation find_landmarks_operation() {
-  return Describe<FindLandmarks>("find_landmarks",
-                                 "Guesses where a skull's landmarks are, from its symmetry and its foremost, "
-                                 "lowest and outermost "
-                                 "points; each is to be confirmed.",
-                                 Makes::Measurement)
+  return Describe<FindLandmarks>(
+             "find_landmarks",
+             "Guesses the positions of a skull's landmarks from its symmetry and its foremost, "
+             "lowest and outermost "
+             "points; each is to be confirmed.",
+             Makes::Measurement)
       .takes(field("object", &FindLandmarks::object,
                    "The skull: an object; on the command line a scan or a mesh.")
                  .required()

@@ -47,7 +47,7 @@ constexpr double nose_lean_deg = 1.0, arch_fall_deg = 5.0, most_lean_deg = 35.0;
 constexpr std::array<std::array<double, 3>, 4> other_ways{
     {{6.0, 1.0, 1.5}, {3.0, 3.0, -1.0}, {-3.0, 1.0, 1.0}, {-6.0, 3.0, -1.5}}};
 constexpr double threshold_share = 1.25;  ///< a higher threshold over the usual one, from -150 on
-/// Factors of the interval: on the scatter, and on the coarsest voxel edge.
+/// Factors of the error interval: on the scatter of the trials, and on the edge of the coarsest voxel.
 constexpr double of_scatter = 1.3, of_voxel = 0.7;
 constexpr double scan_end_mm = 2.0;      ///< a voxel and more, as with skull_profile.cpp's
 constexpr double most_within_mm = 15.0;  ///< a landmark with a larger error is not reported
