@@ -86,15 +86,18 @@ Operation head_position_operation() {
                    "Two or more points of the mid-plane, held upright from front to back: nasion, basion. "
                    "Default: square to the line of the porions.")
                  .from(2))
-      .takes(field("pitch_deg", &HeadPosition::pitch_deg, "The front is held higher by this, over the plane.")
+      .takes(field("pitch_deg", &HeadPosition::pitch_deg,
+                   "The front is held higher than the plane by this angle.")
                  .from(-90)
                  .to(90))
-      .takes(field("yaw_deg", &HeadPosition::yaw_deg, "The front is held to the patient's left by this.")
-                 .from(-180)
-                 .to(180))
-      .takes(field("roll_deg", &HeadPosition::roll_deg, "The patient's left side is held higher by this.")
-                 .from(-180)
-                 .to(180))
+      .takes(
+          field("yaw_deg", &HeadPosition::yaw_deg, "The front is held to the patient's left by this angle.")
+              .from(-180)
+              .to(180))
+      .takes(
+          field("roll_deg", &HeadPosition::roll_deg, "The patient's left side is held higher by this angle.")
+              .from(-180)
+              .to(180))
       .example(R"({"id": "held", "do": "head_position",
         "frankfort": [[-60, 0, 10], [60, 0, 10], [-32, -75, 8], [32, -75, 8]], "pitch_deg": 4.5})")
       .check(check);

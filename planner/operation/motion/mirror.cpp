@@ -197,7 +197,7 @@ Operation mirror_operation() {
                  .to(3)
                  .in_plans_only())
       .takes(field("fit", &Mirror::fit,
-                   "Takes the plane that fits the object best, near the one given or about its own axes.")
+                   "Uses the plane that fits the object best, near the one given or about its own axes.")
                  .in_plans_only())
       .takes(field("overlap", &Mirror::overlap, "For a fit: the share of the surface that has a counterpart.")
                  .from(0.0)

@@ -443,7 +443,7 @@ constexpr const char* of_samples =
 Operation register_operation() {
   return Describe<Register>(
              "register",
-             "Lays an object on another one, by surfaces, named landmarks or the samples of two scans.",
+             "Registers an object to another one, by surfaces, named landmarks or the samples of two scans.",
              Makes::Object)
       .takes(field("object", &Register::object,
                    "What moves: an object; on the command line a mesh, a scan or a .json of landmarks.")
