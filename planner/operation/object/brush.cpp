@@ -54,7 +54,8 @@ SlabFrame frame_of(const Stroke& stroke) {
   return {normal, glm::normalize(across - normal * normal[least])};
 }
 
-/// The strokes in a kernel's or the witness's words; `slab` is the member that has a slab's frame and thickness.
+/// The strokes in the types of a kernel or of the witness; `slab` is the member for a slab's frame and
+/// thickness.
 template <typename Made, typename Slab>
 std::vector<Made> strokes_of(const Brush& brush, std::optional<Slab> Made::*slab) {
   std::vector<Made> made;
@@ -245,7 +246,8 @@ std::vector<Field> stroke_fields() {
 }  // namespace
 
 Operation brush_operation() {
-  return Describe<Brush>("brush", "Takes away from an object along the strokes of a brush, or adds to it.",
+  return Describe<Brush>("brush",
+                         "Removes material from an object along the strokes of a brush, or adds material.",
                          Makes::Object)
       .takes(field("object", &Brush::object, "The object.").required().positional("solid"))
       .takes(records("strokes", &Brush::strokes,
@@ -253,11 +255,9 @@ Operation brush_operation() {
                  .from(1)
                  .to(500)
                  .in_plans_only())
-      .takes(
-          field(
-              "mode", &Brush::mode,
-              "Whether the strokes take away from the object or add to it. No scan measures what is painted.")
-              .one_of({"erase", "paint"}))
+      .takes(field("mode", &Brush::mode,
+                   "Whether the strokes remove or add material. No scan measures added material.")
+                 .one_of({"erase", "paint"}))
       .verb_takes(&Brush::drawn, stroke_fields())
       .example(
           R"({"id": "clean", "do": "brush", "object": "skull", "strokes": [

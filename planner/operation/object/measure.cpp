@@ -393,13 +393,13 @@ Operation measure_operation() {
                    "A point and a normal: area and perimeter of the surface where that plane cuts it.")
                  .from(2)
                  .to(2))
-      .takes(field("along", &Measure::along, "Two points: the shortest way along the surface.").from(2).to(2))
+      .takes(
+          field("along", &Measure::along, "Two points: the shortest path along the surface.").from(2).to(2))
       .takes(field("thickness", &Measure::thickness,
                    "Local thickness: the largest ball inside that holds a point, over the volume and "
                    "the surface, and the thinnest wall away from edges; of a mesh or an octree."))
       .takes(field("curvature", &Measure::curvature, "Mean and Gaussian curvature of the surface."))
-      .verb_takes(
-          field("distance", &Measure::distance, "Two points: the straight way between them.").from(2).to(2))
+      .verb_takes(field("distance", &Measure::distance, "Two points: their straight distance.").from(2).to(2))
       .verb_takes(field("angle", &Measure::angle, "Three points: the angle at the second.").from(3).to(3))
       .verb_takes(field("window", &Measure::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
       .verb_takes(field("voxel_mm", &Measure::voxel_mm,

@@ -350,7 +350,7 @@ Operation parts_operation() {
                    "Keep the parts beyond thin necks at these points, LPS, as certificates list them.")
                  .in_plans_only())
       .takes(field("cut_bridges_mm", &Parts::cut_bridges_mm,
-                   "Cut thin necks at these points, LPS: takes away what lies in a cube about each.")
+                   "Cut thin necks at these points, LPS: removes everything in a cube about each.")
                  .in_plans_only())
       .takes(field("bridge_mm", &Parts::bridge_mm, "Edge of the cube about each of these points, mm.")
                  .greater_than(0.0)

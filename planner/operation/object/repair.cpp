@@ -233,18 +233,18 @@ Operation repair_operation() {
                    "Points no further apart than this become one; 0 joins equal points.")
                  .from(0.0)
                  .to(1e6))
-      .takes(field("duplicates", &Repair::duplicates, "Of triangles with the same points keeps the first."))
+      .takes(field("duplicates", &Repair::duplicates,
+                   "Keeps the first of several triangles with the same points."))
       .takes(field("orient", &Repair::orient, "Makes neighbours alike, shells outward, cavities inward."))
-      .takes(field("flat", &Repair::flat, "Takes out triangles without area."))
+      .takes(field("flat", &Repair::flat, "Removes triangles without area."))
       .takes(field("holes", &Repair::holes, "Closes holes."))
       .takes(field("longest_hole_mm", &Repair::longest_hole_mm, "Leaves holes open whose border is longer.")
                  .greater_than(0.0))
       .takes(field("intersections", &Repair::intersections,
-                   "Takes out triangles that intersect and closes what they leave: moves the surface there."))
-      .takes(
-          field("solid", &Repair::solid,
-                "A closed solid of any surface: all of the above, and where that leaves none, the surface is "
-                "made anew about what its triangles wind round."))
+                   "Removes triangles that intersect and closes the gaps, which moves the surface there."))
+      .takes(field("solid", &Repair::solid,
+                   "Makes a closed solid of any surface: all of the above; if the result is no solid, a new "
+                   "surface around the region that the triangles wind around."))
       .takes(field("cell_mm", &Repair::cell_mm,
                    "For a surface made anew: the cells' edge. Default: the triangles' mean side.")
                  .greater_than(0.0))

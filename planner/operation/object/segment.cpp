@@ -559,7 +559,7 @@ Operation segment_operation() {
                    "Keeps the parts beyond thin necks at these points, LPS, as certificates list them.")
                  .in_plans_only())
       .takes(field("cut_bridges_mm", &Segment::cut_bridges_mm,
-                   "Cuts thin necks at these points, LPS: takes away what lies in a cube about each.")
+                   "Cuts thin necks at these points, LPS: removes everything in a cube about each.")
                  .in_plans_only())
       .takes(field("bridge_mm", &Segment::bridge_mm, "Edge of the cube about each of these points, mm.")
                  .greater_than(0.0)

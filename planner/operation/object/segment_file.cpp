@@ -228,7 +228,7 @@ void check_asked(const Segment& asked) {
         "--window: choose the objects: --window bone, --otsu 3, --clusters 4, --seed X,Y,Z --tolerance T, "
         "--label N, --named NAME or --object FILE");
   if (asked.out.empty() && asked.contours.empty() && !asked.otsu && !asked.clusters)
-    throw std::runtime_error("--out: only --otsu, --clusters and --contours need none");
+    throw std::runtime_error("--out is missing: only --otsu, --clusters and --contours work without it");
   if (is_octree(asked.out) && asked.windows.size() + asked.objects.size() > 1)
     throw std::runtime_error("--out: an .octree holds one object: write several as a label map, .nrrd");
   if (!asked.out.empty() && !is_octree(asked.out) && !is_dicom_seg(asked.out) &&

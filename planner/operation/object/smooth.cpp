@@ -25,8 +25,8 @@ struct Smooth {
   bool mend = false;
 };
 
-/// The surfaces are no farther apart than this, either way: smoothing moves points and keeps triangles, so
-/// that each place of one triangle has one of the other within the largest move of its corners.
+/// An upper bound of the distance between both surfaces, in either direction. Smoothing moves points and
+/// keeps triangles, so every place of a triangle moves by at most the largest move of its corners.
 double largest_move_mm(const brep::Mesh& mesh, const brep::Mesh& smoothed) {
   const std::vector<glm::dvec3> before = brep::triangles_of(mesh).points_mm,
                                 after = brep::triangles_of(smoothed).points_mm;
