@@ -187,7 +187,7 @@ void bound(const Shadow& shadow, const BoundBench& bench, Object& made) {
 
 Operation shadow_operation() {
   return Describe<Shadow>("shadow",
-                          "Blocks out an object's undercuts: the object and all that lies behind it along an "
+                          "Blocks out an object's undercuts: the object and everything behind it along an "
                           "insertion direction.",
                           Makes::Object)
       .takes(field("object", &Shadow::object, "The object.").required().positional("solid"))
