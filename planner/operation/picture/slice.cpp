@@ -526,7 +526,8 @@ Operation slice_operation() {
       .takes(field("height_mm", &Slice::height_mm, "Height of a curved sheet.")
                  .greater_than(0.0)
                  .read_if<Slice>(is_curved, "applies only to curved sheets: add 'curve'"))
-      .takes(field("up", &Slice::up, "Upwards in an oblique or curved picture. Default: the head.")
+      .takes(field("up", &Slice::up,
+                   "The direction that is up in an oblique or curved picture. Default: towards the head.")
                  .direction()
                  .read_if<Slice>(
                      [](const Slice& slice) { return is_curved(slice) || !slice.oblique.empty(); },
