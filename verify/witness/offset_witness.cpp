@@ -244,7 +244,7 @@ SurfacePlaces places_near(const glm::dvec3& p_mm, const glm::dvec3& normal, doub
   return places;
 }
 
-/// Where walls and gaps are that pass between the voxels' centres, away from the places at voxels' faces.
+/// The walls and gaps that pass between the voxels' centres, away from the places at voxels' faces.
 SurfacePlaces thin_places_of(const OffsetOperand& operand, const std::vector<glm::dvec3>& between_mm) {
   const voxel::Universe& universe = operand.voxels.universe();
   const voxel::Box world = voxel::bounds(universe.lattice());
