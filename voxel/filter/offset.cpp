@@ -133,7 +133,7 @@ class Depths {
     return points;
   }
 
-  /// `voxel` is the one whose side of the surface counts.
+  /// The depth at a position. `voxel` decides whether the position counts as inside the solid.
   double at(const glm::dvec3& p_voxel, const glm::ivec3& voxel) const {
     const double distance_mm = surface_.distance(edges_mm_ * p_voxel);
     return octree_.contains(voxel) ? by_mm_ + distance_mm : by_mm_ - distance_mm;

@@ -206,7 +206,7 @@ glm::dvec3 SurfaceCrossings::outer_middle(const std::vector<std::size_t>& ring, 
   normal *= (normal[static_cast<int>(key & 3)] * side < 0.0 ? -1.0 : 1.0) / area;
   const Lattice lattice = octree_.universe().lattice();
   const auto is_inside = [&](double out) { return contains(lattice.lps_mm(middle + out * normal)); };
-  // Not beyond the cell, whose middle part a cut-off edge or corner is in.
+  // Stays within the cell, because a cut-off edge or corner lies in the cell's middle part.
   constexpr double most = 0.75;
   double in = 0.0, out = most;
   if (!is_inside(in) || is_inside(out)) return middle;
