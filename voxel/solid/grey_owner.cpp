@@ -41,8 +41,8 @@ bool is_alternative(Expression::Kind kind, bool positive) {
   return kind == Kind::And || kind == Kind::Minus;
 }
 
-// Whether the term's windows are tested by their own samples or by operands of their own, so that the term's
-// voxels add nothing.
+// Whether the term's windows decide by their own samples or by operands of their own. The term's voxels
+// then add nothing.
 bool owns_itself(const Expression::Term& term, bool positive) {
   using Kind = Expression::Kind;
   const Expression::Term* at = &term;
