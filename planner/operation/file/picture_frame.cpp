@@ -114,7 +114,7 @@ std::string name_of(const voxel::View& view) {
   for (const char* name : {"anterior", "posterior", "left", "right", "superior", "inferior"})
     if (same(voxel::parse_view(name), view)) return name;
   const double elevation_deg = glm::degrees(std::asin(std::clamp(-view.look.z, -1.0, 1.0)));
-  // Straight from above or below only `up` tells the azimuth.
+  // Seen straight from above or below, only `up` determines the azimuth.
   const glm::dvec3 ahead =
       std::abs(view.look.z) < 1.0 - same_direction ? view.look : -std::copysign(1.0, view.look.z) * view.up;
   const double azimuth_deg = glm::degrees(std::atan2(-ahead.x, ahead.y));

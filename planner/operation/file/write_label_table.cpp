@@ -75,8 +75,8 @@ void need_label_table(const fs::path& label_map, const std::map<int, std::string
   if (!fs::exists(fs::symlink_status(table)) || holds_names(table, names)) return;
   if (fs::exists(label_map) && is_written_here(table)) return;
   throw std::runtime_error(table.string() +
-                           ": is there already and does not hold the names of the label map's labels, which "
-                           "are written to it: move it away, or choose another name for the label map");
+                           ": is there already and does not hold the names of this label map's labels: move "
+                           "it away, or choose another name for the label map");
 }
 
 std::vector<std::string> write_label_table(const fs::path& label_map,
