@@ -82,7 +82,7 @@ Operation advance_operation() {
   return Describe<Advance>("advance", "Moves an object in one direction until it meets another one.",
                            Makes::Object)
       .takes(field("object", &Advance::object, "The object, or its part.").required())
-      .takes(field("against", &Advance::against, "What it is to meet.").required())
+      .takes(field("against", &Advance::against, "The object to meet.").required())
       .takes(field("towards", &Advance::towards, "The direction, in words of the head as it is held.")
                  .one_of({"forward", "back", "left", "right", "up", "down"}))
       .takes(

@@ -94,7 +94,7 @@ Operation autorotate_operation() {
   return Describe<Autorotate>("autorotate", "Turns the mandible about its condyles to first contact.",
                               Makes::Object)
       .takes(field("object", &Autorotate::object, "The mandible, or its part.").required())
-      .takes(field("against", &Autorotate::against, "What it is to meet.").required())
+      .takes(field("against", &Autorotate::against, "The object to meet.").required())
       .takes(field("condyles", &Autorotate::condyles,
                    "The right and the left condyle's centres: [x, y, z] or landmarks.")
                  .required()

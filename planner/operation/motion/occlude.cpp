@@ -174,8 +174,8 @@ void bound(const Occlude& asked, const BoundBench& bench, Object& made) {
 Operation occlude_operation() {
   return Describe<Occlude>("occlude", "Seats an object on another one so that it touches at given places.",
                            Makes::Object)
-      .takes(field("object", &Occlude::object, "The object that is moved, as the mandible.").required())
-      .takes(field("against", &Occlude::against, "What it is to touch, as the upper jaw.").required())
+      .takes(field("object", &Occlude::object, "The object to move, such as the mandible.").required())
+      .takes(field("against", &Occlude::against, "The object to touch, such as the upper jaw.").required())
       .takes(field("places", &Occlude::places,
                    "Where it is to touch: points or landmarks on the object. One slides it along the "
                    "direction, two also tilt it, three seat it.")

@@ -104,7 +104,9 @@ void triangles(const Warp& warp, const MeshBench& bench, MeshSide& made) {
   made.whole =
       brep::trusted_solid(convert::warped(bench.object(warp.object.name), by.field), brep::Proof::Connection);
   made.details = std::move(by.details);
-  made.lineage = "vertices of a mesh, displaced as the elements about them, fading beyond their box";
+  made.lineage =
+      "vertices of a mesh, displaced with the elements around them; the displacement fades outside the "
+      "elements' box";
 }
 
 void bound(const Warp& warp, const BoundBench& bench, Object& made) {
