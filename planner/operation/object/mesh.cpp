@@ -120,7 +120,7 @@ Made of_scan(const FileBench& bench, const Meshed& asked, std::vector<std::strin
   if (asked.surface == "contours") return tiled_contours(scene, window, asked, findings);
   throw std::runtime_error(
       asked.file.name +
-      ": a cuberille is of an octree's voxels: make one first with octotomy octree --window " +
+      ": a cuberille is made from an octree: make the octree first with octotomy octree --window " +
       to_string(window));
 }
 

@@ -322,8 +322,8 @@ Operation scan_of_operation() {
       .takes(field("scan", &ScanOf::scan, "The scan whose lattice, unit and patient the made one takes over.")
                  .required())
       .takes(field("expression", &ScanOf::expression,
-                   "Names of objects under & | - ^ ~ and parentheses. Of two that overlap the one that is "
-                   "named first gives the sample.")
+                   "Names of objects under & | - ^ ~ and parentheses. Where two overlap, the sample of the "
+                   "one named first is kept.")
                  .required())
       .takes(field("hole_value", &ScanOf::hole_value,
                    "Sample where no object is. Default: the scan's padding, or a value below all its "

@@ -239,7 +239,7 @@ void check_asked(const Segment& asked) {
   if (!asked.contours.empty()) {
     need_extension(asked.contours, {".json"}, "contours are");
     if (asked.windows.empty() && !asked.otsu)
-      throw std::runtime_error("--contours: follow the lower bound of a --window: give it");
+      throw std::runtime_error("--contours: contours follow the lower bound of a --window: add --window");
   }
   std::vector<fs::path> read{asked.scan.name, asked.names, asked.regions};
   read.insert(read.end(), asked.objects.begin(), asked.objects.end());
