@@ -233,7 +233,7 @@ class OperationRun {
         object.id + ": reaches " + three_figures(beyond_mm) + " mm beyond the voxels of the octree";
     if (text_.certify)
       throw std::runtime_error(what + ", so that the kernels cannot be compared there: leave --certify out");
-    beyond_.push_back(what + ": the answer has no voxels there; write a mesh, which is whole");
+    beyond_.push_back(what + ": the answer has no voxels there; write a mesh to keep all of the object");
   }
 
   void answer_by_mesh(Object& made) {
