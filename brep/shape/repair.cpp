@@ -53,9 +53,9 @@ bool is_within_share(double before_mm3, double now_mm3, const RepairOptions& opt
 
 [[noreturn]] void refuse_volume(double before_mm3, double now_mm3, const RepairOptions& options,
                                 const char* step, const std::string& ways) {
-  throw Error(ErrorCode::Geometry, std::string("repair: ") + step + " took the volume from " +
+  throw Error(ErrorCode::Geometry, std::string("repair: ") + step + " changed the volume from " +
                                        short_text(before_mm3) + " to " + short_text(now_mm3) +
-                                       " mm3, more than its share of " +
+                                       " mm3, more than the allowed share of " +
                                        short_text(options.max_volume_share) + ": " + ways);
 }
 

@@ -73,7 +73,7 @@ Mesh smooth(const Mesh& mesh, const SmoothOptions& options) {
   if (!(std::abs(now - volume) <= options.max_volume_share * volume_for_share_mm3(mesh, volume)))
     throw Error(ErrorCode::Geometry, "smooth: the volume went from " + std::to_string(volume) + " to " +
                                          std::to_string(now) +
-                                         " mm3, more than its share: use fewer rounds or a "
+                                         " mm3, more than the allowed share: use fewer rounds or a "
                                          "wider pass band, or allow a larger share");
   return smoothed;
 }
