@@ -106,7 +106,7 @@ void add_drawn(const std::vector<verify::IntervalCoverage>& table,
     if (all || !held)
       rows.emplace_back(held ? "holds" : "DOES NOT HOLD",
                         "interval of the " + subject + ", at least " + three_figures(100.0 * least) +
-                            " % within the chance of this number of solids: " + found);
+                            " %, allowing for the chance in this number of solids: " + found);
     else
       rows.emplace_back(subject, found);
   }
