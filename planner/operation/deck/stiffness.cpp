@@ -60,8 +60,9 @@ std::vector<std::string> add_stiffness(const Stiffness& stiffness, const convert
                              ") mm: give the scan that the solid was made of");
   }
   deck.notes.push_back("stiffness: " + std::to_string(made.materials.size()) +
-                       " materials in steps of one ratio; an element's own is at most " +
-                       three_figures(made.worst_ratio) + " times its material's or that share of it");
+                       " materials at equal ratios; an element's own stiffness differs from its material's "
+                       "by a factor of at most " +
+                       three_figures(made.worst_ratio));
   deck.materials = std::move(made.materials);
   deck.material_of_tet = std::move(made.material_of_tet);
   deck.fields = {{"HU", std::move(made.hu)},

@@ -190,8 +190,8 @@ CheckedMesh checked_mesh(const FileBench& bench, const Tet& asked, std::vector<s
   surface.health = brep::health(surface.triangles);
   if (!surface.health.solid() && !asked.fallback)
     throw std::runtime_error(asked.file.name + ": is not a solid: " + surface.health.findings.front() +
-                             "; let it be mended by --mend, octotomy info tells all; or take an octree's "
-                             "elements by --fallback, which need none");
+                             "; octotomy info lists all defects; mend it with --mend, or use an octree's "
+                             "elements with --fallback");
   return surface;
 }
 
