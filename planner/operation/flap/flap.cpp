@@ -102,11 +102,10 @@ Operation flap_operation() {
   for (Field& each : flap_fields<Flap>()) std::move(entry).takes(std::move(each));
   return std::move(entry)
       .takes(field("segments", &Flap::segments, "The placed segments, in order along the curve.").required())
-      .takes(
-          field("contacts", &Flap::contacts,
-                "What both bones share in each osteotomy's slab, in order along the curve; without the last "
-                "where the new bone ends free, as in a joint.")
-              .required())
+      .takes(field("contacts", &Flap::contacts,
+                   "The common volume of both bones in each osteotomy's slab, in order along the curve; "
+                   "without the last slab where the new bone ends free, as in a joint.")
+                 .required())
       .takes(field("slab_mm", &Flap::slab_mm, "The thickness of these slabs.").greater_than(0).to(10))
       .example(R"({"id": "flap", "do": "flap", "segments": ["skull"], "contacts": ["skull", "skull"],
         "curve": [[-30, -60, -80], [0, -80, -85]],
