@@ -269,8 +269,8 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   FoundPlaces first = pitch ? apply(usual, frame) : FoundPlaces();
   if (first.places.empty())
     throw std::runtime_error(
-        "no nasal opening beside an orbit is seen from the front, from which the rules count: is it a skull, "
-        "with its face in the scan, and the window that of bone?");
+        "no nasal opening beside an orbit is seen from the front, and all rules start from it: is it a "
+        "skull, is its face in the scan, and is the window that of bone?");
 
   // The trials: other pitches, widths, heights, thresholds and mid-planes.
   std::vector<Trial> trials;

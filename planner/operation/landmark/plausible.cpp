@@ -69,7 +69,7 @@ void keep_related(FoundPlaces& found) {
       const std::string where = relation.of == Relation::Below ? "below" : "behind";
       wrong[second] = "it would lie farther or nearer " + where + " " + relation.first + " than in any face";
       // It is not known which of the two is wrong.
-      wrong[relation.first] = "it and " + second + " would lie as in no face";
+      wrong[relation.first] = "it and " + second + " would lie as they do in no face";
     }
   }
   for (const auto& [name, why] : wrong) take_out(found, name, why);
