@@ -14,8 +14,8 @@ namespace {
 using WeightedValues = std::vector<std::pair<double, double>>;
 
 constexpr const char* wall_rule =
-    "only where the ball touches the surface at a second place whose direction from its centre encloses at "
-    "least 150 degrees with that to the first: edges are left out unless their sides converge by 30 degrees "
+    "only where the ball touches the surface at a second place, at least 150 degrees from the first as seen "
+    "from its centre: edges are left out unless their sides converge by 30 degrees "
     "or less";
 
 /// The results over a volume, with the same keys for both kernels.
