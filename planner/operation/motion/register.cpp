@@ -501,10 +501,9 @@ Operation register_operation() {
                  .from(0.5)
                  .to(8.0)
                  .read_if<Register>(may_be_of_samples, of_samples))
-      .verb_takes(
-          field("out", &Register::out,
-                "A moved to B: a .stl, .ply, .obj, .off, .vtp or .glb file; of scans .nrrd, .nhdr, .nii, "
-                ".nii.gz, .mha or .mhd, with the samples as they are in another frame."))
+      .verb_takes(field("out", &Register::out,
+                        "A moved to B: a .stl, .ply, .obj, .off, .vtp or .glb file; for scans a .nrrd, "
+                        ".nhdr, .nii, .nii.gz, .mha or .mhd file with unchanged samples in a new frame."))
       .verb_takes(
           field("watch", &Register::watch,
                 "A new folder for a picture of the difference of two scans at each step of the search: what "
