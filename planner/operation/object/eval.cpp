@@ -120,7 +120,7 @@ Operand operand_of(const FileBench& bench, const std::string& name, const fs::pa
   const auto window = windows.find(name);
   if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
     if (window == windows.end())
-      throw std::runtime_error(path.string() + ": is grey, choose the object '" + name + "' is: --window " +
+      throw std::runtime_error(path.string() + ": is grey: choose which object '" + name + "' is: --window " +
                                name + "=LOW:HIGH, for example --window " + name + "=300:");
     return {window_on(*grey, parse_sample_window(window->second)), grey->universe(), std::nullopt};
   }
@@ -280,8 +280,8 @@ Operation eval_operation() {
                  .repeated()
                  .called("motion"))
       .verb_takes(field("grey", &Eval::grey,
-                        "Keeps samples: each voxel has that of the first operand with samples that holds it, "
-                        "moved with it."))
+                        "Keeps samples: each voxel gets the sample of the first operand that holds it and "
+                        "has samples. Samples move with their operand."))
       .takes(field("digitise", &Eval::digitise,
                    "The voxels of a moved octree: those whose centre it contains, or those that it fills at "
                    "least half.")

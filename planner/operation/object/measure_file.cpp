@@ -345,7 +345,8 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
     add_thickness(octree, asked, bench, json);
     json["volume_partial_mm3"] = nullptr;
     json["findings"].push_back(
-        "volume_partial_mm3: voxels that are in or out have no known shares: keep samples (--grey) or "
+        "volume_partial_mm3: voxels that are only inside or outside have no known shares: keep samples "
+        "(--grey) or "
         "shares (--digitise partial)");
   }
   Json whole{{"kind", "octree"}};

@@ -73,11 +73,12 @@ brep::Triangles tiled_contours(const voxel::Scene& scene, const SampleWindow& wi
   findings.push_back(
       "contours: " + std::to_string(tiled.strips) + " pairs joined by strips, " +
       std::to_string(tiled.clear_strips) +
-      " of them by spans that cross no contour as the best would cross something, " +
+      " of them by spans that cross no contour, because the best strips would cross something, " +
       std::to_string(tiled.narrowed_strips) +
-      " of them nearer to the shortest spans or by least area as that would cross something, too, " +
-      std::to_string(tiled.crossed_strips) + " by overlay as their strips would cross something, " +
-      std::to_string(tiled.overlaid) + " branchings, ends and lone contours by overlay");
+      " of them nearer to the shortest spans or by least area, because those would cross something, too; " +
+      std::to_string(tiled.crossed_strips) +
+      " pairs by overlay, because every strip would cross something; " + std::to_string(tiled.overlaid) +
+      " branchings, ends and lone contours by overlay");
   return std::move(tiled.surface);
 }
 
@@ -98,7 +99,7 @@ Made of_octree(const FileBench& bench, const Meshed& asked, std::vector<std::str
     throw std::runtime_error(asked.file.name + ": holds no samples to take a --window of: leave it out");
   if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) {
     if (!cubes) return convert::isosurface(*partial);
-    findings.push_back("surface: the cuberille is of the voxels at least half filled");
+    findings.push_back("surface: the cuberille is made of the voxels that are at least half filled");
     return cuberille_of(at_least_half(*partial), asked);
   }
   const auto& octree = std::get<voxel::Octree>(file.tree);

@@ -255,7 +255,7 @@ Operation octree_operation() {
       .verb_takes(
           field("grey", &Build::grey, "A min-max octree of all samples.")
               .read_if<Build>([](const Build& build) { return build.from.empty() && !is_octree(build.in()); },
-                              "only a scan is made a tree of all its samples: leave it out"))
+                              "only a scan has samples to build such a tree of: leave it out"))
       .verb_takes(field("voxel_mm", &Build::voxel_mm,
                         "Edge of a voxel. Default: as fine as the scan, at most 512 a side; with --from 1.")
                       .greater_than(0.0)

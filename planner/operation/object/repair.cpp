@@ -227,7 +227,8 @@ Operation repair_operation() {
                    "three other letters. "
                    "Default: what the file states, else LPS."))
       .takes(field("unit", &Repair::unit,
-                   "The file's unit, in place of the one that the file states. Default: the file's, else mm.")
+                   "The unit of the file's lengths, in place of what the file states. Default: what the file "
+                   "states, else mm.")
                  .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
       .takes(field("weld_mm", &Repair::weld_mm,
                    "Points no further apart than this become one; 0 joins equal points.")
@@ -235,7 +236,8 @@ Operation repair_operation() {
                  .to(1e6))
       .takes(field("duplicates", &Repair::duplicates,
                    "Keeps the first of several triangles with the same points."))
-      .takes(field("orient", &Repair::orient, "Makes neighbours alike, shells outward, cavities inward."))
+      .takes(field("orient", &Repair::orient,
+                   "Turns triangles so that neighbours agree, shells face outward and cavities inward."))
       .takes(field("flat", &Repair::flat, "Removes triangles without area."))
       .takes(field("holes", &Repair::holes, "Closes holes."))
       .takes(field("longest_hole_mm", &Repair::longest_hole_mm, "Leaves holes open whose border is longer.")

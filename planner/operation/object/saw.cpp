@@ -136,11 +136,10 @@ Operation saw_operation() {
                  .greater_than(0.0)
                  .read_if<Saw>([](const Saw& saw) { return saw.plane.empty(); }, of_plane))
       .takes(field("kerf_mm", &Saw::kerf_mm, "The width of the cut.").greater_than(0.0))
-      .takes(
-          field("plane", &Saw::plane,
-                "A plane of 3D Slicer, .mrk.json, in the place of line, direction and depth: the blade goes "
-                "along its second axis, across its rectangle.")
-              .a_file())
+      .takes(field("plane", &Saw::plane,
+                   "A plane of 3D Slicer, .mrk.json, in place of line, direction and depth: the blade goes "
+                   "in along the plane's second axis, across its rectangle.")
+                 .a_file())
       .example(
           R"({"id": "sawn", "do": "saw", "object": "skull", "line_mm": [[-60, -120, -20], [60, -120, -20]],
         "direction": [0, 1, 0], "depth_mm": 80, "kerf_mm": 0.8})")

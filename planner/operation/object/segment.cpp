@@ -516,7 +516,8 @@ Operation segment_operation() {
                  .from(1)
                  .to(8))
       .takes(field("tolerance", &Segment::tolerance,
-                   "Grows from the seeds through samples no farther from theirs.")
+                   "Grows from the seeds through samples that lie within the range of the seeds' samples, "
+                   "widened by this.")
                  .from(0)
                  .to(65535))
       .takes(field("running_mean", &Segment::running_mean,

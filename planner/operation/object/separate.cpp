@@ -165,7 +165,7 @@ Operation separate_operation() {
       .verb_takes(
           field("least_mm2", &Separate::least_mm2, "Leaves out pieces of a smaller area.").from(0.0).to(1e9))
       .verb_takes(field("out", &Separate::out,
-                        "A .stl, .ply, .obj, .off, .vtp or .glb file; without --piece each piece's is "
+                        "A .stl, .ply, .obj, .off, .vtp or .glb file; without --piece each piece's file is "
                         "numbered, parts-1.ply, and replaces only a file that Octotomy wrote.")
                       .required())
       .example(R"({"id": "condyle", "do": "separate", "object": "rest", "piece": 2})")
