@@ -83,7 +83,7 @@ Operation remove_headrest_operation() {
                                   Makes::Scan)
       .takes(field("scan", &RemoveHeadrest::scan, "The scan.").required())
       .takes(field("threshold", &RemoveHeadrest::threshold,
-                   "Samples from here on are solid, in the scan's unit."))
+                   "Samples from this value on are solid, in the scan's unit."))
       .takes(field(
           "near_mm", &RemoveHeadrest::near_mm,
           "Parts wholly within this distance of the patient stay, unless they are foam or part of a board."))
