@@ -91,7 +91,7 @@ class MeetsElsewhere {
     return sure_sign(one - two, std::abs(one) + std::abs(two));
   }
   /// Whether the line of one of g's sides certainly separates g from f, as seen along the axis along which g
-  /// is widest, except for corners of both on the line.
+  /// has the largest outline. Corners that f shares with that side do not count.
   bool is_apart(const Face& f, const Face& g) const {
     const glm::dvec3 seen = glm::abs(glm::cross(at(g[1]) - at(g[0]), at(g[2]) - at(g[0])));
     const int axis = seen.x >= seen.y && seen.x >= seen.z ? 0 : seen.y >= seen.z ? 1 : 2;
