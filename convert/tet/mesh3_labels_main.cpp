@@ -118,7 +118,8 @@ struct Labels {
         static_cast<std::size_t>(std::find(labels.begin(), labels.end(), label) - labels.begin()));
   }
 
-  /// The lowest label of a group that is on its own side of each of its planes to others of the group.
+  /// The lowest label of a group for which the point lies on the label's side of every plane between it and
+  /// another label of the group. The group itself if there is none.
   int of_group(std::uint8_t group, const std::array<std::uint8_t, 8>& labels,
                const std::array<std::uint8_t, 8>& groups, const Point& p) const {
     const glm::dvec3 p_mm(p.x(), p.y(), p.z());
