@@ -90,7 +90,8 @@ void check(const Deck& deck, const FieldLocation& place) {
   check_regions(deck, place);
   if (deck.stiffness && (deck.is_held() || !deck.regions.empty()))
     place.at("stiffness")
-        .refuse("applies only to one object that is filled: leave it out, or 'regions' and holders");
+        .refuse(
+            "applies only to a single filled object: leave it out, or leave out 'regions' and the holders");
   if (!deck.finer.empty() && !deck.smooth_mm && (deck.is_held() || !deck.regions.empty()))
     place.at("finer").refuse("does not apply to voxels' elements: add 'smooth_mm', or leave it out");
 }
