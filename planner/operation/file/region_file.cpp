@@ -342,7 +342,7 @@ Slices joined_parts(const std::vector<Slices>& parts, const Bridges& bridges) {
   std::sort(borders.begin(), borders.end());
   const auto are_one = [](double low_mm, double high_mm) { return high_mm - low_mm < 0.1 * off_plane_mm(); };
   borders.erase(std::unique(borders.begin(), borders.end(), are_one), borders.end());
-  // Planes on both sides of each border, nearer than combine() moves centres off a border.
+  // The distance of planes on both sides of each border. combine() moves centres off a border by more.
   constexpr double beside_mm = 0x1p-22;
   Slices all{{borders.front() - beside_mm, {}}};
   for (std::size_t k = 1; k < borders.size(); ++k) {
