@@ -83,7 +83,7 @@ Operation advance_operation() {
                            Makes::Object)
       .takes(field("object", &Advance::object, "The object, or its part.").required())
       .takes(field("against", &Advance::against, "The object to meet.").required())
-      .takes(field("towards", &Advance::towards, "The direction, in words of the head as it is held.")
+      .takes(field("towards", &Advance::towards, "The direction, relative to the head as it is held.")
                  .one_of({"forward", "back", "left", "right", "up", "down"}))
       .takes(
           field("direction", &Advance::direction, "The direction instead, LPS; its length does not count."))

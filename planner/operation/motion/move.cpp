@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A rigid motion, stated in one of four ways:
-//   a turn, then a translation: numbers in LPS, in words of the head, or from one mark to another;
+//   a turn, then a translation: numbers in LPS, along the directions of the head, or from one mark to another;
 //   points and their target positions (Ong 1992, 8.3);
 //   a matrix, as `register` prints it;
 //   the motion of an earlier step.
@@ -325,7 +325,7 @@ Operation move_operation() {
                         "In place of 'axis': two points that the axis passes, for example both condyles.")
                       .from(2)
                       .to(2)}))
-      .takes(record("by", &Move::by, "The translation in words of the head.",
+      .takes(record("by", &Move::by, "The translation along the directions of the head.",
                     along(&Displacement::forward_mm, &Displacement::left_mm, &Displacement::up_mm)))
       .takes(
           field("along", &Move::along,
@@ -333,14 +333,15 @@ Operation move_operation() {
                 "front point, then one to the right and one to the left.")
               .from(3)
               .to(3))
-      .takes(record("turn", &Move::turn,
-                    "The rotation in words of the head, which is done first: roll, then pitch, then yaw.",
-                    {field("pitch_deg", static_cast<double Turn::*>(&Turn::pitch_deg), "The front goes up."),
-                     field("yaw_deg", static_cast<double Turn::*>(&Turn::yaw_deg),
-                           "The front goes to the patient's left."),
-                     field("roll_deg", static_cast<double Turn::*>(&Turn::roll_deg),
-                           "The patient's left side goes up."),
-                     field("about_mm", &Turn::about_mm, "The pivot: [x, y, z] or a landmark.").required()}))
+      .takes(record(
+          "turn", &Move::turn,
+          "The rotation about the directions of the head, which is done first: roll, then pitch, then yaw.",
+          {field("pitch_deg", static_cast<double Turn::*>(&Turn::pitch_deg), "The front goes up."),
+           field("yaw_deg", static_cast<double Turn::*>(&Turn::yaw_deg),
+                 "The front goes to the patient's left."),
+           field("roll_deg", static_cast<double Turn::*>(&Turn::roll_deg),
+                 "The patient's left side goes up."),
+           field("about_mm", &Turn::about_mm, "The pivot: [x, y, z] or a landmark.").required()}))
       .takes(
           field("from", &Move::from, "With 'to': the translation from this mark, [x, y, z] or a landmark."))
       .takes(field("to", &Move::to, "The mark to which 'from' is brought."))

@@ -182,7 +182,7 @@ Operation occlude_operation() {
                  .required()
                  .from(1)
                  .to(16))
-      .takes(field("towards", &Occlude::towards, "The direction, in words of the head as it is held.")
+      .takes(field("towards", &Occlude::towards, "The direction, relative to the head as it is held.")
                  .one_of({"up", "down"}))
       .takes(field("about_mm", &Occlude::about_mm, "The largest distance of a contact from its place.")
                  .greater_than(0.0)

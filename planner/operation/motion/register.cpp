@@ -259,7 +259,7 @@ void check(const Register& asked, const FieldLocation& place) {
   if (asked.landmarks_only && asked.landmarks.empty())
     place.at("landmarks_only").refuse("takes the motion of landmarks: add 'landmarks', two files");
   if (place.scope != nullptr && asked.motion == "similarity")
-    place.at("motion").refuse("scales, and an object's voxels cannot: use rigid or three_points");
+    place.at("motion").refuse("scales, which an object's voxels cannot do: use rigid or three_points");
 }
 
 Register settle(const Register& asked, const SettleBench& bench) {
