@@ -34,8 +34,8 @@ struct WitnessedOffset {
 /// and a look at the places about it.
 Witness witness_of_offset(const OffsetOperand& operand, const WitnessedOffset& asked);
 
-/// How far two right answers to an offset may lie apart on the mean over a surface of `area_mm2`, beyond
-/// what digitisation does to that surface: the mean errors of both kernels' distances. Derived in
+/// The mean distance that two right answers to an offset may have over a surface of `area_mm2`, in addition
+/// to the error of digitisation: the mean errors of both kernels' distances. Derived in
 /// offset_witness.cpp. Computed from the operand, not from the answers under test. Cost: linear in the
 /// operand's triangles.
 double offset_allowance_mm(const OffsetOperand& operand, const WitnessedOffset& asked, double area_mm2);
