@@ -38,8 +38,9 @@ struct LocalThicknessAt {
 
 /// Over a solid's volume, each point weighing its part of it.
 struct LocalThickness {
-  double mean_mm = 0.0;  ///< extrapolated to infinitely many balls, and at most largest_mm: the mean over the
-                         ///< balls plus what it rose by from a fourth of them, an error of first order
+  /// Extrapolated to infinitely many balls, to first order: the mean over all balls, plus the increase from
+  /// the mean over a fourth of them. At most largest_mm.
+  double mean_mm = 0.0;
   double deviation_mm = 0.0, median_mm = 0.0, largest_mm = 0.0;  ///< over the balls, not extrapolated
   /// The mean is within this of the true value for the given triangles, in 99 of 100 cases. The sum of
   /// three terms: twice the change when three balls of four are left out, 2.6 standard errors of the
