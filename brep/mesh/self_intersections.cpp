@@ -311,8 +311,8 @@ void sort_around(const Triangles& triangles, std::span<EdgeUse> uses) {
   });
 }
 
-/// Pairs of neighbours around an edge of several sheets which both begin or both end a solid there: one sheet
-/// runs into another one. Sheets that only touch alternate.
+/// Pairs of triangles that are neighbours around an edge of several sheets and have the same winding there, so
+/// that one sheet runs into another one. Around an edge where sheets only touch, windings alternate.
 std::vector<FirstPairs::Pair> crossings_at_edges(const Triangles& triangles,
                                                  const std::vector<std::uint8_t>& is_copied,
                                                  const std::vector<std::uint8_t>& degenerate) {
