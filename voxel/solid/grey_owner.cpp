@@ -166,8 +166,8 @@ Expression all_samples(const GreyOctree& grey, const glm::dmat4& moved_from_stil
   return moved_from_still == glm::dmat4(1.0) ? samples : carried(samples, moved_from_still);
 }
 
-// A union with all of space contains all of space, so that the intersection keeps its voxels; its window comes
-// after those of the voxels, and is tested by its own samples.
+// The union with all of space contains all of space, so the intersection has the voxels of `voxels`. The window
+// of `samples` comes after the windows of `voxels`, and is tested by its own samples.
 Expression with_samples(const Expression& voxels, const Expression& samples) {
   return voxels & (samples | ~Expression(Octree::empty({})));
 }
