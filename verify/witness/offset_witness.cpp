@@ -90,7 +90,7 @@ class PointGrid {
       low_ = glm::min(low_, p);
       high = glm::max(high, p);
     }
-    // Cells are widened where there would be many more than points.
+    // The edge is doubled until there are not many more cells than points, which bounds memory.
     const auto cells_at = [&](double edge_mm) {
       const glm::dvec3 cells = glm::floor((high - low_) / edge_mm) + 1.0;
       return cells.x * cells.y * cells.z;
