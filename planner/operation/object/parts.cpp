@@ -319,7 +319,7 @@ KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::op
 
 voxel::Expression symbol_of_parts(const voxel::Expression& symbol, const voxel::Octree& object,
                                   const voxel::Octree& parts) {
-  // A voxel's width around the parts, without the voxels of others.
+  // The parts, widened by one voxel, without the voxels of other parts.
   const double reach_mm = glm::length(parts.universe().lattice().spacing_mm());
   return symbol & (voxel::Expression(voxel::dilate(parts, reach_mm)) -
                    (voxel::Expression(object) - voxel::Expression(parts)));
