@@ -349,7 +349,7 @@ double length_of(const XmlTags& elements, const XmlTag& element, const std::stri
     elements.refuse_at(element.line, "<" + element.name + "> " + key + "='" + found->second +
                                          "' is no length in px, mm, cm, "
                                          "in, pt or pc");
-  // A unit within the drawing is one of CSS: a pixel is a user unit.
+  // A length within the drawing has CSS's units, in which a pixel is a user unit.
   return value * known->second / mm_per_unit;
 }
 
