@@ -120,7 +120,7 @@ bool run_parallel(const EngineRequest& request) {
   Words words{"parallel",   "--will-cite",
               "--joblog",   code_path(request, cohort_log).string(),
               "--arg-file", write_labels(request).string()};
-  if (request.jobs > 0) words.insert(words.end(), {"--jobs", std::to_string(request.jobs)});
+  if (request.jobs) words.insert(words.end(), {"--jobs", std::to_string(*request.jobs)});
   words.push_back(shell_text(request.program) + " --participant-label {} >/dev/null");
   const Pipe pipe;
   run_child_process({.words = words,
