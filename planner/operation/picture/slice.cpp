@@ -428,7 +428,7 @@ void check(const Slice& slice, const FieldLocation& place) {
   if (slice.colours.size() > slice.objects.size() + slice.hatched.size())
     place.at("colours").refuse("has more colours than there are objects and hatched objects");
   if (!slice.level.empty() && !(slice.level[1] > 0.0))
-    place.at("level").refuse("is CENTRE and WIDTH, which is above zero");
+    place.at("level").refuse("must be CENTRE and WIDTH, with a width above zero");
   for (const std::string& colour : slice.colours) need_colour(colour);
   if (place.scope != nullptr) check_output_path(slice.path, {".png", ".jpg", ".webp"}, place.at("path"));
 }
